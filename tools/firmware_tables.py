@@ -24,11 +24,7 @@ HYSTERESIS = 0.05
 TURN = 1024
 """Entries of the firmware's sine table; a power of two."""
 
-_TIMES = ("STATE_EVERY", "FAILSAFE_AFTER", "GONE_EVERY")
-_NAMES = (
-    "NOTHING", "JOINTS_MAX", "ITEM_JOINT", "ITEM_MOTION", "ITEM_SOUND", "ITEM_MOOD",
-    "RESULT_TAKEN", "RESULT_REFUSED", "FLAG_CHARGING", "FLAG_STILL", "FLAG_LIMP", "FLAG_RECKONED",
-)  # fmt: skip
+_TIMES = ("STATE_EVERY", "FAILSAFE_AFTER", "GONE_EVERY", "LOG_EVERY")
 
 
 def messages() -> str:
@@ -43,7 +39,7 @@ def messages() -> str:
         f"MAX_BODY = {MAX_BODY}",
         f"MAX_FRAME = {MAX_FRAME}",
         *(f"{name} = {round(1000 * getattr(timing, name))}" for name in _TIMES),
-        *(f"{name} = {getattr(m, name)}" for name in _NAMES),
+        *(f"{name} = {value}" for name, value in m.constants().items()),
         *(f"{spec.name} = 0x{spec.number:02X}" for spec in specs),
         "",
         "# number: (layout, bytes in version 1, (bytes, defaults) of the fields that each later",
@@ -137,7 +133,13 @@ def _count_lines() -> list[str]:
     highest = {limits[kind] for kind in kinds}
     (most,) = highest
     assert most is not None
-    return [f"ENTRIES_MAX = {most:.0f}", f"NAME_BYTES = {spec_of(m.Name).fields[-1].size}", ""]
+    name_bytes, log_bytes = (spec_of(kind).fields[-1].size for kind in (m.Name, m.Log))
+    return [
+        f"ENTRIES_MAX = {most:.0f}",
+        f"NAME_BYTES = {name_bytes}",
+        f"LOG_BYTES = {log_bytes}",
+        "",
+    ]
 
 
 def _motion_lines(motion: SineMotion) -> list[str]:

@@ -2,11 +2,11 @@
 
 from robot.protocol import timing
 from robot.protocol.fields import INTEGER_LIMITS, FieldSpec
-from robot.protocol.messages import JOINTS_MAX, NOTHING
+from robot.protocol.messages import constants
 from robot.protocol.schema import HEADER, MESSAGES, MessageSpec, VersionPart
 
 _TYPES = {"u8": "uint8_t", "u16": "uint16_t", "u32": "uint32_t", "i16": "int16_t"}
-_TEXT, _ROW = 16, 16  # elements of a text16 and of an i16x16
+_ROW = 16  # elements of an i16x16
 _INDENT = "    "
 
 _HEAD = """\
@@ -75,8 +75,7 @@ def _constants(specs: list[MessageSpec]) -> str:
     values: dict[str, object] = {
         "VERSION": timing.VERSION,
         "HEADER": HEADER.size,
-        "JOINTS_MAX": JOINTS_MAX,
-        "NOTHING": NOTHING,
+        **constants(),
     }
     for name in timing.RULE_DESCRIPTIONS:
         values[f"{name}_MS"] = round(1000 * getattr(timing, name))
@@ -88,7 +87,8 @@ def _constants(specs: list[MessageSpec]) -> str:
 def _message(spec: MessageSpec) -> str:
     name = spec.name.lower()
     members = [_member(field) for part in spec.parts for field in part.fields]
-    struct = [f"/* {spec.name}, from the {spec.sender}. {spec.meaning} */"]
+    since = f", since version {spec.since}" if spec.since > 1 else ""
+    struct = [f"/* {spec.name}, from the {spec.sender}{since}. {spec.meaning} */"]
     if members:
         struct += ["typedef struct {", *members, f"}} cubeling_{name};", ""]
     return "\n".join([*struct, *_pack(spec), "", *_unpack(spec), ""])
@@ -98,8 +98,8 @@ def _member(field: FieldSpec) -> str:
     unit = {1.0: field.unit, 1e-3: f"m{field.unit}", 1e-4: "1/10000"}[field.scale]
     since = f", since version {field.since}" if field.since > 1 else ""
     remark = f"{field.meaning}{f' [{unit}]' if unit else ''}{since}"
-    if field.wire_type == "text16":
-        return f"{_INDENT}char {field.name}[{_TEXT + 1}]; /* {remark} */"
+    if field.is_text:
+        return f"{_INDENT}char {field.name}[{field.size + 1}]; /* {remark} */"
     element = _TYPES[field.wire_type.removesuffix(f"x{_ROW}")]
     row = f"[{_ROW}]" if field.wire_type == f"i16x{_ROW}" else ""
     return f"{_INDENT}{element} {field.name}{row}; /* {remark} */"
@@ -165,8 +165,8 @@ def _fields_with_offsets(part: VersionPart) -> list[tuple[FieldSpec, int]]:
 
 def _pack_field(field: FieldSpec, at: int) -> list[str]:
     own = f"from->{field.name}"
-    if field.wire_type == "text16":
-        return [f"strncpy((char *)body + {at}, {own}, {_TEXT});"]
+    if field.is_text:
+        return [f"strncpy((char *)body + {at}, {own}, {field.size});"]
     if field.wire_type == f"i16x{_ROW}":
         loop = f"for (size_t i = 0; i < {_ROW}; i++)"
         return [loop, f"{_INDENT}cubeling_put16(body + {at} + 2 * i, (uint16_t){own}[i]);"]
@@ -179,8 +179,9 @@ def _pack_field(field: FieldSpec, at: int) -> list[str]:
 
 def _unpack_field(field: FieldSpec, at: int) -> list[str]:
     own = f"to->{field.name}"
-    if field.wire_type == "text16":
-        return [f"memcpy({own}, body + {at}, {_TEXT});", f"{own}[{_TEXT}] = 0;"]
+    if field.is_text:
+        size = field.size
+        return [f"memcpy({own}, body + {at}, {size});", f"{own}[{size}] = 0;"]
     if field.wire_type == f"i16x{_ROW}":
         loop = f"for (size_t i = 0; i < {_ROW}; i++)"
         return [loop, f"{_INDENT}{own}[i] = cubeling_get16s(body + {at} + 2 * i);"]

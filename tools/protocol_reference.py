@@ -45,6 +45,7 @@ def limits_table() -> str:
         "bytes of a body": MAX_BODY,
         "bytes of a frame between its edges": MAX_FRAME,
         "bytes of a name": 16,
+        "bytes of a line of the log": 80,
         "joints": m.JOINTS_MAX,
         "motions, sounds, moods, each": 254,
         "sends of one command": timing.TRIES_MAX,
@@ -52,6 +53,12 @@ def limits_table() -> str:
     }
     lines = [f"| {what} | {value} |" for what, value in rows.items()]
     return "\n".join(["| at most | |", "|---|---:|", *lines])
+
+
+def results_table() -> str:
+    """Return the table of the results of a command."""
+    rows = [f"| {code} | refused: {words} |" for code, words in m.REFUSALS.items()]
+    return "\n".join(["| result | |", "|---:|---|", "| 0 | taken |", *rows])
 
 
 def vectors() -> str:
@@ -70,6 +77,7 @@ def updated(document: str) -> str:
         "messages": message_tables(),
         "timing": timing_table(),
         "limits": limits_table(),
+        "results": results_table(),
         "vectors": vectors(),
     }
     for name, text in parts.items():
@@ -80,6 +88,7 @@ def updated(document: str) -> str:
 def _section(spec: MessageSpec) -> str:
     sizes = [f"{spec.size} bytes"]
     sizes += [f"{part.end} since version {part.since}" for part in spec.parts[1:]]
+    sizes += [f"since version {spec.since}"] if spec.since > 1 else []
     head = f"#### `{spec.number:02X}` {spec.name}, from the {spec.sender}, {', '.join(sizes)}"
     lines = [head, "", spec.meaning]
     if spec.fields:

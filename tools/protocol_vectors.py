@@ -1,7 +1,7 @@
 """Test vectors for authors of robots: messages with their bytes, and bytes without a message."""
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 from robot.protocol import messages as m
 from robot.protocol.schema import pack, spec_of
@@ -33,6 +33,11 @@ class Vector:
         return encode_frame(self.body)
 
 
+_WELCOME = m.Welcome(
+    VERSION, 0, 0xBEEF, 14, 8, 6, 3, "Dino", "simulator 1", abilities=m.ABILITY_MOVE
+)
+_STATE = m.State(513, 4, m.FLAG_STILL, 0.8, -0.25, 0.5, 1, m.NOTHING, 1, (0.0, -1.571, *[0.0] * 14))
+
 VECTORS = (
     Vector(1, m.Hello(VERSION, 0x12345678)),
     Vector(1, m.Ask(m.ITEM_MOTION, 2)),
@@ -42,18 +47,23 @@ VECTORS = (
     Vector(0xABCD, m.Express(2, 0.0, 0.0)),
     Vector(0xABCD, m.Play(3, m.ITEM_SOUND, 0)),
     Vector(0xABCD, m.Stop(4)),
+    Vector(0xABCD, m.Move(5, 1.5, 0b10, 0b1_0000_0000, (*[0.0] * 8, -0.262, *[0.0] * 7))),
     Vector(0xABCD, m.Bye()),
-    Vector(1, m.Welcome(VERSION, 0, 0xBEEF, 14, 8, 6, 3, "Dino", "simulator 1")),
+    Vector(1, _WELCOME),
+    Vector(1, replace(_WELCOME, version=2, abilities=0), version=2),
     Vector(1, m.Joint(8, -0.262, 0.262, 0.349, "torso")),
     Vector(1, m.Name(m.ITEM_MOOD, 1, "happy")),
-    Vector(
-        0xABCD,
-        m.State(513, 4, m.FLAG_STILL, 0.8, -0.25, 0.5, 1, m.NOTHING, 1, (0.0, -1.571, *[0.0] * 14)),
-    ),
+    Vector(0xABCD, replace(_STATE, time=0xFFFFFFF0, result=m.RESULT_OUT_OF_RANGE, held=0x100)),
+    Vector(0xABCD, _STATE, version=2),
+    Vector(0xABCD, m.Log(65535, 3_600_000, m.SEVERITY_WARNING, "neck: 61 °C")),
     Vector(0xABCD, m.Ack(4, m.RESULT_TAKEN)),
+    Vector(0xABCD, m.Ack(5, m.RESULT_OUT_OF_RANGE)),
     Vector(7, m.Gone()),
 )
 """At least one frame of every message, and of every version that extended it."""
+
+
+_LEVEL = (0.0,) * m.JOINTS_MAX
 
 
 def broken() -> list[tuple[str, bytes]]:
@@ -74,6 +84,10 @@ def broken() -> list[tuple[str, bytes]]:
         ("a valence out of its range", _out_of_range()),
         ("a number that no message has", encode_frame(bytes([0x77, 0xCD, 0xAB, 1, 2, 3]))),
         ("what only a robot may say", Vector(0xABCD, m.Ack(4, m.RESULT_TAKEN)).frame),
+        (
+            "a MOVE of 44 bytes",
+            encode_frame(Vector(0xABCD, m.Move(5, 0.0, 0, 1, _LEVEL)).body[:-1]),
+        ),
     ]
 
 

@@ -1,16 +1,17 @@
 """The bytes from the robot under test: split into frames, parsed and logged."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from robot.protocol import messages as m
+from robot.protocol import timing
 from robot.protocol.fields import MessageError
 from robot.protocol.schema import MESSAGES, spec_of, unpack
 from robot.protocol.wire import MAX_FRAME, FrameError, decode_frame
 
 MAX_STATES = 20_000
-"""Most STATEs in a log: over ten minutes of them."""
+"""Most STATEs in a log: over ten minutes of them; and most LOGs."""
 
 MAX_EXAMPLES = 3
 """Violations of each rule that are logged with their bytes; more are only counted."""
@@ -35,6 +36,9 @@ class ReceivedFrame:
     message: Any = None
     """Its message; None if it is not valid."""
 
+    size: int = 0
+    """Bytes of its body."""
+
     error: str = ""
     """Why it is not valid."""
 
@@ -51,7 +55,7 @@ class ReceivedFrame:
         words = [
             f"{field.name}={getattr(self.message, field.name)}"
             for field in fields(self.message)
-            if field.name not in ("joints", "firmware", "flags", "battery")
+            if field.name not in ("joints", "firmware", "flags", "battery", "held")
         ]
         content = f"{self.name}({', '.join(words)}) in session {self.session}"
         return f"{content} [{format_bytes(self.frame)}]"
@@ -91,11 +95,7 @@ def parse_frame(frame: bytes, now: float) -> ReceivedFrame:
         spec = MESSAGES.get(body[0])
         reason = f"{body[0]:02X} is no message" if spec is None else f"{spec.name} is the host's"
         return ReceivedFrame(now, frame, session, error=reason)
-    spec = spec_of(type(message))
-    if len(body) != spec.size:  # no version up to ours has extended a robot's message
-        reason = f"{spec.name} has {spec.size} bytes, not {len(body)}"
-        return ReceivedFrame(now, frame, session, error=reason)
-    return ReceivedFrame(now, frame, session, message)
+    return ReceivedFrame(now, frame, session, message, len(body))
 
 
 class FrameLog:
@@ -108,7 +108,12 @@ class FrameLog:
         """The first frames that violated each rule: "frame" or "session"."""
         self.violation_counts: dict[str, int] = {}
         """How many violated it."""
+        self.readings: list[tuple[float, int]] = []
+        """Timestamp [s] and the robot's clock [ms] of the STATEs that have one."""
+        self.logs: list[tuple[float, m.Log]] = []
+        """Timestamp [s] and content of the LOGs."""
         self._session = 0
+        self._version = timing.VERSION
         self._welcomed = False
 
     def add(self, received: ReceivedFrame) -> None:
@@ -120,11 +125,27 @@ class FrameLog:
             return
         if isinstance(received.message, m.Welcome):
             self._session, self._welcomed = received.session, True
-        elif self._welcomed and not isinstance(received.message, m.Gone):
-            if received.session != self._session:
-                self._add_violation("session", received)
-            elif isinstance(received.message, m.State) and len(self.states) < MAX_STATES:
-                self.states.append((received.timestamp, received.message))
+            self._version = min(received.message.version, timing.VERSION)
+        if not self._welcomed or isinstance(received.message, m.Gone):
+            return
+        spec = spec_of(type(received.message))
+        size = spec.size_in(self._version)
+        if received.size != size:
+            what = f"{size} bytes" if size else "nothing"
+            reason = f"{spec.name} has {what} in version {self._version}, not {received.size} bytes"
+            self._add_violation("frame", replace(received, message=None, error=reason))
+        elif received.session != self._session:
+            self._add_violation("session", received)
+        else:
+            self._keep(received.timestamp, received.message)
+
+    def _keep(self, time: float, message: Any) -> None:
+        if isinstance(message, m.Log) and len(self.logs) < MAX_STATES:
+            self.logs.append((time, message))
+        if isinstance(message, m.State) and len(self.states) < MAX_STATES:
+            self.states.append((time, message))
+            if self._version >= 3:
+                self.readings.append((time, message.time))
 
     def _add_violation(self, rule: str, received: ReceivedFrame) -> None:
         self.violation_counts[rule] = self.violation_counts.get(rule, 0) + 1

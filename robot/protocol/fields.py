@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, get_args
 
-WireType = Literal["u8", "u16", "u32", "i16", "i16x16", "text16"]
+WireType = Literal["u8", "u16", "u32", "i16", "i16x16", "text16", "text80"]
 
 STRUCT_CODES: dict[str, str] = {
     "u8": "B",
@@ -16,6 +16,7 @@ STRUCT_CODES: dict[str, str] = {
     "i16": "h",
     "i16x16": "16h",
     "text16": "16s",
+    "text80": "80s",
 }
 INTEGER_LIMITS = {
     "u8": (0, 255),
@@ -38,7 +39,7 @@ class FieldSpec:
     """Its name, in code and document."""
 
     wire_type: str
-    """Its type on the wire: "u8" … "text16"."""
+    """Its type on the wire: "u8" … "text80"."""
 
     scale: float
     """Value of one count, in `unit`; 1 for integers."""
@@ -63,6 +64,11 @@ class FieldSpec:
         """Bytes on the wire."""
         return struct.calcsize("<" + STRUCT_CODES[self.wire_type])
 
+    @property
+    def is_text(self) -> bool:
+        """Whether its value is a text, padded with zero bytes."""
+        return self.wire_type.startswith("text")
+
     @cached_property
     def count(self) -> int:
         """Number of values that `struct` unpacks for it."""
@@ -83,10 +89,11 @@ class FieldSpec:
 
     def to_wire(self, value: Any) -> list[Any]:
         """Return what `struct` packs for a value; raises ValueError if it does not fit."""
-        if self.wire_type == "text16":
+        if self.is_text:
             text = str(value).encode()
-            if len(text) > 16 or b"\0" in text:
-                raise ValueError(f"{self.name} must be at most 16 bytes of UTF-8, not {value!r}")
+            if len(text) > self.size or b"\0" in text:
+                most = f"at most {self.size} bytes of UTF-8"
+                raise ValueError(f"{self.name} must be {most}, not {value!r}")
             return [text]
         values = list(value) if self.wire_type == "i16x16" else [value]
         if len(values) != self.count:
@@ -97,7 +104,7 @@ class FieldSpec:
 
     def from_wire(self, values: tuple[Any, ...]) -> Any:
         """Return the value that `struct` unpacked; raises MessageError if it is not allowed."""
-        if self.wire_type == "text16":
+        if self.is_text:
             try:
                 return values[0].partition(b"\0")[0].decode()
             except UnicodeDecodeError:

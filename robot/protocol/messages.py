@@ -19,7 +19,35 @@ ITEM_MOOD: Final = 3
 
 RESULT_TAKEN: Final = 0
 RESULT_REFUSED: Final = 1
-"""ACK.result of a command whose index the catalogue does not have."""
+"""ACK.result of a command whose index the catalogue does not have; before version 3, of all that
+are refused."""
+RESULT_OUT_OF_RANGE: Final = 2
+RESULT_CANNOT: Final = 3
+RESULT_BUSY: Final = 4
+RESULT_NOT_NOW: Final = 5
+RESULT_MOTORS_OFF: Final = 6
+RESULT_LOW_BATTERY: Final = 7
+RESULT_TOO_HOT: Final = 8
+
+REFUSALS: Final = {
+    RESULT_REFUSED: "it has no such entry",
+    RESULT_OUT_OF_RANGE: "an angle is beyond its joint's limits",
+    RESULT_CANNOT: "it has no means for that",
+    RESULT_BUSY: "it is busy with something that it does not interrupt",
+    RESULT_NOT_NOW: "it cannot at this moment",
+    RESULT_MOTORS_OFF: "its motors have no power",
+    RESULT_LOW_BATTERY: "its battery is low",
+    RESULT_TOO_HOT: "it is too hot",
+}
+"""Why a command was refused, in the words that a person reads; others are "another reason"."""
+
+SEVERITY_INFO: Final = 0
+SEVERITY_WARNING: Final = 1
+SEVERITY_ERROR: Final = 2
+"""LOG.severity; a higher one counts as an error."""
+
+ABILITY_MOVE: Final = 1
+"""Bit of WELCOME.abilities: the robot takes MOVE."""
 
 FLAG_CHARGING: Final = 1
 """Bit of STATE.flags: the battery is being charged."""
@@ -32,6 +60,11 @@ FLAG_LIMP: Final = 4
 
 FLAG_RECKONED: Final = 8
 """Bit of STATE.flags: the joint angles are calculated, because the robot cannot measure them."""
+
+
+def constants() -> dict[str, int]:
+    """Return the numbers above by name, for the robots' own languages."""
+    return {name: value for name, value in globals().items() if isinstance(value, int)}
 
 
 # --- Messages of the host ----------------------------------------------------------------------
@@ -97,6 +130,25 @@ class Stop:
     number: int = wire_field("u32", "number of the command", low=1)
 
 
+@message(0x13, "host", "A command: turn single joints, and hold them.", since=3)
+@dataclass(frozen=True)
+class Move:
+    """Turn single joints, and hold them until they are let go."""
+
+    number: int = wire_field("u32", "number of the command", low=1)
+    duration: float = wire_field("u16", "time for the way", scale=1e-3, unit="s")
+    released: int = wire_field("u16", "bit i: joint i is let go")
+    moved: int = wire_field("u16", "bit i: joint i goes to its angle and is held there")
+    angles: tuple[float, ...] = wire_field(
+        "i16x16", "in catalogue order; those of joints that are not moved have no meaning",
+        scale=1e-3, unit="rad",
+    )  # fmt: skip
+
+
+Command = Express | Play | Stop | Move
+"""The numbered messages, which are acknowledged."""
+
+
 @message(0x1F, "host", "Ends the session. The robot goes to neutral at once; no answer.")
 @dataclass(frozen=True)
 class Bye:
@@ -120,6 +172,7 @@ class Welcome:
     moods: int = wire_field("u8", "moods in the catalogue", high=254)
     name: str = wire_field("text16", "what the robot is called")
     firmware: str = wire_field("text16", "what runs on it, and which version")
+    abilities: int = wire_field("u8", "bit 0: it takes MOVE; others 0", since=3, default=0)
 
 
 @message(0x82, "robot", "Answers ASK for a joint.")
@@ -169,6 +222,23 @@ class State:
         "i16x16", "angles, in catalogue order; 0 for those it does not have",
         scale=1e-3, unit="rad",
     )  # fmt: skip
+    time: int = wire_field(
+        "u32", "when all of this was so, by the robot's clock; 4294967295 is followed by 0",
+        unit="ms", since=3, default=0,
+    )  # fmt: skip
+    result: int = wire_field("u8", "result of the command `taken`, as in ACK", since=3, default=0)
+    held: int = wire_field("u16", "bit i: joint i is held by MOVE", since=3, default=0)
+
+
+@message(0x85, "robot", "Something that a person should know. Not answered, not repeated.", since=3)
+@dataclass(frozen=True)
+class Log:
+    """A line of the robot's log."""
+
+    count: int = wire_field("u16", "counts up by one with every line, also one that is not sent")
+    time: int = wire_field("u32", "when it was written, by the robot's clock", unit="ms")
+    severity: int = wire_field("u8", "0 information, 1 warning, 2 or more error")
+    text: str = wire_field("text80", "what happened, in one line")
 
 
 @message(0x90, "robot", "Answers every command, also one that it has taken before.")
@@ -177,7 +247,7 @@ class Ack:
     """Answers a command."""
 
     number: int = wire_field("u32", "the command's number", low=1)
-    result: int = wire_field("u8", "0 taken; 1 refused, there is no such index")
+    result: int = wire_field("u8", "0 taken; others: refused, see section 6")
 
 
 @message(0x9F, "robot", "The session in the header is not open here: greet again.")

@@ -52,6 +52,9 @@ class MessageSpec:
     parts: tuple["VersionPart", ...]
     """The fields of its first version, then those that each later version added."""
 
+    since: int = 1
+    """Version of the protocol that added it."""
+
     @property
     def size(self) -> int:
         """Bytes of the body in the first version, header included."""
@@ -59,7 +62,11 @@ class MessageSpec:
 
     def parts_of(self, version: int) -> tuple["VersionPart", ...]:
         """Return the parts of a version; at least the first."""
-        return tuple(part for part in self.parts if part.since <= version) or self.parts[:1]
+        return tuple(part for part in self.parts if part.since <= version)
+
+    def size_in(self, version: int) -> int:
+        """Return the bytes of the body in a version, header included; 0 if it lacks the message."""
+        return self.parts_of(version)[-1].end if version >= self.since else 0
 
 
 @dataclass(frozen=True)
@@ -110,7 +117,9 @@ _BY_KIND: dict[type[Any], MessageSpec] = {}
 Kind = TypeVar("Kind")
 
 
-def message(number: int, sender: Sender, meaning: str) -> Callable[[type[Kind]], type[Kind]]:
+def message(
+    number: int, sender: Sender, meaning: str, since: int = 1
+) -> Callable[[type[Kind]], type[Kind]]:
     """Register a dataclass in `MESSAGES`."""
 
     def register(kind: type[Kind]) -> type[Kind]:
@@ -119,7 +128,7 @@ def message(number: int, sender: Sender, meaning: str) -> Callable[[type[Kind]],
             for field in dataclasses.fields(kind)  # type: ignore[arg-type] # it is a dataclass
         )
         name = kind.__name__.upper()
-        spec = MessageSpec(number, name, sender, meaning, fields, kind, _parts_of(fields))
+        spec = MessageSpec(number, name, sender, meaning, fields, kind, _parts_of(fields), since)
         assert number not in MESSAGES, f"message number {number:#x} is used twice"
         MESSAGES[number] = _BY_KIND[kind] = spec
         return kind

@@ -1,6 +1,6 @@
 """Times and limits of the protocol; PROTOCOL.md quotes them and a test compares."""
 
-VERSION = 2
+VERSION = 3
 """Highest version of the protocol that this code speaks."""
 
 BEAT_EVERY = 0.050
@@ -43,8 +43,14 @@ DEGRADED_TRIES = 3
 GONE_EVERY = 0.020
 """Shortest interval between two GONEs [s]."""
 
+LOG_EVERY = 0.100
+"""Shortest interval between two LOGs [s]: they take a twelfth of a line of 115200 baud at most."""
+
+CLOCK_TOLERANCE = 500e-6
+"""Largest relative error of the rate of the robot's clock; a crystal has a tenth of it."""
+
 ACTIONS_MAX = 16
-"""Motions and sounds that may wait in the host; more are refused."""
+"""Motions, sounds and moves that may wait in the host; more are refused."""
 
 ANSWER_WITHIN = 2.0
 """Time within which a robot must report its catalogue [s]."""
@@ -64,5 +70,6 @@ RULE_DESCRIPTIONS: dict[str, str] = {
     "RETRY_MIN": "before a repeat, at least",
     "RETRY_MAX": "before a repeat, at most",
     "GONE_EVERY": "between two GONEs, at least",
+    "LOG_EVERY": "between two LOGs, at least",
 }
 """The times that both ends keep, with their descriptions in PROTOCOL.md."""

@@ -9,12 +9,13 @@ from robot.protocol.wire import MAX_BODY, encode_frame
 
 BODIES = CheckGroup("Bodies", 3)
 
-_UNKNOWN_NUMBERS = (0x00, 0x04, 0x13, 0x42, 0x80, 0xA0, 0xFF)
+_UNKNOWN_NUMBERS = (0x00, 0x04, 0x14, 0x42, 0x80, 0xA0, 0xFF)
 _ROBOT_MESSAGES = (
     m.Welcome(2, 0, 1, 1, 1, 1, 1, "echo", "echo"),
     m.Joint(0, -1.0, 1.0, 1.0, "echo"),
     m.Name(m.ITEM_MOTION, 0, "echo"),
     m.State(1, 0, 0, 0.0, 0.0, 1.0, 0, m.NOTHING, m.NOTHING, (0.0,) * 16),
+    m.Log(1, 1, m.SEVERITY_ERROR, "echo"),
     m.Ack(1, m.RESULT_TAKEN),
     m.Gone(),
 )
@@ -25,6 +26,7 @@ _HOST_MESSAGES = (
     m.Express(1, 0.5, 0.5),
     m.Play(1, m.ITEM_MOTION, 0),
     m.Stop(1),
+    m.Move(1, 0.0, 0, 1, (0.0,) * m.JOINTS_MAX),
 )
 
 
@@ -50,7 +52,7 @@ def echo_skipped(probe: Probe) -> None:
 
 @BODIES.must
 def short_body_skipped(probe: Probe) -> None:
-    """A body that is shorter than its message was in version 1 is skipped."""
+    """A body that is shorter than its message was at first is skipped."""
     probe.open_session()
     for length in (1, 2):
         probe.expect_no_reply(encode_frame(b"\x03\x21"[:length]), f"a body of {length} bytes")
@@ -95,6 +97,7 @@ def field_out_of_range_skipped(probe: Probe) -> None:
         "PLAY of item 3": (0x11, number + b"\x03\x00"),
         "PLAY with number 0": (0x11, bytes(4) + b"\x01\x00"),
         "STOP with number 0": (0x12, bytes(4)),
+        "MOVE with number 0": (0x13, bytes(42)),
         "HELLO with version 0": (0x01, b"\x00\x01\x01\x01\x01"),
         "HELLO with host 0": (0x01, b"\x02\x00\x00\x00\x00"),
     }

@@ -53,6 +53,9 @@ class DinoBody:
         self._last_step = -1
         self._last_attended = 0
         self._targets = [0] * len(joints.angles)
+        self.held = 0
+        """Joints that the host holds; bit i for joint i."""
+        self._ways = [(0, 0, 0, 1)] * len(joints.angles)  # begin, end, time, duration
         names = joints.names()
         # Without the joints that this robot does not have.
         self._sines = [
@@ -76,14 +79,24 @@ class DinoBody:
         self.stopped = False
         self.sounds.play(index)
 
+    def move(self, released: int, moved: int, angles: tuple[int, ...], duration: int) -> None:
+        """Let go of some joints, then turn others to `angles` [mrad] in `duration` ms."""
+        self.stopped = False
+        self.held = self.held & ~released | moved
+        for index, mrad in enumerate(angles):
+            if moved >> index & 1:
+                goal = self.joints.from_mrad(mrad)
+                self._ways[index] = (self.joints.angles[index], goal, 0, max(duration, 1))
+
     def stop(self) -> None:
         """End motion and sound, and hold the neutral pose."""
         self.neutral()
         self.stopped = True
 
     def neutral(self) -> None:
-        """Go to neutral, and end motion and sound. A stopped body stays stopped."""
+        """Go to neutral, end motion and sound, let go of the joints. A stopped body stays so."""
         self._target = (0, 0)
+        self.held = 0
         if self._named_mood != NOTHING:
             self._named_mood = _NEUTRAL
         self.sounds.end()
@@ -152,7 +165,10 @@ class DinoBody:
         return _ANGRY if self.valence < ANGRY_BELOW else _NEUTRAL
 
     def _move(self, elapsed: int, hold: bool) -> None:
-        """Move every joint towards its angle in the motion; to neutral if `hold` is set."""
+        """Move every joint towards its angle in the motion, or to neutral if `hold` is set.
+
+        A joint that the host holds goes its own way.
+        """
         self._time += elapsed
         period = MOTIONS[self._motion][1]
         if self._time >= period:
@@ -168,6 +184,12 @@ class DinoBody:
             for joint, offset, amplitude, cycles, begin in self._sines[self._motion]:
                 part = cycles * self._time * TURN // period + begin
                 targets[joint] = offset + amplitude * _SINE[part % TURN] // _UNIT
+        for index in range(len(targets)):
+            if self.held >> index & 1:
+                start, goal, time, duration = self._ways[index]
+                time = min(time + elapsed, duration)
+                self._ways[index] = (start, goal, time, duration)
+                targets[index] = start + (goal - start) * time // duration
         self.joints.move(targets, elapsed)
 
     def _start(self, motion: int, once: bool = False) -> None:

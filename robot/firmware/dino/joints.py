@@ -25,6 +25,8 @@ class ServoJoints:
         """Expected angle of each joint now."""
         self.powered = [False] * count
         """Whether each servo gets pulses."""
+        self.failed = False
+        """Whether the pulse generator did not answer the last time."""
         self._pulses = [0] * count
         self._next_power_on = 0
 
@@ -42,6 +44,10 @@ class ServoJoints:
     def mrad(self, index: int) -> int:
         """Return the expected angle of a joint [mrad]."""
         return (self.angles[index] * _MICRORAD + 50000) // 100000
+
+    def from_mrad(self, angle: int) -> int:
+        """Return an angle of the protocol [mrad] in ours."""
+        return (angle * 100000 + _MICRORAD // 2) // _MICRORAD
 
     @property
     def limp(self) -> bool:
@@ -96,6 +102,8 @@ class ServoJoints:
             try:
                 self._board.pulse(servo.pin, pulse)
             except OSError:
+                self.failed = True
                 return False
+            self.failed = False
             self._pulses[index] = pulse
         return True

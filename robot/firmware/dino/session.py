@@ -5,6 +5,7 @@ from .board import RobotBoard
 from .body import DinoBody
 from .codec import pack, unpack
 from .frames import FrameDecoder, TransmitBuffer, crc16
+from .log import LogQueue
 
 FIRMWARE = "dino 1"
 """Name and version of the firmware."""
@@ -14,7 +15,12 @@ class HostSession:
     """The robot's side of the protocol: one session, its commands and its failsafe."""
 
     def __init__(
-        self, body: DinoBody, send_buffer: TransmitBuffer, name: str, board: RobotBoard
+        self,
+        body: DinoBody,
+        send_buffer: TransmitBuffer,
+        name: str,
+        board: RobotBoard,
+        log: LogQueue,
     ) -> None:
         self.number = 0
         """Number of the open session; 0 if none is."""
@@ -22,6 +28,7 @@ class HostSession:
         self._send_buffer = send_buffer
         self._name = name
         self._board = board
+        self._log = log
         self._decoder = FrameDecoder()
         self._reply = bytearray(m.MAX_BODY)
         self._host = 0
@@ -33,6 +40,7 @@ class HostSession:
         self._last_received = 0
         self._last_state = 0
         self._last_gone = -m.GONE_EVERY
+        self._last_log = -m.LOG_EVERY
         joints, sounds = body.joints.names(), body.sounds.names()
         self._names = (joints, body.motions, sounds, body.moods)
         self._catalogue = self._catalogue_crc()
@@ -50,11 +58,20 @@ class HostSession:
                     self._receive_message(values, now)
 
     def tick(self, now: int) -> None:
-        """Do what is due at `now`: the failsafe and STATE."""
+        """Do what is due at `now`: the failsafe, STATE and LOG."""
         if self.number and now - self._last_received >= m.FAILSAFE_AFTER:
             self._close()
         if self.number and now - self._last_state >= m.STATE_EVERY:
             self._send_state(now)
+        if self.number and self._version >= 3 and now - self._last_log >= m.LOG_EVERY:
+            self._send_log(now)
+
+    def _send_log(self, now: int) -> None:
+        # Not while others wait: a slow line is for STATE and ACK.
+        line = None if self._send_buffer.end else self._log.pop()
+        if line:
+            self._last_log = now
+            self._send(m.LOG, *line)
 
     def _receive_message(self, values: tuple[int, ...], now: int) -> None:
         kind, session = values[0], values[1]
@@ -78,13 +95,14 @@ class HostSession:
         elif kind == m.BYE:
             self._close()
         else:
-            self._execute(kind, values)
+            self._execute(kind, values, now)
 
     def _open(self, session: int, version: int, host: int, now: int) -> None:
         if host != self._host:
             if self._in_force:
                 self._body.neutral()
             self._host, self._taken, self._in_force = host, 0, False
+            self._result = m.RESULT_TAKEN
         if session != self.number:
             self.number, self._beat, self._last_state = session, 0, now
         self._last_received = now
@@ -98,6 +116,7 @@ class HostSession:
             *counts,
             self._name.encode(),
             FIRMWARE.encode(),
+            m.ABILITY_MOVE,
         )
 
     def _describe(self, item: int, index: int, session: int) -> int:
@@ -118,31 +137,66 @@ class HostSession:
                 register = crc16(self._reply, 0, self._describe(item, index, 0), register)
         return register
 
-    def _execute(self, kind: int, values: tuple[int, ...]) -> None:
+    def _execute(self, kind: int, values: tuple[int, ...], now: int) -> None:
         """Execute a command once, and acknowledge each of its repeats."""
         number = values[2]
         if number > self._taken:
             self._taken, self._in_force = number, True
-            self._result = self._apply(kind, values)
-        self._send(m.ACK, number, self._result)
+            self._result = self._apply(kind, values, now)
+        result = self._result
+        if self._version < 3:
+            result = min(result, m.RESULT_REFUSED)  # there are no other reasons
+        self._send(m.ACK, number, result)
 
-    def _apply(self, kind: int, values: tuple[int, ...]) -> int:
+    def _apply(self, kind: int, values: tuple[int, ...], now: int) -> int:
+        """Obey a command, or return why not."""
+        body, number = self._body, values[2]
         if kind == m.STOP:
-            self._body.stop()
+            body.stop()
         elif kind == m.EXPRESS:
             valence, arousal, mood = values[3], values[4], values[5]
-            if mood != m.NOTHING and mood >= len(self._body.moods):
-                return m.RESULT_REFUSED
-            self._body.express(valence, arousal, mood)
+            if mood != m.NOTHING and mood >= len(body.moods):
+                return self._refuse(m.RESULT_REFUSED, f"EXPRESS {number}: no mood {mood}", now)
+            body.express(valence, arousal, mood)
+        elif kind == m.MOVE:
+            return self._move(values, now)
         else:
             item, index = values[3], values[4]
             if index >= len(self._names[item]):
-                return m.RESULT_REFUSED
-            if item == m.ITEM_MOTION:
-                self._body.play_motion(index)
+                what = "motion" if item == m.ITEM_MOTION else "sound"
+                return self._refuse(m.RESULT_REFUSED, f"PLAY {number}: no {what} {index}", now)
+            if item == m.ITEM_SOUND:
+                body.play_sound(index)
+            elif body.joints.failed:
+                return m.RESULT_MOTORS_OFF
             else:
-                self._body.play_sound(index)
+                body.play_motion(index)
         return m.RESULT_TAKEN
+
+    def _move(self, values: tuple[int, ...], now: int) -> int:
+        number, duration, released, moved = values[2:6]
+        joints = self._body.joints
+        count, bits = len(joints.angles), released | moved
+        if bits >> count:
+            beyond = 15
+            while not bits >> beyond & 1:
+                beyond -= 1
+            return self._refuse(m.RESULT_REFUSED, f"MOVE {number}: no joint {beyond}", now)
+        for index in range(count):
+            low, high, _ = joints.limits(index)
+            angle = values[6 + index]
+            if moved >> index & 1 and not low <= angle <= high:
+                text = f"MOVE {number}: joint {index} not to {angle} mrad"
+                return self._refuse(m.RESULT_OUT_OF_RANGE, text, now)
+        if joints.failed:
+            return m.RESULT_MOTORS_OFF
+        self._body.move(released, moved, values[6 : 6 + count], duration)
+        return m.RESULT_TAKEN
+
+    def _refuse(self, result: int, text: str, now: int) -> int:
+        """Log what is wrong with a command, and return its result."""
+        self._log.write(m.SEVERITY_WARNING, text, now)
+        return result
 
     def _send_state(self, now: int) -> None:
         self._last_state = now
@@ -165,6 +219,9 @@ class HostSession:
             body.sound,
             *angles,
             *(0,) * (m.JOINTS_MAX - len(angles)),
+            now & 0xFFFFFFFF,
+            self._result,
+            body.held,
         )
 
     def _close(self) -> None:

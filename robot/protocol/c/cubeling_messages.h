@@ -16,10 +16,31 @@
 
 #include "cubeling_frames.h"
 
-#define CUBELING_VERSION 2
+#define CUBELING_VERSION 3
 #define CUBELING_HEADER 3
-#define CUBELING_JOINTS_MAX 16
 #define CUBELING_NOTHING 255
+#define CUBELING_JOINTS_MAX 16
+#define CUBELING_ITEM_JOINT 0
+#define CUBELING_ITEM_MOTION 1
+#define CUBELING_ITEM_SOUND 2
+#define CUBELING_ITEM_MOOD 3
+#define CUBELING_RESULT_TAKEN 0
+#define CUBELING_RESULT_REFUSED 1
+#define CUBELING_RESULT_OUT_OF_RANGE 2
+#define CUBELING_RESULT_CANNOT 3
+#define CUBELING_RESULT_BUSY 4
+#define CUBELING_RESULT_NOT_NOW 5
+#define CUBELING_RESULT_MOTORS_OFF 6
+#define CUBELING_RESULT_LOW_BATTERY 7
+#define CUBELING_RESULT_TOO_HOT 8
+#define CUBELING_SEVERITY_INFO 0
+#define CUBELING_SEVERITY_WARNING 1
+#define CUBELING_SEVERITY_ERROR 2
+#define CUBELING_ABILITY_MOVE 1
+#define CUBELING_FLAG_CHARGING 1
+#define CUBELING_FLAG_STILL 2
+#define CUBELING_FLAG_LIMP 4
+#define CUBELING_FLAG_RECKONED 8
 #define CUBELING_BEAT_EVERY_MS 50
 #define CUBELING_STATE_EVERY_MS 100
 #define CUBELING_FAILSAFE_AFTER_MS 450
@@ -31,17 +52,20 @@
 #define CUBELING_RETRY_MIN_MS 25
 #define CUBELING_RETRY_MAX_MS 250
 #define CUBELING_GONE_EVERY_MS 20
+#define CUBELING_LOG_EVERY_MS 100
 #define CUBELING_HELLO 0x01
 #define CUBELING_ASK 0x02
 #define CUBELING_BEAT 0x03
 #define CUBELING_EXPRESS 0x10
 #define CUBELING_PLAY 0x11
 #define CUBELING_STOP 0x12
+#define CUBELING_MOVE 0x13
 #define CUBELING_BYE 0x1F
 #define CUBELING_WELCOME 0x81
 #define CUBELING_JOINT 0x82
 #define CUBELING_NAME 0x83
 #define CUBELING_STATE 0x84
+#define CUBELING_LOG 0x85
 #define CUBELING_ACK 0x90
 #define CUBELING_GONE 0x9F
 
@@ -257,6 +281,45 @@ static inline int cubeling_unpack_stop(const uint8_t *body, size_t size, cubelin
     return 1;
 }
 
+/* MOVE, from the host, since version 3. A command: turn single joints, and hold them. */
+typedef struct {
+    uint32_t number; /* number of the command */
+    uint16_t duration; /* time for the way [ms] */
+    uint16_t released; /* bit i: joint i is let go */
+    uint16_t moved; /* bit i: joint i goes to its angle and is held there */
+    int16_t angles[16]; /* in catalogue order; those of joints that are not moved have no meaning [mrad] */
+} cubeling_move;
+
+static inline size_t cubeling_pack_move(
+    uint8_t *body, uint16_t session, uint8_t version, const cubeling_move *from)
+{
+    body[0] = CUBELING_MOVE;
+    cubeling_put16(body + 1, session);
+    (void)version;
+    cubeling_put32(body + 3, from->number);
+    cubeling_put16(body + 7, (uint16_t)from->duration);
+    cubeling_put16(body + 9, (uint16_t)from->released);
+    cubeling_put16(body + 11, (uint16_t)from->moved);
+    for (size_t i = 0; i < 16; i++)
+        cubeling_put16(body + 13 + 2 * i, (uint16_t)from->angles[i]);
+    return 45;
+}
+
+static inline int cubeling_unpack_move(const uint8_t *body, size_t size, cubeling_move *to)
+{
+    if (size < 45 || body[0] != CUBELING_MOVE)
+        return 0;
+    to->number = cubeling_get32(body + 3);
+    if (to->number < 1)
+        return 0;
+    to->duration = cubeling_get16(body + 7);
+    to->released = cubeling_get16(body + 9);
+    to->moved = cubeling_get16(body + 11);
+    for (size_t i = 0; i < 16; i++)
+        to->angles[i] = cubeling_get16s(body + 13 + 2 * i);
+    return 1;
+}
+
 /* BYE, from the host. Ends the session. The robot goes to neutral at once; no answer. */
 static inline size_t cubeling_pack_bye(
     uint8_t *body, uint16_t session, uint8_t version)
@@ -285,6 +348,7 @@ typedef struct {
     uint8_t moods; /* moods in the catalogue */
     char name[17]; /* what the robot is called */
     char firmware[17]; /* what runs on it, and which version */
+    uint8_t abilities; /* bit 0: it takes MOVE; others 0, since version 3 */
 } cubeling_welcome;
 
 static inline size_t cubeling_pack_welcome(
@@ -292,7 +356,6 @@ static inline size_t cubeling_pack_welcome(
 {
     body[0] = CUBELING_WELCOME;
     cubeling_put16(body + 1, session);
-    (void)version;
     body[3] = from->version;
     cubeling_put32(body + 4, from->taken);
     cubeling_put16(body + 8, (uint16_t)from->catalogue);
@@ -302,7 +365,10 @@ static inline size_t cubeling_pack_welcome(
     body[13] = from->moods;
     strncpy((char *)body + 14, from->name, 16);
     strncpy((char *)body + 30, from->firmware, 16);
-    return 46;
+    if (version < 3)
+        return 46;
+    body[46] = from->abilities;
+    return 47;
 }
 
 static inline int cubeling_unpack_welcome(const uint8_t *body, size_t size, cubeling_welcome *to)
@@ -330,6 +396,11 @@ static inline int cubeling_unpack_welcome(const uint8_t *body, size_t size, cube
     to->name[16] = 0;
     memcpy(to->firmware, body + 30, 16);
     to->firmware[16] = 0;
+    if (size >= 47) {
+        to->abilities = body[46];
+    } else {
+        to->abilities = 0;
+    }
     return 1;
 }
 
@@ -413,6 +484,9 @@ typedef struct {
     uint8_t motion; /* motion played now, an index; 255 none */
     uint8_t sound; /* sound played now, an index; 255 none */
     int16_t joints[16]; /* angles, in catalogue order; 0 for those it does not have [mrad] */
+    uint32_t time; /* when all of this was so, by the robot's clock; 4294967295 is followed by 0 [ms], since version 3 */
+    uint8_t result; /* result of the command `taken`, as in ACK, since version 3 */
+    uint16_t held; /* bit i: joint i is held by MOVE, since version 3 */
 } cubeling_state;
 
 static inline size_t cubeling_pack_state(
@@ -420,7 +494,6 @@ static inline size_t cubeling_pack_state(
 {
     body[0] = CUBELING_STATE;
     cubeling_put16(body + 1, session);
-    (void)version;
     cubeling_put16(body + 3, (uint16_t)from->beat);
     cubeling_put32(body + 5, from->taken);
     body[9] = from->flags;
@@ -432,7 +505,12 @@ static inline size_t cubeling_pack_state(
     body[18] = from->sound;
     for (size_t i = 0; i < 16; i++)
         cubeling_put16(body + 19 + 2 * i, (uint16_t)from->joints[i]);
-    return 51;
+    if (version < 3)
+        return 51;
+    cubeling_put32(body + 51, from->time);
+    body[55] = from->result;
+    cubeling_put16(body + 56, (uint16_t)from->held);
+    return 58;
 }
 
 static inline int cubeling_unpack_state(const uint8_t *body, size_t size, cubeling_state *to)
@@ -456,13 +534,55 @@ static inline int cubeling_unpack_state(const uint8_t *body, size_t size, cubeli
     to->sound = body[18];
     for (size_t i = 0; i < 16; i++)
         to->joints[i] = cubeling_get16s(body + 19 + 2 * i);
+    if (size >= 58) {
+        to->time = cubeling_get32(body + 51);
+        to->result = body[55];
+        to->held = cubeling_get16(body + 56);
+    } else {
+        to->time = 0;
+        to->result = 0;
+        to->held = 0;
+    }
+    return 1;
+}
+
+/* LOG, from the robot, since version 3. Something that a person should know. Not answered, not repeated. */
+typedef struct {
+    uint16_t count; /* counts up by one with every line, also one that is not sent */
+    uint32_t time; /* when it was written, by the robot's clock [ms] */
+    uint8_t severity; /* 0 information, 1 warning, 2 or more error */
+    char text[81]; /* what happened, in one line */
+} cubeling_log;
+
+static inline size_t cubeling_pack_log(
+    uint8_t *body, uint16_t session, uint8_t version, const cubeling_log *from)
+{
+    body[0] = CUBELING_LOG;
+    cubeling_put16(body + 1, session);
+    (void)version;
+    cubeling_put16(body + 3, (uint16_t)from->count);
+    cubeling_put32(body + 5, from->time);
+    body[9] = from->severity;
+    strncpy((char *)body + 10, from->text, 80);
+    return 90;
+}
+
+static inline int cubeling_unpack_log(const uint8_t *body, size_t size, cubeling_log *to)
+{
+    if (size < 90 || body[0] != CUBELING_LOG)
+        return 0;
+    to->count = cubeling_get16(body + 3);
+    to->time = cubeling_get32(body + 5);
+    to->severity = body[9];
+    memcpy(to->text, body + 10, 80);
+    to->text[80] = 0;
     return 1;
 }
 
 /* ACK, from the robot. Answers every command, also one that it has taken before. */
 typedef struct {
     uint32_t number; /* the command's number */
-    uint8_t result; /* 0 taken; 1 refused, there is no such index */
+    uint8_t result; /* 0 taken; others: refused, see section 6 */
 } cubeling_ack;
 
 static inline size_t cubeling_pack_ack(

@@ -9,6 +9,7 @@ from affect.hysteresis import THESIS_LABELS, next_label
 from robot.contract.motions import Array, SineMotion
 from robot.protocol import messages as m
 from robot.simulators.cubeling import dinosaur
+from robot.simulators.cubeling.held_joints import HeldJoints
 
 STEP_S = 0.020
 """Step of the simulation [s], as of hobby servos; the result does not depend on how often `advance`
@@ -25,6 +26,9 @@ BATTERY_LIFE_S = 2 * 3600.0
 
 CHARGE_TIME_S = 3600.0
 """Time from empty to full [s]."""
+
+MIN_BATTERY = 0.06
+"""Charge below which it plays no motion and moves no joint; it goes to its charger at 0.05."""
 
 ANGLE_NOISE_RAD = np.radians(0.2)
 """Standard deviation of a measured angle [rad]."""
@@ -74,6 +78,7 @@ class DinosaurBody:
         self._sound: str | None = None
         self._sound_left = 0.0
         self._still = False
+        self._held = HeldJoints(len(self._angles))
         self._battery = Battery(float(self._random.uniform(0.7, 1.0)))
 
     def express(self, emotion: Emotion, mood: int = m.NOTHING) -> None:
@@ -90,14 +95,27 @@ class DinosaurBody:
         else:
             self._start_motion(dinosaur.MOTIONS[index], once=True)
 
+    def move(self, command: m.Move) -> None:
+        """Let go of some joints, then turn others and hold them."""
+        self._still = False
+        self._held.move(command, self._angles)
+
+    def refusal(self) -> int:
+        """Return why no motion and no joint can be moved now."""
+        return m.RESULT_LOW_BATTERY if self._battery.level < MIN_BATTERY else m.RESULT_TAKEN
+
     def stop(self) -> None:
-        """End everything and hold the neutral pose."""
+        """End everything, let go of all joints, and hold the neutral pose."""
         self.neutral()
         self._still = True
 
     def neutral(self) -> None:
-        """Return to the neutral emotion and end motion and sound; after `stop` it remains still."""
+        """Return to the neutral emotion, end motion and sound, and let go of all joints.
+
+        After `stop` it remains still.
+        """
         self._target = np.zeros(2)
+        self._held.release()
         if self._commanded_mood != m.NOTHING:
             self._commanded_mood = THESIS_LABELS.index("neutral")
         self._sound, self._sound_left = None, 0.0
@@ -145,6 +163,7 @@ class DinosaurBody:
         wanted = np.zeros_like(self._angles)
         if not self._still:
             wanted = self._motion.angles(self._motion_time, dinosaur.JOINTS)
+        wanted = self._held.angles(wanted, STEP_S)
         # Not np.clip: for so few numbers its overhead is most of the time.
         wanted = np.minimum(np.maximum(wanted, dinosaur.MIN_ANGLES_RAD), dinosaur.MAX_ANGLES_RAD)
         way = wanted - self._angles
@@ -166,6 +185,7 @@ class DinosaurBody:
             motion=m.NOTHING if self._still else dinosaur.MOTIONS.index(self._motion),
             sound=self.catalogue.sounds.index(self._sound) if self._sound else m.NOTHING,
             joints=(*measured.tolist(), *[0.0] * (m.JOINTS_MAX - measured.size)),
+            held=self._held.bits,
         )
 
     @property

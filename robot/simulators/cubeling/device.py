@@ -11,6 +11,8 @@ from robot.protocol import timing
 from robot.protocol.fields import MessageError
 from robot.protocol.schema import pack, unpack
 from robot.protocol.wire import FrameReader, crc16, encode_frame
+from robot.simulators.cubeling.log import LogQueue
+from robot.simulators.cubeling.refusals import entry_names, refusal
 
 
 class Body(Protocol):
@@ -25,14 +27,20 @@ class Body(Protocol):
     def play(self, item: int, index: int) -> None:
         """Play a motion or a sound of the catalogue."""
 
+    def move(self, command: m.Move) -> None:
+        """Let go of some joints, then turn others and hold them; all are of the catalogue."""
+
     def stop(self) -> None:
-        """End everything and hold the neutral pose."""
+        """End everything, let go of all joints, and hold the neutral pose."""
 
     def neutral(self) -> None:
-        """End motion and sound and return to the neutral emotion: the host is gone."""
+        """Do so without the stop, and return to the neutral emotion: the host is gone."""
+
+    def refusal(self) -> int:
+        """Return why no motion and no joint can be moved now; `RESULT_TAKEN` if they can."""
 
     def state(self) -> m.State:
-        """Return the current state; the link sets `beat` and `taken`."""
+        """Return the current state; the link sets `beat`, `taken`, `time` and `result`."""
 
 
 class DeviceLink(SendBuffer):
@@ -52,9 +60,15 @@ class DeviceLink(SendBuffer):
         self._result = m.RESULT_TAKEN
         self._in_force = False
         self._beat = 0
-        self._version = timing.VERSION
+        self.version = timing.VERSION
+        """The version agreed at the last HELLO."""
         self._state_sent = 0.0
         self._gone_sent = float("-inf")
+        self._log_sent = float("-inf")
+        self._booted: float | None = None
+        self.log = LogQueue()
+        """What it has to say to its owner."""
+        self.log.write(m.SEVERITY_INFO, "started", 0)
         self.reader = FrameReader()
         """Decodes the received frames."""
 
@@ -71,11 +85,15 @@ class DeviceLink(SendBuffer):
                 self.process(session, message, now)
 
     def tick(self, now: float) -> None:
-        """Do what is due at time `now` [s]: the failsafe and STATE."""
+        """Do what is due at time `now` [s]: the failsafe, STATE and LOG."""
+        if self._booted is None:
+            self._booted = now
         if self.session and now - self.last_received >= timing.FAILSAFE_AFTER:
             self._end_session()
         if self.session and now - self._state_sent >= timing.STATE_EVERY:
             self._send_state(now)
+        if self.session and self.version >= 3 and now - self._log_sent >= timing.LOG_EVERY:
+            self._send_log(now)
 
     def process(self, session: int, message: Any, now: float) -> None:
         """Process one message of a session at time `now` [s]."""
@@ -95,7 +113,7 @@ class DeviceLink(SendBuffer):
                 self._describe(message)
             case m.Bye():
                 self._end_session()
-            case m.Express() | m.Play() | m.Stop():
+            case m.Express() | m.Play() | m.Stop() | m.Move():
                 self.obey(message)
 
     def _greet(self, session: int, hello: m.Hello, now: float) -> None:
@@ -103,13 +121,14 @@ class DeviceLink(SendBuffer):
             if self._in_force:
                 self.body.neutral()
             self.host, self.last_command, self._in_force = hello.host, 0, False
+            self._result = m.RESULT_TAKEN
         if session != self.session:
             self.session, self._beat, self._state_sent = session, 0, now
         self.last_received = now
-        self._version = min(hello.version, timing.VERSION)
+        self.version = min(hello.version, timing.VERSION)
         catalogue = self.body.catalogue
         welcome = m.Welcome(
-            version=self._version,
+            version=self.version,
             taken=self.last_command if self._in_force else 0,
             catalogue=crc16(repr(catalogue).encode()),
             joints=len(catalogue.joints),
@@ -118,6 +137,7 @@ class DeviceLink(SendBuffer):
             moods=len(catalogue.moods),
             name=catalogue.name,
             firmware=catalogue.firmware,
+            abilities=m.ABILITY_MOVE,
         )
         self._send(welcome)
 
@@ -128,29 +148,34 @@ class DeviceLink(SendBuffer):
                 joint = catalogue.joints[ask.index]
                 self._send(m.Joint(ask.index, joint.low, joint.high, joint.speed, joint.name))
             return
-        names = _names(catalogue, ask.item)
+        names = entry_names(catalogue, ask.item)
         if ask.index < len(names):
             self._send(m.Name(ask.item, ask.index, names[ask.index]))
 
-    def obey(self, command: m.Express | m.Play | m.Stop) -> None:
+    def obey(self, command: m.Command) -> None:
         """Execute a command once, and acknowledge it each time that it arrives."""
         if command.number > self.last_command:
             self.last_command, self._in_force = command.number, True
             self._result = self.execute(command)
-        self._send(m.Ack(command.number, self._result))
+        result = self._result if self.version >= 3 else min(self._result, m.RESULT_REFUSED)
+        self._send(m.Ack(command.number, result))
 
-    def execute(self, command: m.Express | m.Play | m.Stop) -> int:
+    def execute(self, command: m.Command) -> int:
         """Command the body, and return the result for the acknowledgement."""
+        result, detail = refusal(command, self.body.catalogue)
+        if detail:
+            self.log.write(m.SEVERITY_WARNING, detail, self._time(self.last_received))
         match command:
+            case _ if result != m.RESULT_TAKEN:
+                return result
             case m.Express():
-                moods = len(self.body.catalogue.moods)
-                if command.mood >= moods and command.mood != m.NOTHING:
-                    return m.RESULT_REFUSED
                 self.body.express(Emotion(command.valence, command.arousal), command.mood)
+            case m.Play(item=m.ITEM_MOTION) | m.Move() if self.body.refusal() != m.RESULT_TAKEN:
+                return self.body.refusal()
             case m.Play():
-                if command.index >= len(_names(self.body.catalogue, command.item)):
-                    return m.RESULT_REFUSED
                 self.body.play(command.item, command.index)
+            case m.Move():
+                self.body.move(command)
             case m.Stop():
                 self.body.stop()
         return m.RESULT_TAKEN
@@ -159,9 +184,21 @@ class DeviceLink(SendBuffer):
         self._state_sent = now
         state = self.body.state()
         flags = state.flags
-        if self._version < 2:
+        if self.version < 2:
             flags &= m.FLAG_CHARGING | m.FLAG_STILL  # version 1 has no others
-        self._send(replace(state, beat=self._beat, taken=self.last_command, flags=flags))
+        known = replace(state, beat=self._beat, taken=self.last_command, result=self._result)
+        self._send(replace(known, flags=flags, time=self._time(now)))
+
+    def _time(self, now: float) -> int:
+        """Return the robot's clock at time `now` [s]: whole milliseconds since it booted."""
+        assert self._booted is not None
+        return round(1000 * (now - self._booted)) & 0xFFFFFFFF
+
+    def _send_log(self, now: float) -> None:
+        line = self.log.pop()
+        if line is not None:
+            self._log_sent = now
+            self._send(line)
 
     def _refuse(self, session: int, now: float) -> None:
         if now - self._gone_sent >= timing.GONE_EVERY:
@@ -174,13 +211,4 @@ class DeviceLink(SendBuffer):
         self.body.neutral()
 
     def _send(self, message: Any) -> None:
-        self._out += encode_frame(pack(message, self.session, self._version))
-
-
-def _names(catalogue: Catalogue, item: int) -> tuple[str, ...]:
-    lists = {
-        m.ITEM_MOTION: catalogue.motions,
-        m.ITEM_SOUND: catalogue.sounds,
-        m.ITEM_MOOD: catalogue.moods,
-    }
-    return lists.get(item, ())
+        self._out += encode_frame(pack(message, self.session, self.version))

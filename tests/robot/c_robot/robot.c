@@ -2,6 +2,7 @@
 #include "robot.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #define COUNT(list) (sizeof(list) / sizeof(list)[0])
 
@@ -41,6 +42,7 @@ static void go_neutral(robot *self)
     if (self->mood != CUBELING_NOTHING)
         self->mood = NEUTRAL;
     self->motion.index = self->sound.index = CUBELING_NOTHING;
+    self->held = 0;
 }
 
 static float towards(float from, float to, float step)
@@ -57,7 +59,12 @@ static void end_if_over(robot_playing *playing, const entry *list, uint32_t now)
 static float wanted_angle(const robot *self, size_t joint)
 {
     float angle = JOINTS[joint].neutral;
-    if (!self->still) {
+    if (self->held >> joint & 1) {
+        const robot_way *way = &self->ways[joint];
+        uint32_t passed = self->now - way->since;
+        float part = passed < way->duration ? (float)passed / way->duration : 1.0f;
+        angle = way->from + part * (way->to - way->from);
+    } else if (!self->still) {
         angle += JOINTS[joint].by_valence * self->feeling[0];
         angle += JOINTS[joint].by_arousal * self->feeling[1];
         if (self->motion.index == joint) /* each motion swings the joint of its number */
@@ -112,6 +119,9 @@ static void send_state(robot *self)
         .mood = mood_shown(self),
         .motion = self->motion.index,
         .sound = self->sound.index,
+        .time = self->now,
+        .result = self->result,
+        .held = self->held,
     };
     for (size_t joint = 0; joint < ROBOT_JOINTS; joint++)
         state.joints[joint] = (int16_t)lroundf(self->angles[joint]);
@@ -132,6 +142,7 @@ static void send_welcome(robot *self)
         .moods = COUNT(MOODS),
         .name = "Stranger",
         .firmware = "c robot 1",
+        .abilities = CUBELING_ABILITY_MOVE,
     };
     send(self, body, cubeling_pack_welcome(body, self->session, self->version, &welcome));
 }
@@ -143,6 +154,27 @@ static void send_gone(robot *self, uint16_t session)
         return;
     self->refused = self->now;
     send(self, body, cubeling_pack_gone(body, session, self->version));
+}
+
+/* Keep one line for the owner; when another waits already, it is only counted. */
+static void log_refusal(robot *self, const char *command, uint32_t number)
+{
+    self->lines++;
+    if (self->line.text[0] != 0)
+        return;
+    self->line.count = self->lines;
+    self->line.time = self->now;
+    self->line.severity = CUBELING_SEVERITY_WARNING;
+    snprintf(self->line.text, sizeof self->line.text, "%s %lu refused: result %u", command,
+             (unsigned long)number, self->result);
+}
+
+static void send_log(robot *self)
+{
+    uint8_t body[CUBELING_MAX_BODY];
+    send(self, body, cubeling_pack_log(body, self->session, self->version, &self->line));
+    self->line.text[0] = 0;
+    self->logged = self->now;
 }
 
 static const char *name_of(uint8_t item, uint8_t index)
@@ -173,7 +205,12 @@ static void describe(robot *self, const cubeling_ask *ask)
 
 /* --- Commands (section 6) ------------------------------------------------------------------- */
 
-enum { TAKEN, REFUSED }; /* a refused one changes nothing, but its number is used up */
+/* A refused one changes nothing, but its number is used up. */
+enum {
+    TAKEN = CUBELING_RESULT_TAKEN,
+    REFUSED = CUBELING_RESULT_REFUSED,
+    OUT_OF_RANGE = CUBELING_RESULT_OUT_OF_RANGE
+};
 
 static uint8_t express(robot *self, const cubeling_express *command)
 {
@@ -204,6 +241,25 @@ static uint8_t stop(robot *self)
     return TAKEN;
 }
 
+static uint8_t move(robot *self, const cubeling_move *command)
+{
+    if ((command->released | command->moved) >> ROBOT_JOINTS)
+        return REFUSED;
+    for (size_t joint = 0; joint < ROBOT_JOINTS; joint++)
+        if (command->moved >> joint & 1 && (command->angles[joint] < JOINTS[joint].entry.low ||
+                                            command->angles[joint] > JOINTS[joint].entry.high))
+            return OUT_OF_RANGE;
+    self->held = (uint16_t)((self->held & ~command->released) | command->moved);
+    for (size_t joint = 0; joint < ROBOT_JOINTS; joint++)
+        if (command->moved >> joint & 1)
+            self->ways[joint] = (robot_way){.from = self->angles[joint],
+                                            .to = command->angles[joint],
+                                            .since = self->now,
+                                            .duration = command->duration};
+    self->still = 0;
+    return TAKEN;
+}
+
 /* Whether a command has not come before: then, and only then, it is to be carried out. */
 static int is_new(robot *self, uint32_t number)
 {
@@ -214,10 +270,19 @@ static int is_new(robot *self, uint32_t number)
     return 1;
 }
 
+static void settle(robot *self, const char *command, uint32_t number, uint8_t result)
+{
+    self->result = result;
+    if (result != TAKEN)
+        log_refusal(self, command, number);
+}
+
 static void acknowledge(robot *self, uint32_t number)
 {
     uint8_t body[CUBELING_MAX_BODY];
     cubeling_ack ack = {.number = number, .result = self->result};
+    if (self->version < 3 && self->result != TAKEN)
+        ack.result = REFUSED; /* there are no other reasons */
     send(self, body, cubeling_pack_ack(body, self->session, self->version, &ack));
 }
 
@@ -236,6 +301,7 @@ static void greet(robot *self, uint16_t session, const cubeling_hello *hello)
         go_neutral(self);
         self->host = hello->host;
         self->taken = 0;
+        self->result = TAKEN;
         self->in_force = 0;
     }
     if (session != self->session) {
@@ -270,6 +336,7 @@ static void take_message(robot *self, const uint8_t *body, size_t size)
         cubeling_express express;
         cubeling_play play;
         cubeling_stop stop;
+        cubeling_move move;
     } m;
     switch (cubeling_number(body)) {
     case CUBELING_HELLO:
@@ -289,14 +356,14 @@ static void take_message(robot *self, const uint8_t *body, size_t size)
     case CUBELING_EXPRESS:
         if (cubeling_unpack_express(body, size, &m.express) && is_ours(self, session)) {
             if (is_new(self, m.express.number))
-                self->result = express(self, &m.express);
+                settle(self, "EXPRESS", m.express.number, express(self, &m.express));
             acknowledge(self, m.express.number);
         }
         break;
     case CUBELING_PLAY:
         if (cubeling_unpack_play(body, size, &m.play) && is_ours(self, session)) {
             if (is_new(self, m.play.number))
-                self->result = play(self, &m.play);
+                settle(self, "PLAY", m.play.number, play(self, &m.play));
             acknowledge(self, m.play.number);
         }
         break;
@@ -305,6 +372,13 @@ static void take_message(robot *self, const uint8_t *body, size_t size)
             if (is_new(self, m.stop.number))
                 self->result = stop(self);
             acknowledge(self, m.stop.number);
+        }
+        break;
+    case CUBELING_MOVE:
+        if (cubeling_unpack_move(body, size, &m.move) && is_ours(self, session)) {
+            if (is_new(self, m.move.number))
+                settle(self, "MOVE", m.move.number, move(self, &m.move));
+            acknowledge(self, m.move.number);
         }
         break;
     case CUBELING_BYE:
@@ -323,6 +397,7 @@ void robot_start(robot *self, void (*write)(const uint8_t *, size_t), uint32_t n
     self->now = now;
     self->version = CUBELING_VERSION;
     self->refused = now - CUBELING_GONE_EVERY_MS;
+    self->logged = now - CUBELING_LOG_EVERY_MS;
     self->mood = self->motion.index = self->sound.index = CUBELING_NOTHING;
     for (size_t joint = 0; joint < ROBOT_JOINTS; joint++)
         self->angles[joint] = JOINTS[joint].neutral;
@@ -335,6 +410,9 @@ void robot_advance(robot *self, uint32_t now)
         end_session(self);
     if (self->session != 0 && now - self->stated >= CUBELING_STATE_EVERY_MS)
         send_state(self);
+    if (self->session != 0 && self->version >= 3 && self->line.text[0] != 0 &&
+        now - self->logged >= CUBELING_LOG_EVERY_MS)
+        send_log(self);
 }
 
 void robot_receive(robot *self, const uint8_t *bytes, size_t size, uint32_t now)

@@ -17,6 +17,12 @@ typedef struct {
 } robot_playing;
 
 typedef struct {
+    float from, to;    /* [mrad] */
+    uint32_t since;    /* when it began [ms] */
+    uint16_t duration; /* [ms] */
+} robot_way;
+
+typedef struct {
     void (*write)(const uint8_t *bytes, size_t size); /* one whole frame; must not wait */
     uint32_t now;
 
@@ -38,6 +44,12 @@ typedef struct {
     uint8_t still;    /* stopped, and not told anything since */
     robot_playing motion, sound;
     float angles[ROBOT_JOINTS]; /* [mrad] */
+    uint16_t held;              /* bit i: the host holds joint i */
+    robot_way ways[ROBOT_JOINTS];
+
+    cubeling_log line; /* waits to be sent, if its text is not empty */
+    uint16_t lines;    /* written so far, also those for which there was no room */
+    uint32_t logged;   /* when LOG was sent [ms] */
 } robot;
 
 void robot_start(robot *self, void (*write)(const uint8_t *, size_t), uint32_t now);

@@ -129,7 +129,7 @@ def test_what_a_robot_sends_is_neither_markup_nor_control_codes(conform, monkeyp
     code, out, _ = conform("sim", *only("hello answered", "joint limits sensible", "within limits"))
     assert code == 1
     assert "\x1b" not in out
-    assert r"Dino ([bold]\x1b[2J), version 2" in out
+    assert r"Dino ([bold]\x1b[2J), version 3" in out
     assert r"joint 0 ([red]\x1b[2Jx)" in " ".join(out.split())
 
 

@@ -11,6 +11,8 @@ import pytest
 from robot.firmware.dino import servos
 from robot.firmware.dino.board import RobotBoard
 from robot.firmware.dino.joints import ServoJoints
+from robot.firmware.dino.log import LogQueue
+from robot.firmware.dino.messages import SEVERITY_INFO
 from robot.firmware.dino.pty_board import PtyBoard
 from robot.firmware.dino.robot import Firmware, run
 from robot.firmware.dino.table import ServoTable
@@ -83,7 +85,9 @@ class Dino:
     def reboot(self) -> None:
         self.board = VirtualBoard()
         self.joints = ServoJoints(self.table.servos, self.board)
-        self.robot = Firmware(self.board, self.table, self.joints)
+        log = LogQueue()
+        log.write(SEVERITY_INFO, "started", 0)
+        self.robot = Firmware(self.board, self.table, self.joints, log)
         self.start: float | None = None
 
     def receive(self, data: bytes, now: float) -> None:

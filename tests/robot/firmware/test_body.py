@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from affect.hysteresis import Label, next_label
 from robot.firmware.dino import body, motions, servos, sounds
 from robot.firmware.dino.joints import POWER_ON_EVERY_MS, RETRY_EVERY_MS
+from robot.firmware.dino.log import LogQueue
 from robot.firmware.dino.robot import run, run_until_exit
 from robot.firmware.dino.table import ServoTable
 from robot.protocol import messages as m
@@ -30,6 +31,9 @@ COMMANDS = st.lists(
                       st.sampled_from([0, 1, 2, 255])),
             st.builds(m.Play, st.just(1), st.just(1), st.integers(0, 7)),
             st.builds(m.Stop, st.just(1)),
+            st.builds(m.Move, st.just(1), st.sampled_from([0.0, 0.1, 1.0, 5.0]),
+                      st.integers(0, 31), st.integers(0, 31),
+                      st.tuples(*[st.floats(-0.6, 0.6)] * 16)),
             st.none(),
         ),
         st.sampled_from([5, 20, 33, 150, 600, 3000]),
@@ -223,7 +227,7 @@ def test_the_program_ends_at_a_developers_request_without_a_host():
 
     board = Left()
     table = ServoTable(servos)
-    run_until_exit(board, table, Dino().joints)
+    run_until_exit(board, table, Dino().joints, LogQueue())
 
 
 def test_sounds_glide_and_end(dino):

@@ -131,23 +131,28 @@ def test_a_blocked_line_blocks_nothing_else(dino):
     assert [type(message) for _, message in dino.sent()][:2] == [m.Welcome, m.State]
 
 
+_BITS = st.sampled_from([0, 1, 2, 3, 0x8000])
+"""Joints that both robots have, and one that neither has."""
+
+
 def _steps() -> st.SearchStrategy[list[tuple[int, int, object, int]]]:
     """(session, version, message or garbage, ms until the next)."""
     number = st.integers(1, 6)
     unit = st.sampled_from([-1.0, -0.5, 0.0, 0.5, 1.0])
     message = st.one_of(
-        st.builds(m.Hello, st.integers(1, 3), st.integers(1, 2)),
+        st.builds(m.Hello, st.integers(1, 4), st.integers(1, 2)),
         st.builds(m.Ask, st.integers(1, 5), st.integers(0, 9)),
         st.builds(m.Beat, st.integers(0, 9)),
         st.builds(m.Express, number, unit, unit, st.sampled_from([0, 1, 2, 3, 255])),
         st.builds(m.Play, number, st.integers(1, 2), st.integers(0, 9)),
         st.builds(m.Stop, number),
+        st.builds(m.Move, number, st.just(0.2), _BITS, _BITS, st.just((0.1,) * m.JOINTS_MAX)),
         st.just(m.Bye()),
         st.binary(max_size=30),
     )
     step = st.tuples(
         st.sampled_from([1, 1, 1, 1, 2, 0]),
-        st.integers(1, 2),
+        st.integers(1, 3),
         message,
         st.sampled_from([0, 1, 5, 19, 21, 60, 105, 440, 460]),
     )
@@ -176,7 +181,7 @@ def test_it_answers_any_input_like_the_simulated_robot(steps):
             assert mood == other or min(map(_from_border, (valence, other_valence))) < 0.02
 
     hear(b"")
-    for session, version, message, wait in [(1, 2, m.Hello(2, 1), 1), *steps]:
+    for session, version, message, wait in [(1, 3, m.Hello(3, 1), 1), *steps]:
         raw = isinstance(message, bytes)
         hear(message if raw else encode_frame(pack(message, session, version)))
         told = now
@@ -209,7 +214,7 @@ def _gist(data: bytes) -> list[tuple[object, ...]]:
             case m.State():
                 still = said.flags & m.FLAG_STILL
                 known = (said.beat, said.taken, still, said.motion == m.NOTHING)
-                gist.append((kind, session, *known))
+                gist.append((kind, session, *known, said.result, said.held, said.time))
             case _:
                 gist.append((kind, session, said))
     return gist

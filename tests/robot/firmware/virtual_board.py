@@ -8,6 +8,7 @@
 from dino import servos
 from dino.board import RobotBoard
 from dino.joints import ServoJoints
+from dino.log import LogQueue
 from dino.robot import Firmware
 from dino.table import ServoTable
 
@@ -37,7 +38,7 @@ class VirtualBoard(RobotBoard):
 table = ServoTable(servos)
 table.check("rp2")
 board = VirtualBoard()
-robot = Firmware(board, table, ServoJoints(table.servos, board))
+robot = Firmware(board, table, ServoJoints(table.servos, board), LogQueue())
 
 
 def exchange(line):

@@ -17,7 +17,7 @@ specs = st.sampled_from(sorted(MESSAGES.values(), key=lambda spec: spec.number))
 
 
 def values_of(field: FieldSpec) -> st.SearchStrategy:
-    if field.wire_type == "text16":
+    if field.is_text:
         return st.text(
             st.characters(exclude_characters="\0", exclude_categories=["Cs"]), max_size=4
         )

@@ -30,7 +30,7 @@ def test_the_vectors_of_the_document_are_read_as_what_it_says():
     for line, frame in zip(lines, frames, strict=True):
         (body,) = FrameReader().feed(frame)
         session, content = unpack(body, MESSAGES[body[0]].sender)
-        assert f"{content} in session {session}" == line.removesuffix(", version 1")
+        assert f"{content} in session {session}" == re.sub(r", version \d$", "", line)
 
 
 def test_there_is_a_vector_for_every_message():

@@ -90,7 +90,7 @@ class Mutant:
         self.inject(m.Ask(9, 0))
 
     def send(self, session: int, message: Any) -> None:
-        self.write(encode_frame(pack(message, session)))
+        self.write(encode_frame(pack(message, session, self.robot.link.version)))
 
     def collect(self) -> None:
         for frame in self.robot.bytes_to_send().split(b"\0"):
