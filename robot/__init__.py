@@ -10,7 +10,7 @@
 from affect import Emotion
 from robot import drivers as drivers  # registers the protocols
 from robot.contract.catalogue import Catalogue, JointLimits
-from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
+from robot.contract.telemetry import ClockEstimate, LinkCounts, LinkState, LogLine, Telemetry
 from robot.errors import RobotError
 from robot.link.connection import Robot, connect
 from robot.link.ports import SerialPort, serial_ports
@@ -24,10 +24,12 @@ SCHEMES["sim"] = open_simulated
 
 __all__ = [
     "Catalogue",
+    "ClockEstimate",
     "Emotion",
     "JointLimits",
     "LinkCounts",
     "LinkState",
+    "LogLine",
     "Robot",
     "RobotError",
     "SerialPort",

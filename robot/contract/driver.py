@@ -7,6 +7,7 @@ from typing import Protocol
 
 from affect import Emotion
 from robot.contract.catalogue import Catalogue
+from robot.contract.moves import JointMover
 from robot.contract.port import Clock, Opener
 from robot.contract.telemetry import LinkState, Telemetry
 
@@ -24,6 +25,10 @@ class Driver(Protocol):
 
     catalogue: Catalogue | None
     """What the robot has; None until it is known."""
+
+    @property
+    def joint_mover(self) -> JointMover | None:
+        """Turns single joints; None if this robot cannot do that, and while it is not known."""
 
     def express(self, emotion: Emotion) -> None:
         """Request an emotion; only the latest counts."""

@@ -10,6 +10,11 @@ from affect import Emotion
 MAX_COMPLAINT_CHARS = 80
 """Longest error message of a robot that is kept [characters]."""
 
+MAX_LOG_LINES = 16
+"""Lines of a robot's log that are kept: the latest."""
+
+Severity = Literal["information", "warning", "error"]
+
 LinkState = Literal["connecting", "ready", "degraded", "lost", "closed"]
 """connecting: the port is open and the robot has not answered yet. ready: it answers.
 degraded: it has been silent for 150 ms, or a command needed three sends. lost: it has been silent
@@ -46,6 +51,37 @@ class LinkCounts:
 
     sessions: int = 0
     """Sessions opened; each after the first is a reconnection."""
+
+
+@dataclass(frozen=True)
+class LogLine:
+    """A line of a robot's log."""
+
+    number: int
+    """Counts the lines that arrived over this link, from 1."""
+
+    severity: Severity
+    """How bad it is."""
+
+    text: str
+    """What happened, in the robot's own words: any characters, so show it as `literal_text`."""
+
+    timestamp: float
+    """When the robot wrote it, on the link's clock [s]."""
+
+    lost: int = 0
+    """Lines before this one that did not arrive."""
+
+
+@dataclass(frozen=True)
+class ClockEstimate:
+    """What is known of a robot's clock."""
+
+    drift: float
+    """How much faster it runs than the link's clock, as a ratio; 0 in the first seconds."""
+
+    error: float
+    """Bound of the error of `Telemetry.measured_at` [s]."""
 
 
 @dataclass(frozen=True)
@@ -87,8 +123,21 @@ class Telemetry:
     reckoned: bool = False
     """Whether `joints` are calculated from the commands because the robot cannot measure them."""
 
+    held: frozenset[str] = frozenset()
+    """Joints that `Robot.move` holds."""
+
+    measured_at: float | None = None
+    """When all that the robot reports was so, on the link's clock [s]; None if it has no clock."""
+
+    clock: ClockEstimate | None = None
+    """The robot's clock, or None."""
+
+    log: tuple[LogLine, ...] = ()
+    """The last lines of its log, the oldest first; at most `MAX_LOG_LINES`."""
+
     complaint: str | None = None
-    """The last error message of the robot in its own words: "file not found", "low power"; at most
+    """The last error message of the robot in its own words, "file not found", "low power", or the
+    command that it refused and why, "nod: refused, its battery is low"; at most
     `MAX_COMPLAINT_CHARS` printable characters. None before the first, and after it has taken
     another mood or a stop. None for a robot without error messages."""
 

@@ -1,6 +1,7 @@
 """A robot on a port, as the rest of the program uses it."""
 
 import time
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,6 +9,7 @@ from affect import Emotion
 from robot.contract.catalogue import Catalogue
 from robot.contract.closeable import Closeable
 from robot.contract.driver import DRIVERS, Driver
+from robot.contract.moves import joint_move
 from robot.contract.port import Clock
 from robot.contract.telemetry import Telemetry
 from robot.errors import RobotError
@@ -180,8 +182,44 @@ class Robot(Closeable):
             raise RobotError(f"{name!r} is one too many: the robot has not played the others yet")
         self._exchange.wake()
 
+    def move(self, angles: Mapping[str, float | None], duration: float = 0.0) -> None:
+        """Turn single joints, and hold them there; all others follow mood and motion as before.
+
+        They are held until a later move, `stop`, or the end of the session, and no faster than
+        their top speed. A move takes effect at most once, and never late, as in `play`.
+
+        Parameters
+        ----------
+        angles
+            The angle of each joint by name [rad]; None lets go of a joint.
+        duration
+            Time for the way [s]; 0 for as fast as the joints can.
+
+        Raises
+        ------
+        RobotError
+            If this robot does not turn single joints, an angle or the duration is out of its
+            range, or too many moves are waiting.
+        """
+        catalogue = self.catalogue
+        move = joint_move(catalogue, angles, duration)
+        with self._exchange.lock:
+            mover = self._driver.joint_mover
+            taken = mover is not None and mover.move(move)
+        if mover is None:
+            raise RobotError(f"the joints of {catalogue.name} cannot be turned one by one")
+        if not taken:
+            raise RobotError("one move too many: the robot has not begun the others yet")
+        self._exchange.wake()
+
+    @property
+    def moves_joints(self) -> bool:
+        """Whether `move` works with this robot."""
+        with self._exchange.lock:
+            return self._driver.joint_mover is not None
+
     def stop(self) -> None:
-        """End everything and hold the neutral pose until the next `express` or `play`."""
+        """End everything, let go of the joints, and hold the neutral pose until another request."""
         with self._exchange.lock:
             self._expressed = None
             self._driver.stop()

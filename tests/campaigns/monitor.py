@@ -4,7 +4,6 @@ from collections import Counter
 from typing import Any, Protocol
 
 from affect import Emotion
-from robot.drivers.cubeling.scheduler import Command
 from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.simulators.faulty import FaultyRobot
@@ -87,7 +86,7 @@ class InvariantMonitor:
             del self._asked_at[next(iter(self._asked_at))]
         return emotion_of(self.asked)
 
-    def sends(self, host: int, command: Command) -> None:
+    def sends(self, host: int, command: m.Command) -> None:
         """Note that the host sends a command."""
         known = command.number if (host, command.number) in self._sent else None
         if known is not None and self._sent[host, command.number] != command:
@@ -112,7 +111,7 @@ class InvariantMonitor:
         """Note that the robot goes to neutral."""
         self._displaced = True
 
-    def carries_out(self, host: int, command: Command) -> None:
+    def carries_out(self, host: int, command: m.Command) -> None:
         """Check a command that takes effect."""
         if (host, command.number) not in self._sent:
             raise InvariantViolationError(f"{command} of host {host} was never sent")

@@ -6,7 +6,7 @@ from affect import Emotion
 from robot.contract.catalogue import Catalogue, JointLimits
 from robot.drivers import DRIVERS
 from robot.drivers.cubeling.host import HostLink
-from robot.drivers.cubeling.scheduler import Command, CommandScheduler, RoundTrip
+from robot.drivers.cubeling.scheduler import CommandScheduler, RoundTrip
 from robot.protocol import messages as m
 from robot.protocol.wire import FrameReader, encode_frame
 from robot.simulators.cubeling.device import DeviceLink
@@ -39,7 +39,7 @@ class MonitoredScheduler(CommandScheduler):
         self.monitor, self.host = monitor, host
         self.idle = True
 
-    def next(self, now: float, retry_after: float) -> Command | None:
+    def next(self, now: float, retry_after: float) -> m.Command | None:
         command = super().next(now, retry_after)
         if command is not None:
             self.idle = False
@@ -61,10 +61,11 @@ class MonitoredRoundTrip(RoundTrip):
         super().__init__()
         self.monitor = monitor
 
-    def stop(self, count: int, now: float) -> None:
+    def stop(self, count: int, now: float) -> float | None:
         waiting = self.pending
-        super().stop(count, now)
+        sent = super().stop(count, now)
         self.monitor.counts["heartbeats"] += waiting - self.pending
+        return sent
 
 
 def monitored_host(monitor: InvariantMonitor, host: int) -> HostLink:
@@ -97,6 +98,12 @@ class LightBody:
 
     def play(self, item: int, index: int) -> None:
         pass
+
+    def move(self, command: m.Move) -> None:
+        pass
+
+    def refusal(self) -> int:
+        return m.RESULT_TAKEN
 
     def stop(self) -> None:
         self.neutral()
@@ -134,7 +141,7 @@ class MonitoredLink(DeviceLink):
             self.heard = now
         super().process(session, message, now)
 
-    def execute(self, command: m.Express | m.Play | m.Stop) -> int:
+    def execute(self, command: m.Command) -> int:
         self.monitor.carries_out(self.host, command)
         return super().execute(command)
 

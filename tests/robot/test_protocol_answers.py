@@ -68,12 +68,66 @@ def test_the_same_motion_again_begins_again(probe: Probe) -> None:
     assert probe.now - begin == pytest.approx(1.5 * length, abs=0.2)
 
 
+LEVEL = (0.0,) * m.JOINTS_MAX
+
+
+def test_a_move_has_the_same_effect_in_a_session_of_an_earlier_version(probe):
+    probe.open_session(offer=2)
+    probe.command(m.Move(probe.next_number(), 0.1, 0, 0b10, LEVEL))
+    probe.reopen_session()
+    assert probe.beat().held == 0b10
+
+
+def test_a_move_of_nothing_ends_a_stop_and_the_joints_follow_the_neutral_mood(probe):
+    probe.open_session()
+    probe.command(m.Stop(probe.next_number()))
+    assert probe.keep_alive(0.3)[-1].flags & m.FLAG_STILL
+    probe.command(m.Move(probe.next_number(), 0.0, 0, 0, LEVEL))
+    state = probe.keep_alive(1.5)[-1]
+    assert (state.flags & m.FLAG_STILL, state.held, state.motion) == (0, 0, 0)
+    assert any(state.joints)
+
+
+def test_a_second_move_begins_where_the_joint_is_on_its_way(probe):
+    probe.open_session()
+    joint = 1
+    angles = (*LEVEL[:joint], 0.5, *LEVEL[joint + 1 :])
+    probe.command(m.Move(probe.next_number(), 1.5, 0, 1 << joint, angles))
+    way = [state.joints[joint] for state in probe.keep_alive(0.75)]
+    probe.command(m.Move(probe.next_number(), 1.5, 0, 1 << joint, LEVEL))
+    back = [state.joints[joint] for state in probe.keep_alive(0.3)]
+    assert back[0] == pytest.approx(way[-1], abs=0.05)
+    assert 0.1 < back[-1] < way[-1]
+
+
+def test_stop_is_never_refused_and_the_result_is_then_that_of_stop(probe):
+    probe.open_session()
+    probe.command(m.Play(probe.next_number(), m.ITEM_MOTION, 99), m.RESULT_REFUSED)
+    probe.command(m.Stop(probe.next_number()))
+    assert probe.beat().result == m.RESULT_TAKEN
+
+
+@pytest.mark.parametrize("make", [Simulator, Dino], ids=["simulator", "firmware"])
+def test_after_49_days_the_clock_begins_at_0(make):
+    robot = make()
+    robot.advance(0.0)
+    start = (2**32 - 60) / 1000
+    robot.receive(encode_frame(pack(m.Hello(3, 5), 1)), start)
+    robot.bytes_to_send()
+    times = []
+    for ms in range(0, 120, 30):
+        robot.receive(encode_frame(pack(m.Beat(ms), 1)), start + ms / 1000)
+        received = [unpack(one, "robot")[1] for one in FrameReader().feed(robot.bytes_to_send())]
+        times += [one.time for one in received if isinstance(one, m.State) and one.beat == ms]
+    assert times == [2**32 - 60, 2**32 - 30, 0, 30]
+
+
 def sent(host: HostLink) -> list[Any]:
     return [unpack(body, "host")[1] for body in FrameReader().feed(host.bytes_to_send())]
 
 
 def answer(host: HostLink, message: object, now: float, damage: bytes = b"") -> None:
-    body = pack(message, 1)
+    body = pack(message, 1, 2)
     host.receive(encode_frame(body[: len(body) - len(damage)] + damage), now)
 
 

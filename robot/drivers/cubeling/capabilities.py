@@ -1,12 +1,8 @@
-"""Asks a robot for its catalogue, and reads its STATE by that catalogue."""
+"""Asks a robot for its catalogue."""
 
 from collections.abc import Sized
-from dataclasses import replace
-from types import MappingProxyType
 
-from affect import Emotion
 from robot.contract.catalogue import Catalogue, JointLimits
-from robot.contract.telemetry import Telemetry
 from robot.protocol import messages as m
 
 
@@ -45,26 +41,3 @@ class CapabilityQuery:
         return Catalogue(
             self.welcome.name, self.welcome.firmware, tuple(self._joints), motions, sounds, moods
         )
-
-
-def with_state(link: Telemetry, state: m.State | None, catalogue: Catalogue | None) -> Telemetry:
-    """Return the telemetry of the link with the robot's last STATE, if there is one."""
-    if state is None or catalogue is None:
-        return link
-    names = (joint.name for joint in catalogue.joints)
-    return replace(
-        link,
-        observed=Emotion(state.valence, state.arousal, _name(catalogue.moods, state.mood)),
-        battery=state.battery,
-        charging=bool(state.flags & m.FLAG_CHARGING),
-        stopped=bool(state.flags & m.FLAG_STILL),
-        limp=bool(state.flags & m.FLAG_LIMP),
-        reckoned=bool(state.flags & m.FLAG_RECKONED),
-        joints=MappingProxyType(dict(zip(names, state.joints, strict=False))),
-        motion=_name(catalogue.motions, state.motion),
-        sound=_name(catalogue.sounds, state.sound),
-    )
-
-
-def _name(names: tuple[str, ...], index: int) -> str | None:
-    return names[index] if index < len(names) else None

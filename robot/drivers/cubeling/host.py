@@ -11,10 +11,12 @@ from typing import Any, Literal
 from affect import Emotion
 from robot.contract.catalogue import Catalogue
 from robot.contract.driver import Driver, DriverKind
+from robot.contract.moves import JointMove, JointMover
 from robot.contract.port import SendBuffer
 from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
-from robot.drivers.cubeling.capabilities import CapabilityQuery, with_state
-from robot.drivers.cubeling.scheduler import CommandScheduler, RoundTrip
+from robot.drivers.cubeling.capabilities import CapabilityQuery
+from robot.drivers.cubeling.reports import RobotReports
+from robot.drivers.cubeling.scheduler import Action, CommandScheduler, RoundTrip
 from robot.errors import RobotError
 from robot.protocol import messages as m
 from robot.protocol import timing
@@ -47,7 +49,7 @@ class HostLink(SendBuffer):
         self._session = session - 1
         self._phase: Phase = "port"
         self._query: CapabilityQuery | None = None
-        self._state: m.State | None = None
+        self._reports = RobotReports()
         self._last_received: float | None = None
         self._last_asked = 0.0  # when the last HELLO or ASK was sent
         self._beat_due = 0.0
@@ -60,10 +62,19 @@ class HostLink(SendBuffer):
 
     def play(self, item: int, index: int) -> bool:
         """Request a motion or a sound once; return False if too many wait already."""
-        if self._phase != "open":
-            self.scheduler.actions.dropped += 1
-            return True
-        return self.scheduler.actions.add((item, index))
+        return self._request(m.Play(0, item, index))
+
+    @property
+    def joint_mover(self) -> JointMover | None:
+        """The link itself, if the robot takes MOVE."""
+        able = self._query is not None and self._query.welcome.abilities & m.ABILITY_MOVE
+        return self if able else None
+
+    def move(self, move: JointMove) -> bool:
+        """Request a move once; return False if too many wait already."""
+        moved, released = (sum(1 << one for one in some) for some in (move.angles, move.released))
+        angles = tuple(move.angles.get(index, 0.0) for index in range(m.JOINTS_MAX))
+        return self._request(m.Move(0, move.duration, released, moved, angles))
 
     def stop(self) -> None:
         """Request the neutral pose, before and instead of everything that waits."""
@@ -150,7 +161,13 @@ class HostLink(SendBuffer):
                 sessions=self._sessions,
             ),
         )
-        return with_state(link, self._state, self.catalogue)
+        return self._reports.describe(link, self.catalogue, scheduler.refusal)
+
+    def _request(self, action: Action) -> bool:
+        if self._phase != "open":
+            self.scheduler.actions.dropped += 1
+            return True
+        return self.scheduler.add(action)
 
     def _greet(self, now: float) -> None:
         self.scheduler.end_session()
@@ -172,9 +189,12 @@ class HostLink(SendBuffer):
             case m.Gone() if self._phase != "greeting":
                 self._greet(now)
             case m.State():
-                self._state = message
-                self.round_trip.stop(message.beat, now)
-                self.scheduler.acknowledge(message.taken)  # replaces an ACK that was lost
+                sent = self.round_trip.stop(message.beat, now)
+                self._reports.take_state(message, self._version, sent, now)
+                # It replaces an ACK that was lost.
+                self.scheduler.acknowledge(message.taken, message.result)
+            case m.Log():
+                self._reports.take_log(message, now)
             case m.Ack():
                 self.scheduler.acknowledge(message.number, message.result)
         if self._phase == "open":
@@ -186,13 +206,15 @@ class HostLink(SendBuffer):
         self._sessions += 1
         self._version = welcome.version
         self._beat_due = now
+        self._reports.start_session()
         self.scheduler.start_session(welcome.taken)
         if self.catalogue is not None and last is not None and (
             replace(last.welcome, taken=0) == replace(welcome, taken=0)
         ):  # fmt: skip
             self._phase = "open"
             return
-        self.catalogue = self._state = None
+        self.catalogue = None
+        self._reports.forget_state()
         self._query = CapabilityQuery(welcome)
         self._phase = "asking"
         self._ask(now)

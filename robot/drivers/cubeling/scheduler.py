@@ -1,6 +1,6 @@
 """Decides which command is sent next, sent again or given up: one at a time, the latest wins."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from affect import Emotion
 from affect.words import closest_word
@@ -8,7 +8,8 @@ from robot.drivers.commands import CommandQueue, DesiredState
 from robot.protocol import messages as m
 from robot.protocol import timing
 
-Command = m.Express | m.Play | m.Stop
+Action = m.Play | m.Move
+"""The commands that are events: dropped with their session, and never restored."""
 
 MAX_BEATS = 16
 """BEATs whose answer is awaited; older ones were lost, or their answer is of no use."""
@@ -18,7 +19,7 @@ MAX_BEATS = 16
 class PendingCommand:
     """The command that waits for its acknowledgement."""
 
-    command: Command
+    command: m.Command
     """The command."""
 
     emotion: Emotion | None
@@ -29,6 +30,17 @@ class PendingCommand:
 
     tries: int = 1
     """Number of sends, including those of commands that it replaced before an acknowledgement."""
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """A command that the robot did not take."""
+
+    command: m.Command
+    """The command."""
+
+    result: int
+    """Why, one of `REFUSALS` or another."""
 
 
 class RoundTrip:
@@ -65,17 +77,21 @@ class RoundTrip:
             del self._sent[next(iter(self._sent))]
         return self._count
 
-    def stop(self, count: int, now: float) -> None:
-        """Process the first answer to a BEAT; later answers repeat its count and are ignored."""
+    def stop(self, count: int, now: float) -> float | None:
+        """Process the first answer to a BEAT, and return when that BEAT was sent [s].
+
+        Later answers repeat its count and are ignored.
+        """
         sent = self._sent.pop(count, None)
         if sent is None:
-            return
+            return None
         took = now - sent
         if self.smoothed is None:
             self.smoothed, self._deviation = took, took / 2
         else:
             self._deviation += (abs(took - self.smoothed) - self._deviation) / 4
             self.smoothed += (took - self.smoothed) / 8
+        return sent
 
 
 class CommandScheduler:
@@ -84,14 +100,16 @@ class CommandScheduler:
     def __init__(self) -> None:
         self.state = DesiredState()
         """The emotion or stop that was requested last."""
-        self.actions: CommandQueue[tuple[int, int]] = CommandQueue(timing.ACTIONS_MAX)
-        """Motions and sounds that wait, as item and index."""
+        self.actions: CommandQueue[Action] = CommandQueue(timing.ACTIONS_MAX)
+        """Motions, sounds and moves that wait; they get their numbers when they are sent."""
         self.pending: PendingCommand | None = None
         """The command that waits for its acknowledgement."""
         self.retries = 0
         """Commands sent again."""
         self.refused = 0
         """Commands acknowledged but refused."""
+        self.refusal: Refusal | None = None
+        """The last one of them; None after a command that was taken."""
         self.moods: tuple[str, ...] = ()
         """The robot's words for its moods."""
         self._requested = False  # whether an emotion or a stop was requested at all
@@ -114,13 +132,26 @@ class CommandScheduler:
         if emotion != self.state.commanded:
             self._request(emotion)
 
+    def add(self, action: Action) -> bool:
+        """Request an action; return False if too many wait already.
+
+        Moves that are the last to wait give way to one that names all of their joints.
+        """
+        if isinstance(action, m.Move):
+            others = ~(action.moved | action.released)
+            while self.actions and isinstance(last := self.actions[-1], m.Move):
+                if (last.moved | last.released) & others:
+                    break
+                self.actions.pop()
+        return self.actions.add(action)
+
     def stop(self) -> None:
         """Request a stop, before and instead of everything that waits or is pending."""
         self.actions.drop_all()
         self._drop_pending()
         self._request(None)
 
-    def next(self, now: float, retry_after: float) -> Command | None:
+    def next(self, now: float, retry_after: float) -> m.Command | None:
         """Return the command to send at time `now` [s], if one is due."""
         pending = self.pending
         if pending is None:
@@ -128,7 +159,7 @@ class CommandScheduler:
         if now - pending.sent < retry_after or self.exhausted:
             return None
         self.retries += 1
-        if self._unsent and not isinstance(pending.command, m.Play):
+        if self._unsent and not isinstance(pending.command, Action):
             return self._send_state(now, pending.tries + 1)  # do not repeat an outdated state
         pending.tries += 1
         pending.sent = now
@@ -140,9 +171,11 @@ class CommandScheduler:
         if pending is None or number != pending.command.number:
             return
         self.pending = None
+        self.refusal = None
         if result != m.RESULT_TAKEN:
             self.refused += 1
-        elif not isinstance(pending.command, m.Play):
+            self.refusal = Refusal(pending.command, result)
+        elif not isinstance(pending.command, Action):
             self.state.confirm(pending.emotion, stopped=pending.emotion is None)
 
     def end_session(self) -> None:
@@ -167,18 +200,18 @@ class CommandScheduler:
 
     def _drop_pending(self) -> None:
         pending, self.pending = self.pending, None
-        if pending is not None and isinstance(pending.command, m.Play):
+        if pending is not None and isinstance(pending.command, Action):
             self.actions.dropped += 1  # never played seconds late
 
-    def _next_new(self, now: float) -> Command | None:
+    def _next_new(self, now: float) -> m.Command | None:
         if self._unsent and self.state.commanded is None:
             return self._send_state(now)
         if self.actions:
-            item, index = self.actions.popleft()
-            return self._send(m.Play(self._next_number(), item, index), None, now)
+            action = replace(self.actions.popleft(), number=self._next_number())
+            return self._send(action, None, now)
         return self._send_state(now) if self._unsent else None
 
-    def _send_state(self, now: float, tries: int = 1) -> Command:
+    def _send_state(self, now: float, tries: int = 1) -> m.Command:
         self._unsent = False
         number = self._state_number = self._next_number()
         emotion = self.state.commanded
@@ -190,8 +223,8 @@ class CommandScheduler:
         return self._send(express, emotion, now, tries)
 
     def _send(
-        self, command: Command, emotion: Emotion | None, now: float, tries: int = 1
-    ) -> Command:
+        self, command: m.Command, emotion: Emotion | None, now: float, tries: int = 1
+    ) -> m.Command:
         self.pending = PendingCommand(command, emotion, now, tries)
         return command
 

@@ -33,6 +33,8 @@ class OpenCatHost:
     """The host side of a line to a board with OpenCat; a `Driver`. None: the bundled settings."""
 
     def __init__(self, settings: OpenCatSettings | None = None) -> None:
+        self.joint_mover = None
+        """Single joints are not turned by this driver."""
         self.catalogue: Catalogue | None = None
         """What the robot has; None until its model is known."""
         self._settings = settings or load_settings()

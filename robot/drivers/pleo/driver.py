@@ -28,6 +28,8 @@ class PleoDriver:
     """The host side of the console; a `Driver`."""
 
     def __init__(self, settings: PleoSettings) -> None:
+        self.joint_mover = None
+        """Single joints are not turned by this driver."""
         self.catalogue: Catalogue | None = None
         """What Pleo has according to the settings; None until a console has answered."""
         self.console = Console(settings.boot_text)

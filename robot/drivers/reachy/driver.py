@@ -67,6 +67,8 @@ class ReachyDriver(SendBuffer):
 
     def __init__(self) -> None:
         super().__init__()
+        self.joint_mover = None
+        """Single joints are not turned by this driver."""
         self.catalogue: Catalogue | None = None
         """What the robot has; None until the daemon has answered."""
         self.reader = LineReader(MAX_LINE_BYTES)
