@@ -13,7 +13,9 @@ from robot.conformance.checks.failsafe import FAILSAFE
 from robot.conformance.checks.frames import FRAMES
 from robot.conformance.checks.going_neutral import NEUTRALITY
 from robot.conformance.checks.heartbeat import HEARTBEAT
+from robot.conformance.checks.log import LOG
 from robot.conformance.checks.moods import MOODS
+from robot.conformance.checks.moving import MOVING
 from robot.conformance.checks.other_sessions import OTHER_SESSIONS
 from robot.conformance.checks.playing import PLAYING
 from robot.conformance.checks.recorded import RECORDED
@@ -27,7 +29,7 @@ from robot.protocol import timing
 
 GROUPS: tuple[CheckGroup, ...] = (
     FRAMES, BODIES, SESSIONS, OTHER_SESSIONS, CATALOGUE, COMMANDS, MOODS, PLAYING, STOPPING,
-    HEARTBEAT, FAILSAFE, NEUTRALITY, RECORDED,
+    MOVING, HEARTBEAT, FAILSAFE, NEUTRALITY, LOG, RECORDED,
 )  # fmt: skip
 """The checks by subject; those of everything received come last."""
 

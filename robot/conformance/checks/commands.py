@@ -1,5 +1,7 @@
 """Checks of section 6: commands are acknowledged, and take effect exactly once."""
 
+from dataclasses import replace
+
 from robot.conformance.check import CheckGroup
 from robot.conformance.errors import CheckFailed, NotApplicableError
 from robot.conformance.probe import EFFECT_WITHIN_S, EMOTION_CHANGE, Probe
@@ -118,6 +120,36 @@ def unknown_mood_refused(probe: Probe) -> None:
 
 
 @COMMANDS.must
+def result_in_state(probe: Probe) -> None:
+    """STATE says the result of the command taken last; 0 after HELLO of another host."""
+    welcome = probe.open_session()
+    if probe.version < 3:
+        raise NotApplicableError("it speaks an earlier version")
+    refused = m.Play(probe.next_number(), m.ITEM_MOTION, welcome.motions)
+    for command, result in ((refused, m.RESULT_REFUSED), (None, m.RESULT_TAKEN)):
+        if command is None:
+            probe.express(0.0, 0.0)
+        else:
+            probe.command(command, result)
+        _expect_result(probe, result, f"a command with result {result}")
+    probe.command(replace(refused, number=probe.next_number()), m.RESULT_REFUSED)
+    probe.open_session()
+    _expect_result(probe, m.RESULT_TAKEN, "HELLO of another host")
+
+
+@COMMANDS.must_of(5)
+def refusal_in_earlier_versions(probe: Probe) -> None:
+    """In a session of version 1 or 2 every refusal is 1, whatever its reason."""
+    if probe.open_session().version < 3:
+        raise NotApplicableError("it speaks an earlier version")
+    for offer in (1, 2):
+        probe.open_session(offer)
+        # Every joint far beyond its limits; a robot without MOVE refuses that too.
+        beyond = m.Move(probe.next_number(), 0.0, 0, 1, (32.767,) * m.JOINTS_MAX)
+        probe.command(beyond, m.RESULT_REFUSED)
+
+
+@COMMANDS.must
 def refusal_changes_nothing(probe: Probe) -> None:
     """A refused command changes nothing: a stopped robot stays so. Its repeats are refused too."""
     welcome = probe.open_session()
@@ -134,3 +166,9 @@ def refusal_changes_nothing(probe: Probe) -> None:
     flags = probe.keep_alive(EFFECT_WITHIN_S)[-1].flags
     if not flags & m.FLAG_STILL:
         raise CheckFailed("flag 1 after STOP and refused commands", f"flags={flags}")
+
+
+def _expect_result(probe: Probe, result: int, after: str) -> None:
+    state = probe.beat(after)
+    if state.result != result:
+        raise CheckFailed(f"STATE(result={result}) after {after}", f"result={state.result}")

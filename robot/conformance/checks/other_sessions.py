@@ -23,6 +23,7 @@ FRAMES_PER_WRITE = 4
 WRITE_EVERY_S = 0.005
 """Time between two such writes [s]: about what a line of 115200 baud needs for one."""
 
+_MOVE = m.Move(1, 0.0, 0, 0, (0.0,) * m.JOINTS_MAX)
 _MESSAGES = (
     m.Ask(m.ITEM_JOINT, 0),
     m.Beat(7),
@@ -37,7 +38,7 @@ _MESSAGES = (
 def other_session_reported(probe: Probe) -> None:
     """A message of another session is answered by GONE in the session of that message."""
     probe.open_session()
-    for message in _MESSAGES:
+    for message in _messages(probe):
         other = probe.session ^ 0x1111
         probe.receive(2 * timing.GONE_EVERY)
         probe.send(message, session=other)
@@ -52,7 +53,7 @@ def gone_without_session(probe: Probe) -> None:
     probe.open_session()
     probe.send(m.Bye())
     probe.receive(REPLY_WITHIN_S)
-    for message in _MESSAGES:
+    for message in _messages(probe):
         probe.receive(2 * timing.GONE_EVERY)
         probe.send(message)
         probe.expect(m.Gone, f"{spec_of(type(message)).name} after BYE")
@@ -94,3 +95,8 @@ def silent_without_session(probe: Probe) -> None:
     if received:
         expected = f"silence for {1000 * LISTENING_TIME_S:.0f} ms after BYE"
         raise CheckFailed(expected, describe_frames(received))
+
+
+def _messages(probe: Probe) -> tuple[object, ...]:
+    """Return a message of every kind but HELLO that the robot knows."""
+    return (_MOVE, *_MESSAGES) if probe.version >= 3 else _MESSAGES

@@ -160,7 +160,7 @@ def stop_and_refusal_in_force(probe: Probe) -> None:
 def version_agreed(probe: Probe) -> str:
     """WELCOME names the highest version that both speak: never above the one offered."""
     highest = probe.open_session(offer=255).version
-    for offer in (1, 2, highest):
+    for offer in (1, 2, 3, highest):
         version = probe.open_session(offer).version
         if version != min(offer, highest):
             raise CheckFailed(
@@ -176,12 +176,20 @@ def version_agreed(probe: Probe) -> str:
 
 
 @SESSIONS.must
-def version_1_spoken(probe: Probe) -> None:
-    """In a session of version 1 the robot sends nothing that later versions added."""
-    probe.open_session(offer=1)
-    number = probe.next_number()
-    probe.command(m.Express(number, 0.0, 0.0))
-    _expect_version_1(probe.keep_alive(0.2))
+def earlier_versions_spoken(probe: Probe) -> None:
+    """In a session of an earlier version the robot sends nothing that later versions added."""
+    for offer in range(1, max(probe.open_session().version, 2)):
+        before = probe.log.violation_counts.get("frame", 0)
+        welcome = probe.open_session(offer)
+        probe.express(0.0, 0.0)
+        refused = m.Play(probe.next_number(), m.ITEM_MOTION, welcome.motions)
+        probe.command(refused, m.RESULT_REFUSED)
+        states = probe.keep_alive(2 * timing.LOG_EVERY)
+        if probe.log.violation_counts.get("frame", 0) > before:
+            example = probe.log.violations["frame"][-1]
+            raise CheckFailed(f"only what version {offer} has", str(example))
+        if offer == 1:
+            _expect_version_1(states)
 
 
 @SESSIONS.must

@@ -14,6 +14,8 @@ from robot.conformance import (
     run_checks,
     select_checks,
 )
+from robot.conformance.checks.log import LOG
+from robot.conformance.checks.moving import MOVING
 from robot.conformance.probe import Probe
 from robot.conformance.suite import MAX_DURATION_S
 from robot.errors import RobotError
@@ -215,29 +217,49 @@ def test_a_joint_of_speed_zero_is_a_failed_check():
     assert "speed=0.0" in failed["joint limits sensible"]
 
 
-class Version1(Mutant):
+class Version2(Mutant):
+    version = 2
+
     def on_body(self, number, session, body):
+        if number == 0x13:
+            return
         if number == 0x01 and len(body) > 3:
-            body = body[:3] + bytes([min(body[3], 1)]) + body[4:]
-        if number == 0x10:
-            body = body[:11]
+            body = body[:3] + bytes([min(body[3], self.version)]) + body[4:]
         super().on_body(number, session, body)
 
 
-def test_a_robot_of_version_1_conforms():
-    report = run_checks(SimulatedChannel(Version1()), all_checks(), 1)
+class Version1(Version2):
+    version = 1
+
+    def on_body(self, number, session, body):
+        super().on_body(number, session, body[:11] if number == 0x10 else body)
+
+
+NEW_IN_VERSION_2 = {
+    "express of version 2 used",
+    "version of the last hello",
+    "unknown mood refused",
+    "named mood shown at once",
+    "mood 255 leaves the choice",
+    "stop ends a named mood",
+    "refused express ends nothing",
+}
+NEW_IN_VERSION_3 = {
+    "result in state",
+    "refusal in earlier versions",
+    *(check.name for check in [*MOVING, *LOG]),
+}
+
+
+@pytest.mark.parametrize(
+    ("robot", "skipped"),
+    [(Version1, NEW_IN_VERSION_2 | NEW_IN_VERSION_3), (Version2, NEW_IN_VERSION_3)],
+)
+def test_a_robot_of_an_earlier_version_conforms(robot, skipped):
+    report = run_checks(SimulatedChannel(robot()), all_checks(), 1)
     assert report.conforms
-    assert report.welcome.version == 1
-    skipped = [one.check.name for one in report.results if one.verdict == "skipped"]
-    assert skipped == [
-        "express of version 2 used",
-        "version of the last hello",
-        "unknown mood refused",
-        "named mood shown at once",
-        "mood 255 leaves the choice",
-        "stop ends a named mood",
-        "refused express ends nothing",
-    ]
+    assert report.welcome.version == robot.version
+    assert {one.check.name for one in report.results if one.verdict == "skipped"} == skipped
 
 
 def test_our_simulated_robot_conforms():

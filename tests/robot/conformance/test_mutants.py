@@ -7,7 +7,9 @@ import tests.robot.conformance.mutants.commands
 import tests.robot.conformance.mutants.frames
 import tests.robot.conformance.mutants.heartbeat
 import tests.robot.conformance.mutants.keeping
+import tests.robot.conformance.mutants.moving
 import tests.robot.conformance.mutants.playing
+import tests.robot.conformance.mutants.reporting
 import tests.robot.conformance.mutants.sessions  # noqa: F401 # these enter themselves
 from robot.conformance import SimulatedChannel, all_checks, run_checks, select_checks
 from tests.robot.conformance.mutants.base import MUTANTS, Mutant

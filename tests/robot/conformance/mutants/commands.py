@@ -18,7 +18,7 @@ class Commanded(Mutant):
     def on_body(self, number: int, session: int, body: bytes) -> None:
         if number == 1:
             self.taken = 0
-        if number not in (0x10, 0x11, 0x12) or session != self.session:
+        if number not in (0x10, 0x11, 0x12, 0x13) or session != self.session:
             super().on_body(number, session, body)
             return
         _, command = unpack(body, "host")

@@ -207,7 +207,7 @@ class SpeaksVersion2ToAll(Mutant):
         super().send_message(session, message)
 
 
-@breaks("version 1 spoken")
+@breaks("earlier versions spoken")
 class FlagsOfVersion2InVersion1(Mutant):
     def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.State):

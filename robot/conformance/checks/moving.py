@@ -1,0 +1,266 @@
+"""Checks of section 6: MOVE turns single joints, and holds them until they are let go."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from robot.conformance.check import CheckGroup
+from robot.conformance.checks.catalogue import known_joints
+from robot.conformance.checks.failsafe import SILENCE_S
+from robot.conformance.errors import CheckFailed, NotApplicableError
+from robot.conformance.probe import EFFECT_WITHIN_S, Probe
+from robot.protocol import messages as m
+
+MOVING = CheckGroup("Joints", 6)
+
+MIN_RANGE_RAD = 0.2
+"""Smallest range of a joint whose movement is told from the noise of its sensor [rad]."""
+
+ANGLE_TOLERANCE_RAD = 0.05
+"""Largest distance of a joint from its angle [rad]: servos and sensors are not exact."""
+
+SPARE_TIME = 1.5
+"""How much longer a way is to take than at the joint's top speed."""
+
+MIN_DURATION_S = 0.6
+"""Shortest duration of a tested way [s]."""
+
+_LEVEL = (0.0,) * m.JOINTS_MAX
+
+
+@dataclass(frozen=True)
+class Way:
+    """A joint's way to an angle, for a test."""
+
+    joint: m.Joint
+    """The joint."""
+
+    start: float
+    """Its angle before [rad]."""
+
+    goal: float
+    """The angle that MOVE names [rad]."""
+
+    duration: float
+    """Time for the way [s]."""
+
+    @property
+    def bit(self) -> int:
+        """The joint's bit."""
+        return 1 << self.joint.index
+
+    def command(self, number: int) -> m.Move:
+        """Return the MOVE of this way."""
+        return m.Move(number, self.duration, 0, self.bit, _with(self.joint.index, self.goal))
+
+
+@MOVING.must_of(4)
+def abilities_valid(probe: Probe) -> str:
+    """Without bit 0 of `abilities` every MOVE is refused by 3; the other bits are 0."""
+    welcome = probe.open_session()
+    if probe.version < 3:
+        raise NotApplicableError("it speaks an earlier version")
+    if welcome.abilities & ~m.ABILITY_MOVE:
+        raise CheckFailed("WELCOME with no abilities but bit 0", f"abilities={welcome.abilities}")
+    if welcome.abilities:
+        return "it takes MOVE"
+    for moved in (0, 1, 0xFFFF):
+        probe.command(m.Move(probe.next_number(), 0.0, 0, moved, _LEVEL), m.RESULT_CANNOT)
+    return "it does not take MOVE"
+
+
+@MOVING.must
+def joint_moved(probe: Probe) -> None:
+    """A joint of MOVE is held within 250 ms, and at its angle once `duration` is over."""
+    way = _begin(probe)
+    probe.keep_alive(max(way.duration - EFFECT_WITHIN_S, 0.0))
+    probe.expect_state(
+        lambda state: abs(state.joints[way.joint.index] - way.goal) <= ANGLE_TOLERANCE_RAD,
+        2 * EFFECT_WITHIN_S,
+        f"joint {way.joint.index} at {way.goal:.3f} rad {way.duration:.1f} s after MOVE",
+        "joints",
+    )
+
+
+@MOVING.must
+def joint_moved_evenly(probe: Probe) -> None:
+    """A joint of MOVE is about half-way when half of `duration` is over."""
+    way = _choose(probe)
+    begin = probe.now
+    probe.command(way.command(probe.next_number()))
+    states = probe.keep_alive(way.duration / 2)
+    passed = (probe.now - begin) / way.duration
+    gone = (states[-1].joints[way.joint.index] - way.start) / (way.goal - way.start)
+    if not passed - 0.3 <= gone <= passed + 0.3:
+        raise CheckFailed(
+            f"joint {way.joint.index} {100 * passed:.0f} % of its way after so much of its time",
+            f"{100 * gone:.0f} %",
+        )
+
+
+@MOVING.must
+def held_joint_stays(probe: Probe) -> None:
+    """EXPRESS, PLAY, and a MOVE of no joint neither move nor let go of a held joint."""
+    way = _begin(probe)
+    probe.keep_alive(way.duration + EFFECT_WITHIN_S)
+    probe.express(0.8, 0.6)
+    assert probe.welcome is not None
+    if probe.welcome.motions:
+        motion = probe.welcome.motions - 1
+        probe.command(m.Play(probe.next_number(), m.ITEM_MOTION, motion))
+    probe.command(m.Move(probe.next_number(), 0.0, 0, 0, _LEVEL))
+    for state in probe.keep_alive(1.0):
+        angle = state.joints[way.joint.index]
+        if state.held != way.bit or abs(angle - way.goal) > ANGLE_TOLERANCE_RAD:
+            raise CheckFailed(
+                f"joint {way.joint.index} held at {way.goal:.3f} rad after EXPRESS and PLAY",
+                f"{angle:.3f} rad, held={state.held}",
+            )
+
+
+@MOVING.must
+def joint_let_go(probe: Probe) -> None:
+    """A joint in `released` is no longer held; one that is in `moved` too is held again."""
+    way = _begin(probe)
+    both = m.Move(
+        probe.next_number(), way.duration, way.bit, way.bit, _with(way.joint.index, way.start)
+    )
+    probe.command(both)
+    for state in probe.keep_alive(EFFECT_WITHIN_S):
+        if state.held != way.bit:
+            raise CheckFailed(f"held={way.bit} after a MOVE with it in both", f"held={state.held}")
+    probe.command(m.Move(probe.next_number(), 0.0, way.bit, 0, _LEVEL))
+    _expect_held(probe, 0, "a MOVE that lets go")
+
+
+@MOVING.must
+def angle_beyond_limits_refused(probe: Probe) -> None:
+    """A MOVE beyond a joint's limits is refused by 2 and moves nothing; the limits are allowed."""
+    way = _choose(probe)
+    joint, index = way.joint, way.joint.index
+    for angle in (joint.low, joint.high):
+        command = m.Move(probe.next_number(), way.duration, 0, way.bit, _with(index, angle))
+        probe.command(command)
+    probe.command(m.Move(probe.next_number(), 0.0, way.bit, 0, _LEVEL))
+    _expect_held(probe, 0, "a MOVE that lets go")
+    for angle in (joint.low - 1e-3, joint.high + 1e-3, 32.767):
+        command = m.Move(probe.next_number(), 0.0, 0, way.bit, _with(index, angle))
+        probe.command(command, m.RESULT_OUT_OF_RANGE)
+    for state in probe.keep_alive(EFFECT_WITHIN_S):
+        if state.held:
+            raise CheckFailed("held=0 after refused MOVEs", f"held={state.held}")
+
+
+@MOVING.must
+def unknown_joint_refused(probe: Probe) -> None:
+    """A MOVE with a bit for a joint that the catalogue does not have is refused by 1."""
+    joints = len(_joints(probe))
+    if joints == m.JOINTS_MAX:
+        raise NotApplicableError("it has as many joints as there are bits")
+    for bit in {1 << joints, 1 << m.JOINTS_MAX - 1}:
+        for released, moved in ((bit, 0), (0, bit)):
+            number = probe.next_number()
+            probe.command(m.Move(number, 0.0, released, moved, _LEVEL), m.RESULT_REFUSED)
+            probe.expect_taken(number, "a refused MOVE")
+
+
+@MOVING.must
+def old_move_without_effect(probe: Probe) -> None:
+    """A MOVE whose number is not above the last one's holds nothing and lets go of nothing."""
+    way = _begin(probe)
+    number = probe.command(m.Move(probe.next_number(), 0.0, way.bit, 0, _LEVEL))
+    for old in (number, number - 1):
+        probe.send(way.command(old))
+        probe.expect(m.Ack, f"MOVE {old}, with {number} taken before", number=old)
+    for state in probe.keep_alive(EFFECT_WITHIN_S)[1:]:
+        if state.held:
+            raise CheckFailed("held=0 after an old MOVE", f"held={state.held}")
+
+
+@MOVING.must
+def stop_lets_go(probe: Probe) -> None:
+    """STOP lets go of all joints, and the next MOVE ends the stop."""
+    way = _begin(probe)
+    probe.command(m.Stop(probe.next_number()))
+    _expect_held(probe, 0, "STOP")
+    probe.command(way.command(probe.next_number()))
+    probe.expect_state(
+        lambda state: not state.flags & m.FLAG_STILL and state.held == way.bit,
+        EFFECT_WITHIN_S,
+        f"flag 1 clear and held={way.bit} after STOP and MOVE",
+        "flags", "held",
+    )  # fmt: skip
+
+
+@MOVING.must_of(7)
+def failsafe_lets_go(probe: Probe) -> None:
+    """The failsafe lets go of all joints."""
+    _expect_let_go(probe, lambda: probe.receive(SILENCE_S), probe.reopen_session, "the failsafe")
+
+
+@MOVING.must_of(7)
+def bye_lets_go(probe: Probe) -> None:
+    """BYE lets go of all joints."""
+    _expect_let_go(probe, lambda: probe.send(m.Bye()), probe.reopen_session, "BYE")
+
+
+@MOVING.must_of(5)
+def another_host_lets_go(probe: Probe) -> None:
+    """HELLO of another host lets go of all joints."""
+    _expect_let_go(probe, lambda: None, probe.open_session, "HELLO of another host")
+
+
+@MOVING.must_of(5)
+def same_host_keeps_hold(probe: Probe) -> None:
+    """When the same host says HELLO again in time, held joints stay held."""
+    way = _begin(probe)
+    probe.reopen_session()
+    for state in probe.keep_alive(EFFECT_WITHIN_S):
+        if state.held != way.bit:
+            raise CheckFailed(f"held={way.bit} in the next session", f"held={state.held}")
+
+
+def _joints(probe: Probe) -> list[m.Joint]:
+    """Open a session, and return the joints of a robot that takes MOVE."""
+    joints = known_joints(probe)
+    if not probe.open_session().abilities & m.ABILITY_MOVE:
+        raise NotApplicableError("it does not take MOVE")
+    return joints
+
+
+def _choose(probe: Probe) -> Way:
+    """Open a session, and return a way for the joint that crosses its range in the least time."""
+    wide = [joint for joint in _joints(probe) if joint.high - joint.low >= MIN_RANGE_RAD]
+    if not wide:
+        raise NotApplicableError(f"no joint turns by {MIN_RANGE_RAD} rad")
+    joint = min(wide, key=lambda one: (one.high - one.low) / max(one.speed, 1e-3))
+    start = probe.beat("HELLO").joints[joint.index]
+    share = 0.2 if start > (joint.low + joint.high) / 2 else 0.8
+    goal = round(joint.low + share * (joint.high - joint.low), 3)
+    least = abs(goal - start) / max(joint.speed, 1e-3)
+    return Way(joint, start, goal, round(max(SPARE_TIME * least, MIN_DURATION_S), 3))
+
+
+def _begin(probe: Probe) -> Way:
+    """Open a session, and let a joint begin its way."""
+    way = _choose(probe)
+    probe.command(way.command(probe.next_number()))
+    _expect_held(probe, way.bit, "MOVE")
+    return way
+
+
+def _expect_held(probe: Probe, bits: int, after: str) -> None:
+    expected = f"STATE(held={bits}) after {after}"
+    probe.expect_state(lambda state: state.held == bits, EFFECT_WITHIN_S, expected, "held")
+
+
+def _expect_let_go(
+    probe: Probe, leave: Callable[[], object], come_back: Callable[[], object], after: str
+) -> None:
+    _begin(probe)
+    leave()
+    come_back()
+    _expect_held(probe, 0, after)
+
+
+def _with(index: int, angle: float) -> tuple[float, ...]:
+    return (*_LEVEL[:index], angle, *_LEVEL[index + 1 :])
