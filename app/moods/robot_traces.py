@@ -12,6 +12,7 @@ from app.errors import AppError
 from app.session import messages
 from robot.protocol import messages as m
 from robot.protocol import timing
+from robot.protocol.clock import RobotClock
 from robot.protocol.fields import MessageError
 from robot.protocol.schema import Sender, unpack
 from robot.protocol.wire import FrameReader
@@ -51,7 +52,7 @@ class RobotTraces:
     """Emotions that the robot acknowledged."""
 
     observed: EmotionSteps
-    """Emotions that the robot reported to show."""
+    """Emotions that the robot reported to show, at the times by its own clock if it has one."""
 
     delays: Array
     """Time from each emotion's command to its acknowledgement, (k,) [s]."""
@@ -95,6 +96,9 @@ class _WireDecoder:
         self._acknowledged: set[int] = set()
         self._moods: dict[int, str] = {}
         self._last_received: float | None = None
+        self._version = 1
+        self._clock = RobotClock()
+        self._beats: dict[int, float] = {}
 
     def feed(self, direction: str, data: bytes, time: float) -> None:
         """Decode bytes of one direction."""
@@ -125,16 +129,31 @@ class _WireDecoder:
                 self._commands.setdefault(content.number, (time, UNKNOWN_EMOTION))
             case m.Ack() if content.result == m.RESULT_TAKEN and content.number in self._commands:
                 self._acknowledge(content.number, time)
+            case m.Beat():
+                self._beats[content.count] = time
             case m.Welcome():  # after a reconnection, the last command may still be in force
                 emotion = self._commands.get(content.taken, (time, UNKNOWN_EMOTION))[1]
                 self.acknowledged.append((time, emotion, ""))
+                self._version, self._clock = content.version, RobotClock()
             case m.Gone() | m.Bye():
                 self.acknowledged.append((time, UNKNOWN_EMOTION, ""))
             case m.Name() if content.item == m.ITEM_MOOD:
                 self._moods[content.index] = content.name
             case m.State():
                 emotion = content.valence, content.arousal
-                self.observed.append((time, emotion, self._moods.get(content.mood, "")))
+                label = self._moods.get(content.mood, "")
+                self.observed.append((self._measured(content, time), emotion, label))
+
+    def _measured(self, state: m.State, arrival: float) -> float:
+        """Return when a STATE was made: by the robot's clock, or when it arrived if it has none."""
+        sent = self._beats.pop(state.beat, None)
+        if self._version < 3:
+            return arrival
+        if sent is not None:
+            self._clock.add(state.time, sent, arrival)
+        known = self._clock.host_time(state.time)
+        made = arrival if known is None else min(known.host, arrival)
+        return max(made, self.observed[-1][0]) if self.observed else made
 
     def _acknowledge(self, number: int, time: float) -> None:
         sent, emotion = self._commands[number]

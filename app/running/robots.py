@@ -12,7 +12,7 @@ from affect.words import closest_word
 from app.pipeline.scenario import EmotionTarget
 from app.pipeline.step import RobotView
 from app.session import Recorder
-from robot import Robot, RobotError, SimulatedPort, SteppedRobot, connect
+from robot import LogLine, Robot, RobotError, SimulatedPort, SteppedRobot, connect
 from robot.contract.closeable import Closeable
 
 OnBytes = Callable[[str, bytes, float], None]
@@ -110,6 +110,10 @@ class RobotLine(Closeable):
         shown = telemetry.observed or telemetry.acknowledged or NEUTRAL
         label = telemetry.label or self._label_of(shown)
         return RobotView(telemetry.state, shown.valence, label, self._real)
+
+    def log(self) -> tuple[LogLine, ...]:
+        """Return the last lines of the robot's log, on the session's clock."""
+        return () if self._robot is None else self._robot.telemetry.log
 
     def _label_of(self, emotion: Emotion) -> str:
         """Return the mood that the robot shows for an emotion, chosen as its driver chooses it."""

@@ -82,6 +82,7 @@ def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
             summary.lost = summary.lost or error
     except KeyboardInterrupt:
         summary.interrupted = True
+    summary.robot_log = session.robot.log()
     summary.lens = lens_notice(session.playground.lens, session.playground.intrinsics)
     if isinstance(session.source, LiveFrames):
         summary.camera = session.source.health

@@ -11,7 +11,7 @@ from rich.text import Text
 
 from app.pipeline.step import RobotView, Step
 from app.ui.literal_text import literal_text
-from robot import RobotError
+from robot import LogLine, RobotError
 from tracking import Health, TrackingError
 
 CURVE_BLOCKS = "▁▂▃▄▅▆▇█"
@@ -22,6 +22,9 @@ CURVE_WIDTH = 56
 
 MIN_STATE_S = 0.6
 """A state that is shorter counts as part of the one before it."""
+
+MAX_LOG_LINES = 3
+"""Lines of the robot's log that are shown, the last ones that are more than information."""
 
 MAX_TIMELINE_ENTRIES = 12
 """Entries of a timeline before the rest is summed up."""
@@ -60,6 +63,9 @@ class Summary:
 
     gaps: list[tuple[float, float]] = field(default_factory=list)
     """When the camera was lost [s, its timestamps], and how long until its next frame [s]."""
+
+    robot_log: tuple[LogLine, ...] = ()
+    """The last lines of the robot's log."""
 
     camera: Health | None = None
     """State of the camera at the end; None for a source that is not live."""
@@ -145,6 +151,9 @@ class Summary:
         table.add_row(
             "", Text(self._curve(), style="green") + Text("  angry ▁  neutral ▄  happy █", "dim")
         )
+        serious = [line for line in self.robot_log if line.severity != "information"]
+        for line in serious[-MAX_LOG_LINES:]:
+            table.add_row("robot said", literal_text(f"{line.severity}: {line.text}"))
         table.add_row(
             "a frame took", f"{median:.1f} ms in the median, {slow:.1f} ms at the 95th percentile"
         )

@@ -202,12 +202,11 @@ class Robot(Closeable):
             range, or too many moves are waiting.
         """
         catalogue = self.catalogue
-        move = joint_move(catalogue, angles, duration)
         with self._exchange.lock:
             mover = self._driver.joint_mover
-            taken = mover is not None and mover.move(move)
-        if mover is None:
-            raise RobotError(f"the joints of {catalogue.name} cannot be turned one by one")
+            if mover is None:
+                raise RobotError(f"the joints of {catalogue.name} cannot be turned one by one")
+            taken = mover.move(joint_move(catalogue, angles, duration))
         if not taken:
             raise RobotError("one move too many: the robot has not begun the others yet")
         self._exchange.wake()

@@ -8,7 +8,7 @@ the age of a sample by how far the clock may have drifted since.
 """
 
 from collections import deque
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from robot.protocol.timing import CLOCK_TOLERANCE
 
@@ -55,6 +55,7 @@ class RobotClock:
         self.drift = 0.0
         """How much faster the robot's clock runs than the host's, as a ratio."""
         self._samples: deque[ClockSample] = deque(maxlen=KEPT_SAMPLES)
+        self._best: ClockSample | None = None
         self._last_ms: int | None = None
         self._elapsed_ms = 0
         self._second = 0.0
@@ -70,21 +71,22 @@ class RobotClock:
             self._second = robot
             self._fit()  # before the second of which one sample is all that is known
             self._samples.append(sample)
-        elif error <= self._samples[-1].error:
+        elif error < self._samples[-1].error:
             self._samples[-1] = sample
+        else:
+            return
+        # The errors grow alike, so the sample that is best now stays so until there is another.
+        self._best = min(self._samples, key=lambda one: one.error - ERROR_GROWTH * one.robot)
 
     def host_time(self, ms: int) -> ClockSample | None:
         """Return a time of the robot [ms] with the host's time for it; None before any `add`."""
-        if not self._samples:
+        best = self._best
+        if best is None:
             return None
         robot = self._unwrapped(ms) / 1000 + TICK_S / 2
-
-        def bound(sample: ClockSample) -> float:
-            return sample.error + TICK_S / 2 + ERROR_GROWTH * abs(robot - sample.robot)
-
-        best = min(self._samples, key=bound)
-        host = best.host + (robot - best.robot) / (1 + self.drift)
-        return replace(best, robot=robot, host=host, error=bound(best))
+        age = robot - best.robot
+        error = best.error + TICK_S / 2 + ERROR_GROWTH * abs(age)
+        return ClockSample(robot, best.host + age / (1 + self.drift), error)
 
     def _unwrapped(self, ms: int) -> int:
         """Return a time as milliseconds since the first one, however often the clock wrapped."""

@@ -2,9 +2,7 @@
 
 import math
 import time
-from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -15,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from affect import Emotion
-from affect.words import WORD_PLACES
+from app.commands.robot_trials import Trial, trials_of
 from app.ui.literal_text import literal_text
 from robot import Robot, RobotError, Telemetry, connect
 
@@ -25,25 +23,8 @@ POLL_INTERVAL_S = 0.05
 MAX_MOOD_S = 3600.0
 """The longest time for which a mood may be held."""
 
-EMOTION_TOLERANCE = 0.05
-"""Largest distance from a requested emotion at which it counts as shown."""
-
-
-@dataclass(frozen=True)
-class Trial:
-    """Something that a robot is asked to do, and how its telemetry answers."""
-
-    name: str
-    """The mood, emotion, motion or sound."""
-
-    start: Callable[[], None]
-    """Asks for it."""
-
-    shown: Callable[[Telemetry], bool]
-    """Whether the robot reports that it shows or plays it."""
-
-    emotion: Emotion | None
-    """The emotion that the robot acknowledges; None for a motion or a sound."""
+SEVERITY_STYLES = {"information": "dim", "warning": "yellow", "error": "red"}
+"""How each severity of a robot's log is printed."""
 
 
 def try_(
@@ -53,6 +34,10 @@ def try_(
     ],
     mood: Annotated[list[str] | None, typer.Option(help="Only this mood; repeatable.")] = None,
     seconds: Annotated[float, typer.Option(help="How long each mood is held.")] = 5.0,
+    joint: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=ANGLE", help="Only this joint, 'neck up=10deg'; repeatable."),
+    ] = None,
     settings: Annotated[
         Path | None, typer.Option(help="A .toml file for the robot: what it does for each mood.")
     ] = None,
@@ -60,8 +45,10 @@ def try_(
     """Let a robot show its moods one after the other, and report the result of each.
 
     The result says how soon the robot acknowledged the mood, how soon it showed it if the robot
-    reports that, and the robot's own error messages. It ends with the robot neutral, or at Ctrl-C.
-    A robot without moods is asked for three emotions, and for its motions and sounds.
+    reports that, and the robot's own error messages; lines of its log appear as they come. It ends
+    with the robot neutral, or at Ctrl-C.
+    A robot without moods is asked for three emotions, and for its motions and sounds. A joint turns
+    to its angle within a second and is held there until the end.
 
     The exit code is 1 if the robot acknowledged and showed nothing at all.
 
@@ -72,61 +59,18 @@ def try_(
         raise RobotError(f"a mood is held for 0.1 to {MAX_MOOD_S:g} seconds, not {seconds:g}")
     successes: list[bool] = []
     with connect(port, settings=settings) as robot:
-        trials = _trials(robot, mood or ())
+        trials = trials_of(robot, mood or (), joint or ())
+        log = LogPrinter(console, time.monotonic())
         console.print(_describe(robot), soft_wrap=True)
         with suppress(KeyboardInterrupt):
             for trial in trials:
-                succeeded, line = _try(robot, trial, seconds, console)
+                succeeded, line = _try(robot, trial, seconds, log)
                 successes.append(succeeded)
                 console.print(line, soft_wrap=True)
         robot.stop()
         robot.check()
     if successes and not any(successes):
         raise typer.Exit(1)
-
-
-def _trials(robot: Robot, words: Sequence[str]) -> list[Trial]:
-    """Return what to try: the moods of these words, or everything that the robot has."""
-    catalogue = robot.catalogue
-    moods = catalogue.moods
-    for word in words:
-        if word not in moods:
-            known = ", ".join(moods) or "it has none"
-            raise RobotError(f"{catalogue.name} has no mood {word!r}: {known}")
-    if moods:
-        return [_mood_trial(robot, word) for word in words or (*moods, moods[0])]
-    played = [_play_trial(robot, name) for name in catalogue.motions + catalogue.sounds]
-    return [*(_emotion_trial(robot, word) for word in ("happy", "angry", "neutral")), *played]
-
-
-def _mood_trial(robot: Robot, word: str) -> Trial:
-    emotion = Emotion(*WORD_PLACES.get(word, (0.0, 0.0)), word)
-    return Trial(
-        word, lambda: robot.express(emotion), lambda telemetry: telemetry.label == word, emotion
-    )
-
-
-def _emotion_trial(robot: Robot, word: str) -> Trial:
-    """Return the trial of the emotion of a word, for a robot that has no moods."""
-    emotion = Emotion(*WORD_PLACES[word])
-
-    def shown(telemetry: Telemetry) -> bool:
-        observed = telemetry.observed
-        return observed is not None and (
-            math.dist((observed.valence, observed.arousal), (emotion.valence, emotion.arousal))
-            < EMOTION_TOLERANCE
-        )
-
-    return Trial(word, lambda: robot.express(emotion), shown, emotion)
-
-
-def _play_trial(robot: Robot, name: str) -> Trial:
-    return Trial(
-        name,
-        lambda: robot.play(name),
-        lambda telemetry: name in (telemetry.motion, telemetry.sound),
-        None,
-    )
 
 
 def _describe(robot: Robot) -> Text:
@@ -141,8 +85,34 @@ def _describe(robot: Robot) -> Text:
     return Text.assemble(name, rest, "" if catalogue.moods else moodless)
 
 
-def _try(robot: Robot, trial: Trial, seconds: float, console: Console) -> tuple[bool, Text]:
+class LogPrinter:
+    """Prints the lines of a robot's log, each once."""
+
+    def __init__(self, console: Console, start: float) -> None:
+        self.console = console
+        """Where it prints."""
+        self._start = start
+        self._last = 0
+
+    def update(self, telemetry: Telemetry) -> None:
+        """Print the lines that are new."""
+        for line in telemetry.log:
+            if line.number > self._last:
+                self._last = line.number
+                lost = f" ({line.lost} before it lost)" if line.lost else ""
+                self.console.print(
+                    Text.assemble(
+                        (f"log {line.timestamp - self._start:+8.2f} s  ", "dim"),
+                        (f"{line.severity}: ", SEVERITY_STYLES[line.severity]),
+                        literal_text(line.text + lost),
+                    ),
+                    soft_wrap=True,
+                )
+
+
+def _try(robot: Robot, trial: Trial, seconds: float, log: LogPrinter) -> tuple[bool, Text]:
     """Start a trial and watch the telemetry; return whether it succeeded, and a line about it."""
+    console = log.console
     began = time.monotonic()
     trial.start()
     acknowledged_s = shown_s = math.nan
@@ -153,6 +123,7 @@ def _try(robot: Robot, trial: Trial, seconds: float, console: Console) -> tuple[
                 acknowledged_s = now - began
             if math.isnan(shown_s) and trial.shown(telemetry):
                 shown_s = now - began
+            log.update(telemetry)
             if console.is_terminal:
                 live.update(_table(telemetry))
             time.sleep(POLL_INTERVAL_S)
@@ -163,7 +134,7 @@ def _try(robot: Robot, trial: Trial, seconds: float, console: Console) -> tuple[
     if math.isnan(shown_s) and telemetry.observed is None:
         parts.append("it does not say what it shows")
     else:
-        parts.append(_after("shown" if trial.emotion is not None else "played", shown_s))
+        parts.append(_after(trial.answer, shown_s))
     parts.append(f"; link {telemetry.state}")
     if telemetry.limp:
         parts.append(("  its motors have no power", "red"))
@@ -188,6 +159,10 @@ def _table(telemetry: Telemetry) -> Table:
     table.add_row("shown", _point(telemetry.observed), "as", literal_text(telemetry.label or ""))
     motion, sound = (literal_text(name or "") for name in (telemetry.motion, telemetry.sound))
     table.add_row("motion", motion, "sound", sound)
+    clock = telemetry.clock
+    if clock is not None:
+        drift, error = f"{1e6 * clock.drift:+.0f} ppm", f"{1000 * clock.error:.1f} ms"
+        table.add_row("its clock drifts by", drift, "known within", error)
     counts = telemetry.counts
     table.add_row("retries", str(counts.retries), "damaged", str(counts.crc_errors))
     return table

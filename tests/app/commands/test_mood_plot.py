@@ -5,6 +5,7 @@ import csv
 import dataclasses
 import io
 import itertools
+import json
 import os
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -162,6 +163,32 @@ def test_a_robot_that_is_silent_shows_nothing_that_is_known(tmp_path, talking_se
     times = np.array([0.6, 0.7, 0.95])
     assert np.isnan(wire.acknowledged.at(times)[0][:, 0]).tolist() == [False, True, True]
     assert np.isnan(wire.observed.at(times)[0][:, 0]).tolist() == [False, True, False]
+
+
+def test_what_a_robot_showed_is_told_at_the_times_of_its_own_clock(monkeypatch, short_session):
+    """STATEs that arrive up to 80 ms late, from a clock that is 200 ppm fast."""
+    random = np.random.default_rng(1)
+    welcome = m.Welcome(3, 0, 1, 0, 0, 0, 2, "dino", "test")
+    made: list[float] = []
+    lines: list[tuple[float, str, object]] = [(0.0, "rx", welcome)]
+    for count in range(1, 400):
+        sent = 0.05 * count
+        made.append(sent + 0.001 + random.exponential(0.001))
+        late = random.choice([0.0, 0.01, 0.08], p=[0.3, 0.6, 0.1])
+        arrives = max(made[-1] + 0.001 + late, lines[-1][0])  # none overtakes another
+        own = int(1000 * made[-1] * 1.0002) + 77
+        beat = dataclasses.replace(state(0.1, 0.1), beat=count, time=own)
+        lines += [(sent, "tx", m.Beat(count)), (arrives, "rx", beat)]
+    recorded = []
+    for time, direction, content in sorted(lines, key=lambda line: line[0]):
+        line = {"direction": direction, "hex": encode_frame(pack(content, 9)).hex()}
+        recorded.append(("/robot/wire", time, json.dumps(line).encode()))
+    monkeypatch.setattr(robot_traces, "messages", lambda *_: iter(recorded))
+    told = read_robot_traces(short_session).observed.times
+    errors = np.abs(told - made)
+    assert (np.diff(told) >= 0).all()
+    assert errors[20:].max() < 0.006  # once a STATE has come without delay
+    assert np.median(errors[200:]) < 0.002
 
 
 @pytest.mark.parametrize("line", [b"{", b"{}", b"[]", b'{"direction": "tx", "hex": "0g"}'])

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from robot.protocol import messages as m
 from robot.simulators import SIMULATORS
 from robot.simulators.cubeling.dinosaur import CATALOGUE
 from robot.simulators.cubeling.simulator import Simulator
@@ -24,10 +25,14 @@ def simulate(monkeypatch):
     return change
 
 
+def without_log(out: str) -> list[str]:
+    return [line for line in out.splitlines() if not line.startswith("log ")]
+
+
 def test_every_mood_is_tried_and_what_came_of_it_told(cubeling):
     code, out, _ = cubeling("robot", "try", "sim", "--seconds", "0.3")
     assert code == 0
-    lines = out.splitlines()
+    lines = without_log(out)
     assert "moods neutral, happy, angry" in lines[0]
     assert [line.split()[0] for line in lines[1:]] == ["neutral", "happy", "angry", "neutral"]
     assert all("acknowledged 0." in line and "shown 0." in line for line in lines[1:])
@@ -66,7 +71,7 @@ def test_a_robot_without_moods_is_tried_with_all_that_it_has(cubeling, simulate)
     simulate(moods=(), motions=("nod", "bow"), sounds=("chirp",))
     code, out, err = cubeling("robot", "try", "sim", "--seconds", "0.2")
     assert (code, err) == (0, "")
-    lines = out.splitlines()
+    lines = without_log(out)
     assert "It has no moods: its emotions, motions and sounds are tried." in lines[1]
     assert [line.split()[0] for line in lines[2:5]] == ["happy", "angry", "neutral"]
     assert all("acknowledged 0." in line for line in lines[2:5])
@@ -94,3 +99,49 @@ def test_the_names_of_a_robot_are_neither_markup_nor_control_codes(cubeling, sim
     code, _, err = cubeling("robot", "try", "sim", "--mood", "glad")
     assert code == 2
     assert r"[red]R\x1b[2J has no mood 'glad'" in err
+
+
+def test_a_joint_is_turned_to_its_angle(cubeling):
+    joints = ("--joint", "neck up=-20 deg", "--joint", "torso=0.1rad")
+    code, out, _ = cubeling("robot", "try", "sim", *joints, "--seconds", "1.3")
+    assert code == 0
+    neck, torso = without_log(out)[1:]
+    assert neck.startswith("neck up=-20 deg reached ")
+    assert torso.startswith("torso=0.1rad reached ")
+
+
+@pytest.mark.parametrize(
+    ("port", "joint", "told"),
+    [
+        ("sim", "neck up", "a joint is given as NAME=ANGLE"),
+        ("sim", "neck up=20", "a joint is given as NAME=ANGLE"),
+        ("sim", "neck=20deg", "Dino has no joint 'neck': right shoulder"),
+        ("sim", "torso=20deg", "torso turns from -15° to 15°, not to 20°"),
+        ("sim:pleo", "torso=2deg", "the joints of Pleo cannot be turned one by one"),
+    ],
+)
+def test_a_joint_that_cannot_be_turned_so_is_refused_in_one_line(cubeling, port, joint, told):
+    code, _, err = cubeling("robot", "try", port, "--joint", joint, "--seconds", "0.2")
+    assert code == 2
+    assert told in err
+    assert err.count("\n") == 1
+
+
+class Exhausted(Simulator):
+    """It can move nothing, and says so in words that a terminal would obey."""
+
+    def __init__(self, seed: int = 0) -> None:
+        super().__init__(seed)
+        self.body.refusal = lambda: m.RESULT_LOW_BATTERY  # type: ignore[method-assign]
+        self.link.log.write(m.SEVERITY_ERROR, "[red]charge\x1b[2J me", 0)
+
+
+def test_why_a_robot_refuses_and_what_it_logs_is_shown_as_it_is(cubeling, monkeypatch):
+    monkeypatch.setitem(SIMULATORS, "cubeling", Exhausted)
+    code, out, _ = cubeling("robot", "try", "sim", "--joint", "torso=5deg", "--seconds", "0.5")
+    assert code == 1
+    assert "torso=5deg   not reached" in out
+    assert "it complains: torso: refused, its battery is low" in out
+    (line,) = [line for line in out.splitlines() if "charge" in line]
+    assert line.startswith("log ")
+    assert line.endswith(r"error: [red]charge\x1b[2J me")

@@ -9,6 +9,7 @@ from rich.console import Console
 from app import cli
 from app.running.summary import Summary
 from app.ui import roster
+from robot import LogLine
 from robot.network import Member
 
 WILD = "[red]R\x1b[2J"
@@ -24,6 +25,19 @@ def printed(content: object) -> str:
 def test_the_moods_of_a_robot_in_the_summary():
     summary = Summary("companion", frames=2, last=4.0, moods=[(0.0, 0.5, WILD)])
     assert f"{SHOWN} 4.0 s" in printed(summary)
+
+
+def test_what_a_robot_logged_in_the_summary():
+    log = (
+        LogLine(1, "information", "started", 0.0),
+        LogLine(2, "warning", WILD, 1.0),
+        LogLine(3, "error", "neck: 90 °C", 2.0),
+    )
+    text = printed(Summary("companion", frames=2, robot_log=log))
+    assert f"warning: {SHOWN}" in text
+    assert "error: neck: 90 °C" in text
+    assert "started" not in text
+    assert "\x1b" not in text
 
 
 def test_a_robot_in_the_table_of_the_network():
