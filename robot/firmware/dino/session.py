@@ -10,6 +10,10 @@ from .log import LogQueue
 FIRMWARE = "dino 1"
 """Name and version of the firmware."""
 
+LOW_BATTERY = 500
+"""Charge below which it plays no motion and moves no joint [1/10000]: a servo that starts then
+would reboot the board."""
+
 
 class HostSession:
     """The robot's side of the protocol: one session, its commands and its failsafe."""
@@ -167,10 +171,11 @@ class HostSession:
                 return self._refuse(m.RESULT_REFUSED, f"PLAY {number}: no {what} {index}", now)
             if item == m.ITEM_SOUND:
                 body.play_sound(index)
-            elif body.joints.failed:
-                return m.RESULT_MOTORS_OFF
-            else:
+                return m.RESULT_TAKEN
+            unable = self._unable()
+            if unable == m.RESULT_TAKEN:
                 body.play_motion(index)
+            return unable
         return m.RESULT_TAKEN
 
     def _move(self, values: tuple[int, ...], now: int) -> int:
@@ -188,9 +193,17 @@ class HostSession:
             if moved >> index & 1 and not low <= angle <= high:
                 text = f"MOVE {number}: joint {index} not to {angle} mrad"
                 return self._refuse(m.RESULT_OUT_OF_RANGE, text, now)
-        if joints.failed:
+        unable = self._unable()
+        if unable == m.RESULT_TAKEN:
+            self._body.move(released, moved, values[6 : 6 + count], duration)
+        return unable
+
+    def _unable(self) -> int:
+        """Return why nothing can be moved now; `RESULT_TAKEN` if it can."""
+        if self._body.joints.failed:
             return m.RESULT_MOTORS_OFF
-        self._body.move(released, moved, values[6 : 6 + count], duration)
+        if self._board.battery() < LOW_BATTERY:
+            return m.RESULT_LOW_BATTERY
         return m.RESULT_TAKEN
 
     def _refuse(self, result: int, text: str, now: int) -> int:
