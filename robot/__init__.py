@@ -12,7 +12,8 @@ from robot import drivers as drivers  # registers the protocols
 from robot.contract.catalogue import Catalogue, JointLimits
 from robot.contract.telemetry import ClockEstimate, LinkCounts, LinkState, LogLine, Telemetry
 from robot.errors import RobotError
-from robot.link.connection import Robot, connect
+from robot.link.connection import connect
+from robot.link.linked_robot import Robot
 from robot.link.ports import SerialPort, serial_ports
 from robot.link.transport import SCHEMES
 from robot.simulators.cubeling.simulator import Simulator

@@ -7,8 +7,9 @@ from robot.contract.driver import Driver
 from robot.contract.port import Clock, Opener, Port
 from robot.drivers import DRIVERS
 from robot.errors import RobotError
-from robot.link.connection import CATALOGUE_TIMEOUT_S, Robot, protocol_of
+from robot.link.connection import CATALOGUE_TIMEOUT_S, protocol_of
 from robot.link.exchange import MAX_READ_BYTES, REOPEN_INTERVAL_S, ByteHook, PortExchange
+from robot.link.linked_robot import Robot
 from robot.link.transport import opener
 
 STEP_S = 0.005
