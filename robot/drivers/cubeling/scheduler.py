@@ -135,14 +135,13 @@ class CommandScheduler:
     def add(self, action: Action) -> bool:
         """Request an action; return False if too many wait already.
 
-        Moves that are the last to wait give way to one that names all of their joints.
+        Moves that wait give way to one that names all of their joints.
         """
         if isinstance(action, m.Move):
             others = ~(action.moved | action.released)
-            while self.actions and isinstance(last := self.actions[-1], m.Move):
-                if (last.moved | last.released) & others:
-                    break
-                self.actions.pop()
+            for one in tuple(self.actions):
+                if isinstance(one, m.Move) and not (one.moved | one.released) & others:
+                    self.actions.remove(one)
         return self.actions.add(action)
 
     def stop(self) -> None:

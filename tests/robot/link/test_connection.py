@@ -15,7 +15,7 @@ import robot
 from affect import Emotion
 from robot.conformance import SimulatedChannel, run_checks
 from robot.errors import RobotError
-from robot.protocol.timing import FAILSAFE_PROMISE
+from robot.protocol.timing import ACTIONS_MAX, FAILSAFE_PROMISE
 from robot.protocol.wire import FrameReader
 from robot.simulators.cubeling.simulator import Simulator
 from robot.simulators.port import SimulatedPort
@@ -186,6 +186,34 @@ def test_an_unknown_motion_is_refused_and_the_known_ones_named():
         pytest.raises(RobotError, match="Dino cannot play 'fly'; it knows neutral, happy, angry"),
     ):
         dino.play("fly")
+
+
+def test_single_joints_are_turned_by_name_where_the_robot_has_that():
+    with robot.SteppedRobot("sim:cubeling") as dino:
+        assert dino.moves_joints
+        dino.move({"neck up": -0.5, "torso": 0.2618}, duration=1.0)
+        dino.advance(1.3)
+        assert dino.telemetry.held == {"neck up", "torso"}
+        assert dino.telemetry.joints["neck up"] == pytest.approx(-0.5, abs=0.02)
+        dino.move({"torso": None})
+        dino.advance(0.2)
+        assert dino.telemetry.held == {"neck up"}
+        for angles, duration, says in (
+            ({"neck": 0.1}, 0.0, "Dino has no joint 'neck': right shoulder"),
+            ({"torso": 0.3}, 0.0, "torso turns from -15° to 15°, not to 17°"),
+            ({"torso": float("nan")}, 0.0, "not to nan°"),
+            ({"torso": 0.1}, -1.0, "a move takes 0 to 65 s, not -1 s"),
+        ):
+            with pytest.raises(RobotError, match=says):
+                dino.move(angles, duration)
+        for _ in range(ACTIONS_MAX):
+            dino.play("nod")
+        with pytest.raises(RobotError, match="one move too many"):
+            dino.move({"torso": 0.1})
+    with robot.SteppedRobot("sim:pleo") as pleo:
+        assert not pleo.moves_joints
+        with pytest.raises(RobotError, match="joints of Pleo cannot be turned one by one"):
+            pleo.move({"torso": 0.1})
 
 
 def test_a_recorder_that_breaks_is_reported_and_not_taken_for_an_unplugged_robot(soon):
