@@ -30,10 +30,12 @@ class RobotReports:
         self._clock = RobotClock()
         self._measured: ClockSample | None = None
         self._log: deque[LogLine] = deque(maxlen=MAX_LOG_LINES)
+        self._untimed: deque[tuple[m.Log, int, float]] = deque(maxlen=MAX_LOG_LINES)
         self._log_count: int | None = None
 
     def start_session(self) -> None:
         """Begin the clock and the count of the log anew: the robot may have booted."""
+        self._keep_log()
         self._clock, self._log_count = RobotClock(), None
 
     def forget_state(self) -> None:
@@ -47,18 +49,31 @@ class RobotReports:
             if sent is not None:
                 self._clock.add(state.time, sent, now)
             self._measured = self._clock.host_time(state.time)
+            if self._measured is not None:
+                self._keep_log()
 
     def take_log(self, line: m.Log, now: float) -> None:
         """Take a LOG, unless it is the last one again."""
         last, self._log_count = self._log_count, line.count
         if line.count == last:
             return
-        written = self._clock.host_time(line.time)
-        severity = SEVERITIES[min(line.severity, len(SEVERITIES) - 1)]
-        number = self._log[-1].number + 1 if self._log else 1
-        time = now if written is None else min(written.host, now)
         lost = 0 if last is None else (line.count - last - 1) & 0xFFFF
-        self._log.append(LogLine(number, severity, line.text, time, lost))
+        self._untimed.append((line, lost, now))
+        if self._clock.host_time(line.time) is not None:
+            self._keep_log()
+
+    def _keep_log(self) -> None:
+        """Keep the lines that have arrived, with the times at which they were written.
+
+        The first ones of a session arrive before its clock is known, and wait for that.
+        """
+        while self._untimed:
+            line, lost, arrival = self._untimed.popleft()
+            written = self._clock.host_time(line.time)
+            time = arrival if written is None else min(written.host, arrival)
+            severity = SEVERITIES[min(line.severity, len(SEVERITIES) - 1)]
+            number = self._log[-1].number + 1 if self._log else 1
+            self._log.append(LogLine(number, severity, line.text, time, lost))
 
     def describe(
         self, link: Telemetry, catalogue: Catalogue | None, refusal: Refusal | None

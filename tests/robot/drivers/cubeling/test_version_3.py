@@ -215,12 +215,15 @@ def test_a_line_that_the_serial_line_doubles_is_one_line(open_world):
 def test_lines_from_before_a_session_wait_for_it(world):
     w = world()
     w.to_robot.cut = True
-    for text in ("first", "second"):
-        w.robot.link.log.write(m.SEVERITY_ERROR, text, 0)
+    booted = w.now + w.step
+    for text, time in (("first", 200), ("second", 700)):
+        w.robot.link.log.write(m.SEVERITY_ERROR, text, time)
     w.run(1.0)
     w.to_robot.cut = False
     w.run(1.5)
     assert [line.text for line in w.telemetry.log] == ["started", "first", "second"]
+    times = [line.timestamp - booted for line in w.telemetry.log]
+    assert times == pytest.approx([0.0, 0.2, 0.7], abs=0.01)
 
 
 # --- Time ----------------------------------------------------------------------------------------
