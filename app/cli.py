@@ -24,17 +24,17 @@ BAD_INPUT_EXIT_CODE = 2
 
 
 COMMANDS = {
-    "demo": "See it work: with your camera, or with the bundled recording, or as a video.",
+    "demo": "See it work: with your camera, with the bundled recording, or as a video.",
     "play": "Play with the cube in front of a camera.",
     "replay": "Play a recorded session: in a window, to a video, or only to its summary.",
     "export": "Write recorded sessions as tables, in CSV and JSON Lines, with a data dictionary.",
     "bridge": "Let robots follow players on other computers, over an MQTT broker; "
     "see docs/many.md.",
     "cube": "Write a cube as a sheet to print, cut, fold and glue.",
-    "calibrate": "Find the camera's lens by waving the cube in front of it for about 20 seconds.",
+    "calibrate": "Measure the camera's lens: wave the cube in front of it for about 20 seconds.",
     "latency": "Measure how late the picture is, with your own screen and camera.",
-    "character": "Look at characters and motions.",
-    "robot": "Simulated robots and real ports.",
+    "character": "Inspect characters and motions, and make clips to walk with.",
+    "robot": "Simulate, try out and test robots, and list the serial ports.",
     "sounds": "Write all sounds as .wav files, to listen to them and to replace them.",
     "mood": "Plot and tabulate the moods of recorded sessions; print personalities.",
     "doctor": "Check what this computer has, and show the commands that install what is missing.",
@@ -104,9 +104,7 @@ def print_version(asked: bool) -> None:
 
 @app.callback()
 def common(
-    debug: Annotated[
-        bool, typer.Option("--debug", help="Show where in the program an error came from.")
-    ] = False,
+    debug: Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")] = False,
     version: Annotated[
         bool,
         typer.Option(
@@ -119,13 +117,14 @@ def common(
 
 def main() -> None:
     """Run a command; bad input ends in one line and exit code 2."""
-    debug = "--debug" in sys.argv
+    arguments = [each for each in sys.argv[1:] if each != "--debug"]  # it may stand anywhere
+    debug = len(arguments) < len(sys.argv) - 1
     end_on_termination_signals()
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("default", UserWarning)  # CharacterWarning is one
             warnings.showwarning = WarningPrinter()
-            code = app(prog_name="cubeling", standalone_mode=False)
+            code = app(arguments, prog_name="cubeling", standalone_mode=False)
     except typer.exceptions.TyperException as error:
         message = usage_error(error)
         print_message(message)

@@ -22,17 +22,17 @@ PlayerName = Annotated[
     str | None,
     typer.Option(help="Publish the character's actions and emotions over --mqtt, under this name."),
 ]
-Site = Annotated[str, typer.Option(help="Our site on the network, for --mqtt.")]
+Site = Annotated[str, typer.Option(help="Name of your site on the network, for --mqtt.")]
 PasswordFile = Annotated[
     Path | None,
     typer.Option(
         help="A file whose first line is the broker's password "
-        "(or the environment variable CUBELING_MQTT_PASSWORD)."
+        "(or use the environment variable CUBELING_MQTT_PASSWORD)."
     ),
 ]
 Ca = Annotated[
     Path | None,
-    typer.Option(help="Certificate authority of the broker's certificate (PEM), for mqtts://."),
+    typer.Option(help="Certificate of the authority (PEM) that signed the broker's, for mqtts://."),
 ]
 
 
@@ -49,9 +49,9 @@ def publisher(
         return
     if url is None or name is None:
         raise AppError(
-            "--mqtt needs --player NAME, the name of the player on the network"
+            "--mqtt needs --player NAME, your name on the network"
             if name is None
-            else "--player needs --mqtt URL, the broker"
+            else "--player needs --mqtt URL, the address of the broker"
         )
     with Network(url, site, Credentials(None, password_file, ca)) as network:
         yield PlayerPublisher(network, name, on_problem=report_problem)

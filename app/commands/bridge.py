@@ -37,18 +37,23 @@ def bridge(
     mqtt: Broker = None,
     robot: Annotated[
         list[str] | None,
-        typer.Option(help="NAME=URL: drive this robot, a URL as for `play --robot`; repeatable."),
+        typer.Option(
+            help="NAME=URL: drive this robot; the URL is as for play --robot. Repeatable."
+        ),
     ] = None,
     play: Annotated[
         list[str] | None,
-        typer.Option(help="NAME=FILE.mcap: publish a recorded session as this player; repeatable."),
+        typer.Option(help="NAME=FILE.mcap: publish a session as this player. Repeatable."),
     ] = None,
     follow: Annotated[
         list[str] | None,
-        typer.Option(help="Players to follow: PLAYER, SITE/PLAYER, SITE/*; default: the site's."),
+        typer.Option(
+            help="Which players to follow: PLAYER, SITE/PLAYER or SITE/*; by default all of your "
+            "site. Repeatable."
+        ),
     ] = None,
     site: Site = DEFAULT_SITE,
-    user: Annotated[str | None, typer.Option(help="The broker's user, if not in the URL.")] = None,
+    user: Annotated[str | None, typer.Option(help="User name, if not in the URL.")] = None,
     password_file: PasswordFile = None,
     ca: Ca = None,
     cert: Annotated[
@@ -57,22 +62,24 @@ def bridge(
     key: Annotated[Path | None, typer.Option(help="Private key of the certificate (PEM).")] = None,
     hold: Annotated[
         float,
-        typer.Option(min=0.0, help="Seconds for which the mood of a player who is gone is kept."),
+        typer.Option(min=0.0, help="How long the mood of a player who left is kept, in seconds."),
     ] = HOLD_S,
     max_age: Annotated[
-        float, typer.Option(min=0.0, help="Seconds after which an action expires.")
+        float,
+        typer.Option(min=0.0, help="How old an action may be when a robot takes it, in seconds."),
     ] = MAX_AGE_S,
-    watch: Annotated[bool, typer.Option("--watch", help="Print every message, in a line.")] = False,
+    watch: Annotated[bool, typer.Option("--watch", help="Print every message as a line.")] = False,
     seconds: Annotated[
-        float | None, typer.Option(min=0.0, help="Run for this time; without, until Ctrl-C.")
+        float | None,
+        typer.Option(min=0.0, help="End after this many seconds; without it, at Ctrl-C."),
     ] = None,
 ) -> None:
     """Let robots follow players on other computers, over an MQTT broker; see docs/many.md.
 
-    Without --mqtt, players and robots communicate within this program. With neither robots nor
-    players it shows the members of the network.
+    Without --mqtt, players and robots communicate within this program. With --mqtt alone, it shows
+    the members of the network.
 
-    Example: [cyan]cubeling bridge --mqtt mqtt://museum.local --robot rex=/dev/ttyACM0[/]
+    Example: [cyan]cubeling bridge --play ann=recordings/companion.mcap --robot rex=sim[/]
     """
     robots = named(robot or (), "--robot", "rex=sim")
     files = named(play or (), "--play", "ann=a.mcap")
@@ -80,7 +87,7 @@ def bridge(
     if mqtt is None and not (robots and sessions):
         raise AppError(
             "without --mqtt there are no other members: give both --robot and --play, "
-            "or the broker with --mqtt URL"
+            "or a broker with --mqtt URL"
         )
     credentials = Credentials(user, password_file, ca, cert, key)
     console = Console()

@@ -1,5 +1,6 @@
 """`cubeling calibrate`."""
 
+import shlex
 from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Annotated
@@ -7,6 +8,7 @@ from typing import Annotated
 import numpy as np
 import typer
 from rich.console import Console
+from rich.markup import escape
 
 from app.commands.session.play import DEFAULT_CAMERA, CubeOption
 from app.errors import AppError
@@ -40,25 +42,30 @@ Source = Annotated[
         "--source",
         "-s",
         "--camera",
-        help="camera:0, a video, a session (.mcap), http://PHONE:8080/video, synthetic:wave.",
+        help="Where the pictures come from: camera:0, a video, a session (.mcap), "
+        "http://PHONE:8080/video, or synthetic:wave.",
     ),
 ]
-Output = Annotated[Path, typer.Option("--output", "-o", help="The camera file, for --intrinsics.")]
+Output = Annotated[Path, typer.Option("--output", "-o", help="The camera file to write.")]
 SaveCube = Annotated[
     Path | None,
-    typer.Option(help="Write the cube as it was measured to this .toml file."),
+    typer.Option(help="Write the cube as measured to this .toml file."),
 ]
-BoardKind = Annotated[str, typer.Option(help="charuco: use a printed board, not the cube.")]
-PrintBoard = Annotated[Path | None, typer.Option(help="Write that board as a PDF, and end.")]
+BoardKind = Annotated[str, typer.Option(help="charuco: use a printed board instead of the cube.")]
+PrintBoard = Annotated[Path | None, typer.Option(help="Write that board to this PDF and exit.")]
 Checked = Annotated[
     Path | None,
-    typer.Option("--check", help="Say whether this camera file still fits; write nothing."),
+    typer.Option("--check", help="Tell whether this camera file still fits; write nothing."),
 ]
-Coverage = Annotated[Path | None, typer.Option(help="Draw where the views were: .png or .jpg.")]
+Coverage = Annotated[
+    Path | None, typer.Option(help="Draw where the views were to this .png or .jpg.")
+]
 Seconds = Annotated[
-    float, typer.Option(min=5, max=600, help="A live camera is watched for this time at most.")
+    float, typer.Option(min=5, max=600, help="Longest time for a live camera, in seconds.")
 ]
-Shown = Annotated[bool, typer.Option("--window/--no-window", help="Open a window, or print lines.")]
+Shown = Annotated[
+    bool, typer.Option("--window/--no-window", help="Coach in a window, or in printed lines.")
+]
 
 
 def calibrate(
@@ -68,17 +75,19 @@ def calibrate(
     save_cube: SaveCube = None,
     board: BoardKind = "",
     print_board: PrintBoard = None,
-    paper: Annotated[str, typer.Option(help="Of --print-board: a4, letter or a3.")] = "a4",
+    paper: Annotated[str, typer.Option(help="Paper of --print-board: a4, letter or a3.")] = "a4",
     checked: Checked = None,
     coverage: Coverage = None,
     seconds: Seconds = 120.0,
     window: Shown = True,
 ) -> None:
-    """Find the camera's lens by waving the cube in front of it for about 20 seconds.
+    """Measure the camera's lens: wave the cube in front of it for about 20 seconds.
 
     Follow the coach: tip the cube every way, take it to every corner of the picture, near and far,
-    and hold it still for a moment each time. Without a cube at hand print a board.
-    With --check the exit code is 0 for OK and 1 for DEGRADED.
+    and hold it still for a moment each time. If you have no cube, print a board:
+    [cyan]--print-board board.pdf[/], then [cyan]--board charuco[/].
+
+    With --check, the exit code is 0 for OK and 1 for DEGRADED.
 
     Example: [cyan]cubeling calibrate -o camera.yaml --save-cube my-cube.toml[/]
     """
@@ -86,7 +95,7 @@ def calibrate(
     if print_board is not None:
         check_output(print_board, "board", (".pdf",), overwrite=True)
         write_board(print_board, paper)
-        console.print(f"[bold]{print_board}[/] is ready. Print it, and keep it flat.")
+        console.print(f"[bold]{escape(str(print_board))}[/] is ready. Print it and keep it flat.")
         return
     finders = target_finders(cube, board)
     saved = None if checked is None else Intrinsics.load(checked)
@@ -111,7 +120,7 @@ def calibrate(
 def target_finders(cube: str | None, board: str) -> list[TargetFinder]:
     """Return the finders of what may be held up: the named cube, any bundled one, or the board."""
     if board not in ("", "charuco"):
-        raise AppError(f"no board is called '{board}': there is only charuco")
+        raise AppError(f"no board is called '{board}': use charuco")
     if board:
         return [BoardFinder(Board())]
     return [CubeFinder(CubeModel.load(name)) for name in ([cube] if cube else bundled_cubes())]
@@ -122,7 +131,7 @@ def calibration_line(path: Path, found: Calibration) -> str:
     focal = found.intrinsics.matrix[0, 0]
     advice = "" if found.good else " (tilt more for a better one)"
     return (
-        f"[bold]{path}[/] is ready: focal length {focal:.1f} px ± "
+        f"[bold]{escape(str(path))}[/] is ready: focal length {focal:.1f} px ± "
         f"{200 * found.focal_spread:.2f} %{advice}, edges lie within {found.residual:.2f} px, "
         f"from {found.views} views"
     )
@@ -156,13 +165,13 @@ def _report_check(
     color, word = ("red", "DEGRADED") if verdict.degraded else ("green", "OK")
     x, y = verdict.centre_change
     console.print(
-        f"[bold {color}]{word}[/]  {path}: focal length "
+        f"[bold {color}]{word}[/]  {escape(str(path))}: focal length "
         f"{100 * verdict.focal_change:+.2f} % (± {200 * verdict.focal_spread:.2f} %), middle "
         f"{x:+.1f} {y:+.1f} px, edges off by {verdict.residual:.3f} px "
         f"(at best {verdict.best_residual:.3f} px), from {verdict.views} views"
     )
     if verdict.degraded:
-        console.print(f"Calibrate again: [cyan]cubeling calibrate -o {path}[/]")
+        console.print(f"Calibrate again: [cyan]cubeling calibrate -o {_quoted(path)}[/]")
     return int(verdict.degraded)
 
 
@@ -177,14 +186,21 @@ def _report_cube(
         worst = max(worst, float(np.linalg.norm(face.corners - designed, axis=1).max()))
     if path is not None:
         write_cube(cube, path)
-        console.print(f"[bold]{path}[/] holds the cube: its sides are off by {worst * 1e3:.1f} mm")
+        name = escape(str(path))
+        console.print(f"[bold]{name}[/] holds the cube: its sides are off by {worst * 1e3:.1f} mm")
     else:
         console.print(
             f"The cube's sides are off by up to {worst * 1e3:.1f} mm; "
-            "--save-cube my-cube.toml saves that."
+            "--save-cube my-cube.toml keeps that"
         )
-    option = "" if path is None else f" --cube {path}"
-    console.print(f"Now: [cyan]cubeling play companion --intrinsics {camera}{option}[/]")
+    option = "" if path is None else f" --cube {_quoted(path)}"
+    command = f"cubeling play companion --intrinsics {_quoted(camera)}{option}"
+    console.print(f"Play with it: [cyan]{command}[/]")
+
+
+def _quoted(path: Path) -> str:
+    """Return a path for a command line, as markup."""
+    return escape(shlex.quote(str(path)))
 
 
 def _check_paths(output: Path, save_cube: Path | None, coverage: Path | None) -> None:

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 
 from app.commands.output import OverwriteOption, chosen_output
 from app.scenarios.roles import check_roles
@@ -12,11 +13,11 @@ from tracking import CubeModel, write_sheet
 
 
 def cube(
-    name: Annotated[str, typer.Argument(help="locomotion, companion, or your own .toml file.")],
-    edge_mm: Annotated[float | None, typer.Option(help="Edge; the markers grow with it.")] = None,
-    paper: Annotated[str, typer.Option(help="a4, letter or a3.")] = "a4",
+    name: Annotated[str, typer.Argument(help="companion, locomotion, or your own .toml file.")],
+    edge_mm: Annotated[float | None, typer.Option(help="Edge [mm]; the markers scale.")] = None,
+    paper: Annotated[str, typer.Option(help="Paper: a4, letter or a3.")] = "a4",
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="The PDF to write; NAME.pdf without.")
+        Path | None, typer.Option("--output", "-o", help="The PDF; by default NAME.pdf.")
     ] = None,
     overwrite: OverwriteOption = False,
 ) -> None:
@@ -32,5 +33,7 @@ def cube(
     path = chosen_output(output, f"{Path(name).stem}.pdf", "sheet", (".pdf",), overwrite)
     write_sheet(model, path, edge_mm=edge_mm, paper=paper)
     Console().print(
-        f"[bold]{path}[/] is ready. Print it at 100 %, cut the solid line, fold the dashed ones."
+        f"[bold]{escape(str(path))}[/] is ready. Print it at 100 %, cut along the solid line, and "
+        "fold along the dashed ones.",
+        soft_wrap=True,
     )

@@ -53,7 +53,7 @@ def doctor(
 ) -> None:
     """Check what this computer has, and show the commands that install what is missing.
 
-    Ends with exit code 2 if something is missing without which Cubeling cannot draw or track.
+    The exit code is 2 if something is missing without which Cubeling cannot draw or track.
 
     Example: [cyan]cubeling doctor[/]
     """
@@ -70,7 +70,7 @@ def doctor(
     console.print(table)
     if any(finding.verdict == "bad" for finding in findings):
         raise typer.Exit(2)
-    console.print("\nReady. [cyan]cubeling demo[/] shows it.")
+    console.print("\nReady. See it work: [cyan]cubeling demo[/]")
 
 
 def examine(*, cameras: bool = True) -> list[Finding]:

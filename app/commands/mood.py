@@ -36,14 +36,14 @@ def plot(
     session: Session,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="Write this .svg, .pdf or .png file."),
+        typer.Option("--output", "-o", help="The .svg, .pdf or .png; by default SESSION-mood.svg."),
     ] = None,
     overwrite: OverwriteOption = False,
     personality: Annotated[
         list[str] | None,
         typer.Option(
             help="Show what this personality would have felt: a bundled one or a .toml file. "
-            "May be given several times."
+            "Repeatable."
         ),
     ] = None,
     salvage: Salvage = False,
@@ -52,13 +52,13 @@ def plot(
 
     Needs matplotlib: [cyan]pip install matplotlib[/]
 
-    Example: [cyan]cubeling mood plot today.mcap --personality lively --personality shy[/]
+    Example: [cyan]cubeling mood plot recordings/companion.mcap --personality shy[/]
     """
     output = chosen_output(output, f"{session.stem}-mood.svg", "plot", PLOT_SUFFIXES, overwrite)
     personalities = [Personality.load(name) for name in personality or ()]
     if len(personalities) > MAX_PERSONALITIES:
         count = f"{len(personalities)} personalities are too many for one plot"
-        raise AppError(f"{count}: {MAX_PERSONALITIES} at most")
+        raise AppError(f"{count}: name at most {MAX_PERSONALITIES}")
     try:
         from app.moods.plot import save_plot
     except ImportError as error:
@@ -76,16 +76,21 @@ def plot(
 @app.command()
 def table(
     session: Session,
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="The .csv file.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="By default SESSION-mood.csv.")
+    ] = None,
     overwrite: OverwriteOption = False,
     personality: Annotated[
-        str | None, typer.Option(help="Write what this personality would have felt.")
+        str | None,
+        typer.Option(
+            help="Write what this personality would have felt: a bundled one or a .toml file."
+        ),
     ] = None,
     salvage: Salvage = False,
 ) -> None:
-    """Write the actions, the emotion and the robot's answers of a session, one row a frame.
+    """Write the actions, the emotion and the robot's answers of a session, one row per frame.
 
-    Example: [cyan]cubeling mood table today.mcap -o today.csv[/]
+    Example: [cyan]cubeling mood table recordings/companion.mcap -o moods.csv[/]
     """
     output = chosen_output(output, f"{session.stem}-mood.csv", "table", (".csv",), overwrite)
     history = read_history(session, salvage=salvage)

@@ -8,7 +8,7 @@ import typer
 from app.output_path import check_output
 
 OverwriteOption = Annotated[
-    bool, typer.Option("--overwrite", help="Write over the file of --output if it exists.")
+    bool, typer.Option("--overwrite", help="Overwrite the file of --output if it exists.")
 ]
 
 

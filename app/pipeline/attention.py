@@ -44,7 +44,7 @@ class Attention:
     def __init__(self, look: str, edge: float) -> None:
         if look not in LOOK_CHOICES:
             raise AppError(
-                f"nothing to look at is called '{look}': choose one of {', '.join(LOOK_CHOICES)}"
+                f"the character cannot look at '{look}': choose one of {', '.join(LOOK_CHOICES)}"
             )
         self._look = look
         self._edge = edge

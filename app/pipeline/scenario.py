@@ -83,7 +83,7 @@ class ScenarioSettings:
             choices = ", ".join(SPEED_MAP_NAMES)
             raise AppError(f"no speed map is called '{self.speed_map}': choose one of {choices}")
         if not 0.1 <= self.turns <= 20:
-            raise AppError(f"the turns from end to end must be from 0.1 to 20, not {self.turns:g}")
+            raise AppError(f"the turns must be from 0.1 to 20, not {self.turns:g}")
 
 
 class Scenario(Protocol):

@@ -21,7 +21,7 @@ def check_cubes(scenario: str, cubes: Sequence[str]) -> None:
     for name, model in zip(names, models, strict=True):
         check_roles(model, name)
         if (twin := markers.setdefault(model.markers, name)) != name:
-            raise AppError(f"{name} has the markers of {twin}: name one of them, or print others")
+            raise AppError(f"{name} has the markers of {twin}: name only one of them")
     missing = missing_roles(chosen, models[0])
     if missing:
         found = ", ".join(_roles(models[0])) or "none"

@@ -45,7 +45,7 @@ class Sketch:
     """
 
     name = "sketch"
-    summary = "the cube draws a path of up to eight points, the character walks it"
+    summary = "the cube draws a path of up to eight points, and the character walks it"
     cube = "locomotion"
     roles: tuple[str, ...] = ()
     character = "human"

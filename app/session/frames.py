@@ -64,7 +64,7 @@ def encode_jpeg(frame: Frame) -> Frame:
         return frame
     done, data = cv2.imencode(".jpg", frame.image, (cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY))
     if not done:
-        raise AppError("OpenCV could not write a JPEG of the camera's picture")
+        raise AppError("OpenCV could not encode the camera's picture as a JPEG")
     image = cv2.imdecode(data, cv2.IMREAD_COLOR)
     assert image is not None, "OpenCV reads what it wrote"
     return dataclasses.replace(
@@ -122,7 +122,7 @@ class H264Encoder:
         data = b"".join(bytes(packet) for packet in self._encoder.encode(picture))
         decoded = self._decoder.decode(av.Packet(data))
         if len(decoded) != 1:
-            raise AppError("the H.264 coder held a frame back; record with --codec jpeg")
+            raise AppError("the H.264 encoder delayed a frame: record with --codec jpeg")
         image = cv2.cvtColor(decoded[0].to_ndarray(), cv2.COLOR_YUV2BGR_I420)
         return dataclasses.replace(
             frame, image=np.asarray(image, np.uint8), encoded=data, encoding="h264"

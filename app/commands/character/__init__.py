@@ -7,7 +7,7 @@ from app.commands.character.inspection import inspect_command
 from app.commands.character.locomotion import locomotion
 
 app = typer.Typer(
-    help="Look at characters and motions.",
+    help="Inspect characters and motions, and make clips to walk with.",
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode="rich",

@@ -21,15 +21,15 @@ def graph(
     ],
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="Write the graph to this .dot file (Graphviz)."),
+        typer.Option("--output", "-o", help="The .dot file (Graphviz) to write the graph to."),
     ] = None,
 ) -> None:
     """Show how a character's motions are composed: blend trees, layers, states.
 
-    A .toml file next to the character describes them, see docs/motion-files.md. Without such a
+    A .toml file next to the character describes them; see docs/motion-files.md. Without such a
     file, the built-in motions for the character's clips are shown.
 
-    Graphviz turns the .dot file into a picture: [cyan]dot -Tsvg human.dot -o human.svg[/]
+    Graphviz draws the .dot file: [cyan]dot -Tsvg human.dot -o human.svg[/]
 
     Example: [cyan]cubeling character graph human -o human.dot[/]
     """

@@ -34,7 +34,7 @@ def locomotion(
     ],
     walk: Files = None,
     run: Files = None,
-    idle: Annotated[str | None, typer.Option(help="A motion of standing.")] = None,
+    idle: Annotated[str | None, typer.Option(help="The same for a motion of idling.")] = None,
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", help="The .glb to write; default: NAME-walks.glb."),
@@ -71,7 +71,7 @@ def locomotion(
     console.print(table("Made for the movement trees", result.clips))
     speeds = {each.name: each.speed for each in result.clips}
     if speeds.get("Run", math.inf) < speeds["Walk"]:
-        console.print("[yellow]![/] It runs slower than it walks: are the recordings exchanged?")
+        console.print("[yellow]![/] It runs slower than it walks: did you swap the recordings?")
     _write_sidecar(console, result.character, target)
     name = escape(str(target))
     console.print(f"[bold]{name}[/] walks: [cyan]cubeling play follow --character {name}[/]")

@@ -8,7 +8,7 @@ from app.commands.robot.simulate import simulate
 from app.commands.robot.trial import try_
 
 app = typer.Typer(
-    help="Simulated robots and real ports.",
+    help="Simulate, try out and test robots, and list the serial ports.",
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode="rich",

@@ -32,17 +32,17 @@ PICTURE_COLUMNS = 100
 def conform(
     port: Annotated[
         str,
-        typer.Argument(metavar="PORT", help="/dev/ttyACM0, COM3, socket://HOST:PORT, sim"),
+        typer.Argument(metavar="PORT", help="/dev/ttyACM0, COM3, socket://HOST:PORT or sim."),
     ] = "",
     only: Annotated[
         list[str] | None,
-        typer.Option(help="Only checks with this word in their names; repeatable."),
+        typer.Option(help="Run only checks with this word in their names. Repeatable."),
     ] = None,
-    output: Annotated[Path | None, typer.Option("--json", help="Write the results here.")] = None,
+    output: Annotated[Path | None, typer.Option("--json", help="Write the results to it.")] = None,
     picture: Annotated[
-        Path | None, typer.Option("--svg", help="Write the output to this file as a picture too.")
+        Path | None, typer.Option("--svg", help="Write the output to this .svg file as well.")
     ] = None,
-    list_: Annotated[bool, typer.Option("--list", help="List the checks, and exit.")] = False,
+    list_: Annotated[bool, typer.Option("--list", help="List the checks and exit.")] = False,
 ) -> None:
     """Test whether a robot conforms to robot/PROTOCOL.md, and report where it does not.
 
@@ -53,7 +53,7 @@ def conform(
     The exit code is 0 if the robot passes all checks that were run, 1 if not, 2 if no robot
     answers.
 
-    Example: [cyan]cubeling robot conform /dev/ttyACM0[/]
+    Example: [cyan]cubeling robot conform sim[/]
     """
     checks = select_checks(only) if only else all_checks()
     if list_:

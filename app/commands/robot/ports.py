@@ -15,9 +15,11 @@ def list_() -> None:
     ports = serial_ports()
     console = Console()
     if not ports:
-        console.print("No serial port here. A robot to try with: [cyan]cubeling robot simulate[/]")
+        console.print(
+            "There is no serial port here. To simulate a robot: [cyan]cubeling robot simulate[/]"
+        )
         return
-    table = Table("port", "what", "probably")
+    table = Table("port", "description", "probably")
     for port in ports:
         description = literal_text(port.description.replace("n/a", ""))  # the device's own words
         table.add_row(port.url, description, port.guess or "")

@@ -18,7 +18,7 @@ def simulate(
     name: Annotated[
         str, typer.Argument(metavar="NAME[?FAULTS]", help="Which robot, and its faults.")
     ] = "cubeling",
-    seed: Annotated[int | None, typer.Option(min=0, help="Seed of its random numbers.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Seed of the random faults.")] = None,
     seconds: Annotated[
         float | None, typer.Option(help="End after this many seconds; without it, at Ctrl-C.")
     ] = None,

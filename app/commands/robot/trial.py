@@ -45,14 +45,14 @@ def try_(
     """Let a robot show its moods one after the other, and report the result of each.
 
     The result says how soon the robot acknowledged the mood, how soon it showed it if the robot
-    reports that, and the robot's own error messages; lines of its log appear as they come. It ends
-    with the robot neutral, or at Ctrl-C.
-    A robot without moods is asked for three emotions, and for its motions and sounds. A joint turns
-    to its angle within a second and is held there until the end.
+    reports that, and the robot's own error messages; lines of its log appear as they come. A robot
+    without moods is asked for three emotions, and for its motions and sounds. A joint turns to its
+    angle within a second and is held there until the end. Ctrl-C ends the trial early; the robot
+    ends neutral.
 
     The exit code is 1 if the robot acknowledged and showed nothing at all.
 
-    Example: [cyan]cubeling robot try pleo:/dev/ttyACM0 --settings my-pleo.toml[/]
+    Example: [cyan]cubeling robot try sim:pleo --mood happy[/]
     """
     console = Console(highlight=False)
     if not 0.1 <= seconds <= MAX_MOOD_S:

@@ -42,10 +42,10 @@ def demo(
     mute: MuteOption = False,
     volume: VolumeOption = SessionOptions.volume,
 ) -> None:
-    """See it work: with your camera, or with the bundled recording, or as a video.
+    """See it work: with your camera, with the bundled recording, or as a video.
 
-    With a camera and a display the live window opens. With a display alone the bundled recording
-    plays in it as if it were live. With neither, the recording is rendered to demo.mp4.
+    With a camera and a display, the live window opens. With a display only, the bundled recording
+    plays in it as if it were live. Without a display, the recording is rendered to demo.mp4.
     A simulated robot on a real serial port shows the mood.
 
     Example: [cyan]cubeling demo follow --recording[/]
@@ -86,7 +86,7 @@ def render(options: SessionOptions, console: Console) -> None:
     console.print(
         f"The bundled recording of [bold]{options.scenario}[/] "
         f"({session_info(Path(options.source)).duration:.0f} s) "
-        f"is rendered to [bold]{options.output}[/], as there is no display or you asked for it."
+        f"is rendered to [bold]{options.output}[/], as there is no display or you asked for it"
     )
     play_session(options, f"rendering {options.output.name}")
 

@@ -16,7 +16,7 @@ from app.output_path import check_output_folder
 
 Labels = Annotated[
     list[str] | None,
-    typer.Option(help="A label: one for all sessions, or repeated, one for each in their order."),
+    typer.Option(help="A label: once for all sessions, or once for each, in the same order."),
 ]
 
 
@@ -26,7 +26,7 @@ def export(
     participant: Labels = None,
     condition: Labels = None,
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Write over the tables of an earlier export.")
+        bool, typer.Option("--overwrite", help="Overwrite the tables of an earlier export.")
     ] = False,
     salvage: Annotated[
         bool, typer.Option(help="Export the intact part of sessions that were cut off.")
@@ -36,7 +36,8 @@ def export(
 
     Every row names its session, its participant and its condition. See docs/exporting.md.
 
-    Example: [cyan]cubeling export p1.mcap p2.mcap -o study --participant P1 --participant P2[/]
+    Example: [cyan]cubeling export recordings/follow.mcap recordings/sketch.mcap -o study
+    --participant P1 --participant P2[/]
     """
     check_output_folder(output, EXPORT_FILES, "tables", overwrite=overwrite)
     people = labels(participant, len(sessions), "--participant")
@@ -44,7 +45,7 @@ def export(
     names = [path.stem for path in sessions]
     for name in names:
         if names.count(name) > 1:
-            raise AppError(f"two sessions are called '{name}': rename one, so that rows tell them")
+            raise AppError(f"two sessions are called '{name}': rename one to tell their rows apart")
     exported = [
         ExportedSession.read(path, *of, salvage=salvage)
         for path, *of in zip(sessions, people, conditions, strict=True)
@@ -62,5 +63,7 @@ def labels(given: Sequence[str] | None, count: int, option: str) -> list[str]:
     if not given:
         return [""] * count
     if len(given) not in (1, count):
-        raise AppError(f"{option} is given {len(given)} times for {count} sessions: once, or each")
+        raise AppError(
+            f"{option} was given {len(given)} times: give it once, or once for each session"
+        )
     return list(given) * (count if len(given) == 1 else 1)

@@ -40,8 +40,8 @@ SourceOption = Annotated[
     typer.Option(
         "--source",
         "-s",
-        help="camera:0 (camera:0?exposure=8 in ms, ?lock=0), a video, a session (.mcap), "
-        "http://PHONE:8080/video, synthetic:NAME.",
+        help='Where the pictures come from: camera:0 (with options: "camera:0?exposure=8"), '
+        "a video, a session (.mcap), http://PHONE:8080/video, or synthetic:companion.",
     ),
 ]
 CubeOption = Annotated[str | None, typer.Option(help="A bundled cube, or your own .toml file.")]
@@ -50,37 +50,41 @@ CubesOption = Annotated[
     typer.Option(
         "--cube",
         metavar="<str>",
-        help="A bundled cube, or your own .toml file. Repeat it for cubes that you want to change "
-        "to: they are recognised.",
+        help="A bundled cube, or your own .toml file. Repeat the option to name more cubes: they "
+        "are recognised when you show them.",
     ),
 ]
-CharacterOption = Annotated[str | None, typer.Option(help="A bundled character, or a .glb file.")]
+CharacterOption = Annotated[
+    str | None, typer.Option(help="A bundled character, or a .glb, .gltf or .vrm file.")
+]
 PersonalityOption = Annotated[
     str | None,
     typer.Option(help="A bundled personality, or your own .toml file."),
 ]
 IntrinsicsOption = Annotated[
     Path | None,
-    typer.Option(help="The camera's calibration (ROS camera_info YAML); guessed without it."),
+    typer.Option(
+        help="File of the calibrated camera (ROS camera_info YAML); without it, a lens is guessed."
+    ),
 ]
 RobotOption = Annotated[
     str,
     typer.Option(
         "--robot",
         "-r",
-        help="sim, none, or a port: /dev/ttyACM0, COM3, socket://HOST:PORT; with a prefix for "
-        "protocols other than ours: pleo:/dev/ttyACM0, opencat:COM3, sim:pleo.",
+        help="sim, none, or a port: /dev/ttyACM0, COM3, socket://HOST:PORT. Other protocols than "
+        "ours have a prefix: pleo:/dev/ttyACM0, opencat:COM3, sim:pleo.",
     ),
 ]
 RobotSettingsOption = Annotated[
     Path | None,
-    typer.Option(help="A .toml file for the robot: what a Pleo or an OpenCat does for each mood."),
+    typer.Option(help="A .toml file that says what a Pleo or an OpenCat does for each mood."),
 ]
 RecordOption = Annotated[Path | None, typer.Option(help="Record the session to this .mcap file.")]
 CodecOption = Annotated[
     str,
     typer.Option(
-        help="How to record pictures: auto (the camera's own JPEG, else h264), jpeg, or h264 "
+        help="How --record stores pictures: auto (the camera's own JPEG, else h264), jpeg, or h264 "
         "(smaller)."
     ),
 ]
@@ -128,12 +132,15 @@ def play(
     output: OutputOption = None,
     overwrite: OverwriteOption = False,
     speed_map: Annotated[
-        str, typer.Option(help="corrected, or legacy as printed in the thesis.")
+        str,
+        typer.Option(help="For follow and sketch: corrected, or legacy, as printed in the thesis."),
     ] = "corrected",
-    turns: Annotated[float, typer.Option(help="Turns from least to greatest intensity.")] = 2.0,
+    turns: Annotated[
+        float, typer.Option(help="For companion: full turns from least to greatest intensity.")
+    ] = 2.0,
     personality: PersonalityOption = None,
     look: Annotated[
-        str, typer.Option(help="What the character's eyes follow: auto, cube, hand, camera, none.")
+        str, typer.Option(help="Where the character looks: auto, cube, hand, camera or none.")
     ] = "auto",
     pictures: PicturesOption = True,
     mute: MuteOption = False,
@@ -147,7 +154,7 @@ def play(
 ) -> None:
     """Play with the cube in front of a camera.
 
-    Example: [cyan]cubeling play companion --source camera:0 --robot /dev/ttyACM0[/]
+    Example: [cyan]cubeling play companion --record today.mcap[/]
     """
     options = SessionOptions(
         scenario=scenario,

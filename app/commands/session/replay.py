@@ -30,7 +30,7 @@ from app.ui.display import has_display
 
 
 def replay(
-    session: Annotated[Path, typer.Argument(help="A recorded session, or a bundled one.")],
+    session: Annotated[Path, typer.Argument(help="A session recorded with --record.")],
     scenario: Annotated[str | None, typer.Option(help="Play it as another scenario.")] = None,
     character: CharacterOption = None,
     personality: PersonalityOption = None,
@@ -48,8 +48,8 @@ def replay(
         str,
         typer.Option(
             "--from",
-            help="Take the recorded channels up to this one: camera (none), state, controls, "
-            "command or pose.",
+            help="Take the recorded channels up to this one, and compute the others: camera "
+            "(compute all), state, controls, command or pose.",
         ),
     ] = "camera",
     fast: Annotated[
@@ -58,7 +58,9 @@ def replay(
             "--fast", help="With a real robot, play as fast as possible, not in real time."
         ),
     ] = False,
-    salvage: Annotated[bool, typer.Option(help="Play what is left of a cut-off session.")] = False,
+    salvage: Annotated[
+        bool, typer.Option(help="Play the intact part of a cut-off session.")
+    ] = False,
     check: Annotated[
         bool, typer.Option(help="Process the frames again and compare every recorded channel.")
     ] = False,
@@ -70,8 +72,8 @@ def replay(
 ) -> None:
     """Play a recorded session: in a window, to a video, or only to its summary.
 
-    Without a display and without --output nothing is drawn, and the summary is printed. A real
-    robot gets the session in real time.
+    Without a display and without --output, nothing is drawn and the summary is printed. With a
+    real robot, the session plays in real time.
 
     Example: [cyan]cubeling replay recordings/companion.mcap --output companion.mp4[/]
     """

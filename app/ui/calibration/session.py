@@ -144,15 +144,16 @@ class CalibrationSession:
             found = calibrate(collector.views, self.finder.target(self._size))
             found.check()
         except TrackingError as error:
-            raise AppError(f"no camera is written: {error}") from error
+            raise AppError(f"the camera could not be calibrated: {error}") from error
         return found
 
     def check_seen(self) -> None:
         """Raise an `AppError` if the target was never seen."""
         if self._last_seen == -np.inf:
-            what = "board" if len(self.finder.names) == 1 else "cube's markers"
+            what = "board" if len(self.finder.names) == 1 else "cube"
             raise AppError(
-                f"no {what} was seen in any picture: more light, nearer, and is it the right one?"
+                f"no {what} was seen in any picture: use more light, hold it nearer, "
+                "and check that it is the right one"
             )
 
     def _collect(self, frame: Frame) -> ViewResult:

@@ -120,7 +120,7 @@ def test_invalid_options_end_in_one_line(cubeling, what):
 def test_the_help_has_an_example(cubeling):
     code, out, _ = cubeling("bridge", "--help")
     assert code == 0
-    assert "Example: cubeling bridge --mqtt" in out
+    assert "Example: cubeling bridge --play" in out
 
 
 def test_an_invalid_session_is_refused_and_leaves_nothing_open(tmp_path):

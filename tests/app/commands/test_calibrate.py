@@ -106,7 +106,7 @@ def test_a_live_session_ends_after_its_time(shown, waved):
     assert code in (0, 2)
     assert source.given == pytest.approx(5 / 0.74 * 3, abs=3)
     if code:
-        assert err.startswith("cubeling: no camera is written: ")
+        assert err.startswith("cubeling: the camera could not be calibrated: ")
 
 
 @pytest.mark.parametrize("change", ["blank", "none", "still", "few"])
@@ -118,7 +118,7 @@ def test_pictures_that_make_no_camera_are_told_in_one_line(shown, waved, tmp_pat
         "few": waved[:9],
     }[change]
     words = {
-        "blank": "no cube's markers was seen",
+        "blank": "no cube was seen in any picture",
         "none": "the source gave no picture at all",
         "still": "only 1 still images",
         "few": "still images show the target well, 8 are needed",
@@ -133,7 +133,7 @@ def test_pictures_that_make_no_camera_are_told_in_one_line(shown, waved, tmp_pat
 def test_a_wrong_word_is_refused_before_a_camera_is_opened(cubeling, tmp_path):
     (tmp_path / "text.yaml").write_text("hello", encoding="utf-8")
     for arguments, words in (
-        (("--board", "chess"), "there is only charuco"),
+        (("--board", "chess"), "use charuco"),
         (("--check", "none.yaml"), "cannot read the camera file"),
         (("--check", "text.yaml"), "camera_matrix"),
         (("--cube", "none"), "no cube is called 'none'"),

@@ -14,6 +14,7 @@ from app.commands import doctor
 from characters import Character, CharacterError
 from characters.errors import CharacterWarning
 from tests.characters.formats.built_gltf import Builder
+from tracking import TrackingError
 
 COMMANDS_WITH_EXAMPLES = [
     ["demo"],
@@ -175,6 +176,13 @@ def test_bad_input_is_one_line_and_exit_code_2(cubeling, case, bundled_session):
     assert err.count("\n") == 1
     assert named in err
     assert sorted(Path().iterdir()) == before, "something was left behind"
+
+
+@pytest.mark.parametrize("place", [0, 2, 4])
+def test_debug_raises_the_error_wherever_it_stands(cubeling, place):
+    command = ["play", "follow", "--cube", "nope.toml"]
+    with pytest.raises(TrackingError, match=r"nope\.toml"):
+        cubeling(*command[:place], "--debug", *command[place:])
 
 
 def write_bare_glb(path):

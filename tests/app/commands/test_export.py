@@ -103,7 +103,7 @@ def test_the_page_has_the_dictionary_of_the_code():
         (("SESSION", "-o", "file"), "'file' is a file"),
         (("SESSION", "-o", "full"), "--overwrite"),
         (("SESSION", "SESSION", "-o", "out"), "two sessions are called 'short'"),
-        (("SESSION", "-o", "out", *["--participant", "P"] * 2), "2 times for 1 sessions"),
+        (("SESSION", "-o", "out", *["--participant", "P"] * 2), "once for each session"),
         (("cut.mcap", "-o", "out"), "--salvage"),
         (("SESSION",), "--output"),
     ],
