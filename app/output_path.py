@@ -1,7 +1,8 @@
-"""Checking where a command writes, before it does the work."""
+"""Where a command writes: checked before it does the work, and written whole or not at all."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from app.errors import AppError
@@ -76,3 +77,18 @@ def check_output_folder(folder: Path, files: Iterable[str], kind: str, *, overwr
         raise AppError(f"'{folder}' cannot be written to: choose another place")
     if not overwrite and any((folder / name).exists() for name in files):
         raise AppError(f"'{folder}' holds {kind} already: choose another one or add --overwrite")
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """Yield the path to write a file at until it is whole: `PATH.partial`, with the same suffix.
+
+    Leaving the block renames it; leaving it with an error, such as Ctrl-C or a full disk, removes
+    it and leaves a file of that name as it was.
+    """
+    partial = path.with_name(f"{path.stem}.partial{path.suffix}")
+    try:
+        yield partial
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)

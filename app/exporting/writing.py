@@ -3,7 +3,7 @@
 import csv
 import json
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +20,7 @@ from app.exporting.columns import (
     SESSION_CONTEXT_COLUMNS,
     dictionary_rows,
 )
+from app.output_path import whole_file
 from app.session import SessionInfo, messages, session_info
 from app.session.encoding import MESSAGE_TYPES, decode
 
@@ -66,7 +67,7 @@ class ExportedSession:
 def export(sessions: Sequence[ExportedSession], folder: Path) -> dict[str, int]:
     """Write all tables of some sessions, and return the number of rows of each table.
 
-    Existing files are overwritten.
+    Existing files are overwritten when all tables are whole; after an error they are as they were.
 
     Raises
     ------
@@ -74,21 +75,23 @@ def export(sessions: Sequence[ExportedSession], folder: Path) -> dict[str, int]:
         A message cannot be read, or a file cannot be written.
     """
     try:
-        with (folder / DICTIONARY_FILE).open("w", encoding="utf-8", newline="") as file:
-            csv.writer(file).writerows([DICTIONARY_COLUMNS, *dictionary_rows()])
-        rows = {
-            "sessions": _write(
-                folder,
-                "sessions",
-                SESSION_CONTEXT_COLUMNS + SESSION_COLUMNS,
-                _session_rows(sessions),
-            )
-        }
-        for table in EXPORT_TABLES:
-            columns = CONTEXT_COLUMNS + table.columns
-            rows[table.name] = _write(folder, table.name, columns, _table_rows(sessions, table))
+        with ExitStack() as closing:
+            places = {name: whole_file(folder / name) for name in EXPORT_FILES}
+            files = {name: closing.enter_context(place) for name, place in places.items()}
+            return _write_all(sessions, files)
     except OSError as error:
         raise AppError(f"cannot write to '{folder}': {error.strerror}") from error
+
+
+def _write_all(sessions: Sequence[ExportedSession], files: Mapping[str, Path]) -> dict[str, int]:
+    """Write every file, and return the number of rows of each table."""
+    with _created(files[DICTIONARY_FILE]) as file:
+        csv.writer(file).writerows([DICTIONARY_COLUMNS, *dictionary_rows()])
+    about = SESSION_CONTEXT_COLUMNS + SESSION_COLUMNS
+    rows = {"sessions": _write(files, "sessions", about, _session_rows(sessions))}
+    for table in EXPORT_TABLES:
+        columns = CONTEXT_COLUMNS + table.columns
+        rows[table.name] = _write(files, table.name, columns, _table_rows(sessions, table))
     return rows
 
 
@@ -112,14 +115,16 @@ def _table_rows(sessions: Sequence[ExportedSession], table: Table) -> Iterator[l
             yield [*(column.value((*session.labels, time)) for column in CONTEXT_COLUMNS), *cells]
 
 
-def _write(folder: Path, name: str, columns: Sequence[Column], rows: Iterable[list[Cell]]) -> int:
+def _write(
+    files: Mapping[str, Path], name: str, columns: Sequence[Column], rows: Iterable[list[Cell]]
+) -> int:
     """Write one table as CSV and as JSON Lines, row by row, and return the number of rows."""
     flat = [index for index, column in enumerate(columns) if not column.nested]
     names = [column.name for column in columns]
     count = 0
     with ExitStack() as closing:
         table, lines = (
-            closing.enter_context(_created(folder / f"{name}.{suffix}"))
+            closing.enter_context(_created(files[f"{name}.{suffix}"]))
             for suffix in ("csv", "jsonl")
         )
         writer = csv.writer(table)

@@ -40,6 +40,7 @@ from app.moods.plot_panels import (
 )
 from app.moods.regions import runs
 from app.moods.robot_traces import RobotTraces
+from app.output_path import whole_file
 
 PNG_DPI = 144.0
 """Two pixels for each point."""
@@ -79,9 +80,9 @@ def save_plot(
             "Title": printable(f"Moods of {history.name}"),
         }
         try:
-            figure.savefig(
-                path, dpi=PNG_DPI if path.suffix.lower() == ".png" else 72.0, metadata=metadata
-            )
+            dpi = PNG_DPI if path.suffix.lower() == ".png" else 72.0
+            with whole_file(path) as partial:
+                figure.savefig(partial, dpi=dpi, metadata=metadata)
         except OSError as error:
             raise AppError(f"cannot write '{path}' ({error.strerror}): check the folder") from None
 

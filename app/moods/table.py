@@ -7,6 +7,7 @@ from pathlib import Path
 from app.errors import AppError
 from app.moods.history import EmotionTrack, MoodHistory
 from app.moods.robot_traces import RobotTraces
+from app.output_path import whole_file
 
 COLUMNS = (
     "time_s",
@@ -37,7 +38,7 @@ def write_table(path: Path, history: MoodHistory, track: EmotionTrack, robot: Ro
     acknowledged, _ = robot.acknowledged.at(track.times)
     observed, moods = robot.observed.at(track.times)
     try:
-        with path.open("w", encoding="utf-8", newline="") as file:
+        with whole_file(path) as partial, partial.open("w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file)
             writer.writerow(COLUMNS)
             for row, command in enumerate(history.commands):

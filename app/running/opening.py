@@ -17,7 +17,7 @@ from app.running.clock import Pace, SessionClock
 from app.running.players import PlayerPublisher
 from app.running.robots import RobotLine, WireRecorder, is_real_robot
 from app.scenarios import Scenario, find_scenario, make_scenario, scenario_cube
-from app.session import Recorder, SessionOptions, start_over_times
+from app.session import Recorder, SessionOptions, check_codec, start_over_times
 from app.session.replay_inputs import read_replay_inputs
 from app.sound import Mixer, SessionSound, SoundBank
 from app.ui.output_file import OUTPUT_SUFFIXES, OutputFile
@@ -269,3 +269,4 @@ def check_output_paths(options: SessionOptions) -> None:
             raise AppError(f"without pictures there is nothing to write to '{options.output}'")
     if options.record is not None:
         check_output(options.record, "recording", (".mcap",), overwrite=False, remedy="remove it")
+        check_codec(options.codec)

@@ -1,6 +1,6 @@
 """A session on disk: one .mcap file with the camera's frames and every message after them."""
 
-from app.session.frames import FrameEncoder, frame_encoder
+from app.session.frames import FrameEncoder, check_codec, frame_encoder
 from app.session.options import SessionOptions
 from app.session.reading import (
     START_OVER_EVENT,
@@ -18,6 +18,7 @@ __all__ = [
     "Recorder",
     "SessionInfo",
     "SessionOptions",
+    "check_codec",
     "events",
     "frame_encoder",
     "messages",

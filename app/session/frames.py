@@ -45,10 +45,15 @@ def frame_encoder(codec: str, size: tuple[int, int], rate: float) -> FrameEncode
     AppError
         There is no such codec, or it cannot encode pictures of this size.
     """
+    check_codec(codec)
+    return CODECS[codec](size, rate)
+
+
+def check_codec(codec: str) -> None:
+    """Raise AppError if there is no such codec."""
     if codec not in CODECS:
         known = ", ".join(CODECS)
         raise AppError(f"a session cannot hold '{codec}' pictures: choose one of {known}")
-    return CODECS[codec](size, rate)
 
 
 def automatic_encoder(size: tuple[int, int], rate: float) -> FrameEncoder:

@@ -62,6 +62,8 @@ def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:
         return SessionInfo(_options(path), *_readable_frames(path))
     if not _is_complete(path):
         frames, seconds = _readable_frames(path)
+        if not frames:
+            raise AppError(f"the session '{path}' was cut off before its first frame was whole")
         raise AppError(
             f"the session '{path}' was cut off: {frames} frames ({seconds:.1f} s) are whole; "
             "add --salvage to play those"

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.errors import AppError
+from app.output_path import whole_file
 from app.ui.canvas import Canvas, text_width
 from app.ui.palette import INK, QUIET
 from characters import Character, Clip, Pose
@@ -129,7 +130,8 @@ def save(picture: Image, path: Path, max_bytes: int | None = None) -> None:
         quality -= 5
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(data.tobytes())
+        with whole_file(path) as partial:
+            partial.write_bytes(data.tobytes())
     except OSError as error:
         raise AppError(f"cannot write {path}: {error.strerror}; name another folder") from error
 

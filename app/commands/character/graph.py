@@ -8,7 +8,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.tree import Tree
 
+from app.commands.output import OverwriteOption
 from app.errors import AppError
+from app.output_path import check_output, whole_file
 from characters import Animator, Character
 from characters.control.builtin_tree import built_in
 from characters.motion.trees.dot import to_dot
@@ -23,6 +25,7 @@ def graph(
         Path | None,
         typer.Option("--output", "-o", help="The .dot file (Graphviz) to write the graph to."),
     ] = None,
+    overwrite: OverwriteOption = False,
 ) -> None:
     """Show how a character's motions are composed: blend trees, layers, states.
 
@@ -33,8 +36,8 @@ def graph(
 
     Example: [cyan]cubeling character graph human -o human.dot[/]
     """
-    if output is not None and output.suffix != ".dot":
-        raise AppError(f"a graph is written to a .dot file, not to '{output}'")
+    if output is not None:
+        check_output(output, "graph", (".dot",), overwrite=overwrite)
     loaded = Character.load(character)
     plan = loaded.plan or built_in(loaded)
     if loaded.plan is not None:
@@ -43,7 +46,8 @@ def graph(
     if output is None:
         return
     try:
-        output.write_text(to_dot(plan, loaded.name), encoding="utf-8")
+        with whole_file(output) as partial:
+            partial.write_text(to_dot(plan, loaded.name), encoding="utf-8")
     except OSError as error:
         raise AppError(f"cannot write '{output}' ({error.strerror}): check the folder") from None
     Console().print(f"[bold]{escape(str(output))}[/] is written; Graphviz draws it.")

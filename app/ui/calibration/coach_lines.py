@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 
 from app.errors import AppError
+from app.output_path import whole_file
 from app.ui.calibration.coach import draw_coverage, words_of
 from app.ui.calibration.session import Advice, CalibrationSession
 
@@ -63,6 +64,7 @@ def write_coverage(path: Path, session: CalibrationSession) -> None:
     draw_coverage(picture, session.collector.outlines)
     good, data = cv2.imencode(path.suffix, picture)
     try:
-        path.write_bytes(data.tobytes() if good else b"")
+        with whole_file(path) as partial:
+            partial.write_bytes(data.tobytes() if good else b"")
     except OSError as error:
         raise AppError(f"cannot write the picture '{path}': {error.strerror}") from error

@@ -131,6 +131,21 @@ def wrong_inputs():
         "equal ids": (["cube", "equal.toml"], "marker_id 3"),
         "marker too large": (["cube", "large.toml"], "61"),
         "no such cube": (["cube", "teapot"], "teapot"),
+        "no such codec": (
+            [
+                "play",
+                "companion",
+                "-s",
+                "SESSION",
+                "--record",
+                "new.mcap",
+                "--codec",
+                "vp8",
+                "--no-pictures",
+            ],
+            "choose one of auto, jpeg, h264",
+        ),
+        "a graph over a file": (["character", "graph", "human", "-o", "old.dot"], "--overwrite"),
         "no such paper": (["cube", "companion", "--paper", "a9"], "a9"),
         "no skin": (["play", "follow", "--character", "bare.glb", *video], "skin"),
         "no such port": (
@@ -164,6 +179,7 @@ def test_bad_input_is_one_line_and_exit_code_2(cubeling, case, bundled_session):
     Path("text.mp4").write_text("not a video")
     Path("text.mcap").write_text("not a session")
     Path("sheet.pdf").write_text("not a sheet")
+    Path("old.dot").write_text("not a graph")
     Path("equal.toml").write_text(EQUAL_IDS)
     Path("large.toml").write_text(TOO_LARGE)
     write_bare_glb(Path("bare.glb"))

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.exporting import CONTEXT_COLUMNS, EXPORT_TABLES, dictionary_rows
+from app.exporting import CONTEXT_COLUMNS, EXPORT_TABLES, dictionary_rows, writing
 from app.exporting.writing import DICTIONARY_FILE
 from app.session import messages
 from app.session.encoding import MESSAGE_TYPES, decode
@@ -87,6 +87,24 @@ def test_the_dictionary_names_every_column_of_every_file(exported):
         for document in lines(name)[:1]:
             assert list(document) == [row["column"] for row in of_table]
     assert all(row["meaning"] for row in rows)
+
+
+@pytest.mark.parametrize("stopped", [OSError(28, "No space left on device"), KeyboardInterrupt()])
+def test_an_export_that_is_stopped_leaves_the_earlier_one_as_it_was(
+    cubeling, short_session, monkeypatch, stopped
+):
+    cubeling("export", short_session, "-o", "out")
+    earlier = {path.name: path.read_bytes() for path in Path("out").iterdir()}
+
+    def stop(*_):
+        raise stopped
+
+    monkeypatch.setattr(writing, "_table_rows", stop)
+    labels = ["--participant", "other", "--overwrite"]
+    code, _, err = cubeling("export", short_session, "-o", "out", *labels)
+    assert code == (2 if isinstance(stopped, OSError) else 130)
+    assert ("cannot write to 'out': No space left" in err) == isinstance(stopped, OSError)
+    assert {path.name: path.read_bytes() for path in Path("out").iterdir()} == earlier
 
 
 def test_the_page_has_the_dictionary_of_the_code():
