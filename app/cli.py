@@ -4,6 +4,7 @@ The module of a command is imported when the command is called, so the help of `
 neither OpenCV nor numpy.
 """
 
+import io
 import signal
 import sys
 import warnings
@@ -120,6 +121,7 @@ def main() -> None:
     arguments = [each for each in sys.argv[1:] if each != "--debug"]  # it may stand anywhere
     debug = len(arguments) < len(sys.argv) - 1
     end_on_termination_signals()
+    print_what_can_be_encoded()
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("default", UserWarning)  # CharacterWarning is one
@@ -142,6 +144,12 @@ def main() -> None:
         print_message(system_error(error))
         code = BAD_INPUT_EXIT_CODE
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def print_what_can_be_encoded() -> None:
+    """Let a "?" stand for what the encoding of the output lacks, as that of a file on Windows."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")
 
 
 def end_on_termination_signals() -> None:

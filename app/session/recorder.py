@@ -64,7 +64,10 @@ class Recorder(Closeable):
         self.path = path
         self.problem: str | None = None
         """Why recording stopped before `close`, or None."""
-        self._metadata = metadata
+        # The name of a file need not be UTF-8.
+        self._metadata = {
+            key: text.encode(errors="replace").decode() for key, text in metadata.items()
+        }
         self._steps = 0
         self._queue: queue.Queue[Callable[[], None] | None] = queue.Queue(MAX_QUEUED_WRITES)
         self._channels: dict[str, int] = {}

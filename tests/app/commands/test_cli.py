@@ -210,6 +210,14 @@ def write_bare_glb(path):
     path.write_bytes(build.bytes())
 
 
+def test_an_output_that_cannot_show_a_curve_shows_the_rest():
+    script = "from app.cli import print_what_can_be_encoded as allow; allow(); print('mood ▄▅')"
+    environment = os.environ | {"PYTHONIOENCODING": "cp1252"}
+    command = [sys.executable, "-c", script]
+    result = subprocess.run(command, env=environment, capture_output=True, check=True)
+    assert result.stdout.split() == [b"mood", b"??"]
+
+
 def test_a_silent_port_is_one_line(cubeling, bundled_session):
     near, far = os.openpty()
     try:
