@@ -23,7 +23,7 @@ Source = Annotated[
     str, typer.Option("--source", "-s", help="A live camera: camera:0, http://PHONE:8080/video.")
 ]
 Flips = Annotated[int, typer.Option(min=MIN_FLIPS, max=1000, help="How many flips to see.")]
-Seed = Annotated[int, typer.Option(help="Of the moments of the flips.")]
+Seed = Annotated[int, typer.Option(help="Seed of the flips' times.")]
 Scenario = Annotated[
     str, typer.Option(help="What is played in the second part; none for no second part.")
 ]

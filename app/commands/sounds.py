@@ -15,7 +15,7 @@ from app.sound import SAMPLE_RATE, SOUNDS, SoundBank, write_wave
 def sounds(
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder for the files.")],
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Write over sounds that the folder holds.")
+        bool, typer.Option("--overwrite", help="Overwrite the sounds that the folder holds.")
     ] = False,
 ) -> None:
     """Write all sounds as .wav files, to listen to them and to replace them.

@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from affect import Emotion
-from app.commands.robot_trials import Trial, trials_of
+from app.commands.robot.trials import Trial, trials_of
 from app.ui.literal_text import literal_text
 from robot import Robot, RobotError, Telemetry, connect
 
@@ -32,11 +32,13 @@ def try_(
         str,
         typer.Argument(help="sim, /dev/ttyACM0, pleo:COM3, opencat:/dev/ttyUSB0, sim:pleo …"),
     ],
-    mood: Annotated[list[str] | None, typer.Option(help="Only this mood; repeatable.")] = None,
+    mood: Annotated[list[str] | None, typer.Option(help="Try only this mood. Repeatable.")] = None,
     seconds: Annotated[float, typer.Option(help="How long each mood is held.")] = 5.0,
     joint: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME=ANGLE", help="Only this joint, 'neck up=10deg'; repeatable."),
+        typer.Option(
+            metavar="NAME=ANGLE", help="Try only this joint, as in 'neck up=10deg'. Repeatable."
+        ),
     ] = None,
     settings: Annotated[
         Path | None, typer.Option(help="A .toml file for the robot: what it does for each mood.")
