@@ -1,17 +1,16 @@
 """The coach in a window."""
 
-import glfw
 import numpy as np
 from numpy.typing import NDArray
 
 from app.ui.calibration.coach import CoachView
 from app.ui.calibration.session import Advice
-from app.ui.window import Window
+from app.ui.window.surface import Surface
 
 Picture = NDArray[np.uint8]
 
 
-class CoachWindow(Window):
+class CoachWindow(Surface):
     """A window with the live picture and the coach over it; Esc ends the session.
 
     `size` is that of the pictures, (width, height) [px]; `target` is "cube" or "board".
@@ -26,5 +25,4 @@ class CoachWindow(Window):
         if self.closed:
             return
         self.paint(self._coach.draw(picture, timestamp, advice))
-        glfw.swap_buffers(self._window)
-        glfw.poll_events()
+        self.present()

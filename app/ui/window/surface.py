@@ -1,0 +1,168 @@
+"""A window of the desktop that shows pictures, as large as they fit into it."""
+
+import contextlib
+from typing import Any, Self
+
+import glfw
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from app.errors import AppError
+from characters.rendering import create_context
+
+VERTEX_SHADER = """
+#version 330
+out vec2 place;
+void main() {
+    vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);
+    place = vec2(corner.x, 1.0 - corner.y);
+    gl_Position = vec4(corner * 2.0 - 1.0, 0.0, 1.0);
+}
+"""
+
+FRAGMENT_SHADER = """
+#version 330
+uniform sampler2D picture;
+in vec2 place;
+out vec4 color;
+void main() { color = vec4(texture(picture, place).bgr, 1.0); }
+"""
+
+
+class Surface:
+    """A window with an OpenGL context, and pictures in it.
+
+    Whoever opens it closes it; a second `close` does nothing. Esc and Q close it.
+
+    Parameters
+    ----------
+    size
+        Width and height of the pictures [px].
+    title
+        Text of the title bar.
+
+    Raises
+    ------
+    AppError
+        There is no display, or its driver offers no OpenGL 3.3.
+    """
+
+    def __init__(self, size: tuple[int, int], title: str) -> None:
+        self._size = size
+        self._error = ""
+        glfw.set_error_callback(self._store_error)
+        if not glfw.init():
+            raise AppError(f"no window can be opened here: {self._error or 'there is no display'}")
+        for hint, value in (
+            (glfw.CONTEXT_VERSION_MAJOR, 3),
+            (glfw.CONTEXT_VERSION_MINOR, 3),
+            (glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE),
+            (glfw.OPENGL_FORWARD_COMPAT, True),
+        ):
+            glfw.window_hint(hint, value)
+        self._window = glfw.create_window(*_fitting(size), title, None, None)
+        if not self._window:
+            glfw.terminate()
+            raise AppError(f"no window can be opened here: {self._error}")
+        glfw.make_context_current(self._window)
+        glfw.swap_interval(0)  # a camera's frame must not wait for the screen's
+        glfw.set_key_callback(self._window, self._on_key)
+        self.context = create_context(window=True)
+        """Where a `Stage` for this window draws."""
+        self._texture = self.context.texture(size, 3, alignment=1)
+        self._program = self.context.program(
+            vertex_shader=VERTEX_SHADER, fragment_shader=FRAGMENT_SHADER
+        )
+        self._quad = self.context.vertex_array(self._program, [])
+        self._windowed_place = (0, 0, 0, 0)
+        self._open = True
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def closed(self) -> bool:
+        """Whether the user has closed the window."""
+        return not self._open or bool(glfw.window_should_close(self._window))
+
+    def paint(self, picture: NDArray[np.uint8]) -> None:
+        """Draw a picture into the back buffer, as large as it fits."""
+        height, width = picture.shape[:2]
+        if (width, height) != self._texture.size:
+            self._texture.release()
+            self._texture = self.context.texture((width, height), 3, alignment=1)
+        self._texture.write(np.ascontiguousarray(picture))
+        screen = self.context.detect_framebuffer(0)
+        screen.use()
+        wide, high = glfw.get_framebuffer_size(self._window)
+        screen.viewport = (0, 0, wide, high)
+        screen.clear(0.09, 0.10, 0.13)
+        scale = min(wide / width, high / height)
+        shown = (round(width * scale), round(height * scale))
+        screen.viewport = ((wide - shown[0]) // 2, (high - shown[1]) // 2, *shown)
+        self.context.disable(moderngl.DEPTH_TEST | moderngl.BLEND | moderngl.CULL_FACE)
+        self._texture.use(0)
+        self._quad.render(moderngl.TRIANGLE_STRIP, 4)
+        screen.viewport = (0, 0, wide, high)
+
+    def present(self) -> None:
+        """Show what was drawn, and process events."""
+        glfw.swap_buffers(self._window)
+        glfw.poll_events()
+
+    def press(self, key: int) -> None:
+        """Handle a key press; `key` is one of GLFW's constants."""
+        if key in (glfw.KEY_ESCAPE, glfw.KEY_Q):
+            self.quit()
+
+    def quit(self) -> None:
+        """Ask for the window to be closed."""
+        glfw.set_window_should_close(self._window, True)
+
+    def toggle_full_screen(self) -> None:
+        """Fill the screen, or return to the place and size from before."""
+        if glfw.get_window_monitor(self._window):
+            no_monitor: Any = None  # windowed; glfw's type hints do not allow None
+            glfw.set_window_monitor(self._window, no_monitor, *self._windowed_place, 0)
+            return
+        place, size = glfw.get_window_pos(self._window), glfw.get_window_size(self._window)
+        self._windowed_place = (*place, *size)
+        monitor = glfw.get_primary_monitor()
+        mode = glfw.get_video_mode(monitor)
+        wide, high = mode.size
+        glfw.set_window_monitor(self._window, monitor, 0, 0, wide, high, mode.refresh_rate)
+
+    def close(self) -> None:
+        """Close the window and release its context."""
+        if not self._open:
+            return
+        self._open = False
+        self.release()
+        for thing in (self._quad, self._program, self._texture):
+            thing.release()
+        self.context.release()
+        glfw.destroy_window(self._window)
+        glfw.terminate()
+
+    def release(self) -> None:
+        """Release what else draws in the context, while there still is one."""
+
+    def _on_key(self, _window: Any, key: int, _scan: int, action: int, _mods: int) -> None:
+        if action == glfw.PRESS:
+            self.press(key)
+
+    def _store_error(self, _code: int, text: bytes | str) -> None:
+        self._error = text.decode(errors="replace") if isinstance(text, bytes) else text
+
+
+def _fitting(size: tuple[int, int]) -> tuple[int, int]:
+    """Return the largest window for pictures of `size` that fits on the desktop."""
+    with contextlib.suppress(Exception):
+        _, _, wide, high = glfw.get_monitor_workarea(glfw.get_primary_monitor())
+        scale = min(1.0, 0.95 * wide / size[0], 0.92 * high / size[1])
+        return round(size[0] * scale), round(size[1] * scale)
+    return size
