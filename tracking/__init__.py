@@ -13,7 +13,7 @@ from tracking.geometry.intrinsics import Intrinsics
 from tracking.geometry.state import CubeControls, CubeState
 from tracking.gestures.gestures import CubeGestures
 from tracking.refinement.lens_estimate import LensEstimate
-from tracking.sources import FrameSource, Health, LiveFrames, open_source
+from tracking.sources import FrameSource, Health, LiveFrames, StoredFrames, open_source
 from tracking.tracker.several import CubesTracker
 from tracking.tracker.tracker import CubeTracker
 
@@ -33,6 +33,7 @@ __all__ = [
     "Intrinsics",
     "LensEstimate",
     "LiveFrames",
+    "StoredFrames",
     "TrackingError",
     "bundled_cubes",
     "calibrate_camera",

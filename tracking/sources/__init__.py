@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import PurePath
 
 from tracking.errors import TrackingError
-from tracking.sources.base import FrameSource, LiveFrames
+from tracking.sources.base import FrameSource, LiveFrames, StoredFrames
 from tracking.sources.device import Clock, Health
 
 SCHEME_MODULES = {
@@ -60,4 +60,4 @@ def open_source(
     return source
 
 
-__all__ = ["FrameSource", "Health", "LiveFrames", "open_source"]
+__all__ = ["FrameSource", "Health", "LiveFrames", "StoredFrames", "open_source"]

@@ -113,6 +113,18 @@ class StoredFrames(FrameSource):
             yield first
         yield from self._frames
 
+    def skip(self, count: int) -> None:
+        """Leave out the next frames of the iteration, if there are as many.
+
+        A kind of file that can be decoded from within does so; others decode what they leave out.
+        """
+        if count > 0 and self._first is not None:
+            self._first = None
+            count -= 1
+        for _ in range(count):
+            if next(self._frames, None) is None:
+                return
+
     def close(self) -> None:
         """End the iteration. May be called again."""
         self._first = None

@@ -11,6 +11,12 @@ from av.codec.context import Flags
 from tracking.geometry.arrays import Image
 from tracking.sources.device import decode_jpeg
 
+START_CODE = b"\x00\x00\x01"
+"""Begins every NAL unit of an Annex B stream (ITU-T H.264, annex B)."""
+
+IDR_SLICE = 5
+"""`nal_unit_type` of a slice of an IDR picture (ITU-T H.264, table 7-1)."""
+
 
 @dataclass(frozen=True)
 class EncodedImage:
@@ -24,6 +30,18 @@ class EncodedImage:
 
     timestamp: float
     """On the clock of its source [s]."""
+
+    @property
+    def alone(self) -> bool:
+        """Whether it is decoded without the images before it: a JPEG, or an IDR picture."""
+        if self.encoding != "h264":
+            return True
+        start = self.data.find(START_CODE)
+        while 0 <= start < len(self.data) - len(START_CODE):
+            if self.data[start + len(START_CODE)] & 0x1F == IDR_SLICE:
+                return True
+            start = self.data.find(START_CODE, start + len(START_CODE))
+        return False
 
 
 class BrokenFileError(Exception):

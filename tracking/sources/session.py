@@ -1,6 +1,7 @@
 """Frames from a recorded session: the same pixels that the tracker saw live."""
 
 import itertools
+from collections import deque
 from collections.abc import Generator, Iterator
 from pathlib import Path
 
@@ -38,10 +39,10 @@ class SessionSource(StoredFrames):
         try:
             channels = CameraChannels(self._file)
             self.duration = channels.duration()
-            self.rate, images = _nominal_rate(channels.images())
-            self.start(
-                self._decoded(images), f"{self._where} holds no camera frame on {IMAGE_TOPIC}"
-            )
+            self.rate, self._images = _nominal_rate(channels.images())
+            self._index = 0
+            self._ahead: deque[EncodedImage] = deque()
+            self.start(self._decoded(), f"{self._where} holds no camera frame on {IMAGE_TOPIC}")
         except BaseException:
             self._file.close()
             raise
@@ -53,15 +54,39 @@ class SessionSource(StoredFrames):
         super().close()
         self._file.close()
 
-    def _decoded(self, images: Iterator[EncodedImage]) -> Generator[Frame, None, None]:
-        timeline, count = Timeline(), 0
+    def skip(self, count: int) -> None:
+        """Leave out the next frames; decode only those that later ones build on."""
+        if count > 0 and self._first is not None:
+            self._first = None
+            count -= 1
+        needed = self._ahead
         try:
-            for encoded, image in decode(images):
+            for image in itertools.islice(self._images, count):
+                if image.alone:
+                    self._index += len(needed)
+                    needed.clear()
+                needed.append(image)
+        except BrokenFileError:
+            pass  # the iteration ends with what is whole
+        super().skip(len(needed))
+
+    def _decoded(self) -> Generator[Frame, None, None]:
+        timeline = Timeline()
+        try:
+            for encoded, image in decode(self._queued()):
                 stamp = timeline.stamp(encoded.timestamp)
-                yield Frame(image, stamp, count, encoded.data, encoded.encoding)
-                count += 1
+                index, self._index = self._index, self._index + 1
+                yield Frame(image, stamp, index, encoded.data, encoded.encoding)
         except BrokenFileError as broken:
-            raise TrackingError(f"{self._where} {broken}: {_readable(count)}") from broken
+            raise TrackingError(f"{self._where} {broken}: {_readable(self._index)}") from broken
+
+    def _queued(self) -> Iterator[EncodedImage]:
+        """Yield the images that are decoded only for those after them, then the others."""
+        while True:
+            image = self._ahead.popleft() if self._ahead else next(self._images, None)
+            if image is None:
+                return
+            yield image
 
 
 def open_uri(uri: str, size: tuple[int, int] | None, clock: Clock) -> SessionSource:

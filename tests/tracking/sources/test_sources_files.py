@@ -17,8 +17,8 @@ from mcap.writer import CompressionType
 from mcap_protobuf.writer import Writer
 
 from tracking import FrameSource, Intrinsics, TrackingError, open_source
-from tracking.sources import SCHEME_MODULES
-from tracking.sources.base import Timeline, nanoseconds_of, seconds_of
+from tracking.sources import SCHEME_MODULES, decoding
+from tracking.sources.base import StoredFrames, Timeline, nanoseconds_of, seconds_of
 
 SIZE = (160, 120)
 STEP_NS = 33_333_333
@@ -34,11 +34,14 @@ def jpeg(number):
     return cv2.imencode(".jpg", picture(number))[1].tobytes()
 
 
-def access_units(count):
+def access_units(count, keyint=250):
     codec = av.CodecContext.create("libx264", "w")
     codec.width, codec.height, codec.pix_fmt = *SIZE, "yuv420p"
     codec.time_base = Fraction(1, 30)
-    codec.options = {"tune": "zerolatency", "x264-params": "annexb=1:repeat-headers=1"}
+    codec.options = {
+        "tune": "zerolatency",
+        "x264-params": f"annexb=1:repeat-headers=1:keyint={keyint}:scenecut=0",
+    }
     for number in range(count):
         frame = av.VideoFrame.from_ndarray(picture(number), format="bgr24")
         frame = frame.reformat(format="yuv420p")
@@ -202,6 +205,46 @@ def test_sessions_without_or_with_unknown_images_are_refused_with_one_line(tmp_p
     frames, error = read(write_session(path, [*jpegs(2), torn]))
     assert len(frames) == 2
     assert "has an image that is not JPEG: its first 2 frames could be read" in error
+
+
+def h264_session(path):
+    """40 images, of which the numbers 0, 12, 24 and 36 can be decoded alone."""
+    pictures = [CompressedVideo(format="h264", data=unit) for unit in access_units(40, keyint=12)]
+    return write_session(path, pictures)
+
+
+@pytest.mark.parametrize("kind", ["jpeg", "h264", "mp4"])
+@pytest.mark.parametrize("skips", [(0,), (1,), (11,), (12,), (13,), (5, 20), (39,), (60,)])
+def test_frames_after_a_skip_are_the_same_as_without_it(session, tmp_path, kind, skips):
+    path = session
+    if kind == "h264":
+        path = h264_session(tmp_path / "take.mcap")
+    elif kind == "mp4":
+        path = write_video(tmp_path / "take.mp4", count=40)
+    expected = read(path)[0][sum(skips) :]
+    with open_source(str(path)) as source:
+        assert isinstance(source, StoredFrames)
+        for count in skips:
+            source.skip(count)
+        frames = list(source)
+    assert [frame.index for frame in frames] == [frame.index for frame in expected]
+    for frame, other in zip(frames, expected, strict=True):
+        assert frame.timestamp == other.timestamp
+        np.testing.assert_array_equal(frame.image, other.image)
+
+
+def test_a_skip_decodes_only_what_later_frames_need(tmp_path, monkeypatch):
+    decoded = []
+
+    def decode(frame):
+        decoded.append(frame)
+        return picture(0)
+
+    monkeypatch.setattr(decoding, "bgr_of", decode)
+    with open_source(str(h264_session(tmp_path / "take.mcap"))) as source:
+        assert isinstance(source, StoredFrames)
+        source.skip(26)
+    assert len(decoded) == 1 + 2  # the first while opening, then 24 and 25
 
 
 def write_video(path, count=20, rate=25, **options):
