@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.pipeline.attention import Attention
+from app.pipeline.checkpoint import Checkpoint
 from app.pipeline.other_cube import OtherCube, advice
 from app.pipeline.registry import make_scenario
 from app.pipeline.scenario import Inputs, Outcome, Scenario
@@ -26,6 +27,17 @@ from tracking import (
     Intrinsics,
     LensEstimate,
 )
+
+STATE_NAMES = (
+    "scenario",
+    "_tracker",
+    "_gestures",
+    "_animator",
+    "_posed",
+    "_attention",
+    "_other_cube",
+)
+"""The attributes of a playground that change from frame to frame."""
 
 
 class Playground:
@@ -100,8 +112,25 @@ class Playground:
         self.other_cube: CubeModel | None = None
         """Another cube than the one in play, if one is in view."""
 
+    def checkpoint(self) -> Checkpoint:
+        """Return a copy of the state after the last frame, for `restore`; see its errors."""
+        return Checkpoint({name: getattr(self, name) for name in STATE_NAMES})
+
+    def restore(self, checkpoint: Checkpoint) -> None:
+        """Go on as after the frame at which a checkpoint was made.
+
+        The scenario, the cube and the character must be the same as then.
+        """
+        for name, value in checkpoint.content().items():
+            setattr(self, name, value)
+
     def step(
-        self, frame: Frame, inputs: Inputs | None = None, replay: ReplayInputs | None = None
+        self,
+        frame: Frame,
+        inputs: Inputs | None = None,
+        replay: ReplayInputs | None = None,
+        *,
+        drawn: bool = True,
     ) -> Step:
         """Process one frame.
 
@@ -113,6 +142,8 @@ class Playground:
             The other inputs of the frame; None if there are none.
         replay
             Recorded messages to use instead of computing them; None to compute all.
+        drawn
+            Whether to draw the picture; the other results are the same without it.
 
         Returns
         -------
@@ -131,7 +162,7 @@ class Playground:
             outcome = replace(outcome, command=replay.command)
         posed = replay.posed or self.animate(outcome.command)
         self._posed = posed
-        picture = self.draw(frame, state, controls, outcome, posed)
+        picture = self.draw(frame, state, controls, outcome, posed) if drawn else None
         subjects = self._subjects(state, controls, posed)
         name = self.scenario.name
         return Step(frame, state, controls, outcome, posed, picture, subjects, name)
