@@ -1,8 +1,10 @@
-"""Where a command writes: checked before it does the work, and written whole or not at all."""
+"""Where files go: checked before a command does the work, written whole, and named for a key."""
 
 import os
+import shlex
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from datetime import datetime
 from pathlib import Path
 
 from app.errors import AppError
@@ -92,3 +94,35 @@ def whole_file(path: Path) -> Iterator[Path]:
         os.replace(partial, path)
     finally:
         partial.unlink(missing_ok=True)
+
+
+def default_folder() -> Path:
+    """Return the folder for snapshots and recordings that are made by a key."""
+    return Path.home() / "Cubeling"
+
+
+def dated_file(folder: Path, name: str, suffix: str, when: datetime) -> Path:
+    """Return a file in a folder, which is made if it is missing, with a time in its name.
+
+    The name is that of no other file. Raises AppError if the folder cannot be made.
+
+    >>> from tempfile import gettempdir
+    >>> dated_file(Path(gettempdir()), "follow", ".png", datetime(2026, 5, 4, 15, 3, 9)).name
+    'follow-2026-05-04-150309.png'
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise AppError(f"cannot make the folder '{folder}': {error.strerror}") from error
+    stem = f"{name}-{when:%Y-%m-%d-%H%M%S}"
+    names = (stem, *(f"{stem}-{number}" for number in range(2, 1000)))
+    return next(path for each in names if not (path := folder / f"{each}{suffix}").exists())
+
+
+def short_path(path: Path) -> str:
+    """Return a path as a shell takes it, with ~ for the home folder."""
+    text = str(path)
+    home = str(Path.home())
+    if os.sep == "/" and text.startswith(home + os.sep):
+        text = "~" + text[len(home) :]
+    return text if shlex.quote(text.lstrip("~")) == text.lstrip("~") else shlex.quote(str(path))

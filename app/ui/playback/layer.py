@@ -1,0 +1,282 @@
+"""Keys and mouse of the player: what they ask for, and what lies over the picture for them."""
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from app.errors import AppError
+from app.output_path import dated_file, short_path
+from app.pipeline.scenario import Inputs
+from app.ui.canvas import PICTURE_HEIGHT
+from app.ui.palette import ANGRY, QUIET, Color
+from app.ui.playback import timeline
+from app.ui.playback.cards import draw_ending, draw_keys, draw_pills
+from app.ui.playback.keys import find_binding
+from app.ui.playback.menu import Menu
+from app.ui.playback.requests import (
+    ListChoices,
+    Pause,
+    PlayScenario,
+    Request,
+    SeekTo,
+    SessionRequest,
+    StartOver,
+    WindowRequest,
+)
+from app.ui.playback.status import NO_STATUS, SessionStatus
+
+Picture = NDArray[np.uint8]
+
+NOTICE_S = 4.0
+"""How long a notice is shown."""
+
+QUICK_SEEK_S = 0.4
+"""A seek that takes longer is named over the picture."""
+
+ENDING_KEYS = "Space plays it again  ·  Esc or Enter closes"
+
+
+class PlaybackLayer:
+    """What the player asks for, and what is shown because of it.
+
+    The window passes on keys and mouse, and shows what `draw` returns.
+
+    Parameters
+    ----------
+    scenarios
+        The names of the scenarios, in the order of the keys 1 to 9.
+    folder
+        Where snapshots go.
+    actions
+        What carries out requests that need a window.
+    clock, now
+        Return the time [s], for notices, and the local time, for the names of files.
+    """
+
+    def __init__(
+        self,
+        scenarios: Sequence[str],
+        folder: Path,
+        actions: Mapping[WindowRequest, Callable[[], None]],
+        clock: Callable[[], float] = time.monotonic,
+        now: Callable[[], datetime] = datetime.now,
+    ) -> None:
+        self.mirrored = False
+        """Whether the picture is to be shown as in a mirror."""
+        self._scenarios, self._folder = tuple(scenarios), folder
+        self._clock, self._now = clock, now
+        self._actions: dict[WindowRequest, Callable[[], None]] = {
+            WindowRequest.MIRROR: self._mirror,
+            WindowRequest.SNAPSHOT: self._snapshot,
+            WindowRequest.KEYS: self._toggle_keys,
+            WindowRequest.MENU: self._toggle_menu,
+            WindowRequest.BACK: self._back,
+            **actions,
+        }
+        self._handlers: dict[type, Callable[[Any], None]] = {
+            WindowRequest: lambda request: self._actions[request](),
+            StartOver: self._start_over,
+            PlayScenario: self._play_scenario,
+        }
+        self._status = NO_STATUS
+        self._inputs = Inputs()
+        self._requests: list[SessionRequest] = []
+        self._keys = False
+        self._menu: Menu | None = None
+        self._notice, self._notice_until = "", 0.0
+        self._seeking_since: float | None = None
+        self._pointer: float | None = None
+        self._dragging = False
+        self._changed = True
+        self._width = 0.0
+        self._picture: Picture | None = None
+
+    @property
+    def changed(self) -> bool:
+        """Whether the picture is to be drawn again although no new one has come."""
+        return self._changed or bool(self._notice and self._clock() >= self._notice_until)
+
+    @property
+    def strip_height(self) -> float:
+        """Height of what lies under the picture, in units of the canvas."""
+        return timeline.STRIP_HEIGHT if self._status.position is not None else 0.0
+
+    def report(self, status: SessionStatus) -> None:
+        """Show another state of the session."""
+        if status == self._status:
+            return
+        self._status, self._changed = status, True
+        if self._menu is not None:
+            self._menu.update(status.choices, status.looking)
+        if not status.seeking:
+            self._seeking_since = None
+        elif self._seeking_since is None:
+            self._seeking_since = self._clock()
+
+    def notify(self, words: str) -> None:
+        """Show a notice for some seconds."""
+        self._notice, self._notice_until = words, self._clock() + NOTICE_S
+        self._changed = True
+
+    def take_inputs(self) -> Inputs:
+        """Return what the player asked of the scenario since the last call."""
+        inputs, self._inputs = self._inputs, Inputs()
+        return inputs
+
+    def take_requests(self) -> tuple[SessionRequest, ...]:
+        """Return what the player asked of the session since the last call."""
+        requests, self._requests = self._requests, []
+        return tuple(requests)
+
+    def press(self, key: str, *, shift: bool = False, repeated: bool = False) -> None:
+        """Handle a key by its name in the table of keys; `repeated` while it is held."""
+        self._changed = True
+        if self._menu is not None and key not in ("Esc", "Tab"):
+            self._request(self._menu.press(key))
+            return
+        if key == "Enter" and self._status.ending is not None:
+            self._request(WindowRequest.QUIT)
+            return
+        binding = find_binding(key, shift)
+        if binding is not None and (binding.repeats or not repeated):
+            self._request(binding.request)
+
+    def point(self, x: float, y: float) -> None:
+        """Move the mouse to a place of the picture, in units of the canvas."""
+        on_strip = PICTURE_HEIGHT <= y <= PICTURE_HEIGHT + self.strip_height
+        pointer = x if on_strip or self._dragging else None
+        if pointer == self._pointer:
+            return
+        self._pointer, self._changed = pointer, True
+        if self._dragging:
+            self._seek(x)
+
+    def click(self, x: float, y: float) -> None:
+        """Press the mouse's button at a place of the picture, in units of the canvas."""
+        self._changed = True
+        if self._menu is not None:
+            self._request(self._menu.click(x, y, self._width))
+        elif PICTURE_HEIGHT <= y <= PICTURE_HEIGHT + self.strip_height:
+            if timeline.is_on_button(x):
+                self._request(Pause())
+            else:
+                self._dragging = True
+                self._seek(x)
+
+    def release(self) -> None:
+        """Release the mouse's button."""
+        self._dragging = False
+
+    def draw(self, picture: Picture) -> Picture:
+        """Return a picture (H, W, 3), whose cards are drawn, with everything over and under it."""
+        self._changed = False
+        self._picture = picture
+        scale = picture.shape[0] / PICTURE_HEIGHT
+        self._width = width = picture.shape[1] / scale
+        shown = picture.copy()
+        if self._status.ending is not None and not self._keys and self._menu is None:
+            draw_ending(self._status.ending, ENDING_KEYS, width, scale).blend_over(shown)
+        for pill in draw_pills(self._pills(), width, scale):
+            pill.blend_over(shown)
+        if self._keys:
+            draw_keys(width, scale).blend_over(shown)
+        if self._menu is not None:
+            self._menu.draw(width, scale).blend_over(shown)
+        position = self._status.position
+        if position is None:
+            return shown
+        if self._pointer is not None and not timeline.is_on_button(self._pointer):
+            timeline.draw_pointer(self._pointer, position, width, scale).blend_over(shown)
+        strip = timeline.draw_strip(position, self._status.paused, width, scale)
+        return np.vstack([shown, strip])
+
+    def _pills(self) -> tuple[tuple[str, Color | None], ...]:
+        """Return the words of the small cards, each with the colour of its disc."""
+        status, pills = self._status, list[tuple[str, Color | None]]()
+        if status.recording is not None:
+            minutes, seconds = divmod(int(status.recording), 60)
+            pills.append((f"recording {minutes}:{seconds:02}  ·  R ends it", ANGRY))
+        seeking = self._seeking_since
+        if seeking is not None and self._clock() - seeking >= QUICK_SEEK_S:
+            pills.append(("Seeking …", QUIET))
+        elif status.paused and status.ending is None:
+            pills.append(("Paused: Space goes on", QUIET))
+        if self._clock() >= self._notice_until:
+            self._notice = ""
+        if self._notice:
+            pills.append((self._notice, None))
+        return tuple(pills)
+
+    def _request(self, request: Request | None) -> None:
+        """Carry out a request, or keep it for the session."""
+        if request is None:
+            return
+        handler = self._handlers.get(type(request))
+        if handler is not None:
+            handler(request)
+        else:
+            self._ask_session(request)
+
+    def _ask_session(self, request: Any) -> None:
+        if isinstance(request, SeekTo) and self._requests:
+            # While the mouse is dragged, only the last place counts.
+            self._requests = [each for each in self._requests if not isinstance(each, SeekTo)]
+        self._requests.append(request)
+        self._menu = None
+
+    def _seek(self, x: float) -> None:
+        position = self._status.position
+        if position is not None:
+            self._ask_session(SeekTo(timeline.position_at(x, position, self._width)))
+
+    def _start_over(self, _: StartOver) -> None:
+        self._inputs = replace(self._inputs, clear=True)
+        self.notify("Starting over")
+
+    def _play_scenario(self, request: PlayScenario) -> None:
+        if request.number > len(self._scenarios):
+            self.notify(f"There is no scenario {request.number}")
+            return
+        self._inputs = replace(self._inputs, scenario=self._scenarios[request.number - 1])
+
+    def _mirror(self) -> None:
+        self.mirrored = not self.mirrored
+        self.notify("Mirrored" if self.mirrored else "Not mirrored")
+
+    def _toggle_keys(self) -> None:
+        self._keys, self._menu = not self._keys, None
+
+    def _toggle_menu(self) -> None:
+        self._keys = False
+        if self._menu is not None:
+            self._menu = None
+            return
+        self._menu = Menu()
+        self._menu.update(self._status.choices, True)
+        self._requests.append(ListChoices())
+
+    def _back(self) -> None:
+        if self._keys or self._menu is not None:
+            self._keys, self._menu = False, None
+        else:
+            self._actions[WindowRequest.QUIT]()
+
+    def _snapshot(self) -> None:
+        if self._picture is None:
+            return
+        try:
+            path = dated_file(
+                self._folder, self._status.scenario or "cubeling", ".png", self._now()
+            )
+            path.write_bytes(cv2.imencode(".png", self._picture)[1].tobytes())
+        except (AppError, OSError) as error:
+            self.notify(f"No snapshot was kept: {error}")
+        else:
+            self.notify(f"Snapshot: {short_path(path)}")

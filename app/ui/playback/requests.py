@@ -1,0 +1,92 @@
+"""What a player asks for with a key or the mouse.
+
+A scenario sees only `StartOver` and `PlayScenario`, as `Inputs`, and a recording keeps them.
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+class WindowRequest(Enum):
+    """What the window does by itself; the value says what."""
+
+    MIRROR = "mirror the picture"
+    SNAPSHOT = "write the picture to a file"
+    FULL_SCREEN = "fill the screen, or return to the place and size from before"
+    PANEL = "show or hide the panel"
+    KEYS = "show or hide the keys"
+    MENU = "show or hide the menu"
+    BACK = "close what lies over the picture, else the window"
+    QUIT = "close the window"
+
+
+@dataclass(frozen=True)
+class StartOver:
+    """Forget the path and the mood."""
+
+
+@dataclass(frozen=True)
+class PlayScenario:
+    """Play another scenario."""
+
+    number: int
+    """Its place in the list of scenarios, from 1."""
+
+
+@dataclass(frozen=True)
+class Pause:
+    """Pause, or go on."""
+
+
+@dataclass(frozen=True)
+class Seek:
+    """Go back or ahead in a recording."""
+
+    seconds: float
+    """How far ahead; negative to go back [s]."""
+
+
+@dataclass(frozen=True)
+class SeekTo:
+    """Go to a place in a recording."""
+
+    position: float
+    """Time from its first frame; infinite for its end [s]."""
+
+
+@dataclass(frozen=True)
+class StepFrames:
+    """Pause, and show another frame of a recording."""
+
+    count: int
+    """How many frames ahead; negative to go back."""
+
+
+@dataclass(frozen=True)
+class Record:
+    """Begin a recording, or end it."""
+
+
+@dataclass(frozen=True)
+class ListChoices:
+    """Find out which cameras, characters and robots there are."""
+
+
+@dataclass(frozen=True)
+class Choose:
+    """Exchange a part of the session."""
+
+    part: str
+    """"camera", "character" or "robot"."""
+
+    value: str
+    """A URI, a name or a path, as the option of the same name takes it."""
+
+
+PlayerInput = StartOver | PlayScenario
+"""What the scenario is told."""
+
+SessionRequest = Pause | Seek | SeekTo | StepFrames | Record | ListChoices | Choose
+"""What the session carries out."""
+
+Request = WindowRequest | PlayerInput | SessionRequest
