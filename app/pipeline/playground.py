@@ -1,5 +1,6 @@
 """The pipeline for one frame: from a picture of the cube to a picture of the character."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -7,6 +8,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from app.errors import AppError
 from app.pipeline.attention import Attention
 from app.pipeline.checkpoint import Checkpoint
 from app.pipeline.other_cube import OtherCube, advice
@@ -15,7 +17,7 @@ from app.pipeline.scenario import Inputs, Outcome, Scenario
 from app.pipeline.scenario_errors import checked, scenario_errors
 from app.pipeline.step import Rect, ReplayInputs, Step
 from app.pipeline.subjects import character_region, cube_region
-from characters import Animator, Character, CharacterCommand, PosedCharacter
+from characters import Animator, Character, CharacterCommand, PosedCharacter, RootDelta
 from characters.rendering import Box, SceneCharacter, Stage, View
 from tracking import (
     CubeControls,
@@ -36,6 +38,7 @@ STATE_NAMES = (
     "_posed",
     "_attention",
     "_other_cube",
+    "other_cube",
 )
 """The attributes of a playground that change from frame to frame."""
 
@@ -89,7 +92,9 @@ class Playground:
             scenario = make_scenario(scenario, cube)
         self.intrinsics = intrinsics
         self.known_cubes = tuple(known_cubes)
-        self._look, self._fixed = look, fixed
+        self._look, self._context = look, context
+        self.fixed = fixed
+        """Whether the scenario cannot be changed now, so that the player is not told how."""
         self._stage = None if context is None else Stage(context, intrinsics.size)
         self.play(scenario, cube, character)
 
@@ -99,18 +104,51 @@ class Playground:
         cube: CubeModel | None = None,
         character: Character | None = None,
     ) -> None:
-        """Start a scenario from its beginning; the parameters are those of the class."""
-        self.scenario = scenario
-        self.cube = cube or CubeModel.load(scenario.cube)
-        self.character = character or Character.load(scenario.character)
-        self._tracker = CubeTracker(self.cube, self.intrinsics)
-        self._gestures = CubeGestures(self.cube)
-        self._animator = Animator(self.character, place=scenario.start)
+        """Start a scenario from its beginning; the parameters are those of the class.
+
+        If it raises an error, the present one goes on.
+        """
+        cube = cube or CubeModel.load(scenario.cube)
+        character = character or Character.load(scenario.character)
+        animator = Animator(character, place=scenario.start)
+        self.scenario, self.cube, self.character = scenario, cube, character
+        self._tracker = CubeTracker(cube, self.intrinsics)
+        self._gestures = CubeGestures(cube)
+        self._animator = animator
         self._posed: PosedCharacter | None = None
-        self._attention = Attention(self._look, self.cube.edge)
-        self._other_cube = OtherCube(self.cube, self.known_cubes)
+        self._attention = Attention(self._look, cube.edge)
+        self._other_cube = OtherCube(cube, self.known_cubes)
         self.other_cube: CubeModel | None = None
         """Another cube than the one in play, if one is in view."""
+
+    def cast(self, character: Character) -> None:
+        """Let another character go on where the present one stands.
+
+        Raises
+        ------
+        AppError
+            It lacks an action of the present one that the scenario asks for.
+        CharacterError
+            It cannot be animated.
+        """
+        place = self.scenario.start
+        if self._posed is not None:
+            table = self._posed.table_from_character
+            yaw = math.atan2(float(table[0, 2]), float(table[2, 2]))
+            place = RootDelta(float(table[0, 3]), float(table[2, 3]), yaw)
+        animator = Animator(character, place=place)
+        asked = [role for role in self.scenario.roles if role in self._animator.actions]
+        missing = [role for role in asked if role not in animator.actions]
+        if missing:
+            raise AppError(f"{character.name} cannot {' or '.join(missing)}")
+        self.character, self._animator = character, animator
+
+    def look_through(self, intrinsics: Intrinsics) -> None:
+        """Take another camera; `play` must follow, as the table is another one in its picture."""
+        if self._context is not None and intrinsics.size != self.intrinsics.size:
+            self.close()
+            self._stage = Stage(self._context, intrinsics.size)
+        self.intrinsics = intrinsics
 
     def checkpoint(self) -> Checkpoint:
         """Return a copy of the state after the last frame, for `restore`; see its errors."""
@@ -156,7 +194,7 @@ class Playground:
         outcome = self.attend(state, controls, self.decide(controls, inputs or Inputs()))
         self.other_cube = self._other_cube.update(frame, state)
         if self.other_cube is not None:
-            hint = advice(self.other_cube, self.scenario.name, self.cube.name, self._fixed)
+            hint = advice(self.other_cube, self.scenario.name, self.cube.name, self.fixed)
             outcome = replace(outcome, hint=hint)
         if replay.command is not None:
             outcome = replace(outcome, command=replay.command)
@@ -230,6 +268,11 @@ class Playground:
         seen = posed.visible and controls.camera_from_table is not None
         characters = (SceneCharacter(self.character, posed),) if seen else ()
         return self._stage.draw(view, characters, outcome.floor if seen else ())
+
+    def drawn(self, step: Step) -> Step:
+        """Return a step with its picture, which `step` left out."""
+        picture = self.draw(step.frame, step.state, step.controls, step.outcome, step.posed)
+        return replace(step, picture=picture)
 
     def _subjects(
         self, state: CubeState, controls: CubeControls, posed: PosedCharacter

@@ -62,6 +62,10 @@ class Pace:
         self._offset: float | None = None
         self._leaving_out_since: float | None = None
 
+    def restart(self) -> None:
+        """Show the next frame at once, as after a pause."""
+        self._offset = self._leaving_out_since = None
+
     def wait(self, timestamp: float) -> bool:
         """Wait until a frame is due; return False if it is too late and is to be left out."""
         now = self._clock()

@@ -3,89 +3,40 @@
 import math
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, replace
 from pathlib import Path
 
 import moderngl
 
 from app.errors import AppError
-from app.output_path import check_output
-from app.pipeline.other_cube import cube_for
+from app.output_path import check_output, default_folder
 from app.pipeline.playground import Playground
-from app.pipeline.step import ReplayInputs
 from app.running.clock import Pace, SessionClock
+from app.running.opened_session import OpenedSession, scenario_of
 from app.running.players import PlayerPublisher
-from app.running.robots import RobotLine, WireRecorder, is_real_robot
-from app.scenarios import Scenario, find_scenario, make_scenario, scenario_cube
-from app.session import Recorder, SessionOptions, check_codec, start_over_times
+from app.running.recording import SessionRecording
+from app.running.robots import RobotLine, is_real_robot
+from app.running.wire_tap import WireTap
+from app.scenarios import scenario_cube
+from app.session import SessionOptions, check_codec, start_over_times
 from app.session.replay_inputs import read_replay_inputs
 from app.sound import Mixer, SessionSound, SoundBank
 from app.ui.output_file import OUTPUT_SUFFIXES, OutputFile
 from app.ui.overlay import virtual_robot_side
+from app.ui.playback.status import EndCard
+from app.ui.playback.timeline import STRIP_HEIGHT
 from app.ui.screen import NullScreen, Screen
 from app.ui.video_file import has_sound
 from app.ui.virtual_robot import VirtualRobot
 from characters import Character
 from characters.control.controllers.actions import clips_of_actions
 from characters.rendering import create_context
-from tracking import CubeModel, FrameSource, Intrinsics, open_source
-
-
-@dataclass(frozen=True)
-class OpenedSession:
-    """What is opened for a session. `open_session` closes all of it."""
-
-    options: SessionOptions
-    """What the user asked for."""
-
-    source: FrameSource
-    """Where the frames come from."""
-
-    playground: Playground
-    """The pipeline that processes them."""
-
-    screen: Screen
-    """Where the pictures go."""
-
-    sound: SessionSound | None
-    """What is heard; None without pictures, and for a file without sound."""
-
-    robot: RobotLine
-    """The robot that shows the emotions, or a stand-in."""
-
-    clock: SessionClock
-    """The time that the robot lives by."""
-
-    recorder: Recorder | None
-    """Records the session, or None."""
-
-    wire: WireRecorder | None
-    """Records the robot's bytes, or None."""
-
-    player: PlayerPublisher | None
-    """Publishes the character's actions and emotions, or None."""
-
-    pace: Pace | None
-    """Plays a recording at the speed at which it was recorded; None for every frame at once."""
-
-    start_overs: frozenset[float]
-    """In a replay, timestamps of the frames in which the player started over [s]."""
-
-    replay_inputs: Iterator[ReplayInputs] | None
-    """In a replay that does not start from the camera, the recorded messages of each frame."""
-
-    def change_scenario(self, name: str) -> None:
-        """Play another scenario, or the present one with another cube that is in view.
-
-        Do nothing for "", if the scenario is to stay, or if there is nothing to change.
-        """
-        if not name or self.options.keeps_scenario:
-            return
-        playground = self.playground
-        in_view = playground.other_cube
-        cube = cube_for(find_scenario(name), in_view, playground.known_cubes)
-        if name != playground.scenario.name or cube is in_view:
-            playground.play(_scenario(name, cube, self.options), cube)
+from tracking import (
+    CubeModel,
+    FrameSource,
+    Intrinsics,
+    StoredFrames,
+    open_source,
+)
 
 
 @contextmanager
@@ -95,6 +46,7 @@ def open_session(
     source: FrameSource | None = None,
     screen: Screen | None = None,
     player: PlayerPublisher | None = None,
+    ending: EndCard | None = None,
 ) -> Iterator[OpenedSession]:
     """Open all that a session needs, and close it in reverse order at the end.
 
@@ -111,6 +63,9 @@ def open_session(
         closes it.
     player
         Publishes the character's actions and emotions; the caller closes its network.
+    ending
+        The card at the end of a recording, in a window and in a video; None for a short one, in a
+        window only.
 
     Yields
     ------
@@ -123,15 +78,17 @@ def open_session(
         Something that `options` names is missing or cannot be used.
     """
     check_output_paths(options)
+    check_part(options)
     cubes = [CubeModel.load(each) for each in options.cubes]
     cube = cubes[0] if cubes else CubeModel.load(scenario_cube(options.scenario))
-    scenario = _scenario(options.scenario, cube, options)
+    scenario = scenario_of(options, options.scenario, cube)
     character = Character.load(options.character or scenario.character)
     bank = SoundBank.load(options.sounds, clips_of_actions(character.clips))
     calibration = None if options.intrinsics is None else Intrinsics.load(options.intrinsics)
     with ExitStack() as closing:
         if source is None:
             source = closing.enter_context(open_source(options.source))
+        check_start(options, source)
         intrinsics = intrinsics_for(calibration or source.intrinsics, source.size)
         context = sound = None
         if screen is None:
@@ -151,47 +108,46 @@ def open_session(
         is_session = options.source.endswith(".mcap")
         start_overs = start_over_times(Path(options.source)) if is_session else frozenset[float]()
         replay_inputs = None
-        if options.start != "camera":
-            replay_inputs = read_replay_inputs(options.source, options.start)
-        recorder = wire = None
+        if options.stage != "camera":
+            replay_inputs = read_replay_inputs(options.source, options.stage)
+        wire, clock = WireTap(), SessionClock()
+        recording = None
         if options.record is not None:
-            named = replace(options, cubes=options.cubes or (cube.name,))
-            metadata = {**named.metadata(), "rate": f"{source.rate:g}"}
-            recorder = closing.enter_context(Recorder(options.record, metadata))
-            wire = WireRecorder(recorder)
-        clock = SessionClock()
+            recording = closing.enter_context(
+                SessionRecording(
+                    options.record,
+                    options,
+                    playground,
+                    source,
+                    wire,
+                    since=0.0 if options.start_s else None,
+                )
+            )
         pace = _pace(options, source, player)
         stepped = pace is None and not source.live
         robot = closing.enter_context(
             RobotLine.open(options.robot, clock, wire, options.robot_settings, stepped=stepped)
         )
-        closing.callback(clock.release)  # the robot's connection is closed in real time
-        yield OpenedSession(
-            options,
-            source,
-            playground,
-            screen,
-            sound,
-            robot,
-            clock,
-            recorder,
-            wire,
-            player,
-            pace,
-            start_overs,
-            replay_inputs,
+        session = OpenedSession(
+            asked=options,
+            options=options,
+            source=source,
+            playground=playground,
+            screen=screen,
+            sound=sound,
+            robot=robot,
+            wire=wire,
+            clock=clock,
+            player=player,
+            pace=pace,
+            start_overs=start_overs,
+            replay_inputs=replay_inputs,
+            ending=ending,
+            recording=recording,
         )
-
-
-def _scenario(name: str, cube: CubeModel, options: SessionOptions) -> Scenario:
-    """Make a scenario with the user's settings."""
-    return make_scenario(
-        name,
-        cube,
-        speed_map=options.speed_map,
-        turns=options.turns,
-        personality=options.personality,
-    )
+        closing.callback(session.close)
+        closing.callback(clock.release)  # the robot's connection is closed in real time
+        yield session
 
 
 def open_sound(options: SessionOptions, bank: SoundBank, closing: ExitStack) -> SessionSound | None:
@@ -228,8 +184,15 @@ def _open_screen(
         return closing.enter_context(output), context
     from app.ui.window import Window  # imports libraries that a computer without display lacks
 
-    window = closing.enter_context(Window(source.size, f"Cubeling: {options.scenario}"))
-    return window, window.context
+    strip = STRIP_HEIGHT if is_seekable(source) else 0.0
+    folder = options.folder or default_folder()
+    window = Window(source.size, f"Cubeling: {options.scenario}", folder, strip)
+    return closing.enter_context(window), window.context
+
+
+def is_seekable(source: FrameSource) -> bool:
+    """Return whether a source can be played from within, and its length is known."""
+    return isinstance(source, StoredFrames) and bool(source.duration)
 
 
 def _pace(
@@ -259,6 +222,27 @@ def intrinsics_for(intrinsics: Intrinsics | None, size: tuple[int, int]) -> Intr
             f"the camera gives {size[0]}x{size[1]}: calibrate it at this size"
         )
     return intrinsics.scaled(size)
+
+
+def check_part(options: SessionOptions) -> None:
+    """Refuse a part of a recording that is empty, and a loop that nobody could end."""
+    if options.loop and not options.windowed:
+        raise AppError("--loop needs a window: a file would never end")
+    if options.start_s < 0.0:
+        raise AppError(f"--start counts from the first frame: {options.start_s:g} s is before it")
+    if options.end_s is not None and options.end_s <= options.start_s:
+        raise AppError(
+            f"--end {options.end_s:g} is not after --start {options.start_s:g}: nothing is left"
+        )
+
+
+def check_start(options: SessionOptions, source: FrameSource) -> None:
+    """Refuse to start after the end of a recording."""
+    if source.duration and options.start_s >= source.duration:
+        raise AppError(
+            f"--start {options.start_s:g} is after the end of the recording, "
+            f"which lasts {source.duration:.1f} s"
+        )
 
 
 def check_output_paths(options: SessionOptions) -> None:

@@ -10,7 +10,8 @@ from rich.table import Table
 
 from app.pipeline.scenario import Inputs
 from app.pipeline.step import Step
-from app.running.opening import OpenedSession, open_session
+from app.running.opened_session import OpenedSession
+from app.running.opening import open_session
 from app.running.runner import Progress
 from app.session import SessionOptions, messages
 from app.session.encoding import MESSAGE_TYPES, encode, upgraded

@@ -1,6 +1,5 @@
 """The robot of a session: a real one, a simulated one on a real port, or none."""
 
-import threading
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
@@ -11,7 +10,6 @@ from affect import NEUTRAL, Emotion
 from affect.words import closest_word
 from app.pipeline.scenario import EmotionTarget
 from app.pipeline.step import RobotView
-from app.session import Recorder
 from robot import LogLine, Robot, RobotError, SimulatedPort, SteppedRobot, connect
 from robot.contract.closeable import Closeable
 
@@ -133,35 +131,3 @@ class RobotLine(Closeable):
         """Disconnect."""
         self._closing.close()
         self._robot = None
-
-
-class WireRecorder:
-    """Records the robot's bytes with the timestamps of the frames.
-
-    The link's thread calls it. The offset between the two times is known from the first frame on;
-    bytes from before it, such as the handshake, wait until then.
-    """
-
-    def __init__(self, recorder: Recorder) -> None:
-        self._recorder = recorder
-        self._lock = threading.Lock()
-        self._early: list[tuple[str, bytes, float]] = []
-        self._offset: float | None = None
-
-    def __call__(self, direction: str, data: bytes, time: float) -> None:
-        """Record bytes of one direction at a time of the robot's clock [s]."""
-        with self._lock:
-            if self._offset is None:
-                self._early.append((direction, data, time))
-            else:
-                self._recorder.wire(direction, data, max(0.0, time + self._offset))
-
-    def align(self, offset: float) -> None:
-        """Set what to add to the clock's time to get that of the frames; only the first counts."""
-        with self._lock:
-            if self._offset is not None:
-                return
-            self._offset = offset
-            for direction, data, time in self._early:
-                self._recorder.wire(direction, data, max(0.0, time + offset))
-            self._early.clear()

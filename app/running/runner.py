@@ -1,15 +1,15 @@
 """The loop of a session: frames in, pictures and emotions out, all of it recorded if asked for."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
-from app.errors import AppError
-from app.pipeline.scenario import Inputs
-from app.pipeline.step import ReplayInputs, Step
+from app.pipeline.step import Step
+from app.running.frame_loop import FrameLoop
 from app.running.interrupts import uninterrupted
-from app.running.opening import OpenedSession
+from app.running.opened_session import OpenedSession
+from app.running.player_controls import PlayerControls
 from app.running.summary import Summary
-from app.session import START_OVER_EVENT, Recorder, frame_encoder
+from app.running.transport import Transport
 from app.ui.notice import lens_notice, notice
 from robot import RobotError
 from tracking import Frame, Health, LiveFrames, TrackingError
@@ -17,14 +17,11 @@ from tracking import Frame, Health, LiveFrames, TrackingError
 Progress = Callable[[Step], None]
 """Called after every frame."""
 
-SCREEN_UPDATE_INTERVAL_S = 0.05
-"""While no frame comes, the screen is updated at least this often."""
+IDLE_INTERVAL_S = 0.02
+"""While a session is paused, the player's requests are read so often."""
 
-ATTENDED_RECONNECT_TIMEOUT_S = 30.0
-"""How long a camera may be lost while a user at the window can plug it in again."""
-
-UNATTENDED_RECONNECT_TIMEOUT_S = 3.0
-"""How long it may be lost without a window: long enough for a network's short stalls."""
+SEEKING_INTERVAL_S = 0.1
+"""While it seeks, the screen is updated so often."""
 
 CAMERA_LOST = "camera lost"
 CAMERA_BACK = "camera back"
@@ -53,28 +50,9 @@ def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
         The source, the robot or the disk failed; what was recorded until then is complete.
     """
     summary = Summary(session.playground.scenario.name)
+    runner = _Runner(session, summary, progress)
     try:
-        loop = _FrameLoop(session, summary)
-        gaps = _CameraGaps(summary, session.recorder)
-        for frame in _frames(session, summary):
-            if isinstance(frame, Health):
-                message = notice(frame)
-                if message is not None:
-                    gaps.begin()
-                session.screen.wait(message)
-            else:
-                gaps.end(frame)
-                if session.pace is not None and not session.pace.wait(frame.timestamp):
-                    loop.leave_out(frame)
-                    continue
-                if session.wire is not None:
-                    session.wire.align(frame.timestamp - session.robot.clock())
-                with uninterrupted():
-                    step = loop.step(frame)
-                if progress is not None:
-                    progress(step)
-            if session.screen.closed:
-                break
+        runner.run()
         # A lost robot does not end the session and its link keeps retrying: report it at the end.
         try:
             session.robot.check()
@@ -82,6 +60,8 @@ def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
             summary.lost = summary.lost or error
     except KeyboardInterrupt:
         summary.interrupted = True
+    finally:
+        runner.close()
     summary.robot_log = session.robot.log()
     summary.lens = lens_notice(session.playground.lens, session.playground.intrinsics)
     if isinstance(session.source, LiveFrames):
@@ -89,78 +69,103 @@ def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
     return summary
 
 
-class _FrameLoop:
-    """Processes, shows and records one frame after the other."""
+class _Runner:
+    """Runs a session: what the player asks for, then the next frame, again and again."""
 
-    def __init__(self, session: OpenedSession, summary: Summary) -> None:
-        self._session, self._summary = session, summary
-        self._inputs = Inputs()
-        self._start_over = False
-        self._replay: ReplayInputs | None = None
-        self._encode = None
-        if session.recorder is not None:
-            source = session.source
-            self._encode = frame_encoder(session.options.codec, source.size, source.rate)
+    def __init__(self, session: OpenedSession, summary: Summary, progress: Progress | None) -> None:
+        self._session, self._summary, self._progress = session, summary, progress
+        self._transport = Transport(session)
+        self._controls = PlayerControls(session, self._transport)
+        self._loop = FrameLoop(session, summary)
+        self._gaps = _CameraGaps(session, summary)
+        self._start: float | None = None
+        self._updated = 0.0
 
-    def step(self, frame: Frame) -> Step:
-        """Process one frame."""
-        session = self._session
-        began = time.perf_counter()
-        self._read_recorded(frame)
-        inputs = Inputs(clear=True) if self._start_over else self._inputs
-        self._start_over = False
-        session.change_scenario(inputs.scenario)
-        if self._encode is not None:
-            frame = self._encode(frame)
-        step = session.playground.step(frame, inputs, self._replay)
-        # Read the view first: after `feel`, the link's thread holds the robot's lock for a moment.
-        view = session.robot.view()
-        session.robot.feel(step.emotion)
-        if session.player is not None:
-            session.player.publish(step.command, step.emotion)
-        seconds = time.perf_counter() - began
-        self._record(step, inputs)
-        self._inputs = session.screen.show(step, view)
-        if session.sound is not None:
-            session.sound.play(step, session.playground.character, started_over=inputs.clear)
-        self._summary.add(step, view, seconds)
-        return step
+    def run(self) -> None:
+        screen = self._session.screen
+        while True:
+            self._controls.update()
+            if screen.closed:
+                return
+            if self._transport.idle:
+                screen.wait(None)
+                time.sleep(IDLE_INTERVAL_S)
+            elif not self._advance():
+                self._controls.report()  # a video ends with a card
+                return
 
-    def leave_out(self, frame: Frame) -> None:
-        """Process nothing; a player who started over in this frame does so in the next one."""
-        self._read_recorded(frame)
-        self._summary.left_out += 1
+    def close(self) -> None:
+        self._controls.close()
 
-    def _read_recorded(self, frame: Frame) -> None:
-        """Read what a replay knows of a frame."""
-        session = self._session
-        self._start_over |= frame.timestamp in session.start_overs
-        if session.replay_inputs is not None:
-            self._replay = next(session.replay_inputs, None)
+    def _advance(self) -> bool:
+        """Take the next frame; return False at the end of the session."""
+        found = self._read()
+        if isinstance(found, Frame):
+            self._gaps.end(found)
+            self._process(found)
+        elif isinstance(found, Health):
+            message = notice(found)
+            if message is not None:
+                self._gaps.begin()
+            self._session.screen.wait(message)
+        else:
+            self._loop.show_skipped()
+            return self._transport.finish()
+        return True
 
-    def _record(self, step: Step, inputs: Inputs) -> None:
-        recorder = self._session.recorder
-        if recorder is None:
+    def _read(self) -> Frame | Health | None:
+        """Read a frame; a live camera that fails ends the session and keeps the recording."""
+        try:
+            return self._transport.next()
+        except TrackingError as error:
+            session = self._session
+            if session.options.salvage:
+                return None
+            if not session.source.live or not self._summary.frames:
+                raise
+            self._summary.lost = error
+            return None
+
+    def _process(self, frame: Frame) -> None:
+        """Process a frame, or leave it out."""
+        session, loop = self._session, self._loop
+        if not session.source.live and session.pace is None:  # then the frames drive the clock
+            self._start = frame.timestamp if self._start is None else self._start
+            session.clock.drive(frame.timestamp - self._start)
+        by_player = False
+        if not self._transport.is_shown(frame):
+            if session.recording is not None:  # which begins with the first frame that is shown
+                loop.leave_out(frame)
+                return
+            with uninterrupted():
+                step = loop.skip(frame)
+            self._update_screen()
+        elif session.pace is not None and not session.pace.wait(frame.timestamp):
+            loop.leave_out(frame)
+            self._summary.left_out += 1
             return
-        now = step.frame.timestamp
-        if inputs.clear:
-            recorder.event(START_OVER_EVENT, now)
-        if self._summary.frames == 0:
-            recorder.camera(self._session.playground.intrinsics, now)
-        recorder.write(step)
-        if step.controls.placed:
-            recorder.event(f"placed {step.controls.top_face}", now)
-        for gesture in step.controls.gestures:
-            recorder.event(gesture, now)
-        if recorder.problem is not None:
-            raise AppError(recorder.problem)
+        else:
+            by_player = loop.asked_by_player
+            session.wire.align(frame.timestamp - session.robot.clock())
+            with uninterrupted():
+                step = loop.step(frame)
+        self._transport.save_state(by_player)
+        if self._progress is not None:
+            self._progress(step)
+
+    def _update_screen(self) -> None:
+        """Let the player see where a seek is, and go on asking."""
+        now = time.monotonic()
+        if now - self._updated >= SEEKING_INTERVAL_S:
+            self._updated = now
+            self._session.screen.wait(None)
 
 
 class _CameraGaps:
     """Notes when the camera was lost and when it came back, in the summary and the recording."""
 
-    def __init__(self, summary: Summary, recorder: Recorder | None) -> None:
-        self._summary, self._recorder = summary, recorder
+    def __init__(self, session: OpenedSession, summary: Summary) -> None:
+        self._session, self._summary = session, summary
         self._start: float | None = None
 
     def begin(self) -> None:
@@ -177,44 +182,5 @@ class _CameraGaps:
             self._record(CAMERA_BACK, frame.timestamp)
 
     def _record(self, event: str, timestamp: float) -> None:
-        if self._recorder is not None:
-            self._recorder.event(event, timestamp)
-
-
-def _frames(session: OpenedSession, summary: Summary) -> Iterator[Frame | Health]:
-    """Yield the frames; those of a recording without a pace drive the session's clock.
-
-    While a live source has no frame, yield its health instead, again and again.
-    """
-    start: float | None = None
-    for frame in _readable_frames(session, summary):
-        if isinstance(frame, Health):
-            yield frame
-            continue
-        start = frame.timestamp if start is None else start
-        if not session.source.live and session.pace is None:
-            session.clock.drive(frame.timestamp - start)
-        yield frame
-
-
-def _readable_frames(session: OpenedSession, summary: Summary) -> Iterator[Frame | Health]:
-    """Yield what can be read; a live camera that fails ends the session and keeps the recording."""
-    try:
-        yield from _source_frames(session)
-    except TrackingError as error:
-        if session.options.salvage:
-            return
-        if not session.source.live or not summary.frames:
-            raise
-        summary.lost = error
-
-
-def _source_frames(session: OpenedSession) -> Iterator[Frame | Health]:
-    source = session.source
-    if not isinstance(source, LiveFrames):
-        yield from source
-        return
-    attended = session.options.windowed
-    timeout = ATTENDED_RECONNECT_TIMEOUT_S if attended else UNATTENDED_RECONNECT_TIMEOUT_S
-    while source.health.state != "closed":
-        yield source.wait(SCREEN_UPDATE_INTERVAL_S, timeout) or source.health
+        if self._session.recording is not None:
+            self._session.recording.event(event, timestamp)

@@ -91,6 +91,9 @@ class Summary:
         self.hopped = self.hopped or step.outcome.icon == "hop"
         if self.frames == 0:
             self.first = now
+        if now < self.last:  # the player went back: what comes is described again
+            self.states = [each for each in self.states if each[0] < now - self.first]
+            self.moods = [each for each in self.moods if each[0] < now - self.first]
         self.last = now
         self.frames += 1
         self.tracked_frames += step.state.visible

@@ -74,8 +74,20 @@ class SessionOptions:
     salvage: bool = False
     """Whether a source that breaks off counts as finished."""
 
-    start: str = "camera"
-    """The channel that a replay starts from: one of `START_STAGES`."""
+    stage: str = "camera"
+    """The channel from which on a replay computes: one of `START_STAGES`."""
+
+    start_s: float = 0.0
+    """Where to start in a recording, from its first frame [s]."""
+
+    end_s: float | None = None
+    """Where to end in it [s]; None for its end."""
+
+    loop: bool = False
+    """Whether a recording in a window begins again at its end."""
+
+    folder: Path | None = None
+    """Where snapshots and recordings go that a key makes; None for `default_folder`."""
 
     @property
     def cube(self) -> str | None:
@@ -90,7 +102,7 @@ class SessionOptions:
     @property
     def keeps_scenario(self) -> bool:
         """Whether the scenario stays: a recording holds one, and so does a replay of its stages."""
-        return self.record is not None or self.start != "camera"
+        return self.record is not None or self.stage != "camera"
 
     def metadata(self) -> dict[str, str]:
         """Return what a recording keeps of the settings: all that a replay needs."""

@@ -61,6 +61,10 @@ class SessionSound:
         for cue in cues:
             self.mixer.start(cue)
 
+    def restart(self) -> None:
+        """Forget the steps so far: the next one does not follow them, as after a seek."""
+        self._cues = None
+
     def close(self) -> None:
         """Fall silent; a second call does nothing."""
         if self._loudspeaker is not None:

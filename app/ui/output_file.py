@@ -8,10 +8,13 @@ from numpy.typing import NDArray
 
 from app.pipeline.scenario import Inputs
 from app.pipeline.step import RobotView, Step
+from app.ui.canvas import PICTURE_HEIGHT
 from app.ui.card_layout import CardLayout
 from app.ui.frame_sheet import FrameSheet
-from app.ui.notice import Notice
 from app.ui.overlay import overlay
+from app.ui.playback.cards import draw_ending
+from app.ui.playback.status import SessionStatus
+from app.ui.screen import NullScreen
 from app.ui.video_file import VIDEO_FORMATS, AudioSource, VideoFile
 from app.ui.virtual_robot import VirtualRobot
 
@@ -20,6 +23,9 @@ SHEET_SUFFIX = ".png"
 
 OUTPUT_SUFFIXES = (*VIDEO_FORMATS, SHEET_SUFFIX)
 """Suffixes of the files that a session can be written to."""
+
+ENDING_S, ENDING_RATE = 3.0, 10.0
+"""How long the card at the end of a video is shown [s], and its pictures a second."""
 
 
 class PictureWriter(Protocol):
@@ -35,7 +41,7 @@ class PictureWriter(Protocol):
         """Leave no file; does nothing after `close`."""
 
 
-class OutputFile:
+class OutputFile(NullScreen):
     """A `Screen` that writes its pictures to a file, with the cards over them.
 
     Leaving it as a context manager completes the file; leaving it with an error leaves no file.
@@ -59,8 +65,6 @@ class OutputFile:
         The file cannot be written.
     """
 
-    closed = False
-
     def __init__(
         self,
         path: Path,
@@ -71,11 +75,10 @@ class OutputFile:
     ) -> None:
         self._virtual_robot = virtual_robot
         self._layout = CardLayout()
+        self._last: tuple[NDArray[np.uint8], float] | None = None
+        self._moving = path.suffix.lower() != SHEET_SUFFIX
         self._writer: PictureWriter
-        if path.suffix.lower() == SHEET_SUFFIX:
-            self._writer = FrameSheet(path)
-        else:
-            self._writer = VideoFile(path, size, rate, sound)
+        self._writer = VideoFile(path, size, rate, sound) if self._moving else FrameSheet(path)
 
     def __enter__(self) -> Self:
         return self
@@ -91,10 +94,20 @@ class OutputFile:
         if step.picture is not None:
             picture = overlay(step.picture, step, robot, self._virtual_robot, self._layout)
             self._writer.write(picture, step.frame.timestamp)
+            self._last = picture, step.frame.timestamp
         return Inputs()
 
-    def wait(self, notice: Notice | None) -> None:
-        """Write nothing: the last picture lasts until the next one."""
+    def report(self, status: SessionStatus) -> None:
+        """Write the card at the end of a recording over its last picture, for some seconds."""
+        if status.ending is None or self._last is None or not self._moving:
+            return
+        picture, timestamp = self._last
+        self._last = None
+        scale = picture.shape[0] / PICTURE_HEIGHT
+        card = draw_ending(status.ending, "", picture.shape[1] / scale, scale)
+        card.blend_over(picture)
+        for number in range(1, round(ENDING_S * ENDING_RATE) + 1):
+            self._writer.write(picture, timestamp + number / ENDING_RATE)
 
     def close(self) -> None:
         """Complete the file."""

@@ -5,19 +5,33 @@ from typing import Protocol
 from app.pipeline.scenario import Inputs
 from app.pipeline.step import RobotView, Step
 from app.ui.notice import Notice
+from app.ui.playback.requests import SessionRequest
+from app.ui.playback.status import SessionStatus
 
 
 class Screen(Protocol):
     """Shows one picture a frame. Whoever opens it closes it; a second `close` does nothing."""
 
+    attended: bool
+    """Whether someone sits in front of it: it then stays open at the end of a recording."""
+
     def show(self, step: Step, robot: RobotView) -> Inputs:
-        """Show a step, and return the player's inputs."""
+        """Show a step, and return what the player asks of the scenario."""
 
     def wait(self, notice: Notice | None) -> None:
         """Process events while no frame comes, and show a notice if there is one.
 
         The next `show` returns keys that are pressed in the meantime.
         """
+
+    def take_requests(self) -> tuple[SessionRequest, ...]:
+        """Return what the player has asked of the session since the last call."""
+
+    def report(self, status: SessionStatus) -> None:
+        """Show a state of the session, from the next picture on."""
+
+    def notify(self, words: str) -> None:
+        """Show a notice for some seconds: one short line."""
 
     @property
     def closed(self) -> bool:
@@ -28,8 +42,9 @@ class Screen(Protocol):
 
 
 class NullScreen:
-    """Shows nothing: for benchmarks and for recordings without pictures."""
+    """Shows nothing, and nobody asks anything: for benchmarks and what is drawn for nobody."""
 
+    attended = False
     closed = False
 
     def show(self, step: Step, robot: RobotView) -> Inputs:
@@ -37,6 +52,16 @@ class NullScreen:
         return Inputs()
 
     def wait(self, notice: Notice | None) -> None:
+        """Do nothing."""
+
+    def take_requests(self) -> tuple[SessionRequest, ...]:
+        """Return nothing."""
+        return ()
+
+    def report(self, status: SessionStatus) -> None:
+        """Do nothing."""
+
+    def notify(self, words: str) -> None:
         """Do nothing."""
 
     def close(self) -> None:

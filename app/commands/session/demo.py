@@ -9,8 +9,10 @@ import typer
 from rich.console import Console
 
 from app.commands.output import OverwriteOption
+from app.commands.session.part import EndOption, LoopOption, StartOption
 from app.commands.session.play import (
     DEFAULT_CAMERA,
+    FolderOption,
     MuteOption,
     OutputOption,
     PersonalityOption,
@@ -24,6 +26,7 @@ from app.scenarios import SCENARIOS, scenario_cube
 from app.session import SessionOptions, session_info
 from app.session.bundled import bundled
 from app.ui.display import has_display
+from app.ui.playback.status import EndCard
 from tracking import FrameSource, TrackingError, open_source
 
 DEFAULT_VIDEO = Path("demo.mp4")
@@ -41,6 +44,10 @@ def demo(
     personality: PersonalityOption = None,
     mute: MuteOption = False,
     volume: VolumeOption = SessionOptions.volume,
+    start: StartOption = 0.0,
+    end: EndOption = None,
+    loop: LoopOption = False,
+    folder: FolderOption = None,
 ) -> None:
     """See it work: with your camera, with the bundled recording, or as a video.
 
@@ -51,32 +58,43 @@ def demo(
     Example: [cyan]cubeling demo follow --recording[/]
     """
     console = Console()
+    part = SessionOptions(
+        scenario=scenario,
+        source="",
+        personality=personality,
+        start_s=start,
+        end_s=end,
+        loop=loop,
+        folder=folder,
+        muted=mute,
+        volume=volume,
+    )
     if output is not None or not has_display():
         options = replace(
-            _recording_options(scenario, personality),
+            _of_recording(part),
             output=(output or DEFAULT_VIDEO).resolve(),
             overwrite=overwrite or output is None,
-            muted=mute,
-            volume=volume,
         )
         render(options, console)
         return
     with ExitStack() as closing:
-        camera = None if recording else _open_camera(closing, console)
+        camera = None
+        if not (recording or loop or start or end is not None):
+            camera = _open_camera(closing, console)
         if camera is None:
-            console.print(f"Playing the bundled recording of [bold]{scenario}[/]; Esc ends it.")
-            options = _recording_options(scenario, personality)
+            console.print(
+                f"Playing the bundled recording of [bold]{scenario}[/]; ? shows the keys, Esc ends."
+            )
+            options = _of_recording(part)
         else:
             console.print(
-                f"Playing [bold]{scenario}[/] with your camera; Esc ends it. No cube yet? "
+                f"Playing [bold]{scenario}[/] with your camera; ? shows the keys, Esc ends. "
+                "No cube yet? "
                 f"[cyan]cubeling cube {scenario_cube(scenario)}[/], "
                 "or [cyan]cubeling demo --recording[/]"
             )
-            options = SessionOptions(
-                scenario=scenario, source=DEFAULT_CAMERA, personality=personality
-            )
-        options = replace(options, muted=mute, volume=volume)
-        play_session(options, scenario, source=camera)
+            options = replace(part, source=DEFAULT_CAMERA)
+        play_session(options, scenario, source=camera, ending=end_card(scenario))
 
 
 def render(options: SessionOptions, console: Console) -> None:
@@ -88,17 +106,32 @@ def render(options: SessionOptions, console: Console) -> None:
         f"({session_info(Path(options.source)).duration:.0f} s) "
         f"is rendered to [bold]{options.output}[/], as there is no display or you asked for it"
     )
-    play_session(options, f"rendering {options.output.name}")
+    ending = end_card(options.scenario)
+    play_session(options, f"rendering {options.output.name}", ending=ending)
 
 
-def _recording_options(scenario: str, personality: str | None) -> SessionOptions:
+def end_card(scenario: str) -> EndCard:
+    """Return the card that says what to do after a demo."""
+    return EndCard(
+        f"That was {scenario}",
+        (
+            ("Print the cube", f"cubeling cube {scenario_cube(scenario)}"),
+            ("Play it with your camera", f"cubeling play {scenario}"),
+            ("Watch it again", f"cubeling demo {scenario} --recording"),
+        ),
+    )
+
+
+def _of_recording(options: SessionOptions) -> SessionOptions:
+    """Return the options with the bundled recording of the scenario as the source."""
+    scenario = options.scenario
     scenario_cube(scenario)  # refuses a misspelt name
     if scenario not in SCENARIOS:
         raise AppError(
             f"there is no recording of '{scenario}', which a package adds: take a camera, "
             f"or cubeling play {scenario} --source synthetic:companion (or follow, or sketch)"
         )
-    return SessionOptions(scenario=scenario, source=str(bundled(scenario)), personality=personality)
+    return replace(options, source=str(bundled(scenario)))
 
 
 def _open_camera(closing: ExitStack, console: Console) -> FrameSource | None:

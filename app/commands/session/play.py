@@ -88,6 +88,13 @@ CodecOption = Annotated[
         "(smaller)."
     ),
 ]
+FolderOption = Annotated[
+    Path | None,
+    typer.Option(
+        help="Where the keys S and R put snapshots and recordings; the folder Cubeling in your "
+        "home folder without it."
+    ),
+]
 OutputOption = Annotated[
     Path | None,
     typer.Option(
@@ -146,6 +153,7 @@ def play(
     mute: MuteOption = False,
     volume: VolumeOption = SessionOptions.volume,
     sounds: SoundsOption = None,
+    folder: FolderOption = None,
     mqtt: Broker = None,
     player: PlayerName = None,
     site: Site = DEFAULT_SITE,
@@ -176,6 +184,7 @@ def play(
         muted=mute,
         volume=volume,
         sounds=sounds,
+        folder=folder,
     )
     check_cubes(scenario, options.cubes)  # before a display is missing
     if options.windowed and not has_display():

@@ -13,12 +13,14 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from app.errors import AppError
 from app.pipeline.step import Step
-from app.running.opening import OpenedSession, open_session
+from app.running.opened_session import OpenedSession
+from app.running.opening import open_session
 from app.running.players import PlayerPublisher
 from app.running.runner import run
 from app.running.summary import Summary
 from app.session import SessionOptions, session_info
 from app.ui.notice import lens_notice
+from app.ui.playback.status import EndCard
 from tracking import FrameSource
 
 LINE_INTERVAL_S = 5.0
@@ -31,6 +33,7 @@ def play_session(
     *,
     source: FrameSource | None = None,
     player: PlayerPublisher | None = None,
+    ending: EndCard | None = None,
 ) -> None:
     """Open a session, run it, and print its summary and what was kept; see `open_session`.
 
@@ -38,9 +41,10 @@ def play_session(
     """
     console = Console()
     with ExitStack() as at_end:
-        with open_session(options, source=source, player=player) as session:
-            if options.record is not None:
-                at_end.callback(report_recording, options.record, console)
+        if options.record is not None:
+            at_end.callback(report_recording, options.record, console)
+        with open_session(options, source=source, player=player, ending=ending) as session:
+            at_end.callback(report_kept, session, console)
             if options.intrinsics is None and session.source.intrinsics is None:
                 console.print(
                     "[dim]The camera is not calibrated: a lens of 60° is guessed. "
@@ -61,6 +65,13 @@ def report_output(path: Path, summary: Summary, console: Console) -> None:
         console.print(kept, soft_wrap=True)
         raise KeyboardInterrupt
     console.print(f"[bold]{name}[/] is ready: {size:.1f} MB", soft_wrap=True)
+
+
+def report_kept(session: OpenedSession, console: Console) -> None:
+    """Print what the recordings hold that the player made by a key."""
+    for path in session.recorded:
+        if path != session.asked.record:
+            report_recording(path, console)
 
 
 def report_recording(path: Path, console: Console) -> None:
@@ -107,6 +118,8 @@ def _progress(
 ) -> Iterator[Callable[[Step], None]]:
     """Show progress: nothing next to a window, a bar in a terminal, lines anywhere else."""
     duration = session.source.duration
+    if duration is not None and session.options.end_s is not None:
+        duration = min(duration, session.options.end_s)
     if session.options.windowed:
         yield lambda step: None
     elif duration is None or not console.is_terminal:

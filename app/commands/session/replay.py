@@ -9,9 +9,11 @@ from rich.console import Console
 
 from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
 from app.commands.output import OverwriteOption
+from app.commands.session.part import EndOption, LoopOption, StartOption
 from app.commands.session.play import (
     CharacterOption,
     CodecOption,
+    FolderOption,
     MuteOption,
     OutputOption,
     PersonalityOption,
@@ -23,6 +25,7 @@ from app.commands.session.play import (
     VolumeOption,
 )
 from app.commands.session.progress import ProgressLines, play_session
+from app.errors import AppError
 from app.running.network import DEFAULT_SITE
 from app.running.replay_check import check_session
 from app.session import SessionOptions, session_info
@@ -44,7 +47,11 @@ def replay(
     mute: MuteOption = False,
     volume: VolumeOption = SessionOptions.volume,
     sounds: SoundsOption = None,
-    start: Annotated[
+    start: StartOption = 0.0,
+    end: EndOption = None,
+    loop: LoopOption = False,
+    folder: FolderOption = None,
+    stage: Annotated[
         str,
         typer.Option(
             "--from",
@@ -72,8 +79,9 @@ def replay(
 ) -> None:
     """Play a recorded session: in a window, to a video, or only to its summary.
 
-    Without a display and without --output, nothing is drawn and the summary is printed. With a
-    real robot, the session plays in real time.
+    In a window, Space pauses, the arrow keys and the timeline under the picture seek, and ? shows
+    all keys. Without a display and without --output, nothing is drawn and the summary is printed.
+    With a real robot, the session plays in real time.
 
     Example: [cyan]cubeling replay recordings/companion.mcap --output companion.mp4[/]
     """
@@ -96,9 +104,15 @@ def replay(
         sounds=sounds,
         fast=fast,
         salvage=salvage,
-        start=start,
+        stage=stage,
+        start_s=start,
+        end_s=end,
+        loop=loop,
+        folder=folder,
     )
     if check:
+        if start or end is not None:
+            raise AppError("--check compares a whole session: leave out --start and --end")
         result = check_session(
             session, options, ProgressLines(f"checking {session.name}", info.duration)
         )

@@ -29,6 +29,41 @@ out vec4 color;
 void main() { color = vec4(texture(picture, place).bgr, 1.0); }
 """
 
+KEY_NAMES = {
+    glfw.KEY_SPACE: "Space",
+    glfw.KEY_ESCAPE: "Esc",
+    glfw.KEY_ENTER: "Enter",
+    glfw.KEY_KP_ENTER: "Enter",
+    glfw.KEY_TAB: "Tab",
+    glfw.KEY_LEFT: "←",
+    glfw.KEY_RIGHT: "→",
+    glfw.KEY_UP: "↑",
+    glfw.KEY_DOWN: "↓",
+    glfw.KEY_HOME: "Home",
+    glfw.KEY_END: "End",
+    glfw.KEY_F1: "F1",
+    **{glfw.KEY_0 + digit: f"{digit}" for digit in range(10)},
+    **{glfw.KEY_KP_0 + digit: f"{digit}" for digit in range(10)},
+}
+"""Names of keys that are in the same place on every keyboard."""
+
+TYPED_KEYS = "?,."
+"""Characters that are handled as they are typed: their keys differ between keyboards."""
+
+
+def key_name(key: int, scan: int | None = None) -> str | None:
+    """Return the name of a key, one of GLFW's constants; None for one without a name here.
+
+    GLFW's constants name letters as on an American keyboard. With the scan code the letter is that
+    of the user's keyboard.
+    """
+    if key in KEY_NAMES:
+        return KEY_NAMES[key]
+    letter = glfw.get_key_name(key, scan) if scan is not None else None
+    if letter is None and glfw.KEY_A <= key <= glfw.KEY_Z:
+        letter = chr(key)
+    return letter.upper() if letter and letter.isalpha() else None
+
 
 class Surface:
     """A window with an OpenGL context, and pictures in it.
@@ -68,6 +103,9 @@ class Surface:
         glfw.make_context_current(self._window)
         glfw.swap_interval(0)  # a camera's frame must not wait for the screen's
         glfw.set_key_callback(self._window, self._on_key)
+        glfw.set_char_callback(self._window, self._on_character)
+        glfw.set_cursor_pos_callback(self._window, self._on_pointer)
+        glfw.set_mouse_button_callback(self._window, self._on_button)
         self.context = create_context(window=True)
         """Where a `Stage` for this window draws."""
         self._texture = self.context.texture(size, 3, alignment=1)
@@ -101,9 +139,7 @@ class Surface:
         wide, high = glfw.get_framebuffer_size(self._window)
         screen.viewport = (0, 0, wide, high)
         screen.clear(0.09, 0.10, 0.13)
-        scale = min(wide / width, high / height)
-        shown = (round(width * scale), round(height * scale))
-        screen.viewport = ((wide - shown[0]) // 2, (high - shown[1]) // 2, *shown)
+        screen.viewport = self._picture_place(width, height)
         self.context.disable(moderngl.DEPTH_TEST | moderngl.BLEND | moderngl.CULL_FACE)
         self._texture.use(0)
         self._quad.render(moderngl.TRIANGLE_STRIP, 4)
@@ -112,12 +148,28 @@ class Surface:
     def present(self) -> None:
         """Show what was drawn, and process events."""
         glfw.swap_buffers(self._window)
+        self.poll()
+
+    def poll(self) -> None:
+        """Process events."""
         glfw.poll_events()
 
-    def press(self, key: int) -> None:
+    def press(self, key: int, *, shift: bool = False, repeated: bool = False) -> None:
         """Handle a key press; `key` is one of GLFW's constants."""
-        if key in (glfw.KEY_ESCAPE, glfw.KEY_Q):
+        name = key_name(key)
+        if name is not None:
+            self.handle_key(name, shift=shift, repeated=repeated)
+
+    def handle_key(self, key: str, *, shift: bool = False, repeated: bool = False) -> None:
+        """Handle a key by its name; `repeated` while it is held."""
+        if key in ("Esc", "Q"):
             self.quit()
+
+    def handle_pointer(self, x: float, y: float) -> None:
+        """Handle the mouse at a place of the picture [px]."""
+
+    def handle_button(self, pressed: bool) -> None:
+        """Handle the left button of the mouse, where it was last."""
 
     def quit(self) -> None:
         """Ask for the window to be closed."""
@@ -151,9 +203,35 @@ class Surface:
     def release(self) -> None:
         """Release what else draws in the context, while there still is one."""
 
-    def _on_key(self, _window: Any, key: int, _scan: int, action: int, _mods: int) -> None:
-        if action == glfw.PRESS:
-            self.press(key)
+    def _picture_place(self, width: int, height: int) -> tuple[int, int, int, int]:
+        """Return left, bottom, width and height of a picture in the window [px]."""
+        wide, high = glfw.get_framebuffer_size(self._window)
+        scale = min(wide / width, high / height)
+        shown = (round(width * scale), round(height * scale))
+        return (wide - shown[0]) // 2, (high - shown[1]) // 2, *shown
+
+    def _on_key(self, _window: Any, key: int, scan: int, action: int, mods: int) -> None:
+        name = key_name(key, scan)
+        if name is not None and action in (glfw.PRESS, glfw.REPEAT):
+            shift = bool(mods & glfw.MOD_SHIFT)
+            self.handle_key(name, shift=shift, repeated=action == glfw.REPEAT)
+
+    def _on_character(self, _window: Any, code: int) -> None:
+        if chr(code) in TYPED_KEYS:
+            self.handle_key(chr(code))
+
+    def _on_pointer(self, _window: Any, x: float, y: float) -> None:
+        left, _, shown_width, shown_height = self._picture_place(*self._texture.size)
+        wide, high = glfw.get_framebuffer_size(self._window)
+        columns, rows = glfw.get_window_size(self._window)  # in other units on a fine screen
+        top = (high - shown_height) // 2
+        scale = self._texture.size[0] / max(1, shown_width)
+        x_px, y_px = x * wide / max(1, columns), y * high / max(1, rows)
+        self.handle_pointer((x_px - left) * scale, (y_px - top) * scale)
+
+    def _on_button(self, _window: Any, button: int, action: int, _mods: int) -> None:
+        if button == glfw.MOUSE_BUTTON_LEFT:
+            self.handle_button(action == glfw.PRESS)
 
     def _store_error(self, _code: int, text: bytes | str) -> None:
         self._error = text.decode(errors="replace") if isinstance(text, bytes) else text

@@ -1,65 +1,116 @@
-"""The live window: the picture with its cards, and a panel with details."""
+"""The live window: the picture with its cards, what the player asks for, and a panel."""
 
 import ctypes
 import time
 from collections import deque
+from dataclasses import replace
+from pathlib import Path
 
 # imgui-bundle contains the GLFW library that both must share, and sets its path on import.
 from imgui_bundle import imgui  # isort: skip
-import glfw
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pipeline.registry import SCENARIOS
+from app.pipeline.registry import scenario_names
 from app.pipeline.scenario import Inputs
 from app.pipeline.step import RobotView, Step
+from app.ui.canvas import PICTURE_HEIGHT
 from app.ui.card_layout import CardLayout
 from app.ui.notice import Notice
 from app.ui.overlay import interrupted, overlay, virtual_robot_side
+from app.ui.playback.layer import PlaybackLayer
+from app.ui.playback.requests import SessionRequest, WindowRequest
+from app.ui.playback.status import SessionStatus
 from app.ui.virtual_robot import VirtualRobot
 from app.ui.window.surface import Surface
 
-KEY_HELP = "Esc  quit      F  full screen      C  start over      H  this panel      "
-SCENARIO_KEYS = {glfw.KEY_1 + place: name for place, name in enumerate(SCENARIOS)}
-KEY_HELP += "   ".join(f"{place}  {name}" for place, name in enumerate(SCENARIOS, start=1))
+Picture = NDArray[np.uint8]
 
 
 class Window(Surface):
-    """A `Screen` on the desktop; see `Surface` for its parameters and errors."""
+    """A `Screen` on the desktop.
 
-    def __init__(self, size: tuple[int, int], title: str = "Cubeling") -> None:
-        super().__init__(size, title)
-        self._virtual_robot = VirtualRobot(self.context, virtual_robot_side(size[1]))
+    Parameters
+    ----------
+    size
+        Width and height of the pictures [px].
+    title
+        Text of the title bar.
+    folder
+        Where snapshots go.
+    strip
+        Height of what lies under the pictures, in units of the canvas: room for a timeline.
+
+    Raises
+    ------
+    AppError
+        There is no display, or its driver offers no OpenGL 3.3.
+    """
+
+    attended = True
+
+    def __init__(
+        self,
+        size: tuple[int, int],
+        title: str = "Cubeling",
+        folder: Path = Path(),
+        strip: float = 0.0,
+    ) -> None:
+        width, height = size
+        super().__init__((width, height + round(strip * height / PICTURE_HEIGHT)), title)
+        self._layer = PlaybackLayer(
+            scenario_names(),
+            folder,
+            {
+                WindowRequest.PANEL: self._toggle_panel,
+                WindowRequest.FULL_SCREEN: self.toggle_full_screen,
+                WindowRequest.QUIT: self.quit,
+            },
+        )
+        self._virtual_robot = VirtualRobot(self.context, virtual_robot_side(height))
         self._layout = CardLayout()
         self._start_panel()
-        self._shown_at: deque[float] = deque(maxlen=60)
         self._panel = False
-        self._clear = False
-        self._scenario = ""
-        self._last: NDArray[np.uint8] | None = None
+        self._shown_at: deque[float] = deque(maxlen=60)
+        self._shown: tuple[Step, RobotView] | None = None
+        self._picture: Picture | None = None
+        self._pointer = (0.0, 0.0)
 
     def show(self, step: Step, robot: RobotView) -> Inputs:
-        """Show a step, and return the keys that the player pressed."""
+        """Show a step, and return what the player asks of the scenario."""
         if self.closed:
             return Inputs()
-        if step.picture is not None:
-            self._last = overlay(step.picture, step, robot, self._virtual_robot, self._layout)
-            self.paint(self._last)
+        if self._shown is not None and step.frame.timestamp < self._shown[0].frame.timestamp:
+            self._layout = CardLayout()  # it goes on from an earlier frame
         self._shown_at.append(time.perf_counter())
-        self._draw_panel(step, robot)
-        self.present()
-        clear, self._clear = self._clear, False
-        scenario, self._scenario = self._scenario, ""
-        return Inputs(clear=clear, scenario=scenario)
+        self._shown = step, robot
+        self._redraw()
+        return self._layer.take_inputs()
 
     def wait(self, notice: Notice | None) -> None:
-        """Process events; show a notice over the last picture."""
+        """Process events; show a notice over the last picture, or what has changed over it."""
         if self.closed:
             return
-        if notice is not None and self._last is not None:
-            self.paint(interrupted(self._last, notice))
-            glfw.swap_buffers(self._window)
-        glfw.poll_events()
+        if notice is not None and self._picture is not None:
+            self.paint(self._layer.draw(interrupted(self._picture, notice)))
+            self._draw_over()
+        elif self._layer.changed or self._panel:
+            self._redraw()
+        else:
+            self.poll()
+
+    def take_requests(self) -> tuple[SessionRequest, ...]:
+        """Return what the player has asked of the session since the last call."""
+        return self._layer.take_requests()
+
+    def report(self, status: SessionStatus) -> None:
+        """Show another state of the session."""
+        self._layer.report(status)
+
+    def notify(self, words: str) -> None:
+        """Show a notice for some seconds."""
+        self._layer.notify(words)
 
     def release(self) -> None:
         """Release the panel and the virtual robot."""
@@ -67,6 +118,61 @@ class Window(Surface):
         imgui.backends.glfw_shutdown()
         imgui.destroy_context()
         self._virtual_robot.close()
+
+    def handle_key(self, key: str, *, shift: bool = False, repeated: bool = False) -> None:
+        """Handle a key, unless it is typed into the panel."""
+        if not imgui.get_io().want_text_input:
+            self._layer.press(key, shift=shift, repeated=repeated)
+
+    def handle_pointer(self, x: float, y: float) -> None:
+        """Handle the mouse."""
+        scale = self._picture_scale
+        self._pointer = x / scale, y / scale
+        self._layer.point(*self._pointer)
+
+    def handle_button(self, pressed: bool) -> None:
+        """Handle the left button of the mouse, unless it is on the panel."""
+        if not pressed:
+            self._layer.release()
+        elif not imgui.get_io().want_capture_mouse:
+            self._layer.click(*self._pointer)
+
+    @property
+    def _picture_scale(self) -> float:
+        """Pixels of a picture for a unit of the canvas."""
+        return 1.0 if self._picture is None else self._picture.shape[0] / PICTURE_HEIGHT
+
+    def _redraw(self) -> None:
+        """Draw the last step with everything over it, and show it."""
+        if self._shown is None:
+            self.poll()
+            return
+        step, robot = self._shown
+        if step.picture is not None:
+            step = mirrored(step) if self._layer.mirrored else step
+            assert step.picture is not None
+            self._fit_virtual_robot(step.picture.shape[0])
+            self._picture = overlay(
+                step.picture.copy(), step, robot, self._virtual_robot, self._layout
+            )
+            self.paint(self._layer.draw(self._picture))
+        self._draw_over()
+
+    def _draw_over(self) -> None:
+        """Draw the panel over what was painted, and show both."""
+        if self._shown is not None:
+            self._draw_panel(*self._shown)
+        self.present()
+
+    def _fit_virtual_robot(self, height: int) -> None:
+        """Draw the virtual robot as large as the pictures ask: another camera may have others."""
+        side = virtual_robot_side(height)
+        if side != self._virtual_robot.side:
+            self._virtual_robot.close()
+            self._virtual_robot = VirtualRobot(self.context, side)
+
+    def _toggle_panel(self) -> None:
+        self._panel = not self._panel
 
     def _start_panel(self) -> None:
         # imgui chains to the callbacks that are already set.
@@ -101,18 +207,16 @@ class Window(Surface):
         imgui.text(f"heading   {np.degrees(controls.heading):+.0f} deg")
         imgui.text(f"character {step.posed.state}   speed {step.posed.speed:.2f}")
         imgui.text(f"robot     {robot.link}   {robot.label} {robot.mood:+.2f}")
-        imgui.separator()
-        imgui.text(KEY_HELP)
         imgui.end()
 
-    def press(self, key: int) -> None:
-        """Handle a key press; `key` is one of GLFW's constants."""
-        super().press(key)
-        if key == glfw.KEY_H:
-            self._panel = not self._panel
-        elif key == glfw.KEY_C:
-            self._clear = True
-        elif key in SCENARIO_KEYS:
-            self._scenario = SCENARIO_KEYS[key]
-        elif key == glfw.KEY_F:
-            self.toggle_full_screen()
+
+def mirrored(step: Step) -> Step:
+    """Return a step whose picture is as in a mirror, to draw cards over it that can be read."""
+    if step.picture is None:
+        return step
+    width = float(step.picture.shape[1])
+    picture = np.asarray(cv2.flip(step.picture, 1), np.uint8)
+    subjects = tuple(
+        (width - right, top, width - left, bottom) for left, top, right, bottom in step.subjects
+    )
+    return replace(step, picture=picture, subjects=subjects)

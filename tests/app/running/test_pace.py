@@ -117,7 +117,7 @@ def test_what_is_written_or_checked_has_every_frame(play_slowly, settings, tmp_p
 
 
 def test_a_replay_from_a_later_stage_keeps_messages_and_frames_together(play_slowly, short_session):
-    steps, _ = play_slowly(start="controls")
+    steps, _ = play_slowly(stage="controls")
     assert len(steps) < 30
     for step in steps:
         assert step.controls.timestamp == step.frame.timestamp

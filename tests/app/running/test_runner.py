@@ -8,8 +8,8 @@ import pytest
 from app.running import opening
 from app.running.clock import Pace, SessionClock
 from app.running.opening import open_session
-from app.running.robots import WireRecorder
 from app.running.runner import run
+from app.running.wire_tap import WireTap
 from app.session import SessionOptions, messages, session_info
 from robot import SimulatedPort
 from tracking import TrackingError, open_source
@@ -116,21 +116,41 @@ def test_the_wire_is_recorded_with_the_timestamps_of_the_frames(run_recorded, tm
     assert min(wire) < frames[0] + 0.5
 
 
+class Recorder:
+    """Keeps the bytes of the wire that it is given."""
+
+    def __init__(self):
+        self.wires = []
+
+    def wire(self, *what):
+        self.wires.append(what)
+
+
 def test_bytes_before_the_first_frame_wait_for_it():
-    class Recorder:
-        def __init__(self):
-            self.wires = []
-
-        def wire(self, *what):
-            self.wires.append(what)
-
-    recorder = Recorder()
-    record = WireRecorder(recorder)  # type: ignore[arg-type]  # it only calls `wire`
-    record("tx", b"a", 1.0)
+    recorder, wire = Recorder(), WireTap()
+    wire.record_to(recorder)  # type: ignore[arg-type]  # it only calls `wire`
+    wire("tx", b"a", 1.0)
     assert not recorder.wires
-    record.align(100.0)
-    record("rx", b"b", 2.0)
+    wire.align(100.0)
+    wire("rx", b"b", 2.0)
     assert recorder.wires == [("tx", b"a", 101.0), ("rx", b"b", 102.0)]
+    wire.hold(102.5)  # a pause of 30 s
+    wire("tx", b"c", 20.0)
+    wire.align(70.0)
+    wire("rx", b"d", 33.0)
+    assert recorder.wires[2:] == [("tx", b"c", 102.5), ("rx", b"d", 103.0)]
+
+
+def test_a_recording_that_begins_later_has_the_handshake_too():
+    recorder, wire = Recorder(), WireTap()
+    wire("tx", b"hello", 1.0)
+    wire.align(100.0)
+    wire("tx", b"not recorded", 2.0)
+    wire.record_to(recorder, since=110.0)  # type: ignore[arg-type]
+    wire("rx", b"b", 11.0)
+    wire.record_to(None)
+    wire("rx", b"not recorded", 12.0)
+    assert recorder.wires == [("tx", b"hello", 110.0), ("rx", b"b", 111.0)]
 
 
 def test_a_driven_clock_shows_the_session_and_never_goes_back():

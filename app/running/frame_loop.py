@@ -1,0 +1,93 @@
+"""Processing the frames of a session: each is tracked, drawn, shown and recorded."""
+
+import time
+
+from app.pipeline.scenario import Inputs
+from app.pipeline.step import ReplayInputs, Step
+from app.running.opened_session import OpenedSession
+from app.running.summary import Summary
+from tracking import Frame
+
+
+class FrameLoop:
+    """Processes, shows and records one frame after the other."""
+
+    def __init__(self, session: OpenedSession, summary: Summary) -> None:
+        self._session, self._summary = session, summary
+        self._inputs = Inputs()
+        self._start_over = False
+        self._index = 0
+        self._replay: ReplayInputs | None = None
+        self._hidden: Step | None = None
+        self._shown_index = 0
+
+    def step(self, frame: Frame) -> Step:
+        """Process one frame and show it."""
+        session = self._session
+        began = time.perf_counter()
+        self._read_recorded(frame)
+        inputs = Inputs(clear=True) if self._take_start_over() else self._inputs
+        session.change_scenario(inputs.scenario)
+        if session.recording is not None:
+            frame = session.recording.encode(frame)
+        step = session.playground.step(frame, inputs, self._replay)
+        self._show(step, inputs, began)
+        return step
+
+    def skip(self, frame: Frame) -> Step:
+        """Process one frame without drawing and showing it."""
+        session = self._session
+        self._read_recorded(frame)
+        inputs = Inputs(clear=self._take_start_over())
+        self._hidden = session.playground.step(frame, inputs, self._replay, drawn=False)
+        if session.pace is None:  # else the robot lives in real time, and misses what is skipped
+            session.robot.feel(self._hidden.emotion)
+        return self._hidden
+
+    def show_skipped(self) -> None:
+        """Show the last frame that was skipped, if none was shown after it."""
+        if self._hidden is not None:
+            self._show(self._session.playground.drawn(self._hidden), Inputs(), time.perf_counter())
+
+    def leave_out(self, frame: Frame) -> None:
+        """Process nothing; a player who started over in this frame does so in the next one."""
+        self._read_recorded(frame)
+
+    @property
+    def asked_by_player(self) -> bool:
+        """Whether the player asked something of the scenario in the frame that was shown last."""
+        return self._inputs != Inputs()
+
+    def _show(self, step: Step, inputs: Inputs, began: float) -> None:
+        session = self._session
+        follows = self._hidden is None and step.frame.index >= self._shown_index
+        self._hidden, self._shown_index = None, step.frame.index
+        # Read the view first: after `feel`, the link's thread holds the robot's lock for a moment.
+        view = session.robot.view()
+        session.robot.feel(step.emotion)
+        if session.player is not None:
+            session.player.publish(step.command, step.emotion)
+        seconds = time.perf_counter() - began
+        if session.recording is not None:
+            session.recording.write(step, inputs)
+        self._inputs = session.screen.show(step, view)
+        if session.sound is not None:
+            if not follows:
+                session.sound.restart()
+            character = session.playground.character
+            session.sound.play(step, character, started_over=inputs.clear)
+        self._summary.add(step, view, seconds)
+
+    def _take_start_over(self) -> bool:
+        start_over, self._start_over = self._start_over, False
+        return start_over
+
+    def _read_recorded(self, frame: Frame) -> None:
+        """Read what a replay knows of a frame."""
+        session = self._session
+        if frame.index < self._index:  # the player went back
+            self._start_over = False
+        self._index = frame.index
+        self._start_over |= frame.timestamp in session.start_overs
+        if session.replay_inputs is not None:
+            self._replay = next(session.replay_inputs, None)

@@ -1,0 +1,168 @@
+"""What is opened for a session, and what may be exchanged in it while it runs."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from affect import AffectError
+from app.errors import AppError
+from app.pipeline.other_cube import cube_for
+from app.pipeline.playground import Playground
+from app.pipeline.step import ReplayInputs
+from app.running.clock import Pace, SessionClock
+from app.running.players import PlayerPublisher
+from app.running.recording import SessionRecording
+from app.running.robots import RobotLine
+from app.running.wire_tap import WireTap
+from app.scenarios import Scenario, find_scenario, make_scenario
+from app.session import SessionOptions
+from app.sound import SessionSound
+from app.ui.playback.status import EndCard
+from app.ui.screen import Screen
+from characters import CharacterError
+from tracking import CubeModel, FrameSource, TrackingError
+
+
+@dataclass
+class OpenedSession:
+    """What is opened for a session. `open_session` closes all of it.
+
+    The player may exchange some parts while it runs.
+    """
+
+    asked: SessionOptions
+    """What the user asked for."""
+
+    options: SessionOptions
+    """The same with what the player has chosen since."""
+
+    source: FrameSource
+    """Where the frames come from."""
+
+    playground: Playground
+    """The pipeline that processes them."""
+
+    screen: Screen
+    """Where the pictures go."""
+
+    sound: SessionSound | None
+    """What is heard; None without pictures, and for a file without sound."""
+
+    robot: RobotLine
+    """The robot that shows the emotions, or a stand-in."""
+
+    wire: WireTap
+    """The robot's bytes."""
+
+    clock: SessionClock
+    """The time that the robot lives by."""
+
+    player: PlayerPublisher | None
+    """Publishes the character's actions and emotions, or None."""
+
+    pace: Pace | None
+    """Plays a recording at the speed at which it was recorded; None for every frame at once."""
+
+    start_overs: frozenset[float]
+    """In a replay, timestamps of the frames in which the player started over [s]."""
+
+    replay_inputs: Iterator[ReplayInputs] | None
+    """In a replay that does not start from the camera, the recorded messages of each frame."""
+
+    ending: EndCard | None
+    """The card at the end of a recording; None for a short one, in a window only."""
+
+    recording: SessionRecording | None = None
+    """Records the session, or None."""
+
+    recorded: list[Path] = field(default_factory=list)
+    """The recordings that have been completed before the end of the session."""
+
+    @property
+    def keeps_scenario(self) -> bool:
+        """Whether scenario, character and camera stay: a recording holds one of each."""
+        return self.recording is not None or self.options.keeps_scenario
+
+    def change_scenario(self, name: str) -> bool:
+        """Play another scenario, or the present one with another cube; return whether it changed.
+
+        Do nothing for "", if the scenario is to stay, or if there is nothing to change.
+        """
+        playground = self.playground
+        in_view = playground.other_cube
+        if not name or (name == playground.scenario.name and in_view is None):
+            return False
+        if self.keeps_scenario:
+            self.screen.notify(f"{self.why_it_stays}: {name} is not played")
+            return False
+        try:
+            cube = cube_for(find_scenario(name), in_view, playground.known_cubes)
+            if name == playground.scenario.name and cube is not in_view:
+                return False
+            playground.play(scenario_of(self.options, name, cube), cube)
+        except (AppError, AffectError, CharacterError, TrackingError) as error:
+            self.screen.notify(str(error))
+            return False
+        # A recording that begins now names the cube as the user did.
+        known = zip(playground.known_cubes, self.asked.cubes, strict=True)
+        first = next((name for model, name in known if model is cube), cube.name)
+        others = (each for each in self.asked.cubes if each != first)
+        self.options = replace(self.options, scenario=name, cubes=(first, *others), character=None)
+        self.screen.notify(f"Playing {name}")
+        return True
+
+    @property
+    def why_it_stays(self) -> str:
+        """Why `keeps_scenario`, as the beginning of a sentence."""
+        if self.recording is None:
+            return "A replay from a later channel stays as it was recorded"
+        return "A recording stays as it began"
+
+    def restart(self) -> None:
+        """Play the present scenario from its beginning, with the present cube and character."""
+        playground = self.playground
+        scenario = scenario_of(self.options, self.options.scenario, playground.cube)
+        playground.play(scenario, playground.cube, playground.character)
+
+    def exchange_robot(self, robot: RobotLine, wire: WireTap, now: float) -> None:
+        """Let another robot show the emotions, from a timestamp on [s]."""
+        self.robot.close()
+        self.wire.record_to(None)
+        self.robot, self.wire = robot, wire
+        if self.recording is not None:
+            self.recording.follow_wire(wire, now)
+
+    def record(self, path: Path, since: float | None = None) -> None:
+        """Record from the next frame on; `since` is the timestamp of the last one [s].
+
+        Raises AppError if the file cannot be written.
+        """
+        self.recording = SessionRecording(
+            path, self.options, self.playground, self.source, self.wire, since
+        )
+        self.playground.fixed = True
+
+    def end_recording(self) -> None:
+        """Complete the recording, if there is one."""
+        if self.recording is not None:
+            self.recording.close()
+            self.recorded.append(self.recording.path)
+            self.recording = None
+            self.playground.fixed = self.options.keeps_scenario or not self.options.windowed
+
+    def close(self) -> None:
+        """Close what may have been exchanged."""
+        self.robot.close()
+        self.end_recording()
+        self.source.close()
+
+
+def scenario_of(options: SessionOptions, name: str, cube: CubeModel | None = None) -> Scenario:
+    """Make a scenario with the user's settings; None for its own cube."""
+    return make_scenario(
+        name,
+        cube,
+        speed_map=options.speed_map,
+        turns=options.turns,
+        personality=options.personality,
+    )

@@ -1,0 +1,112 @@
+"""What the player asks of a session, carried out."""
+
+from collections.abc import Callable
+from datetime import datetime
+from typing import Any
+
+from app.errors import AppError
+from app.output_path import dated_file, default_folder, short_path
+from app.running.choices import Choices
+from app.running.opened_session import OpenedSession
+from app.running.transport import Transport
+from app.ui.playback.requests import (
+    Choose,
+    ListChoices,
+    Pause,
+    Record,
+    Seek,
+    SeekTo,
+    SessionRequest,
+    StepFrames,
+)
+from app.ui.playback.status import EndCard, SessionStatus
+
+
+class PlayerControls:
+    """Carries out the player's requests between two frames, and tells the screen the result."""
+
+    def __init__(self, session: OpenedSession, transport: Transport) -> None:
+        self._session, self._transport = session, transport
+        self._choices = Choices(session, transport)
+
+    def update(self) -> None:
+        """Carry out what the player has asked for, and report the state of the session."""
+        for request in self._session.screen.take_requests():
+            HANDLERS[type(request)](self, request)
+        self._choices.update()
+        self.report()
+
+    def report(self) -> None:
+        """Tell the screen the state of the session."""
+        session, transport = self._session, self._transport
+        recording = session.recording
+        by_key = recording is not None and recording.path != session.options.record
+        self._session.screen.report(
+            SessionStatus(
+                scenario=session.options.scenario,
+                paused=transport.paused or transport.ended,
+                seeking=transport.seeking,
+                recording=recording.seconds if recording is not None and by_key else None,
+                position=transport.position,
+                ending=self._ending if transport.ended else None,
+                choices=self._choices.found,
+                looking=self._choices.looking,
+            )
+        )
+
+    def close(self) -> None:
+        """Leave alone what is still being opened."""
+        self._choices.close()
+
+    @property
+    def _ending(self) -> EndCard | None:
+        session = self._session
+        if session.ending is None and session.screen.attended:
+            return EndCard("The end")
+        return session.ending
+
+    def _record(self, _: Record) -> None:
+        """Begin a recording, or end it."""
+        session = self._session
+        if session.recording is None:
+            self._begin_recording()
+        elif session.recording.path == session.options.record:
+            session.screen.notify("The whole session is being recorded")
+        else:
+            seconds = session.recording.seconds
+            session.end_recording()
+            played = f"cubeling replay {short_path(session.recorded[-1])}"
+            session.screen.notify(f"Recorded {seconds:.0f} s. Play it: {played}")
+
+    def _begin_recording(self) -> None:
+        session, transport = self._session, self._transport
+        options = session.options
+        if options.stage != "camera":
+            session.screen.notify("Only a replay from the camera on can be recorded")
+            return
+        if transport.timestamp is None or transport.ended:
+            session.screen.notify("A recording begins while something plays")
+            return
+        try:
+            folder = options.folder or default_folder()
+            path = dated_file(folder, options.scenario, ".mcap", datetime.now())
+            # A replay begins with the first recorded frame, so the scenario does so too.
+            session.restart()
+            session.record(path, transport.timestamp)
+        except AppError as error:
+            session.screen.notify(f"Nothing is recorded: {error}")
+            return
+        transport.save_state(by_player=True)
+        session.screen.notify(f"Recording from the start: {short_path(path)}")
+
+
+HANDLERS: dict[type[SessionRequest], Callable[[PlayerControls, Any], None]] = {
+    Pause: lambda controls, _: controls._transport.toggle_pause(),
+    Seek: lambda controls, request: controls._transport.seek_by(request.seconds),
+    SeekTo: lambda controls, request: controls._transport.seek(request.position),
+    StepFrames: lambda controls, request: controls._transport.step_frames(request.count),
+    Record: PlayerControls._record,
+    ListChoices: lambda controls, _: controls._choices.look(),
+    Choose: lambda controls, request: controls._choices.choose(request),
+}
+"""What carries out each kind of request: a new one is registered here."""

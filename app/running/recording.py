@@ -1,0 +1,99 @@
+"""A recording of a session, from its first frame or from a later one on."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from app.errors import AppError
+from app.pipeline.playground import Playground
+from app.pipeline.scenario import Inputs
+from app.pipeline.step import Step
+from app.running.wire_tap import WireTap
+from app.session import START_OVER_EVENT, Recorder, SessionOptions, frame_encoder
+from robot.contract.closeable import Closeable
+from tracking import Frame, FrameSource
+
+
+class SessionRecording(Closeable):
+    """Records a session whose scenario has just begun, so that a replay makes the same messages.
+
+    Parameters
+    ----------
+    path
+        The .mcap file.
+    options
+        The settings as they are now.
+    playground
+        The pipeline; its scenario, cube and character stay until `close`.
+    source
+        Where the frames come from.
+    wire
+        The robot's bytes.
+    since
+        Timestamp of the last frame before the recording [s]; None at the start of the source.
+
+    Raises
+    ------
+    AppError
+        The file cannot be written.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        options: SessionOptions,
+        playground: Playground,
+        source: FrameSource,
+        wire: WireTap,
+        since: float | None = None,
+    ) -> None:
+        self.path = path
+        self._playground, self._wire = playground, wire
+        self._from_within = since is not None
+        self._first: float | None = None
+        self._last = 0.0
+        self._encode = frame_encoder(options.codec, source.size, source.rate)
+        named = replace(options, cubes=options.cubes or (playground.cube.name,))
+        self._recorder = Recorder(path, {**named.metadata(), "rate": f"{source.rate:g}"})
+        wire.record_to(self._recorder, since or 0.0)
+
+    @property
+    def seconds(self) -> float:
+        """From the first to the last recorded frame [s]."""
+        return 0.0 if self._first is None else self._last - self._first
+
+    def encode(self, frame: Frame) -> Frame:
+        """Return a frame with the bytes to record, and the picture that they decode to."""
+        if self._from_within and frame.encoding == "h264":
+            # Its packet builds on others, before the recording.
+            frame = replace(frame, encoded=None, encoding="")
+        return self._encode(frame)
+
+    def write(self, step: Step, inputs: Inputs) -> None:
+        """Record a step, whose frame `encode` returned, and what the player asked for in it."""
+        now = self._last = step.frame.timestamp
+        if inputs.clear:
+            self.event(START_OVER_EVENT, now)
+        if self._first is None:
+            self._first = now
+            self._recorder.camera(self._playground.intrinsics, now)
+        self._recorder.write(step)
+        if step.controls.placed:
+            self.event(f"placed {step.controls.top_face}", now)
+        for gesture in step.controls.gestures:
+            self.event(gesture, now)
+        if self._recorder.problem is not None:
+            raise AppError(self._recorder.problem)
+
+    def follow_wire(self, wire: WireTap, since: float) -> None:
+        """Record the bytes of another robot from a timestamp on [s]."""
+        self._wire = wire
+        wire.record_to(self._recorder, since)
+
+    def event(self, name: str, timestamp: float) -> None:
+        """Record an event."""
+        self._recorder.event(name, timestamp)
+
+    def close(self) -> None:
+        """Complete the file; without a frame, leave none. A second call does nothing."""
+        self._wire.record_to(None)
+        self._recorder.close()

@@ -1,0 +1,221 @@
+"""Where a session is in its source: it plays, is paused, seeks, or has come to its end."""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.running.frame_feed import FrameFeed
+from app.running.opened_session import OpenedSession
+from app.running.opening import is_seekable
+from app.running.saved_states import SavedStates
+from app.session import events
+from app.ui.playback.status import Mark, Position
+from tracking import Frame, Health, LiveFrames
+
+
+@dataclass(frozen=True)
+class _Target:
+    """The frame that a seek goes to: the first one that both numbers allow."""
+
+    timestamp: float = -math.inf
+    """Its timestamp at least [s]."""
+
+    index: int = 0
+    """Its index in the source at least."""
+
+    def is_reached(self, frame: Frame) -> bool:
+        return frame.timestamp >= self.timestamp and frame.index >= self.index
+
+
+class Transport:
+    """Returns the frames of a session, and moves in them.
+
+    In a recording the state after a seek is that of all frames before it: the pipeline goes on from
+    a saved state, or from the start, and draws nothing until it is there. What a player asked of
+    the scenario is forgotten when the player goes back.
+    """
+
+    def __init__(self, session: OpenedSession) -> None:
+        self._session = session
+        self._feed = FrameFeed(session)
+        self._states = SavedStates()
+        self._changed_by_player = False
+        self._target: _Target | None = None
+        self._first: float | None = None
+        self._marks: tuple[Mark, ...] | None = None
+        self._start = session.options.start_s
+        self._end = session.options.end_s or math.inf
+        self.seekable = is_seekable(session.source)
+        """Whether the source is a recording that can be played from within."""
+        self.paused = False
+        """Whether no frame comes until the player goes on."""
+        self.ended = False
+        """Whether the recording has come to its end, and the player has not sought since."""
+
+    @property
+    def idle(self) -> bool:
+        """Whether nothing happens until the player asks for it."""
+        return (self.paused or self.ended) and self._target is None
+
+    @property
+    def seeking(self) -> bool:
+        """Whether frames are processed and not shown, until the one that is sought."""
+        return self._target is not None
+
+    @property
+    def timestamp(self) -> float | None:
+        """That of the last frame [s]; None before the first one."""
+        return None if self._feed.last is None else self._feed.last.timestamp
+
+    def next(self) -> Frame | Health | None:
+        """Return the next frame, a live source's health while it has none, or None at the end."""
+        frame = self._feed.next()
+        if not isinstance(frame, Frame):
+            return frame
+        if self._first is None:
+            self._first = frame.timestamp
+            if self._start > 0.0:
+                self._target = _Target(self._first + self._start)
+        return None if frame.timestamp - self._first > self._end else frame
+
+    def is_shown(self, frame: Frame) -> bool:
+        """Return whether a frame is to be shown: not if it is before the one that is sought."""
+        if self._target is None:
+            return True
+        if not self._target.is_reached(frame):
+            return False
+        self._arrive()
+        return True
+
+    def finish(self) -> bool:
+        """Handle the end of the source; return whether the session goes on all the same."""
+        session = self._session
+        self._arrive()
+        if isinstance(session.source, LiveFrames):
+            return False
+        self.ended = True
+        if session.screen.attended:
+            session.end_recording()  # it is complete, whatever happens to the window
+            if session.options.loop:
+                self.toggle_pause()
+        return session.screen.attended
+
+    def pause(self, paused: bool) -> None:
+        """Pause, or go on."""
+        if paused == self.paused:
+            return
+        self.paused = paused
+        self._restart_pace()
+        if self.timestamp is None:
+            return
+        if paused:
+            self._session.wire.hold(self.timestamp)
+        else:
+            self._feed.close_gap()
+        if self._session.recording is not None:
+            self._session.recording.event("paused" if paused else "resumed", self.timestamp)
+
+    def toggle_pause(self) -> None:
+        """Pause or go on; at the end, begin again."""
+        if self.ended:
+            self.pause(False)
+            self.seek(self._start)
+        else:
+            self.pause(not self.paused)
+
+    def seek(self, position: float) -> None:
+        """Go to a time of the recording, from its first frame [s]; within the part that plays."""
+        if self._may_seek() and self._first is not None:
+            position = min(max(position, self._start), self._end, self._length)
+            self._go(_Target(timestamp=self._first + position))
+
+    def seek_by(self, seconds: float) -> None:
+        """Go back or ahead from the last frame, or from where a seek goes [s]."""
+        now = self.timestamp
+        if self._target is not None and math.isfinite(self._target.timestamp):
+            now = self._target.timestamp
+        self.seek((now or 0.0) - (self._first or 0.0) + seconds)
+
+    def step_frames(self, count: int) -> None:
+        """Pause, and show the frame that is so many frames ahead."""
+        if self._may_seek() and self._feed.last is not None:
+            self.pause(True)
+            index = max(0, self._feed.last.index + count)
+            self._go(_Target((self._first or 0.0) + self._start, index))
+
+    def save_state(self, by_player: bool) -> None:
+        """Save the pipeline's state now and then; `by_player` if the player has changed it."""
+        if by_player:
+            self._changed_by_player = True
+            self._states.clear()
+        last = self._feed.last
+        if last is not None and self._saves_states and not self._changed_by_player:
+            self._states.save(self._session.playground, last)
+
+    def follow_source(self) -> None:
+        """Go on with another camera, without a gap in the timestamps."""
+        self._feed.close_gap()
+
+    @property
+    def position(self) -> Position | None:
+        """Where the session is in its recording; None without one, and before its first frame."""
+        if not self.seekable or self._first is None or self.timestamp is None:
+            return None
+        target = None
+        if self._target is not None and math.isfinite(self._target.timestamp):
+            target = self._target.timestamp - self._first
+        if self._marks is None:
+            self._marks = self._read_marks(self._first)
+        return Position(
+            now=self.timestamp - self._first,
+            length=self._length,
+            start=self._start,
+            end=min(self._end, self._length),
+            target=target,
+            marks=self._marks,
+        )
+
+    @property
+    def _saves_states(self) -> bool:
+        return self.seekable and self._session.screen.attended
+
+    @property
+    def _length(self) -> float:
+        return self._session.source.duration or 0.0
+
+    def _may_seek(self) -> bool:
+        session = self._session
+        if not self.seekable:
+            session.screen.notify("Only in a recording there are other places to go to")
+        elif session.recording is not None:
+            session.screen.notify(f"{session.why_it_stays}: no seeking in it")
+        return self.seekable and session.recording is None
+
+    def _go(self, target: _Target) -> None:
+        """Seek a frame: from here, or from a saved state before it if that is better."""
+        assert self._feed.last is not None, "something was played"
+        self.ended = False
+        saved = self._states.last_before(target.timestamp, target.index)
+        index = 0 if saved is None else saved.index + 1
+        if target.is_reached(self._feed.last) or index > self._feed.last.index + 1:
+            self._feed.rewind(index)
+            if saved is None:
+                self._session.restart()
+                self._changed_by_player = False
+            else:
+                self._session.playground.restore(saved.checkpoint)
+        self._target = target
+
+    def _arrive(self) -> None:
+        self._target = None
+        self._restart_pace()
+
+    def _restart_pace(self) -> None:
+        if self._session.pace is not None:
+            self._session.pace.restart()
+
+    def _read_marks(self, first: float) -> tuple[Mark, ...]:
+        """Return what happened in the recording, by its events."""
+        source = self._session.options.source
+        found = events(Path(source)) if source.endswith(".mcap") else []
+        return tuple(Mark(time - first, event) for time, event in found)

@@ -1,0 +1,65 @@
+"""The bytes on the robot's wire, for whatever recording there is."""
+
+import threading
+
+from app.session import Recorder
+
+
+class WireTap:
+    """Passes the robot's bytes to a recording, with the timestamps of the frames.
+
+    The link's thread calls it. The difference between the clock of the robot and the timestamps of
+    the frames is known from the first frame on. The bytes before it, such as the handshake, are
+    kept: every recording begins with them, so that it can be decoded.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._handshake: list[tuple[str, bytes, float]] = []
+        self._aligned = False
+        self._offset: float | None = None
+        self._held = 0.0
+        self._recorder: Recorder | None = None
+
+    def __call__(self, direction: str, data: bytes, time: float) -> None:
+        """Take bytes of one direction ("tx", "rx") at a time of the robot's clock [s]."""
+        with self._lock:
+            if not self._aligned:
+                self._handshake.append((direction, data, time))
+            elif self._recorder is not None:
+                self._recorder.wire(direction, data, self._timestamp(time))
+
+    def align(self, offset: float) -> None:
+        """Set what to add to the clock's time to get that of the frames.
+
+        Only the first call counts, and the first one after `hold`.
+        """
+        with self._lock:
+            if self._offset is not None:
+                return
+            self._offset = offset
+            if not self._aligned:
+                self._aligned = True
+                self._write_handshake(0.0)
+
+    def hold(self, timestamp: float) -> None:
+        """Let bytes until the next `align` have this timestamp of a frame: a pause [s]."""
+        with self._lock:
+            if self._aligned:
+                self._held, self._offset = timestamp, None
+
+    def record_to(self, recorder: Recorder | None, since: float = 0.0) -> None:
+        """Pass the bytes to a recording from a timestamp on [s], or to none."""
+        with self._lock:
+            self._recorder = recorder
+            if self._aligned:
+                self._write_handshake(since)
+
+    def _write_handshake(self, since: float) -> None:
+        if self._recorder is not None:
+            for direction, data, time in self._handshake:
+                self._recorder.wire(direction, data, max(since, self._timestamp(time)))
+
+    def _timestamp(self, time: float) -> float:
+        """Return the timestamp of a time of the robot's clock [s]."""
+        return self._held if self._offset is None else max(0.0, time + self._offset)

@@ -1,0 +1,232 @@
+"""Pauses, seeks, the end and parts of recordings, without a window."""
+
+import itertools
+import math
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.errors import AppError
+from app.moods.robot_traces import read_robot_traces
+from app.pipeline.playground import Playground
+from app.running.opening import open_session
+from app.running.replay_check import check_session
+from app.running.runner import run
+from app.session import SessionOptions, events, messages, session_info
+from app.ui.playback.requests import Pause, Record, Seek, SeekTo, StepFrames
+from robot.protocol.timing import FAILSAFE_AFTER as FAILSAFE_S
+from tests.app.running.player import Player
+from tracking import Health, open_source
+
+
+@pytest.fixture
+def play(short_session, tmp_path):
+    """Play the short session, of 60 frames, before a player; return the player.
+
+    The cube is not tracked again, which takes most of the time, unless the settings say so.
+    """
+
+    def run_session(*script, **settings):
+        player = Player(*script)
+        options = SessionOptions(
+            scenario="companion",
+            source=str(short_session),
+            robot="none",
+            folder=tmp_path,
+            **{"stage": "controls", **settings},
+        )
+        with open_session(options, screen=player) as session:
+            session.pace = None
+            player.session = session
+            run(session)
+        return player
+
+    return run_session
+
+
+@pytest.fixture(scope="module")
+def straight(short_session):
+    """The messages of the frames, played one after the other."""
+    player = Player()
+    options = SessionOptions(scenario="companion", source=str(short_session), robot="none")
+    with open_session(options, screen=player) as session:
+        session.pace = None
+        run(session)
+    assert player.indices == list(range(60))
+    return player.messages()
+
+
+def test_after_a_seek_everything_is_as_if_all_frames_had_been_shown(play, straight):
+    player = play(
+        (42, SeekTo(1.1)),
+        (46, SeekTo(0.3)),
+        (50, Seek(1.2)),
+        (54, SeekTo(math.inf)),
+        stage="camera",
+    )
+    indices = player.indices
+    assert indices[:50] == [*range(42), *range(33, 37), *range(9, 13)]
+    assert indices[50] == 12 + 36
+    assert indices[-1] == 59
+    assert player.messages() == {index: straight[index] for index in set(indices)}
+
+
+def test_a_pipeline_that_cannot_be_copied_is_run_again_from_the_start(play, straight, monkeypatch):
+    def refuse(self):
+        raise TypeError("cannot pickle")
+
+    monkeypatch.setattr(Playground, "checkpoint", refuse)
+    player = play((20, SeekTo(0.5)), (22, SeekTo(1.9)))
+    assert player.indices == [*range(20), 15, 16, 57, 58, 59]
+    assert player.messages() == {index: straight[index] for index in set(player.indices)}
+
+
+def test_single_frames_are_shown_while_it_is_paused(play, straight):
+    player = play(
+        (30, Pause()),
+        ("idle", StepFrames(-1)),
+        ("idle", StepFrames(-1)),
+        ("idle", StepFrames(1)),
+        ("idle", Seek(-0.5)),
+    )
+    assert player.indices[30:] == [28, 27, 28, 13]
+    assert player.statuses[-1].paused
+    assert player.messages() == {index: straight[index] for index in set(player.indices)}
+
+
+def test_at_the_end_it_waits_and_can_be_played_again(play):
+    player = play(("idle", Pause()), (63, SeekTo(math.inf)))
+    assert player.indices == [*range(60), 0, 1, 2, 59]
+    assert player.statuses[-1].ending is not None
+    assert player.statuses[-1].position.now == pytest.approx(59 / 30, abs=0.01)
+
+
+def leave(player):
+    player.closed = True
+
+
+def test_a_part_is_played_in_a_loop_until_the_player_leaves(play, straight):
+    player = play((25, leave), start_s=0.5, end_s=0.8, loop=True)
+    assert player.indices == [*range(15, 25), *range(15, 25), *range(15, 20)]
+    assert player.messages() == {index: straight[index] for index in range(15, 25)}
+    assert player.statuses[-1].position.start == 0.5
+
+
+def test_nobody_seeks_out_of_the_part_that_is_played(play):
+    player = play((2, Seek(-5.0)), (4, Seek(5.0)), start_s=1.0, end_s=1.5)
+    assert player.indices == [30, 31, 30, 31, 45]
+
+
+@pytest.mark.parametrize(
+    ("part", "words"),
+    [
+        ({"start_s": 3.0}, "after the end of the recording"),
+        ({"start_s": 1.0, "end_s": 0.5}, "nothing is left"),
+        ({"start_s": -1.0}, "before it"),
+        ({"loop": True, "pictures": False}, "needs a window"),
+    ],
+)
+def test_a_part_that_makes_no_sense_is_refused(play, part, words):
+    with pytest.raises(AppError, match=words):
+        play(**part)
+
+
+def test_a_recording_by_key_is_a_session_of_its_own(play, short_session):
+    script = (10, Record()), (12, Seek(-0.5)), (22, Record()), (25, SeekTo(0.0)), (26, leave)
+    player = play(*script, stage="camera")
+    (path,) = player.session.recorded
+    assert path.name.startswith("companion-20")
+    assert session_info(path).frames == 12
+    assert start_of(path) == pytest.approx(10 / 30, abs=0.001)
+    options = SessionOptions(scenario="companion", source=str(path))
+    assert check_session(path, options).identical
+    assert player.indices[24:] == [24, 0]  # only after the recording
+    assert player.notices == [
+        f"Recording from the start: {path}",
+        "A recording stays as it began: no seeking in it",
+        f"Recorded 0 s. Play it: cubeling replay {path}",
+    ]
+    assert player.statuses[20].recording == pytest.approx(0.3, abs=0.1)
+    assert player.statuses[-1].recording is None
+
+
+def test_a_recording_of_a_part_is_a_session_of_its_own(cubeling, short_session, tmp_path):
+    code, _, err = cubeling(
+        "replay", short_session, "--no-pictures", "--start", 0.5, "--end", 1, "--record", "a.mcap"
+    )
+    assert (code, err) == (0, "")
+    assert session_info(tmp_path / "a.mcap").frames == 16
+    code, _, err = cubeling("replay", "a.mcap", "--check")
+    assert (code, err) == (0, "")
+
+
+def start_of(path):
+    return next(time for _, time, _ in messages(path, "/camera/image"))
+
+
+class LiveSession:
+    """A live camera that shows the frames of a session; a real camera's time goes on."""
+
+    live = True
+    duration: float | None = None
+
+    def __init__(self, session):
+        self._session = open_source(str(session))
+        self._frames = itertools.islice(self._session, 20)
+        self.intrinsics = self._session.intrinsics
+        self.size, self.rate = self._session.size, self._session.rate
+        self.late = 0.0
+        self.health = Health("camera 0", "running", 0.0)
+
+    def wait(self, timeout, patience=None):
+        frame = next(self._frames, None)
+        if frame is None:
+            self.health = replace(self.health, state="closed")
+            return None
+        return replace(frame, timestamp=1000.0 + frame.timestamp + self.late)
+
+    def __iter__(self):
+        raise AssertionError("a session calls `wait`")
+
+    def close(self):
+        self._session.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+
+def test_a_pause_of_a_live_session_leaves_no_gap_and_keeps_the_robot(short_session, tmp_path):
+    camera = LiveSession(short_session)
+
+    def pass_time(player):
+        """Be away for longer than a robot waits for its host."""
+        time.sleep(FAILSAFE_S + 0.2)
+        camera.late = 60.0
+        states.append(player.session.robot.view().link)
+        return Pause()
+
+    states: list[str] = []
+    player = Player((10, Pause()), ("idle", pass_time), (15, leave))
+    path = tmp_path / "out.mcap"
+    options = SessionOptions(
+        scenario="companion", source="camera:0", robot="sim", record=path, pictures=False
+    )
+    with open_session(options, source=camera, screen=player) as session:
+        player.session = session
+        run(session)
+    stamps = [step.frame.timestamp for step in player.steps]
+    np.testing.assert_allclose(np.diff(stamps), 1 / 30, atol=1e-4)
+    assert len(stamps) == 15
+    assert states == ["ready"]
+    wire = [time for _, time, _ in messages(path, "/robot/wire")]
+    assert max(wire) < stamps[-1] + 1.0
+    assert read_robot_traces(path)  # the robot was never lost, or its trace would end
+    assert [event for _, event in events(path) if event in ("paused", "resumed")] == [
+        "paused",
+        "resumed",
+    ]
