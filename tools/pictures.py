@@ -17,13 +17,15 @@ from app.pipeline.playground import Playground
 from app.pipeline.step import RobotView
 from app.running.opening import intrinsics_for, open_session
 from app.running.runner import run
-from app.session import SessionOptions
+from app.session import SessionOptions, events
 from app.session.bundled import bundled
 from app.ui.calibration.coach import ANIMATION_PERIOD_S, CoachView
 from app.ui.calibration.coach_lines import write_coverage
 from app.ui.calibration.session import Advice, CalibrationSession, Picture
 from app.ui.card_layout import CardLayout
 from app.ui.overlay import overlay, virtual_robot_side
+from app.ui.playback.layer import PlaybackLayer
+from app.ui.playback.status import Mark, Position, SessionStatus
 from app.ui.virtual_robot import VirtualRobot
 from characters.rendering import create_context
 from tracking import CubeModel, open_source, write_sheet
@@ -33,7 +35,7 @@ from tracking.synthetic import open_synthetic
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures"
 
 MOMENTS_S: dict[str, dict[str, float]] = {
-    "companion": {"kiss": 12.2, "shout": 27.3},
+    "companion": {"kiss": 12.2, "window": 18.0, "shout": 27.3},
     "follow": {"walk": 6.2, "run": 12.6},
     "sketch": {"path": 22.6},
 }
@@ -64,9 +66,20 @@ def draw(scenario: str, moments: dict[str, float]) -> None:
             if frame.timestamp < waiting[0][0]:
                 continue
             _, name = waiting.pop(0)
+            if name == "window":
+                picture = in_window(picture, scenario, frame.timestamp, source.duration or 0.0)
             path = FOLDER / f"{scenario}-{name}.jpg"
             cv2.imwrite(str(path), picture, (cv2.IMWRITE_JPEG_QUALITY, 88))
             Console().print(f"{path.name}: {path.stat().st_size / 1e3:.0f} kB")
+
+
+def in_window(picture: Picture, scenario: str, now: float, length: float) -> Picture:
+    """Return a picture of a replay as the window shows it, paused."""
+    layer = PlaybackLayer((scenario,), Path(), {})
+    marks = tuple(Mark(time, event) for time, event in events(bundled(scenario)))
+    position = Position(now, length, 0.0, length, marks=marks)
+    layer.report(SessionStatus(scenario, paused=True, position=position))
+    return layer.draw(picture)
 
 
 def draw_sheet(name: str) -> None:

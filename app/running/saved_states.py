@@ -10,7 +10,7 @@ from tracking import Frame
 
 FIRST_INTERVAL_S, MAX_STATES = 1.0, 64
 """Time between two states at first, and how many are kept: of more, every second one is forgotten,
-and the time between them is doubled. A state has 1.5 MB."""
+and the time between them is doubled."""
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,8 @@
 """Time of the whole pipeline and of its parts: `python -m tests.bench.line [--frames N]`.
 
 Tracking, gestures, decision, animation, rendering and read-back on the frames of the bundled
-recordings at 1280×720. Decoding the recording, drawing the overlay and what is heard are listed
-separately: finding the cues, and mixing and encoding them for a video.
+recordings at 1280×720. Decoding the recording, drawing the overlay, what is heard (finding the cues,
+and mixing and encoding them for a video) and copying the state for a seek are listed separately.
 """
 
 import argparse
@@ -71,6 +71,8 @@ def measure(name: str, frames: int) -> dict[str, list[float]]:
             marks.append(time.perf_counter())
             sound.play(step, playground.character)
             marks.append(time.perf_counter())
+            playground.checkpoint()
+            marks.append(time.perf_counter())
             names = (
                 "(decode)",
                 "track",
@@ -80,6 +82,7 @@ def measure(name: str, frames: int) -> dict[str, list[float]]:
                 "(cards)",
                 "(sound of a video)",
                 "(cues)",
+                "(checkpoint)",
             )
             for part, span in zip(names, np.diff(marks), strict=True):
                 parts[part].append(1000 * span)

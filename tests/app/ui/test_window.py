@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 SCRIPT = Path(__file__).with_name("window_script.py")
+REPLAY_SCRIPT = SCRIPT.with_name("replay_script.py")
 
 
 @pytest.fixture
@@ -49,8 +50,9 @@ def test_the_window_shows_the_picture_and_handles_keys(on_screen, short_session)
     assert done.returncode == 0, done.stderr
 
 
-def test_a_replay_opens_the_window_and_ends_with_the_recording(on_screen, short_session):
-    done = on_screen("-c", "from app.cli import main; main()", "replay", short_session)
+def test_a_replay_opens_the_window_and_waits_for_the_user_at_the_end(on_screen, short_session):
+    done = on_screen(REPLAY_SCRIPT, "replay", short_session)
     assert done.returncode == 0, done.stderr
     counted = re.findall(r"(?:played|left out) +(\d+) frames", done.stdout)
     assert sum(map(int, counted)) == 60
+    assert "waited 5 times" in done.stderr

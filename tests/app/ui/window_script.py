@@ -4,13 +4,23 @@ import sys
 
 import glfw
 import numpy as np
+from numpy.typing import NDArray
 
 from app.pipeline.playground import Playground
-from app.pipeline.step import RobotView
+from app.pipeline.step import RobotView, Step
 from app.running.opening import intrinsics_for
 from app.ui.notice import Notice
+from app.ui.playback.requests import Record, Seek
 from app.ui.window import Window
+from app.ui.window.window import mirrored
 from tracking import open_source
+
+
+def pictures_of(window: Window, step: Step, robot: RobotView) -> NDArray[np.uint8]:
+    """Return the picture with its cards that a window shows of a step."""
+    window.show(step, robot)
+    assert window._picture is not None
+    return window._picture.copy()
 
 
 def main(session: str) -> None:
@@ -28,6 +38,29 @@ def main(session: str) -> None:
         shown = np.frombuffer(screen.read(), np.uint8).reshape(*screen.size[::-1], 3)
         assert screen.size == source.size
         np.testing.assert_array_equal(shown[::-1, :, ::-1], step.picture)
+
+        assert mirrored(step).subjects[0][0] == source.size[0] - step.subjects[0][2]
+        plain = pictures_of(window, step, robot)
+        window.press(glfw.KEY_M)
+        turned = pictures_of(window, step, robot)
+        upper = np.s_[300:420, 300:900]  # without cards
+        np.testing.assert_array_equal(turned[upper], plain[:, ::-1][upper])
+        window.press(glfw.KEY_M)
+
+        place = glfw.get_window_pos(window._window), glfw.get_window_size(window._window)
+        for full in (True, False):
+            window.press(glfw.KEY_F)
+            window.show(step, robot)
+            assert bool(glfw.get_window_monitor(window._window)) == full
+        assert place == (
+            glfw.get_window_pos(window._window),
+            glfw.get_window_size(window._window),
+        )
+
+        window.press(glfw.KEY_LEFT, shift=True)
+        window.press(glfw.KEY_R)
+        assert window.take_requests() == (Seek(-1.0), Record())
+        assert not window.take_requests()
 
         window.wait(None)
         for _ in range(2):  # both of the buffers that are swapped

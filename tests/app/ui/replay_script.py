@@ -1,0 +1,25 @@
+"""Replays a session in a window until it ends, and leaves by key; `test_window` runs this."""
+
+import sys
+
+import glfw
+
+from app.cli import main
+from app.ui.window import Window
+
+
+def press_at_the_end(window: Window, status) -> None:
+    """Press Enter a while after the end of the recording."""
+    report(window, status)
+    waits.append(status.ending is not None)
+    if sum(waits) == 5:
+        window.press(glfw.KEY_ENTER)
+
+
+if __name__ == "__main__":
+    report, waits = Window.report, list[bool]()
+    Window.report = press_at_the_end  # type: ignore[method-assign, assignment]
+    try:
+        main()
+    finally:
+        print(f"waited {sum(waits)} times", file=sys.stderr)  # noqa: T201

@@ -1,0 +1,243 @@
+"""Keys and mouse of the player, without a window: what they ask for, and what is shown."""
+
+from datetime import datetime
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from app.output_path import dated_file, short_path
+from app.pipeline.scenario import Inputs
+from app.ui.playback import timeline
+from app.ui.playback.keys import BINDINGS, key_rows, key_table
+from app.ui.playback.layer import NOTICE_S, PlaybackLayer
+from app.ui.playback.requests import (
+    Choose,
+    ListChoices,
+    Pause,
+    PlayScenario,
+    Seek,
+    SeekTo,
+    StartOver,
+    WindowRequest,
+)
+from app.ui.playback.status import Choice, EndCard, Mark, Position, SessionStatus
+
+HERE = Path(__file__).parent
+PICTURE = np.full((360, 640, 3), 90, np.uint8)
+WIDTH = 1280.0
+POSITION = Position(3.0, 20.0, 0.0, 20.0, marks=(Mark(10.0, "placed front"),))
+NOW = datetime(2026, 5, 4, 15, 3, 9)
+
+
+class Desk:
+    """A layer with a clock, which notes what the window was asked for."""
+
+    def __init__(self, folder):
+        self.time = 0.0
+        self.asked: list[WindowRequest] = []
+        actions = {
+            request: lambda request=request: self.asked.append(request)
+            for request in (WindowRequest.QUIT, WindowRequest.PANEL, WindowRequest.FULL_SCREEN)
+        }
+        self.layer = PlaybackLayer(
+            ("follow", "sketch"), folder, actions, lambda: self.time, lambda: NOW
+        )
+
+    def report(self, **status):
+        self.layer.report(SessionStatus(scenario="follow", **status))
+
+    def press(self, *keys):
+        for key in keys:
+            shift, _, name = key.rpartition(" ")
+            self.layer.press(name, shift=bool(shift))
+
+    def shown(self):
+        return self.layer.draw(PICTURE)
+
+
+@pytest.fixture
+def desk(tmp_path):
+    return Desk(tmp_path / "kept")
+
+
+def test_every_key_of_the_table_does_what_it_says(desk):
+    for binding in BINDINGS:
+        desk.press(binding.key)
+        made = desk.layer.take_requests()
+        match binding.request:
+            case WindowRequest.MENU:
+                assert made == (ListChoices(),)
+            case WindowRequest() | StartOver() | PlayScenario():
+                assert made == ()
+            case request:
+                assert made == (request,), binding
+        desk.press("Esc")
+    assert {WindowRequest.PANEL, WindowRequest.FULL_SCREEN} <= set(desk.asked)
+
+
+def test_no_key_is_there_twice():
+    assert len({binding.key for binding in BINDINGS}) == len(BINDINGS)
+    assert {key for row in key_rows() for key in row.keys} >= {"Space", "?", "…"}
+
+
+def test_the_documents_have_the_table_of_keys():
+    assert key_table() in (HERE.parents[2] / "README.md").read_text()
+
+
+def test_the_scenario_is_told_once_what_it_is_asked(desk):
+    desk.press("C", "2")
+    assert desk.layer.take_inputs() == Inputs(clear=True, scenario="sketch")
+    assert desk.layer.take_inputs() == Inputs()
+    before = desk.shown()
+    desk.press("7")
+    assert desk.layer.take_inputs() == Inputs()
+    assert (desk.shown() != before).any(), "nothing says that there is no such scenario"
+
+
+def test_holding_a_key_repeats_only_what_can_go_on(desk):
+    desk.layer.press("→", repeated=True)
+    desk.layer.press("Space", repeated=True)
+    assert desk.layer.take_requests() == (Seek(5.0),)
+
+
+def test_a_notice_is_shown_for_some_seconds(desk):
+    plain = desk.shown()
+    desk.layer.notify("Something happened")
+    assert desk.layer.changed
+    assert (desk.shown() != plain).any()
+    assert not desk.layer.changed
+    desk.time = NOTICE_S + 0.1
+    assert desk.layer.changed
+    np.testing.assert_array_equal(desk.shown(), plain)
+
+
+def test_escape_closes_a_card_before_the_window(desk):
+    plain = desk.shown()
+    desk.press("?")
+    assert (desk.shown() != plain).any()
+    desk.press("Esc")
+    np.testing.assert_array_equal(desk.shown(), plain)
+    assert desk.asked == []
+    desk.press("Esc")
+    assert desk.asked == [WindowRequest.QUIT]
+
+
+def test_the_card_at_the_end_waits_for_a_key(desk):
+    plain = desk.shown()
+    desk.report(ending=EndCard("The end", (("Again", "Space"),)))
+    assert (desk.shown() != plain).any()
+    desk.press("Space")
+    assert desk.layer.take_requests() == (Pause(),)
+    assert desk.asked == []
+    desk.press("Enter")
+    assert desk.asked == [WindowRequest.QUIT]
+
+
+def test_a_snapshot_is_the_picture_without_what_only_the_player_needs(desk, tmp_path):
+    desk.press("?")
+    desk.report(position=POSITION)
+    desk.shown()
+    desk.press("S", "S")
+    names = sorted(path.name for path in (tmp_path / "kept").iterdir())
+    assert names == ["follow-2026-05-04-150309-2.png", "follow-2026-05-04-150309.png"]
+    kept = cv2.imread(str(tmp_path / "kept" / names[1]))
+    np.testing.assert_array_equal(kept, PICTURE)
+
+
+def test_a_snapshot_that_cannot_be_kept_is_said(tmp_path):
+    (tmp_path / "file").write_text("")
+    desk = Desk(tmp_path / "file")
+    plain = desk.shown()
+    desk.press("S")
+    assert (desk.shown() != plain).any()
+
+
+def test_the_timeline_lies_under_the_picture_and_changes_nothing_of_it(desk):
+    plain = desk.shown()
+    desk.report(position=POSITION)
+    shown = desk.shown()
+    assert shown.shape == (360 + round(timeline.STRIP_HEIGHT / 2), 640, 3)
+    np.testing.assert_array_equal(shown[:360], plain)
+
+
+def test_the_mouse_seeks_on_the_timeline(desk):
+    desk.report(position=POSITION)
+    desk.shown()
+    track = timeline.TRACK_LEFT, WIDTH - timeline.TRACK_RIGHT
+    desk.layer.click(30.0, 748.0)
+    assert desk.layer.take_requests() == (Pause(),)
+    desk.layer.click(track[0], 748.0)
+    desk.layer.point((track[0] + track[1]) / 2, 748.0)
+    assert desk.layer.take_requests() == (SeekTo(10.0),), "only the last place counts"
+    desk.layer.point(track[1] + 90.0, 300.0)
+    assert desk.layer.take_requests() == (SeekTo(20.0),)
+    desk.layer.release()
+    desk.layer.point(track[0], 748.0)
+    assert desk.layer.take_requests() == ()
+    desk.layer.click(600.0, 300.0)
+    assert desk.layer.take_requests() == ()
+
+
+def test_a_part_is_all_that_the_timeline_reaches():
+    part = Position(8.0, 20.0, 5.0, 15.0)
+    assert timeline.position_at(timeline.TRACK_LEFT, part, WIDTH) == 5.0
+    assert timeline.position_at(WIDTH, part, WIDTH) == 15.0
+
+
+CHOICES = (
+    Choice("camera", "camera:0", "camera 0", present=True),
+    Choice("character", "vleo", "vleo", present=True),
+    Choice("character", "human", "human"),
+    Choice("robot", "sim", "simulated robot", present=True),
+)
+
+
+def test_the_menu_chooses_by_key(desk):
+    desk.press("Tab")
+    assert desk.layer.take_requests() == (ListChoices(),)
+    desk.report(looking=True)
+    desk.shown()
+    desk.report(choices=CHOICES[:1], looking=True)
+    desk.report(choices=CHOICES)
+    desk.press("→", "↓", "Enter")
+    assert desk.layer.take_requests() == (Choose("character", "human"),)
+    desk.press("→")
+    assert desk.layer.take_requests() == (Seek(5.0),), "the menu is still open"
+
+
+def test_the_menu_chooses_by_mouse_and_closes_by_escape(desk):
+    desk.press("Tab")
+    desk.report(choices=CHOICES)
+    plain = desk.shown()
+    desk.layer.take_requests()
+    # Three columns in the middle of the picture: the second row of the second one.
+    desk.layer.click(640.0, 392.0)
+    assert desk.layer.take_requests() == (Choose("character", "human"),)
+    assert (desk.shown() != plain).any()
+    desk.press("Tab", "Esc")
+    desk.layer.click(640.0, 392.0)
+    assert desk.layer.take_requests() == (ListChoices(),)
+    assert desk.asked == []
+
+
+def test_what_goes_on_is_shown(desk):
+    pictures = [desk.shown()]
+    for status in ({"paused": True}, {"recording": 12.0}, {"recording": 13.0}):
+        desk.report(**status)
+        assert desk.layer.changed
+        pictures.append(desk.shown())
+    desk.report(seeking=True)
+    desk.time += 1.0
+    pictures.append(desk.shown())
+    for place, picture in enumerate(pictures):
+        for other in pictures[:place]:
+            assert (picture != other).any()
+
+
+def test_files_made_by_keys_have_names_that_a_shell_takes(tmp_path, monkeypatch):
+    monkeypatch.setattr(Path, "home", lambda: tmp_path)
+    path = dated_file(tmp_path / "Cubeling", "follow", ".mcap", NOW)
+    assert short_path(path) == "~/Cubeling/follow-2026-05-04-150309.mcap"
+    assert short_path(tmp_path / "my films" / "a.mcap") == f"'{tmp_path}/my films/a.mcap'"
