@@ -7,6 +7,7 @@ from itertools import islice
 from app.running.opened_session import OpenedSession
 from app.session.replay_inputs import read_replay_inputs
 from tracking import Frame, Health, LiveFrames, StoredFrames, open_source
+from tracking.sources.base import Timeline
 
 SCREEN_UPDATE_INTERVAL_S = 0.05
 """While no frame comes, the screen is updated at least this often."""
@@ -27,6 +28,7 @@ class FrameFeed:
         """The frame that was returned last."""
         self._frames: Iterator[Frame] | None = None
         self._shift = 0.0
+        self._timeline = Timeline()  # a recording stores the shifted times exactly
         self._close_gap = False
 
     def next(self) -> Frame | Health | None:
@@ -70,4 +72,6 @@ class FrameFeed:
         if self._close_gap and self.last is not None:
             self._shift = frame.timestamp - (self.last.timestamp + 1.0 / source.rate)
         self._close_gap = False
-        return replace(frame, timestamp=frame.timestamp - self._shift) if self._shift else frame
+        if self._shift:
+            frame = replace(frame, timestamp=self._timeline.stamp(frame.timestamp - self._shift))
+        return frame

@@ -19,7 +19,7 @@ from app.ui.palette import ANGRY, QUIET, Color
 from app.ui.playback import timeline
 from app.ui.playback.cards import draw_ending, draw_keys, draw_pills
 from app.ui.playback.keys import find_binding
-from app.ui.playback.menu import Menu
+from app.ui.playback.menu import MENU_KEYS, Menu
 from app.ui.playback.requests import (
     ListChoices,
     Pause,
@@ -138,7 +138,7 @@ class PlaybackLayer:
     def press(self, key: str, *, shift: bool = False, repeated: bool = False) -> None:
         """Handle a key by its name in the table of keys; `repeated` while it is held."""
         self._changed = True
-        if self._menu is not None and key not in ("Esc", "Tab"):
+        if self._menu is not None and key in MENU_KEYS:
             self._request(self._menu.press(key))
             return
         if key == "Enter" and self._status.ending is not None:

@@ -14,6 +14,9 @@ MAX_ROWS = 12
 SELECTED: Color = between(PAPER, ACCENT, 0.18)
 """Background of the selected row."""
 
+MENU_KEYS = ("←", "→", "↑", "↓", "Enter", "Space")
+"""Keys that the menu takes while it is open."""
+
 HELP = "Arrows select, Enter chooses, Esc closes"
 LOOKING = "looking …"
 

@@ -9,6 +9,7 @@ from pathlib import Path
 # imgui-bundle contains the GLFW library that both must share, and sets its path on import.
 from imgui_bundle import imgui  # isort: skip
 import cv2
+import glfw
 import numpy as np
 from numpy.typing import NDArray
 
@@ -76,6 +77,7 @@ class Window(Surface):
         self._shown: tuple[Step, RobotView] | None = None
         self._picture: Picture | None = None
         self._pointer = (0.0, 0.0)
+        self._titled = ""
 
     def show(self, step: Step, robot: RobotView) -> Inputs:
         """Show a step, and return what the player asks of the scenario."""
@@ -107,6 +109,9 @@ class Window(Surface):
     def report(self, status: SessionStatus) -> None:
         """Show another state of the session."""
         self._layer.report(status)
+        if status.scenario not in ("", self._titled):
+            self._titled = status.scenario
+            glfw.set_window_title(self._window, f"Cubeling: {status.scenario}")
 
     def notify(self, words: str) -> None:
         """Show a notice for some seconds."""

@@ -4,6 +4,7 @@ from collections import deque
 
 from app.pipeline.scenario import Inputs
 from app.running.opened_session import OpenedSession
+from app.running.summary import Summary
 from app.session.encoding import encode
 from app.ui.screen import NullScreen
 
@@ -18,6 +19,9 @@ class Player(NullScreen):
     attended = True
     session: OpenedSession
     """The session that is shown, for functions of the script."""
+
+    summary: Summary
+    """What came of it."""
 
     def __init__(self, *script):
         self._script = deque(script)

@@ -40,7 +40,7 @@ def play(short_session, tmp_path):
         with open_session(options, screen=player) as session:
             session.pace = None
             player.session = session
-            run(session)
+            player.summary = run(session)
         return player
 
     return run_session
@@ -71,6 +71,13 @@ def test_after_a_seek_everything_is_as_if_all_frames_had_been_shown(play, straig
     assert indices[50] == 12 + 36
     assert indices[-1] == 59
     assert player.messages() == {index: straight[index] for index in set(indices)}
+
+
+def test_the_summary_describes_each_moment_once(play):
+    summary = play((42, SeekTo(1.1)), (46, SeekTo(0.3)), (50, leave)).summary
+    times = [time for time, _, _ in summary.moods]
+    assert times == sorted(set(times))
+    assert times[-1] == summary.duration == pytest.approx(0.4, abs=0.01)
 
 
 def test_a_pipeline_that_cannot_be_copied_is_run_again_from_the_start(play, straight, monkeypatch):
@@ -222,6 +229,7 @@ def test_a_pause_of_a_live_session_leaves_no_gap_and_keeps_the_robot(short_sessi
     stamps = [step.frame.timestamp for step in player.steps]
     np.testing.assert_allclose(np.diff(stamps), 1 / 30, atol=1e-4)
     assert len(stamps) == 15
+    assert check_session(path, replace(options, source=str(path), record=None)).identical
     assert states == ["ready"]
     wire = [time for _, time, _ in messages(path, "/robot/wire")]
     assert max(wire) < stamps[-1] + 1.0

@@ -16,6 +16,7 @@ from app.pipeline.step import RobotView
 from app.running.summary import Summary
 from app.ui.canvas import Canvas, rounded_rectangle
 from app.ui.frame_sheet import MAX_FRAMES, FrameSheet
+from app.ui.output_file import ENDING_RATE, ENDING_S
 from app.ui.overlay import overlay
 from app.ui.video_file import VIDEO_FORMATS, VideoFile
 from tracking import LensEstimate
@@ -182,7 +183,12 @@ def test_the_demo_without_a_display_renders_a_video_and_says_what_happened(
     assert "robot felt" in out
     assert [path.name for path in Path().iterdir()] == ["demo.mp4"]
     with av.open("demo.mp4") as file:
-        assert sum(1 for _ in file.decode(video=0)) == 60
+        pictures = list(file.decode(video=0))
+    assert len(pictures) == 60 + ENDING_S * ENDING_RATE
+    assert pictures[-1].time == pytest.approx(59 / 30 + ENDING_S, abs=0.01)
+    before, last = (pictures[index].to_ndarray(format="gray") for index in (59, -1))
+    middle = np.s_[250:500, 420:860]
+    assert last[middle].mean() > before[middle].mean() + 50, "no card lies over the last picture"
 
 
 def test_the_demo_writes_over_its_own_video_and_over_others_only_when_asked(
