@@ -7,9 +7,9 @@ from app.pipeline.step import Step
 from app.running.frame_loop import FrameLoop
 from app.running.interrupts import uninterrupted
 from app.running.opened_session import OpenedSession
-from app.running.player_controls import PlayerControls
+from app.running.playback.player_controls import PlayerControls
+from app.running.playback.transport import Transport
 from app.running.summary import Summary
-from app.running.transport import Transport
 from app.ui.notice import lens_notice, notice
 from robot import RobotError
 from tracking import Frame, Health, LiveFrames, TrackingError

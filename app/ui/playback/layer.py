@@ -15,9 +15,9 @@ from app.errors import AppError
 from app.output_path import dated_file, short_path
 from app.pipeline.scenario import Inputs
 from app.ui.canvas import PICTURE_HEIGHT
-from app.ui.palette import ANGRY, QUIET, Color
 from app.ui.playback import timeline
-from app.ui.playback.cards import draw_ending, draw_keys, draw_pills
+from app.ui.playback.announcements import Announcements
+from app.ui.playback.cards import draw_ending, draw_keys
 from app.ui.playback.keys import find_binding
 from app.ui.playback.menu import MENU_KEYS, Menu
 from app.ui.playback.requests import (
@@ -33,12 +33,6 @@ from app.ui.playback.requests import (
 from app.ui.playback.status import NO_STATUS, SessionStatus
 
 Picture = NDArray[np.uint8]
-
-NOTICE_S = 4.0
-"""How long a notice is shown."""
-
-QUICK_SEEK_S = 0.4
-"""A seek that takes longer is named over the picture."""
 
 ENDING_KEYS = "Space plays it again  ·  Esc or Enter closes"
 
@@ -71,7 +65,7 @@ class PlaybackLayer:
         self.mirrored = False
         """Whether the picture is to be shown as in a mirror."""
         self._scenarios, self._folder = tuple(scenarios), folder
-        self._clock, self._now = clock, now
+        self._announcements, self._now = Announcements(clock), now
         self._actions: dict[WindowRequest, Callable[[], None]] = {
             WindowRequest.MIRROR: self._mirror,
             WindowRequest.SNAPSHOT: self._snapshot,
@@ -90,8 +84,6 @@ class PlaybackLayer:
         self._requests: list[SessionRequest] = []
         self._keys = False
         self._menu: Menu | None = None
-        self._notice, self._notice_until = "", 0.0
-        self._seeking_since: float | None = None
         self._pointer: float | None = None
         self._dragging = False
         self._changed = True
@@ -101,7 +93,7 @@ class PlaybackLayer:
     @property
     def changed(self) -> bool:
         """Whether the picture is to be drawn again although no new one has come."""
-        return self._changed or bool(self._notice and self._clock() >= self._notice_until)
+        return self._changed or self._announcements.changed
 
     @property
     def strip_height(self) -> float:
@@ -115,14 +107,10 @@ class PlaybackLayer:
         self._status, self._changed = status, True
         if self._menu is not None:
             self._menu.update(status.choices, status.looking)
-        if not status.seeking:
-            self._seeking_since = None
-        elif self._seeking_since is None:
-            self._seeking_since = self._clock()
 
     def notify(self, words: str) -> None:
         """Show a notice for some seconds."""
-        self._notice, self._notice_until = words, self._clock() + NOTICE_S
+        self._announcements.notify(words)
         self._changed = True
 
     def take_inputs(self) -> Inputs:
@@ -183,8 +171,8 @@ class PlaybackLayer:
         shown = picture.copy()
         if self._status.ending is not None and not self._keys and self._menu is None:
             draw_ending(self._status.ending, ENDING_KEYS, width, scale).blend_over(shown)
-        for pill in draw_pills(self._pills(), width, scale):
-            pill.blend_over(shown)
+        for card in self._announcements.draw(self._status, width, scale):
+            card.blend_over(shown)
         if self._keys:
             draw_keys(width, scale).blend_over(shown)
         if self._menu is not None:
@@ -196,23 +184,6 @@ class PlaybackLayer:
             timeline.draw_pointer(self._pointer, position, width, scale).blend_over(shown)
         strip = timeline.draw_strip(position, self._status.paused, width, scale)
         return np.vstack([shown, strip])
-
-    def _pills(self) -> tuple[tuple[str, Color | None], ...]:
-        """Return the words of the small cards, each with the colour of its disc."""
-        status, pills = self._status, list[tuple[str, Color | None]]()
-        if status.recording is not None:
-            minutes, seconds = divmod(int(status.recording), 60)
-            pills.append((f"recording {minutes}:{seconds:02}  ·  R ends it", ANGRY))
-        seeking = self._seeking_since
-        if seeking is not None and self._clock() - seeking >= QUICK_SEEK_S:
-            pills.append(("Seeking …", QUIET))
-        elif status.paused and status.ending is None:
-            pills.append(("Paused: Space goes on", QUIET))
-        if self._clock() >= self._notice_until:
-            self._notice = ""
-        if self._notice:
-            pills.append((self._notice, None))
-        return tuple(pills)
 
     def _request(self, request: Request | None) -> None:
         """Carry out a request, or keep it for the session."""

@@ -11,9 +11,9 @@ import cv2
 import numpy as np
 import pytest
 
-from app.running import parts
-from app.running.background import BackgroundCall
 from app.running.opening import open_session
+from app.running.playback import parts
+from app.running.playback.background import BackgroundCall
 from app.running.runner import run
 from app.session import SessionOptions, messages
 from app.ui.playback.requests import Choose, ListChoices, Record

@@ -10,8 +10,9 @@ import pytest
 from app.output_path import dated_file, short_path
 from app.pipeline.scenario import Inputs
 from app.ui.playback import timeline
+from app.ui.playback.announcements import NOTICE_S
 from app.ui.playback.keys import BINDINGS, key_rows, key_table
-from app.ui.playback.layer import NOTICE_S, PlaybackLayer
+from app.ui.playback.layer import PlaybackLayer
 from app.ui.playback.requests import (
     Choose,
     ListChoices,
@@ -229,6 +230,7 @@ def test_what_goes_on_is_shown(desk):
         assert desk.layer.changed
         pictures.append(desk.shown())
     desk.report(seeking=True)
+    desk.shown()
     desk.time += 1.0
     pictures.append(desk.shown())
     for place, picture in enumerate(pictures):

@@ -6,9 +6,9 @@ from typing import Any
 
 from app.errors import AppError
 from app.output_path import dated_file, default_folder, short_path
-from app.running.choices import Choices
 from app.running.opened_session import OpenedSession
-from app.running.transport import Transport
+from app.running.playback.choices import Choices
+from app.running.playback.transport import Transport
 from app.ui.playback.requests import (
     Choose,
     ListChoices,

@@ -6,10 +6,10 @@ from typing import Any
 
 from affect import AffectError
 from app.errors import AppError
-from app.running.background import BackgroundCall
 from app.running.opened_session import OpenedSession
-from app.running.parts import PARTS, discard
-from app.running.transport import Transport
+from app.running.playback.background import BackgroundCall
+from app.running.playback.parts import PARTS, discard
+from app.running.playback.transport import Transport
 from app.ui.playback.requests import Choose
 from app.ui.playback.status import Choice
 from characters import CharacterError

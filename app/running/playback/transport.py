@@ -4,10 +4,10 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.running.frame_feed import FrameFeed
 from app.running.opened_session import OpenedSession
 from app.running.opening import is_seekable
-from app.running.saved_states import SavedStates
+from app.running.playback.frame_feed import FrameFeed
+from app.running.playback.saved_states import SavedStates
 from app.session import events
 from app.ui.playback.status import Mark, Position
 from tracking import Frame, Health, LiveFrames

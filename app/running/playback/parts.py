@@ -9,8 +9,8 @@ from typing import Any
 from app.errors import AppError
 from app.running.opened_session import OpenedSession
 from app.running.opening import intrinsics_for
+from app.running.playback.transport import Transport
 from app.running.robots import RobotLine
-from app.running.transport import Transport
 from app.running.wire_tap import WireTap
 from app.ui.playback.status import Choice
 from characters import Character

@@ -1,0 +1,1 @@
+"""Pausing, seeking, recording and exchanging parts: what the player asks of a running session."""
