@@ -72,6 +72,9 @@ class OpenedSession:
     ending: EndCard | None
     """The card at the end of a recording; None for a short one, in a window only."""
 
+    first_source: FrameSource
+    """The source at the start, which whoever opened it closes."""
+
     recording: SessionRecording | None = None
     """Records the session, or None."""
 
@@ -83,33 +86,32 @@ class OpenedSession:
         """Whether scenario, character and camera stay: a recording holds one of each."""
         return self.recording is not None or self.options.keeps_scenario
 
-    def change_scenario(self, name: str) -> bool:
-        """Play another scenario, or the present one with another cube; return whether it changed.
+    def change_scenario(self, name: str) -> None:
+        """Play another scenario, or the present one with another cube that is in view.
 
         Do nothing for "", if the scenario is to stay, or if there is nothing to change.
         """
         playground = self.playground
         in_view = playground.other_cube
         if not name or (name == playground.scenario.name and in_view is None):
-            return False
+            return
         if self.keeps_scenario:
             self.screen.notify(f"{self.why_it_stays}: {name} is not played")
-            return False
+            return
         try:
             cube = cube_for(find_scenario(name), in_view, playground.known_cubes)
             if name == playground.scenario.name and cube is not in_view:
-                return False
+                return
             playground.play(scenario_of(self.options, name, cube), cube)
         except (AppError, AffectError, CharacterError, TrackingError) as error:
             self.screen.notify(str(error))
-            return False
+            return
         # A recording that begins now names the cube as the user did.
         known = zip(playground.known_cubes, self.asked.cubes, strict=True)
         first = next((name for model, name in known if model is cube), cube.name)
         others = (each for each in self.asked.cubes if each != first)
         self.options = replace(self.options, scenario=name, cubes=(first, *others), character=None)
         self.screen.notify(f"Playing {name}")
-        return True
 
     @property
     def why_it_stays(self) -> str:
@@ -132,13 +134,10 @@ class OpenedSession:
         if self.recording is not None:
             self.recording.follow_wire(wire, now)
 
-    def record(self, path: Path, since: float | None = None) -> None:
-        """Record from the next frame on; `since` is the timestamp of the last one [s].
-
-        Raises AppError if the file cannot be written.
-        """
+    def record(self, path: Path) -> None:
+        """Record from the next frame on; raises AppError if the file cannot be written."""
         self.recording = SessionRecording(
-            path, self.options, self.playground, self.source, self.wire, since
+            path, self.options, self.playground, self.source, self.wire, from_within=True
         )
         self.playground.fixed = True
 
@@ -154,7 +153,8 @@ class OpenedSession:
         """Close what may have been exchanged."""
         self.robot.close()
         self.end_recording()
-        self.source.close()
+        if self.source is not self.first_source:
+            self.source.close()
 
 
 def scenario_of(options: SessionOptions, name: str, cube: CubeModel | None = None) -> Scenario:

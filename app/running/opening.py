@@ -120,7 +120,7 @@ def open_session(
                     playground,
                     source,
                     wire,
-                    since=0.0 if options.start_s else None,
+                    from_within=options.start_s > 0.0,
                 )
             )
         pace = _pace(options, source, player)
@@ -143,6 +143,7 @@ def open_session(
             start_overs=start_overs,
             replay_inputs=replay_inputs,
             ending=ending,
+            first_source=source,
             recording=recording,
         )
         closing.callback(session.close)

@@ -28,8 +28,8 @@ class SessionRecording(Closeable):
         Where the frames come from.
     wire
         The robot's bytes.
-    since
-        Timestamp of the last frame before the recording [s]; None at the start of the source.
+    from_within
+        Whether it begins after the first frame of the source.
 
     Raises
     ------
@@ -44,17 +44,19 @@ class SessionRecording(Closeable):
         playground: Playground,
         source: FrameSource,
         wire: WireTap,
-        since: float | None = None,
+        *,
+        from_within: bool = False,
     ) -> None:
         self.path = path
         self._playground, self._wire = playground, wire
-        self._from_within = since is not None
+        self._from_within = from_within
         self._first: float | None = None
         self._last = 0.0
         self._encode = frame_encoder(options.codec, source.size, source.rate)
         named = replace(options, cubes=options.cubes or (playground.cube.name,))
         self._recorder = Recorder(path, {**named.metadata(), "rate": f"{source.rate:g}"})
-        wire.record_to(self._recorder, since or 0.0)
+        if not from_within:  # with the bytes before the first frame
+            wire.record_to(self._recorder)
 
     @property
     def seconds(self) -> float:
@@ -76,6 +78,8 @@ class SessionRecording(Closeable):
         if self._first is None:
             self._first = now
             self._recorder.camera(self._playground.intrinsics, now)
+            if self._from_within:
+                self._wire.record_to(self._recorder, now)
         self._recorder.write(step)
         if step.controls.placed:
             self.event(f"placed {step.controls.top_face}", now)

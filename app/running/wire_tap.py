@@ -18,7 +18,7 @@ class WireTap:
         self._handshake: list[tuple[str, bytes, float]] = []
         self._aligned = False
         self._offset: float | None = None
-        self._held = 0.0
+        self._held = self._since = 0.0
         self._recorder: Recorder | None = None
 
     def __call__(self, direction: str, data: bytes, time: float) -> None:
@@ -40,7 +40,7 @@ class WireTap:
             self._offset = offset
             if not self._aligned:
                 self._aligned = True
-                self._write_handshake(0.0)
+                self._write_handshake()
 
     def hold(self, timestamp: float) -> None:
         """Let bytes until the next `align` have this timestamp of a frame: a pause [s]."""
@@ -49,17 +49,17 @@ class WireTap:
                 self._held, self._offset = timestamp, None
 
     def record_to(self, recorder: Recorder | None, since: float = 0.0) -> None:
-        """Pass the bytes to a recording from a timestamp on [s], or to none."""
+        """Pass the bytes to a recording that begins at a timestamp [s], or to none."""
         with self._lock:
-            self._recorder = recorder
+            self._recorder, self._since = recorder, since
             if self._aligned:
-                self._write_handshake(since)
+                self._write_handshake()
 
-    def _write_handshake(self, since: float) -> None:
+    def _write_handshake(self) -> None:
         if self._recorder is not None:
             for direction, data, time in self._handshake:
-                self._recorder.wire(direction, data, max(since, self._timestamp(time)))
+                self._recorder.wire(direction, data, self._timestamp(time))
 
     def _timestamp(self, time: float) -> float:
         """Return the timestamp of a time of the robot's clock [s]."""
-        return self._held if self._offset is None else max(0.0, time + self._offset)
+        return max(self._since, self._held if self._offset is None else time + self._offset)

@@ -92,7 +92,7 @@ class PlayerControls:
             path = dated_file(folder, options.scenario, ".mcap", datetime.now())
             # A replay begins with the first recorded frame, so the scenario does so too.
             session.restart()
-            session.record(path, transport.timestamp)
+            session.record(path)
         except AppError as error:
             session.screen.notify(f"Nothing is recorded: {error}")
             return

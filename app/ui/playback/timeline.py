@@ -30,6 +30,7 @@ MARK_COLORS: dict[str, Color] = {
     "start over": ANGRY,
     "camera": QUIET,
     "paused": QUIET,
+    "resumed": QUIET,
 }
 """Colours of the marks by how their event begins; others are gestures."""
 

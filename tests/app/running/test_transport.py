@@ -223,7 +223,7 @@ def test_a_pause_of_a_live_session_leaves_no_gap_and_keeps_the_robot(short_sessi
     options = SessionOptions(
         scenario="companion", source="camera:0", robot="sim", record=path, pictures=False
     )
-    with open_session(options, source=camera, screen=player) as session:
+    with camera, open_session(options, source=camera, screen=player) as session:
         player.session = session
         run(session)
     stamps = [step.frame.timestamp for step in player.steps]
