@@ -1,8 +1,9 @@
 """Time of the whole pipeline and of its parts: `python -m tests.bench.line [--frames N]`.
 
 Tracking, gestures, decision, animation, rendering and read-back on the frames of the bundled
-recordings at 1280×720. Decoding the recording, drawing the overlay, what is heard (finding the cues,
-and mixing and encoding them for a video) and copying the state for a seek are listed separately.
+recordings at 1280×720. Decoding the recording, drawing the overlay, what is heard (finding the
+cues, and mixing and encoding them for a video) and copying the state for a seek are listed
+separately.
 """
 
 import argparse

@@ -121,6 +121,28 @@ def test_a_part_is_played_in_a_loop_until_the_player_leaves(play, straight):
     assert player.statuses[-1].position.start == 0.5
 
 
+def test_after_a_seek_nothing_sounds_of_what_was_skipped(play):
+    class Sound:
+        """Notes the frames that may be heard, and where it begins anew."""
+
+        def __init__(self):
+            self.noted: list[int | str] = []
+            self.problem = ""
+
+        def play(self, step, character, started_over):
+            self.noted.append(step.frame.index)
+
+        def restart(self):
+            self.noted.append("anew")
+
+    def listen(player):
+        player.session.sound = sound
+
+    sound = Sound()
+    play((0, listen), (3, Seek(0.5)), (5, SeekTo(0.0)), (7, leave))
+    assert sound.noted == [0, 1, 2, "anew", 17, 18, "anew", 0, 1]
+
+
 def test_nobody_seeks_out_of_the_part_that_is_played(play):
     player = play((2, Seek(-5.0)), (4, Seek(5.0)), start_s=1.0, end_s=1.5)
     assert player.indices == [30, 31, 30, 31, 45]
