@@ -1,0 +1,142 @@
+"""How the player likes the window and the sound, kept from one session to the next.
+
+A preference changes nothing that is recorded: what does (the scenario, its settings, where the
+eyes look, the robot) is an option of each session, see `app.session.SessionOptions`.
+
+To add one, write a field of `Preferences` and a line of `FLAGS` in
+`app.commands.preference_options`. Who uses it reads `PreferenceStore.now`, and calls `change` when
+the player changes it; it is kept at the end.
+"""
+
+import contextlib
+import json
+import os
+import tomllib
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from app.errors import AppError
+
+PROGRAM = "cubeling"
+"""Value of the key `program` in every file of preferences; no other file is overwritten."""
+
+HEADING = (
+    "# How the window of Cubeling was left. Options of the command line override it;\n"
+    "# remove this file to start afresh.\n"
+)
+
+MIN_WINDOW_SIZE = (320, 180)
+"""Smallest window [screen coordinates]."""
+
+
+@dataclass(frozen=True)
+class Preferences:
+    """What a session begins with; raises AppError if a value is out of its range."""
+
+    panels: tuple[str, ...] = ("tracking", "emotion")
+    """The open panels, each "NAME" or, where the player has moved it, "NAME@X:Y": how much of the
+    free width is to its left and of the free height above it, 0…1."""
+
+    panels_shown: bool = False
+    """Whether the open panels are shown."""
+
+    window_size: tuple[int, int] | None = None
+    """Width and height of the window [screen coordinates]; None for the size of the pictures."""
+
+    full_screen: bool = False
+    """Whether the window fills the screen."""
+
+    def __post_init__(self) -> None:
+        size = self.window_size
+        if size is not None and (size[0] < MIN_WINDOW_SIZE[0] or size[1] < MIN_WINDOW_SIZE[1]):
+            least = "x".join(map(str, MIN_WINDOW_SIZE))
+            raise AppError(f"the window must be at least {least}, not {size[0]}x{size[1]}")
+
+
+class PreferenceStore:
+    """The preferences while a session runs, and the file that keeps them.
+
+    Parameters
+    ----------
+    path
+        The file; None to keep nothing. It need not exist. One that is broken or not ours is left
+        as it is, and `problem` says so.
+    given
+        What the user chose for this session: it overrides the file, and is not kept.
+    """
+
+    def __init__(self, path: Path | None = None, given: Mapping[str, Any] | None = None) -> None:
+        self.problem: str | None
+        """Why the file is not used, in one line; None if it is, or if there is none."""
+        self._path = path
+        kept, self.problem = _read(path)
+        self._began = replace(kept, **(given or {}))
+        self.now = self._began
+        """The preferences now."""
+
+    def change(self, **fields: Any) -> None:
+        """Note what the player changed."""
+        self.now = replace(self.now, **fields)
+
+    def save(self) -> None:
+        """Write what the player changed to the file, whole or not at all; no change, no file."""
+        before, after = asdict(self._began), asdict(self.now)
+        changed = {name: value for name, value in after.items() if value != before[name]}
+        if self._path is None or self.problem is not None or not changed:
+            return
+        kept, self.problem = _read(self._path)  # another session may have written it meanwhile
+        if self.problem is None:
+            self.problem = _write(self._path, replace(kept, **changed))
+
+
+def _read(path: Path | None) -> tuple[Preferences, str | None]:
+    """Return the preferences in a file, and why they are the default ones if it is of no use."""
+    try:
+        return Preferences() if path is None else _parse(path.read_text(encoding="utf-8")), None
+    except FileNotFoundError:
+        return Preferences(), None
+    except OSError as error:
+        reason = error.strerror or "it cannot be read"
+    except UnicodeDecodeError:
+        reason = "it is no text"
+    except (ValueError, AppError) as error:  # of tomllib, msgspec and `Preferences`
+        reason = str(error)
+    return Preferences(), f"the preferences in '{path}' are ignored: {reason}"
+
+
+def _write(path: Path, preferences: Preferences) -> str | None:
+    """Write a file, whole or not at all; return why it is not written."""
+    path = path.resolve()  # a link stays one
+    draft = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        draft.write_text(_document(preferences), encoding="utf-8")
+        draft.replace(path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            draft.unlink()
+        return f"the preferences are not kept in '{path}': {error.strerror}"
+    return None
+
+
+def _parse(text: str) -> Preferences:
+    """Return the preferences of a file; raises ValueError or AppError if it is not one of ours."""
+    document = tomllib.loads(text)
+    if document and document.pop("program", None) != PROGRAM:
+        raise AppError(f'it has no line program = "{PROGRAM}"')
+    return msgspec.convert(document, Preferences)
+
+
+def _document(preferences: Preferences) -> str:
+    """Return a file's text. JSON writes these values as TOML does, but for the character DEL."""
+    values = {"program": PROGRAM, **asdict(preferences)}
+    lines = [
+        f"{name} = {json.dumps(value, ensure_ascii=False)}\n"
+        for name, value in values.items()
+        if value is not None
+    ]
+    return HEADING + "".join(lines).replace("\x7f", "\\u007f")
