@@ -46,7 +46,8 @@ class Attention:
             raise AppError(
                 f"the character cannot look at '{look}': choose one of {', '.join(LOOK_CHOICES)}"
             )
-        self._look = look
+        self.look = look
+        """One of `LOOK_CHOICES`."""
         self._edge = edge
         self._cube: Array | None = None
         self._last_moved = -math.inf
@@ -59,7 +60,7 @@ class Attention:
     ) -> Array | None:
         """Return the point to look at, (3,) in the table frame [m]; None for none."""
         table = controls.camera_from_table
-        if self._look == "none" or table is None:
+        if self.look == "none" or table is None:
             return None
         table_from_camera = np.linalg.inv(table)
         if state.camera_from_cube is not None:
@@ -71,7 +72,7 @@ class Attention:
         if moves or turns or controls.lifted:
             self._last_moved = controls.timestamp
         camera = np.asarray(table_from_camera[:3, 3], float)
-        look = self._choose(controls, command) if self._look == "auto" else self._look
+        look = self._choose(controls, command) if self.look == "auto" else self.look
         if look == "camera" or self._cube is None:
             return camera
         return self._hand(self._cube, camera) if look == "hand" else self._cube

@@ -11,9 +11,16 @@ from numpy.typing import NDArray
 from app.errors import AppError
 from app.pipeline.attention import Attention
 from app.pipeline.checkpoint import Checkpoint
+from app.pipeline.frame_times import Lap
 from app.pipeline.other_cube import OtherCube, advice
 from app.pipeline.registry import make_scenario
-from app.pipeline.scenario import Inputs, Outcome, Scenario
+from app.pipeline.scenario import (
+    AdjustableScenario,
+    Inputs,
+    Outcome,
+    Scenario,
+    ScenarioSettings,
+)
 from app.pipeline.scenario_errors import checked, scenario_errors
 from app.pipeline.step import Rect, ReplayInputs, Step
 from app.pipeline.subjects import character_region, cube_region
@@ -67,6 +74,8 @@ class Playground:
         Whether the scenario cannot be changed, so that the player is not told how.
     known_cubes
         The player's cubes; they are recognised as the bundled ones are.
+    lap
+        Called at the end of each part of `step` with its name, to measure its time.
 
     Raises
     ------
@@ -87,12 +96,13 @@ class Playground:
         look: str = "auto",
         fixed: bool = False,
         known_cubes: Sequence[CubeModel] = (),
+        lap: Lap = lambda part: None,
     ) -> None:
         if isinstance(scenario, str):
             scenario = make_scenario(scenario, cube)
         self.intrinsics = intrinsics
         self.known_cubes = tuple(known_cubes)
-        self._look, self._context = look, context
+        self._look, self._context, self._lap = look, context, lap
         self.fixed = fixed
         """Whether the scenario cannot be changed now, so that the player is not told how."""
         self._stage = None if context is None else Stage(context, intrinsics.size)
@@ -162,6 +172,14 @@ class Playground:
         for name, value in checkpoint.content().items():
             setattr(self, name, value)
 
+    def adjust(self, settings: ScenarioSettings, look: str) -> None:
+        """Play on with other settings, as far as the scenario can be adjusted."""
+        if isinstance(self.scenario, AdjustableScenario):
+            with scenario_errors(type(self.scenario)):
+                self.scenario.adjust(settings)
+        self._look = look
+        self._attention.look = look
+
     def step(
         self,
         frame: Frame,
@@ -190,7 +208,9 @@ class Playground:
         """
         replay = replay or ReplayInputs()
         state = replay.state or self.track(frame)
+        self._lap("tracking")
         controls = replay.controls or self.gesture(state)
+        self._lap("gestures")
         outcome = self.attend(state, controls, self.decide(controls, inputs or Inputs()))
         self.other_cube = self._other_cube.update(frame, state)
         if self.other_cube is not None:
@@ -198,10 +218,13 @@ class Playground:
             outcome = replace(outcome, hint=hint)
         if replay.command is not None:
             outcome = replace(outcome, command=replay.command)
+        self._lap("scenario")
         posed = replay.posed or self.animate(outcome.command)
         self._posed = posed
+        self._lap("animation")
         picture = self.draw(frame, state, controls, outcome, posed) if drawn else None
         subjects = self._subjects(state, controls, posed)
+        self._lap("drawing")
         name = self.scenario.name
         return Step(frame, state, controls, outcome, posed, picture, subjects, name)
 

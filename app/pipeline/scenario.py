@@ -1,7 +1,7 @@
 """The interface of a scenario."""
 
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from affect import Emotion, Personality
 from app.errors import AppError
@@ -19,6 +19,9 @@ class Inputs:
 
     scenario: str = ""
     """Name of the scenario that the player asked for, "" for the present one."""
+
+    changes: tuple[tuple[str, str | float], ...] = ()
+    """Settings that the player changed, each a field of `SessionOptions` and its new value."""
 
     actions: tuple[str, ...] = ()
     """Names of the actions that the character can perform."""
@@ -119,6 +122,18 @@ class Scenario(Protocol):
         self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
     ) -> Outcome:
         """Decide on one frame; `character` is as after the previous frame, None in the first."""
+        ...
+
+
+@runtime_checkable
+class AdjustableScenario(Protocol):
+    """A scenario with settings that the player can change while it is played."""
+
+    adjustable: tuple[str, ...]
+    """Which fields of `ScenarioSettings` it reads."""
+
+    def adjust(self, settings: ScenarioSettings) -> None:
+        """Play on with other settings."""
         ...
 
 

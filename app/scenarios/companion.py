@@ -42,6 +42,7 @@ class Companion:
     personality = "thesis"
     start = RootDelta(float(OFFSET_FROM_CUBE[0]), float(OFFSET_FROM_CUBE[1]), 0.2)
     has_intensity = True
+    adjustable = ("turns", "personality")
 
     def __init__(self, cube: CubeModel, settings: ScenarioSettings) -> None:
         self._roles = {face.name: face.role for face in cube.faces}
@@ -53,6 +54,11 @@ class Companion:
         self._weight = 0.0
         self._knob = (0, 0.0)  # placements and turns of the previous frame
         self._place: NDArray[np.float64] | None = None
+
+    def adjust(self, settings: ScenarioSettings) -> None:
+        """Play on with other settings; the intensity stays."""
+        self._turns = settings.turns
+        self._mood.adjust(settings.personality or Personality.load(self.personality))
 
     def update(
         self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs

@@ -44,6 +44,7 @@ class Follow:
     personality = "lively"
     start = RootDelta(-0.15, 0.03, 0.0)
     has_intensity = False
+    adjustable = ("speed_map", "personality")
 
     def __init__(self, cube: CubeModel, settings: ScenarioSettings) -> None:
         self._dial = SpeedDial(settings.speed_map)
@@ -53,6 +54,11 @@ class Follow:
         self._half_edge = cube.edge / 2
         self._shakes = 0
         self._shake_action: tuple[str, bool] | None = None  # its name, and whether it has begun
+
+    def adjust(self, settings: ScenarioSettings) -> None:
+        """Play on with other settings."""
+        self._dial.use(settings.speed_map)
+        self._mood.adjust(settings.personality or Personality.load(self.personality))
 
     def update(
         self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs

@@ -23,6 +23,12 @@ class MoodController:
         self._feelings = Feelings(self._personality)
         self._lifted = False
 
+    def adjust(self, personality: Personality) -> None:
+        """Feel with a personality from now on; another one starts at its baseline."""
+        if personality != self._personality:
+            self._personality = personality
+            self.reset()
+
     def update(
         self,
         controls: CubeControls,

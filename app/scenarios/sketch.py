@@ -52,6 +52,7 @@ class Sketch:
     personality = "lively"
     start = RootDelta(0.14, 0.0, 0.0)
     has_intensity = False
+    adjustable = ("speed_map", "personality")
 
     def __init__(self, cube: CubeModel, settings: ScenarioSettings) -> None:
         self._dial = SpeedDial(settings.speed_map)
@@ -66,6 +67,11 @@ class Sketch:
     def points(self) -> NDArray[np.float64]:
         """The points set so far, (n, 2) on the table [m]."""
         return np.array(self._points).reshape(-1, 2)
+
+    def adjust(self, settings: ScenarioSettings) -> None:
+        """Play on with other settings."""
+        self._dial.use(settings.speed_map)
+        self._mood.adjust(settings.personality or Personality.load(self.personality))
 
     def update(
         self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs

@@ -63,10 +63,14 @@ class SpeedDial:
     """
 
     def __init__(self, name: str = "corrected") -> None:
-        self._map = SPEED_MAPS[name]
+        self.use(name)
         self._moving = False
         self._speed = 0.0
         self._last: float | None = None
+
+    def use(self, name: str) -> None:
+        """Use a map of `SPEED_MAPS` from now on."""
+        self._map = SPEED_MAPS[name]
 
     def update(self, angle: float, timestamp: float) -> float:
         """Return the Speed for one frame, from the angle between camera and cube [rad]."""
