@@ -1,13 +1,10 @@
 """Colours of the mood plot: those of the screen, pale enough to write on."""
 
 from affect.labels import LabelSet
-from app.ui.palette import ACTION_COLORS, Color, between, bgr, mood_color
+from app.ui.palette import ACTION_COLORS, ROBOT_COLOR, Color, between, bgr, mood_color
 
 WHITE = bgr("#ffffff")
 TEXT_COLOR, SECONDARY_COLOR, BORDER_COLOR, GRID_COLOR = "#2b3345", "#6d7385", "#a9aebb", "#dcdfe6"
-
-OBSERVED_COLOR = "#56b4e9"
-"""What the robot shows: a wide pale line below the others."""
 
 CURVE_STYLES: tuple[tuple[str, tuple[float, ...]], ...] = (
     ("#000000", ()),
@@ -42,3 +39,7 @@ def _hex(color: Color) -> str:
     """Return (blue, green, red) as "#rrggbb"."""
     blue, green, red = color
     return f"#{red:02x}{green:02x}{blue:02x}"
+
+
+OBSERVED_COLOR = _hex(ROBOT_COLOR)
+"""What the robot shows: a wide pale line below the others."""

@@ -5,8 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from affect import Emotion
 from app.pipeline.scenario import EmotionTarget, Outcome
 from characters import CharacterCommand, PosedCharacter
+from robot import Catalogue, Telemetry
 from tracking import CubeControls, CubeState, Frame
 
 Rect = tuple[float, float, float, float]
@@ -95,3 +97,15 @@ class RobotView:
 
     real: bool = False
     """Whether it is a real robot; the virtual robot is drawn instead of any other."""
+
+    shown: Emotion | None = None
+    """The emotion that the robot reports or has acknowledged; None before the first."""
+
+    telemetry: Telemetry | None = None
+    """What is known of the robot and its link; None without a robot."""
+
+    catalogue: Catalogue | None = None
+    """What the robot has; None until it is known."""
+
+    time: float = 0.0
+    """Time of the robot's clock [s]."""

@@ -2,19 +2,20 @@
 
 import time
 from collections.abc import Callable
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Self
 
-from affect import NEUTRAL, Emotion
+from affect import NEUTRAL
 from affect.words import closest_word
 from app.pipeline.scenario import EmotionTarget
 from app.pipeline.step import RobotView
 from robot import LogLine, Robot, RobotError, SimulatedPort, SteppedRobot, connect
 from robot.contract.closeable import Closeable
+from robot.link.exchange import Direction
 
-OnBytes = Callable[[str, bytes, float], None]
-"""Called with ("tx" | "rx", bytes, time of the robot's clock [s]) for all bytes on the wire."""
+OnBytes = Callable[[Direction, bytes, float], None]
+"""Called with a direction, bytes and the time of the robot's clock [s] for all on the wire."""
 
 Clock = Callable[[], float]
 """Returns the time of the session [s]."""
@@ -103,24 +104,28 @@ class RobotLine(Closeable):
         if self._robot is None:
             asked = NEUTRAL if self._target is None else self._target.emotion
             return RobotView("none", asked.valence, asked.label)
-        telemetry = self._robot.telemetry
+        telemetry, catalogue = self._robot.telemetry, None
+        with suppress(RobotError):  # the handshake is not over yet
+            catalogue = self._robot.catalogue
         # Pleo and OpenCat do not report what they show; what they acknowledged is the best guess.
-        shown = telemetry.observed or telemetry.acknowledged or NEUTRAL
-        label = telemetry.label or self._label_of(shown)
-        return RobotView(telemetry.state, shown.valence, label, self._real)
+        shown = telemetry.observed or telemetry.acknowledged
+        emotion = shown or NEUTRAL
+        moods = () if catalogue is None else catalogue.moods
+        label = telemetry.label or closest_word(moods, emotion) or emotion.label
+        return RobotView(
+            telemetry.state,
+            emotion.valence,
+            label,
+            real=self._real,
+            shown=shown,
+            telemetry=telemetry,
+            catalogue=catalogue,
+            time=self.clock(),
+        )
 
     def log(self) -> tuple[LogLine, ...]:
         """Return the last lines of the robot's log, on the session's clock."""
         return () if self._robot is None else self._robot.telemetry.log
-
-    def _label_of(self, emotion: Emotion) -> str:
-        """Return the mood that the robot shows for an emotion, chosen as its driver chooses it."""
-        assert self._robot is not None
-        try:
-            moods = self._robot.catalogue.moods
-        except RobotError:  # the handshake is not over yet
-            return emotion.label
-        return closest_word(moods, emotion) or emotion.label
 
     def check(self) -> None:
         """Raise `RobotError` if the robot cannot be reached now."""

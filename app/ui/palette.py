@@ -28,6 +28,9 @@ ANGRY = bgr("#e5533d")
 NEUTRAL = bgr("#f2b63c")
 HAPPY = bgr("#43b36b")
 
+ROBOT_COLOR = bgr("#56b4e9")
+"""What a robot shows, in plots."""
+
 ACTION_COLORS: dict[str, Color] = {
     "idle": bgr("#4aa3a2"),
     "stand": bgr("#4aa3a2"),
