@@ -23,7 +23,7 @@ BAR_Y = 70.0
 ACTION_BAR_X, ACTION_BAR_WIDTH = 108.0, 160.0
 """Left end and length of the bar of speed or intensity."""
 
-ROBOT_CARD_WIDTH = 316.0
+ACTION_CARD_WIDTH, ROBOT_CARD_WIDTH = 292.0, 316.0
 MOOD_BAR_X, MOOD_BAR_WIDTH = 116.0, 176.0
 """Left end and length of the bar of the robot's mood."""
 
@@ -124,7 +124,7 @@ def _action(step: Step, scale: float) -> Canvas:
 @lru_cache(maxsize=16)
 def _action_background(name: str, moves: bool, scale: float) -> Canvas:
     """Draw what does not change during an action."""
-    canvas = Canvas(292, CARD_HEIGHT, scale)
+    canvas = Canvas(ACTION_CARD_WIDTH, CARD_HEIGHT, scale)
     canvas.disc(54, 54, 38, ACTION_COLORS.get(name, INK))
     if name in ICON_COLOURS:  # a scenario may name an action that has no icon
         canvas.icon(32, 32, 44, name, PAPER)

@@ -1,0 +1,19 @@
+"""The panels of the window: what they show, apart from how it is drawn.
+
+A new panel is one module: list it in `PANELS`.
+"""
+
+from app.ui.panels.content import Panel
+from app.ui.panels.emotion import EMOTION
+from app.ui.panels.frame_time import FRAME_TIME
+from app.ui.panels.monitor import SessionMonitor
+from app.ui.panels.scenario import SCENARIO
+from app.ui.panels.serial import SERIAL
+from app.ui.panels.tracking import TRACKING
+
+PANELS: dict[str, Panel] = {
+    panel.name: panel for panel in (TRACKING, SCENARIO, EMOTION, SERIAL, FRAME_TIME)
+}
+"""The panels by name, in the order in which the window lists them."""
+
+__all__ = ["PANELS", "Panel", "SessionMonitor"]

@@ -1,0 +1,41 @@
+"""Where the time of a frame goes."""
+
+from app.ui.palette import ACTION_COLORS, ANGRY, HAPPY, NEUTRAL, QUIET, ROBOT_COLOR, RULE, bgr
+from app.ui.panels.content import Fact, Note, Panel, Share, ShareBar, Widget
+from app.ui.panels.monitor import SessionMonitor
+
+PARTS = {
+    "capture": bgr("#2f6f8f"),
+    "tracking": ACTION_COLORS["walk"],
+    "gestures": ROBOT_COLOR,
+    "scenario": HAPPY,
+    "animation": ACTION_COLORS["run"],
+    "drawing": ACTION_COLORS["kiss"],
+    "robot": NEUTRAL,
+    "recording": ANGRY,
+    "showing": ACTION_COLORS["shout"],
+    "waiting": RULE,
+}
+"""The parts of a frame in their order, with their colours; others are grey. "waiting" is spare."""
+
+
+def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
+    """Return the mean time of each part over the last second, as a stacked bar."""
+    means = monitor.times.means()
+    if not means:
+        return (Note("The first second is being measured."),)
+    total = sum(means.values())
+    spare = means.get("waiting", 0.0)
+    order = [*(part for part in PARTS if part in means), *(means.keys() - PARTS.keys())]
+    shares = tuple(
+        Share(part, means[part], f"{1e3 * means[part]:.1f} ms", PARTS.get(part, QUIET))
+        for part in order
+    )
+    return (
+        Fact("A frame", f"{1e3 * total:.1f} ms, {1 / total:.0f} frames/s" if total else "0 ms"),
+        Fact("Busy", f"{100 * (1 - spare / total):.0f} % of the time" if total else "0 %"),
+        ShareBar(shares),
+    )
+
+
+FRAME_TIME = Panel("frame-time", "Frame time", 320.0, content)

@@ -1,0 +1,62 @@
+"""What the panels show of a session: its last steps, its robot, its times."""
+
+import numpy as np
+
+from app.pipeline.frame_times import FrameTimes
+from app.pipeline.playground import Playground
+from app.pipeline.step import RobotView, Step
+from app.session import SessionOptions
+from app.ui.panels.trace import Trace
+from app.ui.panels.wire_log import WireLog
+from tracking import Intrinsics, LensEstimate
+
+EMOTION_SPAN_S, EMOTION_INTERVAL_S = 60.0, 0.1
+"""How long emotions are kept, and the least time between two of them."""
+
+TRACKING_SPAN_S = 10.0
+"""How long the tracker's results are kept."""
+
+
+class SessionMonitor:
+    """Collects what the panels show, frame by frame; bounded in memory and in time.
+
+    Parameters
+    ----------
+    options
+        Of the session.
+    times
+        How long each part of a frame takes.
+    """
+
+    def __init__(self, options: SessionOptions, times: FrameTimes) -> None:
+        self.options = options
+        """Of the session, with what the player has changed since."""
+        self.times = times
+        """How long each part of a frame takes."""
+        self.wire = WireLog()
+        """The robot's line."""
+        self.emotions = Trace(4, EMOTION_SPAN_S, EMOTION_INTERVAL_S)
+        """Valence and arousal of the character and of the robot; NaN while the robot has none."""
+        self.tracking = Trace(2, TRACKING_SPAN_S)
+        """Of each frame: whether the cube was visible, 0 or 1, and its reprojection error [px]."""
+        self.step: Step | None = None
+        """The last step."""
+        self.robot = RobotView("none", 0.0, "neutral")
+        """The robot at the last step."""
+        self.lens = LensEstimate()
+        """What the cube has shown of the lens."""
+        self.intrinsics: Intrinsics | None = None
+        """Of the camera; None before the first step."""
+
+    def update(
+        self, step: Step, robot: RobotView, playground: Playground, options: SessionOptions
+    ) -> None:
+        """Take what a frame gave."""
+        self.step, self.robot, self.options = step, robot, options
+        self.lens, self.intrinsics = playground.lens, playground.intrinsics
+        now, state, feels = step.frame.timestamp, step.state, step.emotion.emotion
+        shown = robot.shown
+        theirs = (np.nan, np.nan) if shown is None else (shown.valence, shown.arousal)
+        self.emotions.add(now, feels.valence, feels.arousal, *theirs)
+        error = state.reprojection_error if state.visible else np.nan
+        self.tracking.add(now, float(state.visible), error)

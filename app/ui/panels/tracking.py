@@ -1,0 +1,89 @@
+"""How well the cube is tracked."""
+
+import numpy as np
+from rich.text import Text
+
+from app.ui.notice import lens_notice
+from app.ui.palette import ACTION_COLORS
+from app.ui.panels.content import Curve, Fact, Note, Panel, Plot, Tone, Widget
+from app.ui.panels.monitor import TRACKING_SPAN_S, SessionMonitor
+from tracking import CubeState
+
+REFUSALS = {
+    "ambiguous": "one face may lean either way",
+    "blurred": "its edges are blurred",
+    "jump": "no hand is so fast",
+    "unproved": "it is too small or hidden",
+    "unsure": "the pose may be far off",
+}
+"""Why a pose is not trusted, by `CubeState.refused`."""
+
+SOURCES = {"markers": "markers", "image": "edges and surface", "predicted": "prediction"}
+"""What a pose is measured on, by `CubeState.source`."""
+
+MAX_RESIDUAL_PX = 2.0
+"""Top of the plot [px]."""
+
+GOOD_SHARE, FAIR_SHARE = 0.95, 0.7
+"""Shares of frames with the cube that count as good and as fair."""
+
+
+def stated_error(state: CubeState) -> tuple[float, float]:
+    """Return the standard deviations of the position [mm] and the rotation [°] as they are stated.
+
+    They are those along the worst axis; NaN where there is no pose.
+    """
+    if state.camera_from_cube is None or not np.isfinite(state.covariance).all():
+        return np.nan, np.nan
+    position, rotation = (
+        float(np.sqrt(max(np.linalg.eigvalsh(block)[-1], 0.0)))
+        for block in (state.covariance[:3, :3], state.covariance[3:, 3:])
+    )
+    return 1e3 * position, float(np.degrees(rotation))
+
+
+def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
+    """Return the tracker's verdict, the errors that it states, and the last seconds."""
+    assert monitor.step is not None, "a panel is drawn after the first frame"
+    state = monitor.step.state
+    table = monitor.tracking.table()
+    share = float(table[:, 1].mean())
+    span = table[-1, 0] - table[0, 0]
+    rate = f"{(len(table) - 1) / span:.0f} frames/s" if span > 0.0 else "no rate yet"
+    mm, degrees = stated_error(state)
+    error = f"{mm:.1f} mm, {degrees:.2f}°" if state.visible else "none"
+    residual = f"{state.reprojection_error:.2f} px"
+    tone: Tone = "good" if share >= GOOD_SHARE else "warning" if share >= FAIR_SHARE else "bad"
+    widgets: list[Widget] = [
+        _verdict(state),
+        Fact("Faces", ", ".join(state.faces) or "none"),
+        Fact("Measured on", SOURCES[state.source] if state.visible else "nothing"),
+        Fact("Residual", residual if np.isfinite(state.reprojection_error) else "none"),
+        Fact("Stated error", error),
+        Fact("Seen lately", f"{100 * share:.0f} % at {rate}", tone),
+        Plot(
+            "Residual",
+            (Curve("residual", table[:, 0], table[:, 2], ACTION_COLORS["walk"]),),
+            TRACKING_SPAN_S,
+            0.0,
+            MAX_RESIDUAL_PX,
+            ((0.0, "0"), (1.0, "1 px")),
+            56.0,
+        ),
+    ]
+    if monitor.intrinsics is not None:
+        words = lens_notice(monitor.lens, monitor.intrinsics)
+        if words is not None:
+            widgets.append(Note(Text.from_markup(words).plain, "warning"))
+    return tuple(widgets)
+
+
+def _verdict(state: CubeState) -> Fact:
+    if state.visible:
+        return Fact("Cube", "found", "good")
+    if state.refused:
+        return Fact("Cube", REFUSALS.get(state.refused, state.refused), "warning")
+    return Fact("Cube", "not in view", "bad")
+
+
+TRACKING = Panel("tracking", "Tracking", 296.0, content)

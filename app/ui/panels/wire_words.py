@@ -1,0 +1,136 @@
+"""The messages on a robot's line, in words."""
+
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple, Protocol
+
+from robot import Catalogue
+from robot.drivers.lines import LineReader
+from robot.protocol import messages as m
+from robot.protocol.fields import MessageError
+from robot.protocol.schema import Sender, unpack
+from robot.protocol.wire import FrameReader
+
+MAX_LINE_CHARS = 56
+"""Longest line of text that is shown."""
+
+
+class Words(NamedTuple):
+    """A message in words."""
+
+    text: str
+    """What it says."""
+
+    routine: bool
+    """Whether it is sent all the time, so that only the newest one matters."""
+
+
+class WireDecoder(Protocol):
+    """Turns the bytes of one direction into words."""
+
+    def __init__(self, sender: Sender) -> None: ...
+
+    def feed(self, data: bytes, catalogue: Catalogue | None) -> Iterator[Words]:
+        """Return the messages that end in these bytes; `catalogue` names what they refer to."""
+        ...
+
+
+class FrameDecoder:
+    """Decodes the frames of the protocol "cubeling"."""
+
+    def __init__(self, sender: Sender) -> None:
+        self._sender: Sender = sender
+        self._reader = FrameReader()
+
+    def feed(self, data: bytes, catalogue: Catalogue | None) -> Iterator[Words]:
+        """Return the messages that end in these bytes."""
+        errors = self._reader.errors
+        for body in self._reader.feed(data):
+            try:
+                _, message = unpack(body, self._sender)
+            except MessageError as error:
+                yield Words(str(error), False)
+                continue
+            if message is None:
+                yield Words(f"an unknown message, {body[:1].hex()}", False)
+            else:
+                text = WORDS[type(message)](message, _names(catalogue))
+                yield Words(text, isinstance(message, ROUTINE))
+        if self._reader.errors > errors:
+            yield Words("bytes that are no message", False)
+
+
+class LineDecoder:
+    """Decodes protocols of lines of text, which speak for themselves."""
+
+    def __init__(self, sender: Sender) -> None:
+        self._reader = LineReader(1000)
+
+    def feed(self, data: bytes, catalogue: Catalogue | None) -> Iterator[Words]:
+        """Return the lines that end in these bytes."""
+        for line in self._reader.feed(data):
+            text = "".join(char if char.isprintable() else " " for char in line).strip()
+            if text:
+                more = "…" if len(text) > MAX_LINE_CHARS else ""
+                yield Words(text[:MAX_LINE_CHARS] + more, False)
+
+
+DECODERS: dict[str, type[WireDecoder]] = {"cubeling": FrameDecoder}
+"""The decoder of each protocol; all others are lines of text."""
+
+Names = Callable[[int, int], str]
+"""Returns the name of an item of the catalogue by its kind and index."""
+
+
+def _names(catalogue: Catalogue | None) -> Names:
+    def name(item: int, index: int) -> str:
+        kinds: dict[int, tuple[str, tuple[str, ...]]] = {
+            m.ITEM_JOINT: ("joint", ()),
+            m.ITEM_MOTION: ("motion", catalogue.motions if catalogue else ()),
+            m.ITEM_SOUND: ("sound", catalogue.sounds if catalogue else ()),
+            m.ITEM_MOOD: ("mood", catalogue.moods if catalogue else ()),
+        }
+        kind, names = kinds.get(item, (f"kind {item}", ()))
+        return names[index] if index < len(names) else f"{kind} {index}"
+
+    return name
+
+
+def _express(message: m.Express, name: Names) -> str:
+    mood = "" if message.mood == m.NOTHING else f" {name(m.ITEM_MOOD, message.mood)}"
+    return f"{message.number}: feel{mood} {_emotion(message)}"
+
+
+def _state(message: m.State, name: Names) -> str:
+    playing = [
+        f", playing {name(item, index)}"
+        for item, index in ((m.ITEM_MOTION, message.motion), (m.ITEM_SOUND, message.sound))
+        if index != m.NOTHING
+    ]
+    mood = name(m.ITEM_MOOD, message.mood)
+    return f"I feel {mood} {_emotion(message)}" + "".join(playing)
+
+
+def _emotion(message: m.Express | m.State) -> str:
+    """Return valence and arousal."""
+    return f"({message.valence:+.2f}, {message.arousal:+.2f})"
+
+
+WORDS: dict[type[Any], Callable[[Any, Names], str]] = {
+    m.Hello: lambda hello, name: f"hello, I speak version {hello.version}",
+    m.Ask: lambda ask, name: f"what is {name(ask.item, ask.index)}?",
+    m.Beat: lambda beat, name: f"beat {beat.count}",
+    m.Express: _express,
+    m.Play: lambda play, name: f"{play.number}: play {name(play.item, play.index)}",
+    m.Stop: lambda stop, name: f"{stop.number}: stop",
+    m.Bye: lambda bye, name: "goodbye",
+    m.Welcome: lambda welcome, name: f"welcome, I am {welcome.name} with {welcome.firmware}",
+    m.Joint: lambda joint, name: f"joint {joint.index} is {joint.name}",
+    m.Name: lambda entry, name: f"{_names(None)(entry.item, entry.index)} is {entry.name}",
+    m.State: _state,
+    m.Ack: lambda ack, name: f"{ack.number} is {'refused' if ack.result else 'taken'}",
+    m.Gone: lambda gone, name: "this session is not open here",
+}
+"""What each message of the protocol "cubeling" says; a test compares with `robot.protocol`."""
+
+ROUTINE = (m.Beat, m.State)
+"""Messages that are sent all the time."""
