@@ -4,8 +4,8 @@ A preference changes nothing that is recorded: what does (the scenario, its sett
 eyes look, the robot) is an option of each session, see `app.session.SessionOptions`.
 
 To add one, write a field of `Preferences` and a line of `FLAGS` in
-`app.commands.preference_options`. Who uses it reads `PreferenceStore.now`, and calls `change` when
-the player changes it; it is kept at the end.
+`app.commands.session.preference_options`. Who uses it reads `PreferenceStore.now`, and calls
+`change` when the player changes it; it is kept at the end.
 """
 
 import contextlib
@@ -49,6 +49,9 @@ class Preferences:
 
     full_screen: bool = False
     """Whether the window fills the screen."""
+
+    mirror: bool = False
+    """Whether the picture is shown as in a mirror."""
 
     def __post_init__(self) -> None:
         size = self.window_size

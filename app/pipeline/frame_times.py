@@ -37,6 +37,11 @@ class FrameTimes:
         while self._last - self._frames[0][0] > self._span:
             self._frames.popleft()
 
+    def drop_frame(self) -> None:
+        """Forget what was measured since the last frame ended: nothing was shown."""
+        self._last = self._clock()
+        self._frame = {}
+
     def means(self) -> dict[str, float]:
         """Return the mean time of each part in the last second's frames [s], {} before the first.
 

@@ -20,9 +20,6 @@ class Inputs:
     scenario: str = ""
     """Name of the scenario that the player asked for, "" for the present one."""
 
-    changes: tuple[tuple[str, str | float], ...] = ()
-    """Settings that the player changed, each a field of `SessionOptions` and its new value."""
-
     actions: tuple[str, ...] = ()
     """Names of the actions that the character can perform."""
 

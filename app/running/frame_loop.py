@@ -23,13 +23,14 @@ class FrameLoop:
 
     def step(self, frame: Frame) -> Step:
         """Process one frame and show it."""
-        session = self._session
+        session, lap = self._session, self._session.monitor.times.lap
         began = time.perf_counter()
         self._read_recorded(frame)
         inputs = Inputs(clear=True) if self._take_start_over() else self._inputs
         session.change_scenario(inputs.scenario)
         if session.recording is not None:
             frame = session.recording.encode(frame)
+            lap("recording")
         step = session.playground.step(frame, inputs, self._replay)
         self._show(step, inputs, began)
         return step
@@ -59,7 +60,7 @@ class FrameLoop:
         return self._inputs != Inputs()
 
     def _show(self, step: Step, inputs: Inputs, began: float) -> None:
-        session = self._session
+        session, lap = self._session, self._session.monitor.times.lap
         follows = self._hidden is None and step.frame.index >= self._shown_index
         self._hidden, self._shown_index = None, step.frame.index
         # Read the view first: after `feel`, the link's thread holds the robot's lock for a moment.
@@ -68,14 +69,20 @@ class FrameLoop:
         if session.player is not None:
             session.player.publish(step.command, step.emotion)
         seconds = time.perf_counter() - began
+        lap("robot")
         if session.recording is not None:
             session.recording.write(step, inputs)
+            lap("recording")
+        session.observe()
+        session.monitor.update(step, view, session.playground)
         self._inputs = session.screen.show(step, view)
+        lap("showing")
         if session.sound is not None:
             if not follows:
                 session.sound.restart()
             character = session.playground.character
             session.sound.play(step, character, started_over=inputs.clear)
+            lap("sound")
         self._summary.add(step, view, seconds)
 
     def _take_start_over(self) -> bool:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from affect import AffectError
+from affect import AffectError, Personality
 from app.errors import AppError
 from app.pipeline.other_cube import cube_for
 from app.pipeline.playground import Playground
@@ -14,9 +14,10 @@ from app.running.players import PlayerPublisher
 from app.running.recording import SessionRecording
 from app.running.robots import RobotLine
 from app.running.wire_tap import WireTap
-from app.scenarios import Scenario, find_scenario, make_scenario
+from app.scenarios import Scenario, ScenarioSettings, find_scenario, make_scenario
 from app.session import SessionOptions
 from app.sound import SessionSound
+from app.ui.panels import SessionMonitor
 from app.ui.playback.status import EndCard
 from app.ui.screen import Screen
 from characters import CharacterError
@@ -69,6 +70,9 @@ class OpenedSession:
     replay_inputs: Iterator[ReplayInputs] | None
     """In a replay that does not start from the camera, the recorded messages of each frame."""
 
+    monitor: SessionMonitor
+    """Collects what the window's panels show."""
+
     ending: EndCard | None
     """The card at the end of a recording; None for a short one, in a window only."""
 
@@ -112,6 +116,26 @@ class OpenedSession:
         others = (each for each in self.asked.cubes if each != first)
         self.options = replace(self.options, scenario=name, cubes=(first, *others), character=None)
         self.screen.notify(f"Playing {name}")
+
+    def change_setting(self, setting: str, value: str | float) -> None:
+        """Play on with another value of a setting, a field of `SessionOptions`, if it may change.
+
+        Raises AppError or AffectError if it has no such value.
+        """
+        if self.keeps_scenario:
+            self.screen.notify(f"{self.why_it_stays}: its settings do, too")
+            return
+        options = replace(self.options, **{setting: value})  # type: ignore[arg-type]
+        personality = None if options.personality is None else Personality.load(options.personality)
+        settings = ScenarioSettings(options.speed_map, options.turns, personality)
+        self.playground.adjust(settings, options.look)
+        self.options = options
+        self.observe()
+
+    def observe(self) -> None:
+        """Let the panels show the present options and robot."""
+        self.monitor.options, self.monitor.fixed = self.options, self.keeps_scenario
+        self.monitor.wire = self.wire.log
 
     @property
     def why_it_stays(self) -> str:

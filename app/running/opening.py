@@ -1,6 +1,7 @@
 """Opening a session: its source, screen, recorder and robot, from the user's options."""
 
 import math
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -9,7 +10,9 @@ import moderngl
 
 from app.errors import AppError
 from app.output_path import check_output, default_folder
+from app.pipeline.frame_times import FrameTimes
 from app.pipeline.playground import Playground
+from app.preferences import PreferenceStore
 from app.running.clock import Pace, SessionClock
 from app.running.opened_session import OpenedSession, scenario_of
 from app.running.players import PlayerPublisher
@@ -22,6 +25,7 @@ from app.session.replay_inputs import read_replay_inputs
 from app.sound import Mixer, SessionSound, SoundBank
 from app.ui.output_file import OUTPUT_SUFFIXES, OutputFile
 from app.ui.overlay import virtual_robot_side
+from app.ui.panels import SessionMonitor
 from app.ui.playback.status import EndCard
 from app.ui.playback.timeline import STRIP_HEIGHT
 from app.ui.screen import NullScreen, Screen
@@ -47,6 +51,7 @@ def open_session(
     screen: Screen | None = None,
     player: PlayerPublisher | None = None,
     ending: EndCard | None = None,
+    preferences: PreferenceStore | None = None,
 ) -> Iterator[OpenedSession]:
     """Open all that a session needs, and close it in reverse order at the end.
 
@@ -66,6 +71,8 @@ def open_session(
     ending
         The card at the end of a recording, in a window and in a video; None for a short one, in a
         window only.
+    preferences
+        How the window begins, and what the player changes of it; the caller saves them.
 
     Yields
     ------
@@ -91,9 +98,11 @@ def open_session(
         check_start(options, source)
         intrinsics = intrinsics_for(calibration or source.intrinsics, source.size)
         context = sound = None
+        monitor = SessionMonitor(options, FrameTimes(time.perf_counter))
         if screen is None:
             sound = open_sound(options, bank, closing)
-            screen, context = _open_screen(options, source, sound, closing)
+            preferences = preferences or PreferenceStore()
+            screen, context = _open_screen(options, source, sound, preferences, monitor, closing)
         playground = Playground(
             scenario,
             intrinsics,
@@ -103,6 +112,7 @@ def open_session(
             look=options.look,
             fixed=options.keeps_scenario or not options.windowed,
             known_cubes=cubes,
+            lap=monitor.times.lap,
         )
         closing.callback(playground.close)
         is_session = options.source.endswith(".mcap")
@@ -142,6 +152,7 @@ def open_session(
             pace=pace,
             start_overs=start_overs,
             replay_inputs=replay_inputs,
+            monitor=monitor,
             ending=ending,
             first_source=source,
             recording=recording,
@@ -170,6 +181,8 @@ def _open_screen(
     options: SessionOptions,
     source: FrameSource,
     sound: SessionSound | None,
+    preferences: PreferenceStore,
+    monitor: SessionMonitor,
     closing: ExitStack,
 ) -> tuple[Screen, moderngl.Context | None]:
     """Open the window or the output file, and the context to draw in."""
@@ -187,7 +200,8 @@ def _open_screen(
 
     strip = STRIP_HEIGHT if is_seekable(source) else 0.0
     folder = options.folder or default_folder()
-    window = Window(source.size, f"Cubeling: {options.scenario}", folder, strip)
+    title = f"Cubeling: {options.scenario}"
+    window = Window(source.size, title, folder, strip, preferences, monitor)
     return closing.enter_context(window), window.context
 
 

@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable
 
 from app.pipeline.step import Step
+from app.running.clock import Pace
 from app.running.frame_loop import FrameLoop
 from app.running.interrupts import uninterrupted
 from app.running.opened_session import OpenedSession
@@ -78,6 +79,7 @@ class _Runner:
         self._controls = PlayerControls(session, self._transport)
         self._loop = FrameLoop(session, summary)
         self._gaps = _CameraGaps(session, summary)
+        self._times = session.monitor.times
         self._start: float | None = None
         self._updated = 0.0
 
@@ -90,6 +92,7 @@ class _Runner:
             if self._transport.idle:
                 screen.wait(None)
                 time.sleep(IDLE_INTERVAL_S)
+                self._times.drop_frame()
             elif not self._advance():
                 self._controls.report()  # a video ends with a card
                 return
@@ -100,6 +103,7 @@ class _Runner:
     def _advance(self) -> bool:
         """Take the next frame; return False at the end of the session."""
         found = self._read()
+        self._times.lap("waiting" if self._session.source.live else "capture")
         if isinstance(found, Frame):
             self._gaps.end(found)
             self._process(found)
@@ -140,7 +144,7 @@ class _Runner:
             with uninterrupted():
                 step = loop.skip(frame)
             self._update_screen()
-        elif session.pace is not None and not session.pace.wait(frame.timestamp):
+        elif session.pace is not None and not self._wait_for(frame, session.pace):
             loop.leave_out(frame)
             self._summary.left_out += 1
             return
@@ -152,6 +156,14 @@ class _Runner:
         self._transport.save_state(by_player)
         if self._progress is not None:
             self._progress(step)
+        self._times.lap("other")
+        self._times.end_frame()
+
+    def _wait_for(self, frame: Frame, pace: Pace) -> bool:
+        """Wait until a frame is due; return False if it is too late."""
+        in_time = pace.wait(frame.timestamp)
+        self._times.lap("waiting")
+        return in_time
 
     def _update_screen(self) -> None:
         """Let the player see where a seek is, and go on asking."""

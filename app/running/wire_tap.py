@@ -3,6 +3,8 @@
 import threading
 
 from app.session import Recorder
+from app.ui.panels.wire_log import WireLog
+from robot.link.exchange import Direction
 
 
 class WireTap:
@@ -14,6 +16,8 @@ class WireTap:
     """
 
     def __init__(self) -> None:
+        self.log = WireLog()
+        """The last bytes, for the panel that shows them."""
         self._lock = threading.Lock()
         self._handshake: list[tuple[str, bytes, float]] = []
         self._aligned = False
@@ -21,8 +25,9 @@ class WireTap:
         self._held = self._since = 0.0
         self._recorder: Recorder | None = None
 
-    def __call__(self, direction: str, data: bytes, time: float) -> None:
+    def __call__(self, direction: Direction, data: bytes, time: float) -> None:
         """Take bytes of one direction ("tx", "rx") at a time of the robot's clock [s]."""
+        self.log(direction, data, time)
         with self._lock:
             if not self._aligned:
                 self._handshake.append((direction, data, time))

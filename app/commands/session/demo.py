@@ -19,6 +19,7 @@ from app.commands.session.play import (
     ScenarioArgument,
     VolumeOption,
 )
+from app.commands.session.preference_options import GivenPreferences, with_preferences
 from app.commands.session.progress import play_session
 from app.errors import AppError
 from app.running.opening import check_output_paths
@@ -33,6 +34,7 @@ DEFAULT_VIDEO = Path("demo.mp4")
 """The program's own output: it is overwritten without being asked."""
 
 
+@with_preferences
 def demo(
     scenario: ScenarioArgument = "companion",
     recording: Annotated[
@@ -48,6 +50,8 @@ def demo(
     end: EndOption = None,
     loop: LoopOption = False,
     folder: FolderOption = None,
+    *,
+    preferences: GivenPreferences,
 ) -> None:
     """See it work: with your camera, with the bundled recording, or as a video.
 
@@ -94,7 +98,9 @@ def demo(
                 "or [cyan]cubeling demo --recording[/]"
             )
             options = replace(part, source=DEFAULT_CAMERA)
-        play_session(options, scenario, source=camera, ending=end_card(scenario))
+        kept = preferences.open(True)
+        ending = end_card(scenario)
+        play_session(options, scenario, source=camera, ending=ending, preferences=kept)
 
 
 def render(options: SessionOptions, console: Console) -> None:

@@ -8,6 +8,7 @@ from rich.markup import escape
 
 from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
 from app.commands.output import OverwriteOption
+from app.commands.session.preference_options import GivenPreferences, with_preferences
 from app.commands.session.progress import play_session
 from app.errors import AppError
 from app.running.network import DEFAULT_SITE
@@ -126,6 +127,7 @@ SoundsOption = Annotated[
 ]
 
 
+@with_preferences
 def play(
     scenario: ScenarioArgument,
     source: SourceOption = DEFAULT_CAMERA,
@@ -159,6 +161,8 @@ def play(
     site: Site = DEFAULT_SITE,
     password_file: PasswordFile = None,
     ca: Ca = None,
+    *,
+    preferences: GivenPreferences,
 ) -> None:
     """Play with the cube in front of a camera.
 
@@ -189,5 +193,6 @@ def play(
     check_cubes(scenario, options.cubes)  # before a display is missing
     if options.windowed and not has_display():
         raise AppError("there is no display here: write a video with --output FILE.mp4")
+    kept = preferences.open(options.windowed)
     with publisher(mqtt, player, site, password_file, ca) as line:
-        play_session(options, f"playing {scenario}", player=line)
+        play_session(options, f"playing {scenario}", player=line, preferences=kept)

@@ -13,6 +13,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from app.errors import AppError
 from app.pipeline.step import Step
+from app.preferences import PreferenceStore
 from app.running.opened_session import OpenedSession
 from app.running.opening import open_session
 from app.running.players import PlayerPublisher
@@ -34,16 +35,21 @@ def play_session(
     source: FrameSource | None = None,
     player: PlayerPublisher | None = None,
     ending: EndCard | None = None,
+    preferences: PreferenceStore | None = None,
 ) -> None:
     """Open a session, run it, and print its summary and what was kept; see `open_session`.
 
     Raises KeyboardInterrupt if Ctrl-C ended it before its output was complete.
     """
     console = Console()
+    preferences = preferences or PreferenceStore()
     with ExitStack() as at_end:
+        at_end.enter_context(_kept(preferences, console))
         if options.record is not None:
             at_end.callback(report_recording, options.record, console)
-        with open_session(options, source=source, player=player, ending=ending) as session:
+        with open_session(
+            options, source=source, player=player, ending=ending, preferences=preferences
+        ) as session:
             at_end.callback(report_kept, session, console)
             if options.intrinsics is None and session.source.intrinsics is None:
                 console.print(
@@ -55,6 +61,20 @@ def play_session(
         if options.output is not None:
             report_output(options.output, summary, console)
     summary.check()
+
+
+@contextmanager
+def _kept(preferences: PreferenceStore, console: Console) -> Iterator[None]:
+    """Keep what the player changes of the preferences; print why they are not read or kept."""
+    reported = preferences.problem
+    if reported is not None:
+        console.print(f"[dim]{escape(reported)}[/]", soft_wrap=True)
+    try:
+        yield
+    finally:
+        preferences.save()
+        if preferences.problem != reported:
+            console.print(f"[dim]{escape(str(preferences.problem))}[/]", soft_wrap=True)
 
 
 def report_output(path: Path, summary: Summary, console: Console) -> None:

@@ -24,6 +24,7 @@ from app.commands.session.play import (
     SoundsOption,
     VolumeOption,
 )
+from app.commands.session.preference_options import GivenPreferences, with_preferences
 from app.commands.session.progress import ProgressLines, play_session
 from app.errors import AppError
 from app.running.network import DEFAULT_SITE
@@ -32,6 +33,7 @@ from app.session import SessionOptions, session_info
 from app.ui.display import has_display
 
 
+@with_preferences
 def replay(
     session: Annotated[Path, typer.Argument(help="A session recorded with --record.")],
     scenario: Annotated[str | None, typer.Option(help="Play it as another scenario.")] = None,
@@ -76,6 +78,8 @@ def replay(
     site: Site = DEFAULT_SITE,
     password_file: PasswordFile = None,
     ca: Ca = None,
+    *,
+    preferences: GivenPreferences,
 ) -> None:
     """Play a recorded session: in a window, to a video, or only to its summary.
 
@@ -118,5 +122,6 @@ def replay(
         )
         Console().print(result)
         raise typer.Exit(0 if result.identical else 1)
+    kept = preferences.open(options.windowed)
     with publisher(mqtt, player, site, password_file, ca) as line:
-        play_session(options, f"replaying {session.name}", player=line)
+        play_session(options, f"replaying {session.name}", player=line, preferences=kept)

@@ -4,12 +4,14 @@ from collections.abc import Callable
 from datetime import datetime
 from typing import Any
 
+from affect import AffectError
 from app.errors import AppError
 from app.output_path import dated_file, default_folder, short_path
 from app.running.opened_session import OpenedSession
 from app.running.playback.choices import Choices
 from app.running.playback.transport import Transport
 from app.ui.playback.requests import (
+    ChangeSetting,
     Choose,
     ListChoices,
     Pause,
@@ -65,6 +67,15 @@ class PlayerControls:
             return EndCard("The end")
         return session.ending
 
+    def _change_setting(self, request: ChangeSetting) -> None:
+        """Play on with another setting of the scenario."""
+        session = self._session
+        try:
+            session.change_setting(request.setting, request.value)
+        except (AppError, AffectError) as error:
+            session.screen.notify(str(error))
+        self._transport.save_state(by_player=True)
+
     def _record(self, _: Record) -> None:
         """Begin a recording, or end it."""
         session = self._session
@@ -106,6 +117,7 @@ HANDLERS: dict[type[SessionRequest], Callable[[PlayerControls, Any], None]] = {
     SeekTo: lambda controls, request: controls._transport.seek(request.position),
     StepFrames: lambda controls, request: controls._transport.step_frames(request.count),
     Record: PlayerControls._record,
+    ChangeSetting: PlayerControls._change_setting,
     ListChoices: lambda controls, _: controls._choices.look(),
     Choose: lambda controls, request: controls._choices.choose(request),
 }

@@ -9,7 +9,7 @@ from app.preferences import PreferenceStore
 from app.ui.palette import INK, QUIET
 from app.ui.panels import PANELS
 from app.ui.panels.content import Widget
-from app.ui.panels.drawing import Change, draw_widgets
+from app.ui.panels.drawing import draw_widgets
 from app.ui.panels.monitor import SessionMonitor
 from app.ui.panels.places import (
     Rect,
@@ -21,6 +21,7 @@ from app.ui.panels.places import (
     place_of,
 )
 from app.ui.panels.style import TITLE_SIZE, load_fonts, packed, use_card_style
+from app.ui.playback.requests import ChangeSetting
 
 TOP, GAP = 84.0, 12.0
 """Height of the window's top that is left to the hint, and gap between panels [design units]."""
@@ -119,7 +120,7 @@ class PanelBoard:
         """Whether a panel is new and has no place yet."""
         return any(panel.place is None for panel in self._open.values())
 
-    def draw(self, scale: float, *, refresh: bool) -> list[Change]:
+    def draw(self, scale: float, *, refresh: bool) -> list[ChangeSetting]:
         """Draw the panels, and return what the player changed.
 
         Parameters
@@ -135,7 +136,7 @@ class PanelBoard:
         if scale != self._scale:
             use_card_style(scale)
         self._display, self._scale = display, scale
-        changes: list[Change] = []
+        changes: list[ChangeSetting] = []
         for name, panel in list(self._open.items()):
             if name != LIST and (refresh or panel.content is None):
                 panel.content = PANELS[name].content(self._monitor)
@@ -150,12 +151,12 @@ class PanelBoard:
         """Release what the plots need."""
         implot.destroy_context()
 
-    def _draw(self, name: str, panel: _OpenPanel, resized: bool) -> list[Change]:
+    def _draw(self, name: str, panel: _OpenPanel, resized: bool) -> list[ChangeSetting]:
         self._put(panel, resized)
         imgui.begin(f"##{name}", None, WINDOW_FLAGS)
         width = (LIST_WIDTH if name == LIST else PANELS[name].width) * self._scale
         closed = _header("Panels" if name == LIST else PANELS[name].title, width)
-        changes: list[Change] = []
+        changes: list[ChangeSetting] = []
         if name == LIST:
             self._draw_list()
         else:

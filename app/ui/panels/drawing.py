@@ -21,9 +21,7 @@ from app.ui.panels.content import (
     Widget,
 )
 from app.ui.panels.style import FONT_SIZE, packed, rgba
-
-Change = tuple[str, str | float]
-"""A setting that the player changed, and its new value."""
+from app.ui.playback.requests import ChangeSetting
 
 TONE_COLORS: dict[Tone, Color] = {"good": HAPPY, "warning": NEUTRAL, "bad": ANGRY}
 """Colours of the dot before a value."""
@@ -37,7 +35,7 @@ LEGEND_COLUMNS = 2
 PLOT_FLAGS = implot.Flags_.canvas_only | implot.Flags_.no_inputs | implot.Flags_.no_frame
 
 
-def draw_widgets(widgets: Iterable[Widget], width: float) -> list[Change]:
+def draw_widgets(widgets: Iterable[Widget], width: float) -> list[ChangeSetting]:
     """Draw widgets below each other, `width` pixels wide; return what the player changed."""
     changes = []
     for widget in widgets:
@@ -144,7 +142,7 @@ def _legend_entry(share: Share, x: float, y: float, width: float) -> None:
     canvas.add_text((left, y), packed(INK), share.value)
 
 
-def _choice(choice: Choice, width: float) -> Change | None:
+def _choice(choice: Choice, width: float) -> ChangeSetting | None:
     change = None
     imgui.begin_disabled(not choice.enabled)
     _label(choice.name, width)
@@ -152,13 +150,13 @@ def _choice(choice: Choice, width: float) -> Change | None:
         for value in choice.choices:
             chosen, _ = imgui.selectable(value, value == choice.value)
             if chosen and value != choice.value:
-                change = choice.setting, value
+                change = ChangeSetting(choice.setting, value)
         imgui.end_combo()
     imgui.end_disabled()
     return change
 
 
-def _slider(slider: Slider, width: float) -> Change | None:
+def _slider(slider: Slider, width: float) -> ChangeSetting | None:
     imgui.begin_disabled(not slider.enabled)
     _label(slider.name, width)
     moved, value = imgui.slider_float(
@@ -170,7 +168,7 @@ def _slider(slider: Slider, width: float) -> Change | None:
         imgui.SliderFlags_.always_clamp | imgui.SliderFlags_.no_input,
     )
     imgui.end_disabled()
-    return (slider.setting, round(value, 1)) if moved else None
+    return ChangeSetting(slider.setting, round(value, 1)) if moved else None
 
 
 def _label(name: str, width: float) -> None:
@@ -207,7 +205,7 @@ def _contiguous(values: Any) -> Any:
     return np.ascontiguousarray(values)
 
 
-_DRAW: dict[type, Callable[[Any, float], Change | None]] = {
+_DRAW: dict[type, Callable[[Any, float], ChangeSetting | None]] = {
     Fact: _fact,
     Note: _note,
     Plot: _plot,

@@ -14,9 +14,11 @@ PARTS = {
     "robot": NEUTRAL,
     "recording": ANGRY,
     "showing": ACTION_COLORS["shout"],
+    "sound": bgr("#009e73"),
+    "other": QUIET,
     "waiting": RULE,
 }
-"""The parts of a frame in their order, with their colours; others are grey. "waiting" is spare."""
+"""The parts of a frame in their order, with their colours. "waiting" is spare."""
 
 
 def content(monitor: SessionMonitor) -> tuple[Widget, ...]:

@@ -15,9 +15,9 @@ import moderngl
 
 from app.preferences import PreferenceStore
 from app.ui.panels.board import PanelBoard
-from app.ui.panels.drawing import Change
 from app.ui.panels.monitor import SessionMonitor
 from app.ui.panels.places import Rect
+from app.ui.playback.requests import ChangeSetting
 
 VERTEX_SHADER = """
 #version 330
@@ -93,6 +93,16 @@ class PanelLayer:
         return self._board.shown
 
     @property
+    def rects(self) -> list[Rect]:
+        """Where panels lie: left, top, width and height in the window's coordinates."""
+        return self._board.rects if self.shown else []
+
+    @property
+    def busy(self) -> bool:
+        """Whether they are to be drawn again although nothing else has changed."""
+        return self.shown and (self.has_mouse or self._board.settling)
+
+    @property
     def has_mouse(self) -> bool:
         """Whether the mouse is on a panel, or drags something from there."""
         if not self.shown:
@@ -104,7 +114,7 @@ class PanelLayer:
         )
         return inside or imgui.get_io().want_capture_mouse
 
-    def draw(self) -> list[Change]:
+    def draw(self) -> list[ChangeSetting]:
         """Draw the panels over the window's back buffer; return what the player changed."""
         if not self.shown:
             return []
@@ -117,7 +127,7 @@ class PanelLayer:
             self._texture.filter = moderngl.NEAREST, moderngl.NEAREST
             self._canvas = self._context.framebuffer([self._texture])
             self._refreshed_at = float("-inf")
-        changes: list[Change] = []
+        changes: list[ChangeSetting] = []
         now = glfw.get_time()
         refresh = now - self._refreshed_at >= REFRESH_INTERVAL_S
         if refresh or self.has_mouse or self._board.settling:
@@ -137,7 +147,7 @@ class PanelLayer:
         self._quad.release()
         self._program.release()
 
-    def _draw_panels(self, canvas: moderngl.Framebuffer, refresh: bool) -> list[Change]:
+    def _draw_panels(self, canvas: moderngl.Framebuffer, refresh: bool) -> list[ChangeSetting]:
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
         imgui.new_frame()

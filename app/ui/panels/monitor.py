@@ -33,6 +33,8 @@ class SessionMonitor:
         """Of the session, with what the player has changed since."""
         self.times = times
         """How long each part of a frame takes."""
+        self.fixed = False
+        """Whether the scenario and its settings stay as they are now."""
         self.wire = WireLog()
         """The robot's line."""
         self.emotions = Trace(4, EMOTION_SPAN_S, EMOTION_INTERVAL_S)
@@ -48,11 +50,9 @@ class SessionMonitor:
         self.intrinsics: Intrinsics | None = None
         """Of the camera; None before the first step."""
 
-    def update(
-        self, step: Step, robot: RobotView, playground: Playground, options: SessionOptions
-    ) -> None:
-        """Take what a frame gave."""
-        self.step, self.robot, self.options = step, robot, options
+    def update(self, step: Step, robot: RobotView, playground: Playground) -> None:
+        """Take what a frame gave; who has the session keeps the other attributes up to date."""
+        self.step, self.robot = step, robot
         self.lens, self.intrinsics = playground.lens, playground.intrinsics
         now, state, feels = step.frame.timestamp, step.state, step.emotion.emotion
         shown = robot.shown

@@ -16,7 +16,7 @@ def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
     """Return the settings that the scenario has."""
     options = monitor.options
     scenario = find_scenario(options.scenario)
-    free = not options.keeps_scenario
+    free = not monitor.fixed
     widgets: list[Widget] = [Fact("Scenario", options.scenario)]
     for setting in (*getattr(scenario, "adjustable", ()), "look"):
         widgets.append(_WIDGETS[setting](options, free))

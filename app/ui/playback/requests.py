@@ -13,7 +13,7 @@ class WindowRequest(Enum):
     MIRROR = "mirror the picture"
     SNAPSHOT = "write the picture to a file"
     FULL_SCREEN = "fill the screen, or return to the place and size from before"
-    PANEL = "show or hide the panel"
+    PANELS = "show or hide the panels"
     KEYS = "show or hide the keys"
     MENU = "show or hide the menu"
     BACK = "close what lies over the picture, else the window"
@@ -83,10 +83,21 @@ class Choose:
     """A URI, a name or a path, as the option of the same name takes it."""
 
 
+@dataclass(frozen=True)
+class ChangeSetting:
+    """Change a setting of the scenario that is played."""
+
+    setting: str
+    """A field of `SessionOptions`."""
+
+    value: str | float
+    """Its new value."""
+
+
 PlayerInput = StartOver | PlayScenario
 """What the scenario is told."""
 
-SessionRequest = Pause | Seek | SeekTo | StepFrames | Record | ListChoices | Choose
+SessionRequest = Pause | Seek | SeekTo | StepFrames | Record | ListChoices | Choose | ChangeSetting
 """What the session carries out."""
 
 Request = WindowRequest | PlayerInput | SessionRequest

@@ -76,6 +76,9 @@ class Surface:
         Width and height of the pictures [px].
     title
         Text of the title bar.
+    shown_size
+        Width and height of the window [screen coordinates]; None for those of the pictures, as far
+        as they fit on the desktop.
 
     Raises
     ------
@@ -83,8 +86,9 @@ class Surface:
         There is no display, or its driver offers no OpenGL 3.3.
     """
 
-    def __init__(self, size: tuple[int, int], title: str) -> None:
-        self._size = size
+    def __init__(
+        self, size: tuple[int, int], title: str, shown_size: tuple[int, int] | None = None
+    ) -> None:
         self._error = ""
         glfw.set_error_callback(self._store_error)
         if not glfw.init():
@@ -96,7 +100,9 @@ class Surface:
             (glfw.OPENGL_FORWARD_COMPAT, True),
         ):
             glfw.window_hint(hint, value)
-        self._window = glfw.create_window(*_fitting(size), title, None, None)
+        self._chosen_size = shown_size
+        self._first_size = shown_size or _fitting(size)
+        self._window = glfw.create_window(*self._first_size, title, None, None)
         if not self._window:
             glfw.terminate()
             raise AppError(f"no window can be opened here: {self._error}")
@@ -139,7 +145,7 @@ class Surface:
         wide, high = glfw.get_framebuffer_size(self._window)
         screen.viewport = (0, 0, wide, high)
         screen.clear(0.09, 0.10, 0.13)
-        screen.viewport = self._picture_place(width, height)
+        screen.viewport = self.picture_place(width, height)
         self.context.disable(moderngl.DEPTH_TEST | moderngl.BLEND | moderngl.CULL_FACE)
         self._texture.use(0)
         self._quad.render(moderngl.TRIANGLE_STRIP, 4)
@@ -171,13 +177,24 @@ class Surface:
     def handle_button(self, pressed: bool) -> None:
         """Handle the left button of the mouse, where it was last."""
 
+    @property
+    def fills_screen(self) -> bool:
+        """Whether the window fills the screen."""
+        return bool(glfw.get_window_monitor(self._window))
+
+    @property
+    def chosen_size(self) -> tuple[int, int] | None:
+        """The size that the user gave the window [screen coordinates]; None for its own."""
+        size = self._windowed_place[2:] if self.fills_screen else glfw.get_window_size(self._window)
+        return self._chosen_size if size == self._first_size else size
+
     def quit(self) -> None:
         """Ask for the window to be closed."""
         glfw.set_window_should_close(self._window, True)
 
     def toggle_full_screen(self) -> None:
         """Fill the screen, or return to the place and size from before."""
-        if glfw.get_window_monitor(self._window):
+        if self.fills_screen:
             no_monitor: Any = None  # windowed; glfw's type hints do not allow None
             glfw.set_window_monitor(self._window, no_monitor, *self._windowed_place, 0)
             return
@@ -203,7 +220,17 @@ class Surface:
     def release(self) -> None:
         """Release what else draws in the context, while there still is one."""
 
-    def _picture_place(self, width: int, height: int) -> tuple[int, int, int, int]:
+    def in_picture(self, x: float, y: float) -> tuple[float, float]:
+        """Return the place in the picture [px] of one in the window [screen coordinates]."""
+        left, _, shown_width, shown_height = self.picture_place(*self._texture.size)
+        wide, high = glfw.get_framebuffer_size(self._window)
+        columns, rows = glfw.get_window_size(self._window)  # in other units on a fine screen
+        top = (high - shown_height) // 2
+        scale = self._texture.size[0] / max(1, shown_width)
+        x_px, y_px = x * wide / max(1, columns), y * high / max(1, rows)
+        return (x_px - left) * scale, (y_px - top) * scale
+
+    def picture_place(self, width: int, height: int) -> tuple[int, int, int, int]:
         """Return left, bottom, width and height of a picture in the window [px]."""
         wide, high = glfw.get_framebuffer_size(self._window)
         scale = min(wide / width, high / height)
@@ -221,13 +248,7 @@ class Surface:
             self.handle_key(chr(code))
 
     def _on_pointer(self, _window: Any, x: float, y: float) -> None:
-        left, _, shown_width, shown_height = self._picture_place(*self._texture.size)
-        wide, high = glfw.get_framebuffer_size(self._window)
-        columns, rows = glfw.get_window_size(self._window)  # in other units on a fine screen
-        top = (high - shown_height) // 2
-        scale = self._texture.size[0] / max(1, shown_width)
-        x_px, y_px = x * wide / max(1, columns), y * high / max(1, rows)
-        self.handle_pointer((x_px - left) * scale, (y_px - top) * scale)
+        self.handle_pointer(*self.in_picture(x, y))
 
     def _on_button(self, _window: Any, button: int, action: int, _mods: int) -> None:
         if button == glfw.MOUSE_BUTTON_LEFT:
@@ -238,9 +259,15 @@ class Surface:
 
 
 def _fitting(size: tuple[int, int]) -> tuple[int, int]:
-    """Return the largest window for pictures of `size` that fits on the desktop."""
+    """Return the size of a window for pictures of `size` that fits on the desktop.
+
+    On a fine screen it is larger where the system counts in pixels.
+    """
     with contextlib.suppress(Exception):
-        _, _, wide, high = glfw.get_monitor_workarea(glfw.get_primary_monitor())
-        scale = min(1.0, 0.95 * wide / size[0], 0.92 * high / size[1])
+        monitor = glfw.get_primary_monitor()
+        _, _, wide, high = glfw.get_monitor_workarea(monitor)
+        counts_pixels = glfw.get_platform() in (glfw.PLATFORM_X11, glfw.PLATFORM_WIN32)
+        fine = glfw.get_monitor_content_scale(monitor)[0] if counts_pixels else 1.0
+        scale = min(fine, 0.95 * wide / size[0], 0.92 * high / size[1])
         return round(size[0] * scale), round(size[1] * scale)
     return size

@@ -1,13 +1,8 @@
-"""The live window: the picture with its cards, what the player asks for, and a panel."""
+"""The live window: the picture with its cards, what the player asks for, and the panels."""
 
-import ctypes
-import time
-from collections import deque
 from dataclasses import replace
 from pathlib import Path
 
-# imgui-bundle contains the GLFW library that both must share, and sets its path on import.
-from imgui_bundle import imgui  # isort: skip
 import cv2
 import glfw
 import numpy as np
@@ -15,11 +10,14 @@ from numpy.typing import NDArray
 
 from app.pipeline.registry import scenario_names
 from app.pipeline.scenario import Inputs
-from app.pipeline.step import RobotView, Step
+from app.pipeline.step import Rect, RobotView, Step
+from app.preferences import PreferenceStore
 from app.ui.canvas import PICTURE_HEIGHT
 from app.ui.card_layout import CardLayout
 from app.ui.notice import Notice
 from app.ui.overlay import interrupted, overlay, virtual_robot_side
+from app.ui.panels import SessionMonitor
+from app.ui.panels.layer import PanelLayer
 from app.ui.playback.layer import PlaybackLayer
 from app.ui.playback.requests import SessionRequest, WindowRequest
 from app.ui.playback.status import SessionStatus
@@ -27,6 +25,10 @@ from app.ui.virtual_robot import VirtualRobot
 from app.ui.window.surface import Surface
 
 Picture = NDArray[np.uint8]
+
+MIN_ENLARGEMENT, MAX_ENLARGEMENT = 1.1, 2.0
+"""A picture that is shown larger than this is enlarged before cards are drawn over it; at most so
+much, as the time grows with the area."""
 
 
 class Window(Surface):
@@ -42,6 +44,10 @@ class Window(Surface):
         Where snapshots go.
     strip
         Height of what lies under the pictures, in units of the canvas: room for a timeline.
+    preferences
+        How it begins; it notes what the player changes, some of it when it is closed.
+    monitor
+        What the panels show; None for no panels.
 
     Raises
     ------
@@ -57,23 +63,32 @@ class Window(Surface):
         title: str = "Cubeling",
         folder: Path = Path(),
         strip: float = 0.0,
+        preferences: PreferenceStore | None = None,
+        monitor: SessionMonitor | None = None,
     ) -> None:
+        self._preferences = preferences = preferences or PreferenceStore()
+        began = preferences.now
         width, height = size
-        super().__init__((width, height + round(strip * height / PICTURE_HEIGHT)), title)
+        whole = width, height + round(strip * height / PICTURE_HEIGHT)
+        super().__init__(whole, title, began.window_size)
+        if began.full_screen:
+            self.toggle_full_screen()
         self._layer = PlaybackLayer(
             scenario_names(),
             folder,
             {
-                WindowRequest.PANEL: self._toggle_panel,
+                WindowRequest.PANELS: self._toggle_panels,
                 WindowRequest.FULL_SCREEN: self.toggle_full_screen,
                 WindowRequest.QUIT: self.quit,
             },
         )
+        self._layer.mirrored = began.mirror
         self._virtual_robot = VirtualRobot(self.context, virtual_robot_side(height))
         self._layout = CardLayout()
-        self._start_panel()
-        self._panel = False
-        self._shown_at: deque[float] = deque(maxlen=60)
+        self._panels: PanelLayer | None = None
+        if monitor is not None:
+            self._panels = PanelLayer(self._window, self.context, monitor, preferences)
+        self._panel_requests: list[SessionRequest] = []
         self._shown: tuple[Step, RobotView] | None = None
         self._picture: Picture | None = None
         self._pointer = (0.0, 0.0)
@@ -85,7 +100,6 @@ class Window(Surface):
             return Inputs()
         if self._shown is not None and step.frame.timestamp < self._shown[0].frame.timestamp:
             self._layout = CardLayout()  # it goes on from an earlier frame
-        self._shown_at.append(time.perf_counter())
         self._shown = step, robot
         self._redraw()
         return self._layer.take_inputs()
@@ -97,14 +111,15 @@ class Window(Surface):
         if notice is not None and self._picture is not None:
             self.paint(self._layer.draw(interrupted(self._picture, notice)))
             self._draw_over()
-        elif self._layer.changed or self._panel:
+        elif self._layer.changed or (self._panels is not None and self._panels.busy):
             self._redraw()
         else:
             self.poll()
 
     def take_requests(self) -> tuple[SessionRequest, ...]:
         """Return what the player has asked of the session since the last call."""
-        return self._layer.take_requests()
+        requests, self._panel_requests = self._panel_requests, []
+        return (*self._layer.take_requests(), *requests)
 
     def report(self, status: SessionStatus) -> None:
         """Show another state of the session."""
@@ -118,16 +133,19 @@ class Window(Surface):
         self._layer.notify(words)
 
     def release(self) -> None:
-        """Release the panel and the virtual robot."""
-        imgui.backends.opengl3_shutdown()
-        imgui.backends.glfw_shutdown()
-        imgui.destroy_context()
+        """Note how the window is left; release the panels and the virtual robot."""
+        self._preferences.change(
+            window_size=self.chosen_size,
+            full_screen=self.fills_screen,
+            mirror=self._layer.mirrored,
+        )
+        if self._panels is not None:
+            self._panels.close()
         self._virtual_robot.close()
 
     def handle_key(self, key: str, *, shift: bool = False, repeated: bool = False) -> None:
-        """Handle a key, unless it is typed into the panel."""
-        if not imgui.get_io().want_text_input:
-            self._layer.press(key, shift=shift, repeated=repeated)
+        """Handle a key."""
+        self._layer.press(key, shift=shift, repeated=repeated)
 
     def handle_pointer(self, x: float, y: float) -> None:
         """Handle the mouse."""
@@ -136,10 +154,10 @@ class Window(Surface):
         self._layer.point(*self._pointer)
 
     def handle_button(self, pressed: bool) -> None:
-        """Handle the left button of the mouse, unless it is on the panel."""
+        """Handle the left button of the mouse, unless it is on a panel."""
         if not pressed:
             self._layer.release()
-        elif not imgui.get_io().want_capture_mouse:
+        elif self._panels is None or not self._panels.has_mouse:
             self._layer.click(*self._pointer)
 
     @property
@@ -154,7 +172,10 @@ class Window(Surface):
             return
         step, robot = self._shown
         if step.picture is not None:
+            height, width = step.picture.shape[:2]
             step = mirrored(step) if self._layer.mirrored else step
+            step = enlarged(step, self._enlargement(width, height))
+            step = replace(step, subjects=(*step.subjects, *self._covered()))
             assert step.picture is not None
             self._fit_virtual_robot(step.picture.shape[0])
             self._picture = overlay(
@@ -164,10 +185,31 @@ class Window(Surface):
         self._draw_over()
 
     def _draw_over(self) -> None:
-        """Draw the panel over what was painted, and show both."""
-        if self._shown is not None:
-            self._draw_panel(*self._shown)
+        """Draw the panels over what was painted, and show both."""
+        if self._panels is not None:
+            self._panel_requests += self._panels.draw()
         self.present()
+
+    def _toggle_panels(self) -> None:
+        if self._panels is not None:
+            self._panels.toggle()
+
+    def _covered(self) -> list[Rect]:
+        """Return where panels lie in the picture [px], so that cards avoid them."""
+        rects = [] if self._panels is None else self._panels.rects
+        return [
+            (*self.in_picture(left, top), *self.in_picture(left + wide, top + high))
+            for left, top, wide, high in rects
+        ]
+
+    def _enlargement(self, width: int, height: int) -> float:
+        """Return how much larger a picture is drawn than it is, for cards as sharp as the screen.
+
+        It is 1 for a picture that is shown about as large as it is, or smaller.
+        """
+        strip = round(self._layer.strip_height * height / PICTURE_HEIGHT)
+        shown = self.picture_place(width, height + strip)[2] / width
+        return min(shown, MAX_ENLARGEMENT) if shown > MIN_ENLARGEMENT else 1.0
 
     def _fit_virtual_robot(self, height: int) -> None:
         """Draw the virtual robot as large as the pictures ask: another camera may have others."""
@@ -175,44 +217,6 @@ class Window(Surface):
         if side != self._virtual_robot.side:
             self._virtual_robot.close()
             self._virtual_robot = VirtualRobot(self.context, side)
-
-    def _toggle_panel(self) -> None:
-        self._panel = not self._panel
-
-    def _start_panel(self) -> None:
-        # imgui chains to the callbacks that are already set.
-        imgui.create_context()
-        imgui.get_io().set_ini_filename("")
-        address = ctypes.cast(self._window, ctypes.c_void_p).value
-        assert address is not None, "the window is open"
-        imgui.backends.glfw_init_for_opengl(address, True)
-        imgui.backends.opengl3_init("#version 330")
-
-    def _draw_panel(self, step: Step, robot: RobotView) -> None:
-        imgui.backends.opengl3_new_frame()
-        imgui.backends.glfw_new_frame()
-        imgui.new_frame()
-        if self._panel:
-            self._panel_text(step, robot)
-        imgui.render()
-        imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
-
-    def _panel_text(self, step: Step, robot: RobotView) -> None:
-        imgui.set_next_window_pos((24.0, 90.0), imgui.Cond_.first_use_ever)
-        imgui.begin("Details", None, imgui.WindowFlags_.always_auto_resize)
-        span = self._shown_at[-1] - self._shown_at[0]
-        rate = (len(self._shown_at) - 1) / span if span > 0 else 0.0
-        state, controls = step.state, step.controls
-        imgui.text(
-            f"{rate:5.1f} pictures/s   {step.frame.image.shape[1]} x {step.frame.image.shape[0]}"
-        )
-        seen = ", ".join(state.faces) if state.visible else state.refused or "not seen"
-        imgui.text(f"cube      {seen}   {state.reprojection_error:.2f} px")
-        imgui.text(f"top       {controls.top_face}   turns {controls.turns:+.2f}")
-        imgui.text(f"heading   {np.degrees(controls.heading):+.0f} deg")
-        imgui.text(f"character {step.posed.state}   speed {step.posed.speed:.2f}")
-        imgui.text(f"robot     {robot.link}   {robot.label} {robot.mood:+.2f}")
-        imgui.end()
 
 
 def mirrored(step: Step) -> Step:
@@ -223,5 +227,19 @@ def mirrored(step: Step) -> Step:
     picture = np.asarray(cv2.flip(step.picture, 1), np.uint8)
     subjects = tuple(
         (width - right, top, width - left, bottom) for left, top, right, bottom in step.subjects
+    )
+    return replace(step, picture=picture, subjects=subjects)
+
+
+def enlarged(step: Step, scale: float) -> Step:
+    """Return a step whose picture is larger, to draw cards over it that are sharp."""
+    if step.picture is None or scale == 1.0:
+        return step
+    height, width = step.picture.shape[:2]
+    size = round(width * scale), round(height * scale)
+    picture = np.asarray(cv2.resize(step.picture, size, interpolation=cv2.INTER_LINEAR), np.uint8)
+    subjects = tuple(
+        (scale * left, scale * top, scale * right, scale * bottom)
+        for left, top, right, bottom in step.subjects
     )
     return replace(step, picture=picture, subjects=subjects)

@@ -40,7 +40,7 @@ class Desk:
         self.asked: list[WindowRequest] = []
         actions = {
             request: lambda request=request: self.asked.append(request)
-            for request in (WindowRequest.QUIT, WindowRequest.PANEL, WindowRequest.FULL_SCREEN)
+            for request in (WindowRequest.QUIT, WindowRequest.PANELS, WindowRequest.FULL_SCREEN)
         }
         self.layer = PlaybackLayer(
             ("follow", "sketch"), folder, actions, lambda: self.time, lambda: NOW
@@ -75,7 +75,7 @@ def test_every_key_of_the_table_does_what_it_says(desk):
             case request:
                 assert made == (request,), binding
         desk.press("Esc")
-    assert {WindowRequest.PANEL, WindowRequest.FULL_SCREEN} <= set(desk.asked)
+    assert {WindowRequest.PANELS, WindowRequest.FULL_SCREEN} <= set(desk.asked)
 
 
 def test_no_key_is_there_twice():

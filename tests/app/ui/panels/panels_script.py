@@ -18,9 +18,9 @@ from app.preferences import PreferenceStore
 from app.running.opening import intrinsics_for
 from app.session import SessionOptions
 from app.ui.panels import PANELS, SessionMonitor
-from app.ui.panels.drawing import Change
 from app.ui.panels.layer import PanelLayer
 from app.ui.panels.places import Rect
+from app.ui.playback.requests import ChangeSetting
 from characters.rendering import create_context
 from robot import Telemetry
 from tracking import open_source
@@ -49,15 +49,15 @@ class PanelWindow:
             playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
             robot = RobotView("ready", 0.0, "neutral", telemetry=Telemetry("ready"))
             for frame in itertools.islice(source, 10):
-                monitor.update(playground.step(frame), robot, playground, options)
+                monitor.update(playground.step(frame), robot, playground)
         for part in ("tracking", "drawing"):
             monitor.times.lap(part)
         monitor.times.end_frame()
         self.layer = PanelLayer(self.window, self.context, monitor, store)
 
-    def draw(self, frames: int = 1) -> list[Change]:
+    def draw(self, frames: int = 1) -> list[ChangeSetting]:
         """Draw some frames; return what was changed."""
-        changes: list[Change] = []
+        changes: list[ChangeSetting] = []
         for _ in range(frames):
             glfw.poll_events()
             self.context.detect_framebuffer(0).clear(*BACKGROUND)
@@ -70,7 +70,7 @@ class PanelWindow:
         pixels = np.frombuffer(screen.read(), np.uint8).reshape(*screen.size[::-1], 3)
         return np.ascontiguousarray(pixels[::-1, :, ::-1])
 
-    def drag(self, start: tuple[float, float], end: tuple[float, float]) -> list[Change]:
+    def drag(self, start: tuple[float, float], end: tuple[float, float]) -> list[ChangeSetting]:
         """Press the left button at a place, and release it at another one."""
         io = imgui.get_io()
         changes = self._point(start)
@@ -79,7 +79,7 @@ class PanelWindow:
         io.add_mouse_button_event(0, False)
         return changes + self.draw(3)
 
-    def _point(self, place: tuple[float, float]) -> list[Change]:
+    def _point(self, place: tuple[float, float]) -> list[ChangeSetting]:
         """Move the mouse there; GLFW reports no event for this, so Dear ImGui gets its own."""
         glfw.set_cursor_pos(self.window, *place)
         imgui.get_io().add_mouse_pos_event(*place)
@@ -125,8 +125,8 @@ def main(session: str, folder: str) -> None:
     left, top, wide, high = window.rects["scenario"]
     changes = window.drag((left + 0.6 * wide, top + 64), (left + wide - 25, top + 64))
     assert changes
-    assert all(name == "turns" for name, _ in changes)
-    assert float(changes[-1][1]) > 5.0
+    assert all(change.setting == "turns" for change in changes)
+    assert float(changes[-1].value) > 5.0
 
     left, top, wide, high = window.rects["list"]
     place = left + 24, top + high - 20

@@ -50,7 +50,7 @@ def feed(*frames, options=OPTIONS, lens=NO_LENS):
         frame = Frame(np.zeros((2, 2, 3), np.uint8), now, number)
         state = replace(STATE, timestamp=now, **changes)
         step = Step(frame, state, nothing, outcome, nothing, None)
-        monitor.update(step, robot, playground, options)
+        monitor.update(step, robot, playground)
     return monitor
 
 
@@ -181,21 +181,22 @@ def test_a_scenario_shows_the_settings_that_it_reads(name):
     assert all(each.enabled for each in widgets)
 
 
-def test_the_settings_are_those_of_the_session_and_stay_in_a_recording(tmp_path):
+def test_the_settings_are_those_of_the_session_and_stay_in_a_recording():
     options = replace(OPTIONS, turns=3.0, personality="my.toml", look="cube")
     _, widgets = shown("scenario", feed(SEEN, options=options))
     turns, personality, look = widgets
     assert (turns.value, personality.value, look.value) == (3.0, "my.toml", "cube")
     assert "my.toml" in personality.choices
-    options = replace(options, record=tmp_path / "session.mcap")
-    _, (*widgets, note) = shown("scenario", feed(SEEN, options=options))
+    monitor = feed(SEEN, options=options)
+    monitor.fixed = True
+    _, (*widgets, note) = shown("scenario", monitor)
     assert not any(each.enabled for each in widgets if isinstance(each, Choice | Slider))
     assert isinstance(note, Note)
 
 
 @pytest.mark.parametrize(
     "module", ["pipeline.frame_times", "ui.panels.trace", "ui.panels.places", "ui.panels.style",
-               "commands.preference_options"],
+               "commands.session.preference_options"],
 )  # fmt: skip
 def test_the_examples_in_the_documentation_are_right(module):
     results = doctest.testmod(importlib.import_module(f"app.{module}"))

@@ -1,0 +1,137 @@
+"""The options of the commands that open a window: one for each preference."""
+
+import functools
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from app.errors import AppError
+from app.preferences import PreferenceStore
+from app.ui.panels import PANELS
+
+DEFAULT_FILE = Path(typer.get_app_dir("cubeling")) / "preferences.toml"
+"""Where the system keeps such files: in ~/.config, ~/Library/Application Support, or %APPDATA%."""
+
+HELP_PANEL = "The window (what you change in it is kept for the next time)"
+
+
+@dataclass(frozen=True)
+class Flag:
+    """The option that sets a preference."""
+
+    name: str
+    """As typer takes it: "--volume", "--mirror/--no-mirror"."""
+
+    help: str
+    """What it does."""
+
+    kind: Any
+    """Type of its value on the command line."""
+
+    parse: Callable[[Any], Any] = lambda value: value
+    """Makes the preference of its value; raises AppError."""
+
+
+def panels_of(text: str) -> tuple[str, ...]:
+    """Return the panels in a list that a user types; raises AppError for one that there is not.
+
+    >>> panels_of("tracking, emotion@0.9:0.2"), panels_of("none")
+    (('tracking', 'emotion@0.9:0.2'), ())
+    """
+    names = tuple(text.replace(",", " ").split())
+    if names == ("none",):
+        return ()
+    for name in names:
+        if name.partition("@")[0] not in PANELS:
+            raise AppError(f"there is no panel '{name}': choose from {', '.join(PANELS)}")
+    return names
+
+
+def size_of(text: str) -> tuple[int, int]:
+    """Return width and height of "1280x720"; raises AppError."""
+    width, _, height = text.partition("x")
+    if not (width.isdecimal() and height.isdecimal()):
+        raise AppError(f"a window's size is given as 1280x720, not as '{text}'")
+    return int(width), int(height)
+
+
+FLAGS: dict[str, Flag] = {
+    "panels": Flag(
+        "--panels", "Panels to open: tracking,emotion …, or none; P shows and hides them.", str,
+        panels_of,
+    ),
+    "panels_shown": Flag("--show-panels/--hide-panels", "Begin with the open panels shown.", bool),
+    "window_size": Flag("--window-size", "Size of the window, as 1280x720.", str, size_of),
+    "full_screen": Flag("--full-screen/--windowed", "Fill the screen.", bool),
+    "mirror": Flag("--mirror/--no-mirror", "Show the picture as in a mirror.", bool),
+}  # fmt: skip
+"""The option of every preference."""
+
+
+@dataclass(frozen=True)
+class GivenPreferences:
+    """What the command line says of the preferences."""
+
+    values: Mapping[str, Any]
+    """The preferences that were given."""
+
+    file: Path | None
+    """The file that keeps the others; None for none."""
+
+    def open(self, windowed: bool) -> PreferenceStore:
+        """Return the preferences of a session; without a window, no file is read or written."""
+        return PreferenceStore(self.file if windowed else None, self.values)
+
+
+Command = Callable[..., None]
+
+
+def with_preferences(command: Command) -> Command:
+    """Give a command the options of all preferences; it gets them as `preferences`."""
+    signature = inspect.signature(command)
+    own = [each for each in signature.parameters.values() if each.name != "preferences"]
+    added = [_parameter(name, flag) for name, flag in FLAGS.items()]
+    where = [
+        inspect.Parameter(
+            "preferences_file",
+            inspect.Parameter.KEYWORD_ONLY,
+            default=DEFAULT_FILE,
+            annotation=_option(
+                Path, "--preferences", f"The file that keeps it; {DEFAULT_FILE} by default."
+            ),
+        ),
+        inspect.Parameter(
+            "keep_preferences",
+            inspect.Parameter.KEYWORD_ONLY,
+            default=True,
+            annotation=_option(bool, " /--no-preferences", "Neither read nor write that file."),
+        ),
+    ]
+    parameters = [*own, *added, *where]
+
+    @functools.wraps(command)
+    def wrapped(**arguments: Any) -> None:
+        given = {name: arguments.pop(name) for name in FLAGS}
+        values = {name: FLAGS[name].parse(v) for name, v in given.items() if v is not None}
+        file, keep = arguments.pop("preferences_file"), arguments.pop("keep_preferences")
+        command(**arguments, preferences=GivenPreferences(values, file if keep else None))
+
+    wrapped.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
+    wrapped.__annotations__ = {each.name: each.annotation for each in parameters}
+    return wrapped
+
+
+def _parameter(name: str, flag: Flag) -> inspect.Parameter:
+    kind = _option(flag.kind | None, flag.name, flag.help)
+    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=kind)
+
+
+def _option(kind: Any, name: str, words: str) -> Any:
+    """Return the annotation of an option, as typer reads it."""
+    return Annotated[
+        kind, typer.Option(name, help=words, rich_help_panel=HELP_PANEL, show_default=False)
+    ]
