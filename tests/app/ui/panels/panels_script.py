@@ -26,6 +26,9 @@ from robot import Telemetry
 from tracking import open_source
 
 SIZE = (1280, 720)
+NO_WINDOW = 77
+"""Exit code where GLFW makes no window without a display, as it needs EGL."""
+
 BACKGROUND = (0.2, 0.5, 0.2)
 
 
@@ -33,14 +36,18 @@ class PanelWindow:
     """A window with nothing but the panels, and a mouse for them."""
 
     def __init__(self, session: str, store: PreferenceStore) -> None:
+        glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_NULL)  # no display is needed
         glfw.init()
         for hint, value in (
             (glfw.CONTEXT_VERSION_MAJOR, 3),
             (glfw.CONTEXT_VERSION_MINOR, 3),
             (glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE),
+            (glfw.CONTEXT_CREATION_API, glfw.EGL_CONTEXT_API),
         ):
             glfw.window_hint(hint, value)
         self.window = glfw.create_window(*SIZE, "panels", None, None)
+        if not self.window:
+            sys.exit(NO_WINDOW)
         glfw.make_context_current(self.window)
         self.context = create_context(window=True)
         options = SessionOptions(scenario="companion", source=session, robot="sim")
