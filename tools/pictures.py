@@ -7,14 +7,17 @@ import tempfile
 from contextlib import ExitStack
 from pathlib import Path
 
+import imgui_bundle as imgui_bundle  # isort: skip  # sets the path of the GLFW that it contains
 import cv2
+import glfw
 import numpy as np
 from rich.console import Console
 
 from app.commands.mood import plot
 from app.latency.pattern import draw_pattern
 from app.pipeline.playground import Playground
-from app.pipeline.step import RobotView
+from app.pipeline.step import RobotView, Step
+from app.preferences import PreferenceStore
 from app.running.opening import intrinsics_for, open_session
 from app.running.runner import run
 from app.session import SessionOptions, events
@@ -24,10 +27,13 @@ from app.ui.calibration.coach_lines import write_coverage
 from app.ui.calibration.session import Advice, CalibrationSession, Picture
 from app.ui.card_layout import CardLayout
 from app.ui.overlay import overlay, virtual_robot_side
+from app.ui.panels import PANELS
 from app.ui.playback.layer import PlaybackLayer
 from app.ui.playback.status import Mark, Position, SessionStatus
 from app.ui.virtual_robot import VirtualRobot
+from app.ui.window import Window
 from characters.rendering import create_context
+from tools.offscreen import no_display_needed
 from tracking import CubeModel, open_source, write_sheet
 from tracking.calibration import CubeFinder
 from tracking.synthetic import open_synthetic
@@ -91,6 +97,31 @@ def draw_sheet(name: str) -> None:
         write_sheet(CubeModel.load(name), pdf)
         page = pypdfium2.PdfDocument(pdf)[0]
         page.render(scale=1.5).to_pil().save(FOLDER / f"sheet-{name}.png", optimize=True)
+
+
+PANELS_TIME_S = 14.0
+"""When the window with all panels is drawn [s]."""
+
+
+def draw_panels() -> None:
+    """Draw the window with all its panels."""
+    given = {"panels": tuple(PANELS), "panels_shown": True}
+    options = SessionOptions(scenario="companion", source=str(bundled("companion")))
+    preferences = PreferenceStore(None, given)
+    with no_display_needed(), open_session(options, preferences=preferences) as session:
+        assert isinstance(session.screen, Window)
+        window, session.pace = session.screen, None  # every frame
+
+        def save(step: Step) -> None:
+            if step.frame.timestamp >= PANELS_TIME_S and not window.closed:
+                screen = window.context.detect_framebuffer(0)
+                shown = np.frombuffer(screen.read(), np.uint8).reshape(*screen.size[::-1], 3)
+                picture = np.ascontiguousarray(shown[::-1, :, ::-1])
+                quality = (cv2.IMWRITE_JPEG_QUALITY, 88)
+                cv2.imwrite(str(FOLDER / "panels.jpg"), picture, quality)
+                glfw.set_window_should_close(glfw.get_current_context(), True)
+
+        run(session, save)
 
 
 COACH_PICTURES = {"tip": "tilt up", "near": "near"}
@@ -169,6 +200,7 @@ if __name__ == "__main__":
     for recording, pictures in MOMENTS_S.items():
         draw(recording, pictures)
     draw_sheet("companion")
+    draw_panels()
     draw_calibration()
     draw_pattern_of_latency()
     draw_moods()

@@ -27,7 +27,6 @@ def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
     if not means:
         return (Note("The first second is being measured."),)
     total = sum(means.values())
-    spare = means.get("waiting", 0.0)
     order = [*(part for part in PARTS if part in means), *(means.keys() - PARTS.keys())]
     shares = tuple(
         Share(part, means[part], f"{1e3 * means[part]:.1f} ms", PARTS.get(part, QUIET))
@@ -35,7 +34,6 @@ def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
     )
     return (
         Fact("A frame", f"{1e3 * total:.1f} ms, {1 / total:.0f} frames/s" if total else "0 ms"),
-        Fact("Busy", f"{100 * (1 - spare / total):.0f} % of the time" if total else "0 %"),
         ShareBar(shares),
     )
 

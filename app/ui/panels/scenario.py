@@ -1,5 +1,8 @@
 """The settings of the scenario, which can be changed while it is played."""
 
+from collections.abc import Callable
+from functools import cache
+
 from affect.personality_file import bundled
 from app.pipeline.attention import LOOK_CHOICES
 from app.pipeline.scenario import SPEED_MAP_NAMES
@@ -8,6 +11,9 @@ from app.session import SessionOptions
 from app.ui.panels.content import Choice, Fact, Note, Panel, Slider, Widget
 from app.ui.panels.monitor import SessionMonitor
 
+PERSONALITIES = bundled()
+"""The personalities that can be chosen, besides the user's own."""
+
 MIN_TURNS, MAX_TURNS = 0.5, 6.0
 """Range of the slider for the turns from the least to the greatest intensity."""
 
@@ -15,14 +21,25 @@ MIN_TURNS, MAX_TURNS = 0.5, 6.0
 def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
     """Return the settings that the scenario has."""
     options = monitor.options
-    scenario = find_scenario(options.scenario)
     free = not monitor.fixed
     widgets: list[Widget] = [Fact("Scenario", options.scenario)]
-    for setting in (*getattr(scenario, "adjustable", ()), "look"):
+    for setting in (*_adjustable(options.scenario), "look"):
         widgets.append(_WIDGETS[setting](options, free))
     if not free:
         widgets.append(Note("A recording holds one setting: it is fixed until the session ends."))
     return tuple(widgets)
+
+
+@cache
+def _adjustable(scenario: str) -> tuple[str, ...]:
+    """Return the settings that a scenario reads; it takes milliseconds to find it by its name."""
+    return tuple(getattr(find_scenario(scenario), "adjustable", ()))
+
+
+@cache
+def _own_personality(scenario: str) -> str:
+    """Return the personality that plays a scenario if the user chooses no other."""
+    return find_scenario(scenario).personality
 
 
 def _turns(options: SessionOptions, free: bool) -> Widget:
@@ -34,9 +51,8 @@ def _speed_map(options: SessionOptions, free: bool) -> Widget:
 
 
 def _personality(options: SessionOptions, free: bool) -> Widget:
-    own = find_scenario(options.scenario).personality
-    present = options.personality or own
-    choices = tuple(dict.fromkeys((*bundled(), present)))
+    present = options.personality or _own_personality(options.scenario)
+    choices = tuple(dict.fromkeys((*PERSONALITIES, present)))
     return Choice("personality", "Personality", present, choices, free)
 
 
@@ -44,7 +60,7 @@ def _look(options: SessionOptions, free: bool) -> Widget:
     return Choice("look", "Eyes follow", options.look, LOOK_CHOICES, free)
 
 
-_WIDGETS = {
+_WIDGETS: dict[str, Callable[[SessionOptions, bool], Widget]] = {
     "turns": _turns,
     "speed_map": _speed_map,
     "personality": _personality,

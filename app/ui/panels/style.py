@@ -12,7 +12,7 @@ from app.ui.palette import ACTION_COLORS, INK, PAPER, QUIET, RULE, Color, betwee
 FONT_SIZE, TITLE_SIZE = 15.0, 19.0
 """Height of the text and of titles [design units]."""
 
-PANEL_OPACITY = 0.95
+PANEL_OPACITY = 0.97
 """Opacity of a panel: a little more than a card's, as its text is smaller."""
 
 ROUNDING, PADDING = 14.0, 14.0

@@ -164,7 +164,6 @@ def test_frame_time_shows_the_mean_of_each_part():
         monitor.times.end_frame()
     facts, (bar,) = shown("frame-time", monitor)
     assert facts["A frame"].value == "40.0 ms, 25 frames/s"
-    assert facts["Busy"].value == "75 % of the time"
     assert isinstance(bar, ShareBar)
     assert [(share.name, share.value) for share in bar.shares] == [
         ("tracking", "20.0 ms"),
