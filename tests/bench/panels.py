@@ -24,7 +24,7 @@ from app.running.robots import RobotLine
 from app.session import SessionOptions
 from app.session.bundled import bundled
 from app.ui.panels import PANELS, SessionMonitor
-from app.ui.panels.layer import PanelLayer
+from app.ui.panels.drawing.layer import PanelLayer
 from app.ui.window import Window
 from tools.offscreen import no_display_needed
 from tracking import open_source

@@ -17,7 +17,7 @@ from app.ui.card_layout import CardLayout
 from app.ui.notice import Notice
 from app.ui.overlay import interrupted, overlay, virtual_robot_side
 from app.ui.panels import SessionMonitor
-from app.ui.panels.layer import PanelLayer
+from app.ui.panels.drawing.layer import PanelLayer
 from app.ui.playback.layer import PlaybackLayer
 from app.ui.playback.requests import SessionRequest, WindowRequest
 from app.ui.playback.status import SessionStatus

@@ -18,8 +18,8 @@ from app.preferences import PreferenceStore
 from app.running.opening import intrinsics_for
 from app.session import SessionOptions
 from app.ui.panels import PANELS, SessionMonitor
-from app.ui.panels.layer import PanelLayer
-from app.ui.panels.places import Rect
+from app.ui.panels.drawing.layer import PanelLayer
+from app.ui.panels.drawing.places import Rect
 from app.ui.playback.requests import ChangeSetting
 from characters.rendering import create_context
 from robot import Telemetry

@@ -194,9 +194,15 @@ def test_the_settings_are_those_of_the_session_and_stay_in_a_recording():
 
 
 @pytest.mark.parametrize(
-    "module", ["pipeline.frame_times", "ui.panels.trace", "ui.panels.places", "ui.panels.style",
-               "commands.session.preference_options"],
-)  # fmt: skip
+    "module",
+    [
+        "commands.session.preference_options",
+        "pipeline.frame_times",
+        "ui.panels.drawing.places",
+        "ui.panels.drawing.style",
+        "ui.panels.trace",
+    ],
+)
 def test_the_examples_in_the_documentation_are_right(module):
     results = doctest.testmod(importlib.import_module(f"app.{module}"))
     assert results.attempted

@@ -14,9 +14,9 @@ import glfw
 import moderngl
 
 from app.preferences import PreferenceStore
-from app.ui.panels.board import PanelBoard
+from app.ui.panels.drawing.board import PanelBoard
+from app.ui.panels.drawing.places import Rect
 from app.ui.panels.monitor import SessionMonitor
-from app.ui.panels.places import Rect
 from app.ui.playback.requests import ChangeSetting
 
 VERTEX_SHADER = """

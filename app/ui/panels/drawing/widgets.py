@@ -20,7 +20,7 @@ from app.ui.panels.content import (
     Tone,
     Widget,
 )
-from app.ui.panels.style import FONT_SIZE, packed, rgba
+from app.ui.panels.drawing.style import FONT_SIZE, packed, rgba
 from app.ui.playback.requests import ChangeSetting
 
 TONE_COLORS: dict[Tone, Color] = {"good": HAPPY, "warning": NEUTRAL, "bad": ANGRY}

@@ -9,9 +9,7 @@ from app.preferences import PreferenceStore
 from app.ui.palette import INK, QUIET
 from app.ui.panels import PANELS
 from app.ui.panels.content import Widget
-from app.ui.panels.drawing import draw_widgets
-from app.ui.panels.monitor import SessionMonitor
-from app.ui.panels.places import (
+from app.ui.panels.drawing.places import (
     Rect,
     Size,
     corner_of,
@@ -20,7 +18,9 @@ from app.ui.panels.places import (
     place_at,
     place_of,
 )
-from app.ui.panels.style import TITLE_SIZE, load_fonts, packed, use_card_style
+from app.ui.panels.drawing.style import TITLE_SIZE, load_fonts, packed, use_card_style
+from app.ui.panels.drawing.widgets import draw_widgets
+from app.ui.panels.monitor import SessionMonitor
 from app.ui.playback.requests import ChangeSetting
 
 TOP, GAP = 84.0, 12.0

@@ -1,0 +1,1 @@
+"""Panels drawn with Dear ImGui, in the look of the cards."""
