@@ -81,7 +81,7 @@ class Plot:
     marks: tuple[tuple[float, str], ...] = ()
     """Values with a line and a word."""
 
-    height: float = 84.0
+    height: float = 70.0
     """Height of the plot [design units]."""
 
 

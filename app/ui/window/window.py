@@ -187,12 +187,24 @@ class Window(Surface):
     def _draw_over(self) -> None:
         """Draw the panels over what was painted, and show both."""
         if self._panels is not None:
-            self._panel_requests += self._panels.draw()
+            self._panel_requests += self._panels.draw(self._strip_height)
         self.present()
 
     def _toggle_panels(self) -> None:
         if self._panels is not None:
             self._panels.toggle()
+
+    @property
+    def _strip_height(self) -> float:
+        """Height of what lies under the pictures [screen coordinates]."""
+        strip = self._layer.strip_height
+        if self._picture is None or not strip:
+            return 0.0
+        high = int(glfw.get_window_size(self._window)[1])
+        _, bottom = self.in_picture(0.0, float(high))
+        _, top = self.in_picture(0.0, 0.0)
+        scale = high / (bottom - top)
+        return (bottom - self._picture.shape[0]) * scale
 
     def _covered(self) -> list[Rect]:
         """Return where panels lie in the picture [px], so that cards avoid them."""

@@ -112,7 +112,7 @@ class PanelBoard:
         It is the whole window while a list of choices is open.
         """
         if self._popup:
-            return [(0.0, 0.0, *self._display)]
+            return [(0.0, 0.0, *imgui.get_io().display_size)]
         return [(*panel.corner, *panel.size) for panel in self._open.values() if panel.place]
 
     @property
@@ -120,18 +120,20 @@ class PanelBoard:
         """Whether a panel is new and has no place yet."""
         return any(panel.place is None for panel in self._open.values())
 
-    def draw(self, scale: float, *, refresh: bool) -> list[ChangeSetting]:
+    def draw(self, scale: float, bottom: float, *, refresh: bool) -> list[ChangeSetting]:
         """Draw the panels, and return what the player changed.
 
         Parameters
         ----------
         scale
             How large, in the window's coordinates for a design unit.
+        bottom
+            Height of the window's bottom that is left to the timeline, in its coordinates.
         refresh
             Whether they show what there is now, and not what they showed last.
         """
         size = imgui.get_io().display_size
-        display = size.x, size.y
+        display = size.x, size.y - bottom
         resized = display != self._display or scale != self._scale
         if scale != self._scale:
             use_card_style(scale)
@@ -163,7 +165,8 @@ class PanelBoard:
             changes = draw_widgets(panel.content or (), width)
         corner, size = imgui.get_window_pos(), imgui.get_window_size()
         imgui.end()
-        panel.size, panel.frames = (size.x, size.y), panel.frames + 1
+        self._resize(panel, (size.x, size.y))
+        panel.frames += 1
         if panel.place is not None and math.dist(corner, panel.corner) > MIN_DRAG_PX:
             panel.corner, panel.chosen = (corner.x, corner.y), True
             panel.place = place_at(panel.corner, panel.size, self._display)
@@ -174,6 +177,13 @@ class PanelBoard:
             self._set_open(name, False)
         return changes
 
+    def _resize(self, panel: _OpenPanel, size: Size) -> None:
+        """Note a panel's size; one that has grown out of the window gets another place."""
+        grown, panel.size = size != panel.size, size
+        bottom = panel.corner[1] + size[1]
+        if grown and panel.place is not None and bottom > self._display[1] and not panel.chosen:
+            panel.place = None
+
     def _put(self, panel: _OpenPanel, resized: bool) -> None:
         """Set where a panel is drawn, unless it stays where it is."""
         if panel.frames < MEASURED_AFTER:
@@ -181,7 +191,11 @@ class PanelBoard:
             return
         if panel.place is None:
             top, gap = TOP * self._scale, GAP * self._scale
-            others = [(*each.corner, *each.size) for each in self._open.values() if each.place]
+            others = [
+                (*each.corner, *each.size)
+                for each in self._open.values()
+                if each.place is not None and each is not panel
+            ]
             corner = free_place(panel.size, others, self._display, top, gap)
             panel.place = place_at(corner, panel.size, self._display)
         elif not resized and panel.frames > MEASURED_AFTER:

@@ -114,8 +114,11 @@ class PanelLayer:
         )
         return inside or imgui.get_io().want_capture_mouse
 
-    def draw(self) -> list[ChangeSetting]:
-        """Draw the panels over the window's back buffer; return what the player changed."""
+    def draw(self, bottom: float = 0.0) -> list[ChangeSetting]:
+        """Draw the panels over the window's back buffer; return what the player changed.
+
+        They leave `bottom` of the window's height free, in its coordinates.
+        """
         if not self.shown:
             return []
         size = glfw.get_framebuffer_size(self._window)
@@ -131,7 +134,7 @@ class PanelLayer:
         now = glfw.get_time()
         refresh = now - self._refreshed_at >= REFRESH_INTERVAL_S
         if refresh or self.has_mouse or self._board.settling:
-            changes = self._draw_panels(self._canvas, refresh)
+            changes = self._draw_panels(self._canvas, bottom, refresh)
         if refresh:
             self._refreshed_at = now
         self._show(self._canvas)
@@ -147,11 +150,13 @@ class PanelLayer:
         self._quad.release()
         self._program.release()
 
-    def _draw_panels(self, canvas: moderngl.Framebuffer, refresh: bool) -> list[ChangeSetting]:
+    def _draw_panels(
+        self, canvas: moderngl.Framebuffer, bottom: float, refresh: bool
+    ) -> list[ChangeSetting]:
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
         imgui.new_frame()
-        changes = self._board.draw(ui_scale(self._window), refresh=refresh)
+        changes = self._board.draw(ui_scale(self._window), bottom, refresh=refresh)
         imgui.render()
         canvas.use()
         canvas.clear()
