@@ -53,7 +53,15 @@ class Preferences:
     mirror: bool = False
     """Whether the picture is shown as in a mirror."""
 
+    volume: float = 0.5
+    """How loud sounds are, 0…1."""
+
+    muted: bool = False
+    """Whether nothing sounds."""
+
     def __post_init__(self) -> None:
+        if not 0.0 <= self.volume <= 1.0:
+            raise AppError(f"the volume must be from 0 to 1, not {self.volume:g}")
         size = self.window_size
         if size is not None and (size[0] < MIN_WINDOW_SIZE[0] or size[1] < MIN_WINDOW_SIZE[1]):
             least = "x".join(map(str, MIN_WINDOW_SIZE))

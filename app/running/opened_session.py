@@ -9,6 +9,7 @@ from app.errors import AppError
 from app.pipeline.other_cube import cube_for
 from app.pipeline.playground import Playground
 from app.pipeline.step import ReplayInputs
+from app.preferences import PreferenceStore
 from app.running.clock import Pace, SessionClock
 from app.running.players import PlayerPublisher
 from app.running.recording import SessionRecording
@@ -69,6 +70,9 @@ class OpenedSession:
 
     replay_inputs: Iterator[ReplayInputs] | None
     """In a replay that does not start from the camera, the recorded messages of each frame."""
+
+    preferences: PreferenceStore
+    """How the player likes window and sound."""
 
     monitor: SessionMonitor
     """Collects what the window's panels show."""
@@ -132,10 +136,19 @@ class OpenedSession:
         self.options = options
         self.observe()
 
+    def change_sound(self, setting: str, value: float) -> None:
+        """Sound in another way from now on, and in the sessions to come."""
+        self.preferences.change(**{setting: value})
+        self.options = options = replace(self.options, **{setting: value})  # type: ignore[arg-type]
+        if self.sound is not None:
+            self.sound.mixer.volume, self.sound.muted = options.volume, options.muted
+        self.observe()
+
     def observe(self) -> None:
         """Let the panels show the present options and robot."""
         self.monitor.options, self.monitor.fixed = self.options, self.keeps_scenario
         self.monitor.wire = self.wire.log
+        self.monitor.sound_problem = "" if self.sound is None else self.sound.problem
 
     @property
     def why_it_stays(self) -> str:

@@ -98,10 +98,10 @@ def open_session(
         check_start(options, source)
         intrinsics = intrinsics_for(calibration or source.intrinsics, source.size)
         context = sound = None
+        preferences = preferences or PreferenceStore()
         monitor = SessionMonitor(options, FrameTimes(time.perf_counter))
         if screen is None:
             sound = open_sound(options, bank, closing)
-            preferences = preferences or PreferenceStore()
             screen, context = _open_screen(options, source, sound, preferences, monitor, closing)
         playground = Playground(
             scenario,
@@ -152,6 +152,7 @@ def open_session(
             pace=pace,
             start_overs=start_overs,
             replay_inputs=replay_inputs,
+            preferences=preferences,
             monitor=monitor,
             ending=ending,
             first_source=source,

@@ -13,11 +13,9 @@ from app.commands.session.part import EndOption, LoopOption, StartOption
 from app.commands.session.play import (
     DEFAULT_CAMERA,
     FolderOption,
-    MuteOption,
     OutputOption,
     PersonalityOption,
     ScenarioArgument,
-    VolumeOption,
 )
 from app.commands.session.preference_options import GivenPreferences, with_preferences
 from app.commands.session.progress import play_session
@@ -44,8 +42,6 @@ def demo(
     output: OutputOption = None,
     overwrite: OverwriteOption = False,
     personality: PersonalityOption = None,
-    mute: MuteOption = False,
-    volume: VolumeOption = SessionOptions.volume,
     start: StartOption = 0.0,
     end: EndOption = None,
     loop: LoopOption = False,
@@ -70,8 +66,6 @@ def demo(
         end_s=end,
         loop=loop,
         folder=folder,
-        muted=mute,
-        volume=volume,
     )
     if output is not None or not has_display():
         options = replace(
@@ -79,7 +73,7 @@ def demo(
             output=(output or DEFAULT_VIDEO).resolve(),
             overwrite=overwrite or output is None,
         )
-        render(options, console)
+        render(preferences.open(options)[0], console)
         return
     with ExitStack() as closing:
         camera = None
@@ -98,7 +92,7 @@ def demo(
                 "or [cyan]cubeling demo --recording[/]"
             )
             options = replace(part, source=DEFAULT_CAMERA)
-        kept = preferences.open(True)
+        options, kept = preferences.open(options)
         ending = end_card(scenario)
         play_session(options, scenario, source=camera, ending=ending, preferences=kept)
 

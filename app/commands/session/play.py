@@ -109,18 +109,6 @@ PicturesOption = Annotated[
     bool,
     typer.Option("--pictures/--no-pictures", help="Draw the pictures, or only track the cube."),
 ]
-MuteOption = Annotated[
-    bool,
-    typer.Option(
-        "--mute/--no-mute",
-        envvar="CUBELING_MUTE",
-        help="Be silent; a video has no sound then.",
-    ),
-]
-VolumeOption = Annotated[
-    float,
-    typer.Option(min=0.0, max=1.0, envvar="CUBELING_VOLUME", help="How loud the sounds are."),
-]
 SoundsOption = Annotated[
     Path | None,
     typer.Option(help="A folder of .wav files instead of our sounds; see cubeling sounds."),
@@ -152,8 +140,6 @@ def play(
         str, typer.Option(help="Where the character looks: auto, cube, hand, camera or none.")
     ] = "auto",
     pictures: PicturesOption = True,
-    mute: MuteOption = False,
-    volume: VolumeOption = SessionOptions.volume,
     sounds: SoundsOption = None,
     folder: FolderOption = None,
     mqtt: Broker = None,
@@ -185,14 +171,12 @@ def play(
         output=output,
         overwrite=overwrite,
         pictures=pictures,
-        muted=mute,
-        volume=volume,
         sounds=sounds,
         folder=folder,
     )
     check_cubes(scenario, options.cubes)  # before a display is missing
     if options.windowed and not has_display():
         raise AppError("there is no display here: write a video with --output FILE.mp4")
-    kept = preferences.open(options.windowed)
+    options, kept = preferences.open(options)
     with publisher(mqtt, player, site, password_file, ca) as line:
         play_session(options, f"playing {scenario}", player=line, preferences=kept)

@@ -3,7 +3,7 @@
 import functools
 import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,12 +11,13 @@ import typer
 
 from app.errors import AppError
 from app.preferences import PreferenceStore
+from app.session import SessionOptions
 from app.ui.panels import PANELS
 
 DEFAULT_FILE = Path(typer.get_app_dir("cubeling")) / "preferences.toml"
 """Where the system keeps such files: in ~/.config, ~/Library/Application Support, or %APPDATA%."""
 
-HELP_PANEL = "The window (what you change in it is kept for the next time)"
+HELP_PANEL = "Window and sound (what you change in the window is kept for the next time)"
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,9 @@ class Flag:
 
     parse: Callable[[Any], Any] = lambda value: value
     """Makes the preference of its value; raises AppError."""
+
+    more: Mapping[str, Any] = field(default_factory=dict)
+    """Further arguments of `typer.Option`."""
 
 
 def panels_of(text: str) -> tuple[str, ...]:
@@ -68,6 +72,14 @@ FLAGS: dict[str, Flag] = {
     "window_size": Flag("--window-size", "Size of the window, as 1280x720.", str, size_of),
     "full_screen": Flag("--full-screen/--windowed", "Fill the screen.", bool),
     "mirror": Flag("--mirror/--no-mirror", "Show the picture as in a mirror.", bool),
+    "volume": Flag(
+        "--volume", "How loud the sounds are.", float,
+        more={"min": 0.0, "max": 1.0, "envvar": "CUBELING_VOLUME"},
+    ),
+    "muted": Flag(
+        "--mute/--no-mute", "Be silent; a video has no sound then.", bool,
+        more={"envvar": "CUBELING_MUTE"},
+    ),
 }  # fmt: skip
 """The option of every preference."""
 
@@ -82,9 +94,13 @@ class GivenPreferences:
     file: Path | None
     """The file that keeps the others; None for none."""
 
-    def open(self, windowed: bool) -> PreferenceStore:
-        """Return the preferences of a session; without a window, no file is read or written."""
-        return PreferenceStore(self.file if windowed else None, self.values)
+    def open(self, options: SessionOptions) -> tuple[SessionOptions, PreferenceStore]:
+        """Return the options and the preferences of a session.
+
+        Without a window, no file is read or written.
+        """
+        store = PreferenceStore(self.file if options.windowed else None, self.values)
+        return replace(options, volume=store.now.volume, muted=store.now.muted), store
 
 
 Command = Callable[..., None]
@@ -126,12 +142,12 @@ def with_preferences(command: Command) -> Command:
 
 
 def _parameter(name: str, flag: Flag) -> inspect.Parameter:
-    kind = _option(flag.kind | None, flag.name, flag.help)
+    kind = _option(flag.kind | None, flag.name, flag.help, **flag.more)
     return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=kind)
 
 
-def _option(kind: Any, name: str, words: str) -> Any:
+def _option(kind: Any, name: str, words: str, **more: Any) -> Any:
     """Return the annotation of an option, as typer reads it."""
     return Annotated[
-        kind, typer.Option(name, help=words, rich_help_panel=HELP_PANEL, show_default=False)
+        kind, typer.Option(name, help=words, rich_help_panel=HELP_PANEL, show_default=False, **more)
     ]

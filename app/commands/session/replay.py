@@ -14,7 +14,6 @@ from app.commands.session.play import (
     CharacterOption,
     CodecOption,
     FolderOption,
-    MuteOption,
     OutputOption,
     PersonalityOption,
     PicturesOption,
@@ -22,14 +21,13 @@ from app.commands.session.play import (
     RobotOption,
     RobotSettingsOption,
     SoundsOption,
-    VolumeOption,
 )
 from app.commands.session.preference_options import GivenPreferences, with_preferences
 from app.commands.session.progress import ProgressLines, play_session
 from app.errors import AppError
 from app.running.network import DEFAULT_SITE
 from app.running.replay_check import check_session
-from app.session import SessionOptions, session_info
+from app.session import session_info
 from app.ui.display import has_display
 
 
@@ -46,8 +44,6 @@ def replay(
     output: OutputOption = None,
     overwrite: OverwriteOption = False,
     pictures: PicturesOption = True,
-    mute: MuteOption = False,
-    volume: VolumeOption = SessionOptions.volume,
     sounds: SoundsOption = None,
     start: StartOption = 0.0,
     end: EndOption = None,
@@ -103,8 +99,6 @@ def replay(
         output=output,
         overwrite=overwrite,
         pictures=pictures and not check and (output is not None or has_display()),
-        muted=mute,
-        volume=volume,
         sounds=sounds,
         fast=fast,
         salvage=salvage,
@@ -122,6 +116,6 @@ def replay(
         )
         Console().print(result)
         raise typer.Exit(0 if result.identical else 1)
-    kept = preferences.open(options.windowed)
+    options, kept = preferences.open(options)
     with publisher(mqtt, player, site, password_file, ca) as line:
         play_session(options, f"replaying {session.name}", player=line, preferences=kept)

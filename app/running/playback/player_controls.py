@@ -12,6 +12,7 @@ from app.running.playback.choices import Choices
 from app.running.playback.transport import Transport
 from app.ui.playback.requests import (
     ChangeSetting,
+    ChangeSound,
     Choose,
     ListChoices,
     Pause,
@@ -118,6 +119,9 @@ HANDLERS: dict[type[SessionRequest], Callable[[PlayerControls, Any], None]] = {
     StepFrames: lambda controls, request: controls._transport.step_frames(request.count),
     Record: PlayerControls._record,
     ChangeSetting: PlayerControls._change_setting,
+    ChangeSound: lambda controls, request: controls._session.change_sound(
+        request.setting, request.value
+    ),
     ListChoices: lambda controls, _: controls._choices.look(),
     Choose: lambda controls, request: controls._choices.choose(request),
 }

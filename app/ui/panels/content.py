@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from app.ui.palette import Color
 from app.ui.panels.monitor import SessionMonitor
+from app.ui.playback.requests import ChangeSetting, SessionRequest
 
 Tone = Literal["plain", "good", "warning", "bad", "quiet"]
 """How a value is meant."""
@@ -112,7 +113,7 @@ class ShareBar:
 
 @dataclass(frozen=True)
 class Choice:
-    """A setting that has one of several values; None for `value` if none of them is chosen."""
+    """A setting that has one of several values."""
 
     setting: str
     """The option that it changes."""
@@ -128,6 +129,9 @@ class Choice:
 
     enabled: bool = True
     """Whether it can be changed now."""
+
+    request: Callable[[str, str], SessionRequest] = ChangeSetting
+    """Asks the session to change it, from its name and its new value."""
 
 
 @dataclass(frozen=True)
@@ -152,6 +156,26 @@ class Slider:
     enabled: bool = True
     """Whether it can be changed now."""
 
+    request: Callable[[str, float], SessionRequest] = ChangeSetting
+    """Asks the session to change it, from its name and its new value."""
+
+
+@dataclass(frozen=True)
+class Switch:
+    """A setting that is on or off."""
+
+    setting: str
+    """The option that it changes."""
+
+    name: str
+    """What it is."""
+
+    value: bool
+    """Whether it is on."""
+
+    request: Callable[[str, bool], SessionRequest]
+    """Asks the session to change it, from its name and its new value."""
+
 
 @dataclass(frozen=True)
 class Log:
@@ -164,7 +188,7 @@ class Log:
     """How many rows have a place, so that the panel does not change its size."""
 
 
-Widget = Fact | Note | Plot | ShareBar | Choice | Slider | Log
+Widget = Fact | Note | Plot | ShareBar | Choice | Slider | Switch | Log
 
 
 @dataclass(frozen=True)

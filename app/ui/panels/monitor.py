@@ -35,6 +35,8 @@ class SessionMonitor:
         """How long each part of a frame takes."""
         self.fixed = False
         """Whether the scenario and its settings stay as they are now."""
+        self.sound_problem = ""
+        """Why nothing is heard, "" if nothing is wrong."""
         self.wire = WireLog()
         """The robot's line."""
         self.emotions = Trace(4, EMOTION_SPAN_S, EMOTION_INTERVAL_S)

@@ -94,10 +94,23 @@ class ChangeSetting:
     """Its new value."""
 
 
+@dataclass(frozen=True)
+class ChangeSound:
+    """Change how a session sounds."""
+
+    setting: str
+    """"volume" or "muted"."""
+
+    value: float
+    """0…1, or whether nothing sounds."""
+
+
 PlayerInput = StartOver | PlayScenario
 """What the scenario is told."""
 
-SessionRequest = Pause | Seek | SeekTo | StepFrames | Record | ListChoices | Choose | ChangeSetting
+SessionRequest = (
+    Pause | Seek | SeekTo | StepFrames | Record | ListChoices | Choose | ChangeSetting | ChangeSound
+)
 """What the session carries out."""
 
 Request = WindowRequest | PlayerInput | SessionRequest

@@ -203,8 +203,7 @@ class Window(Surface):
         high = int(glfw.get_window_size(self._window)[1])
         _, bottom = self.in_picture(0.0, float(high))
         _, top = self.in_picture(0.0, 0.0)
-        scale = high / (bottom - top)
-        return (bottom - self._picture.shape[0]) * scale
+        return high * (bottom - float(self._picture.shape[0])) / (bottom - top)
 
     def _covered(self) -> list[Rect]:
         """Return where panels lie in the picture [px], so that cards avoid them."""

@@ -21,7 +21,7 @@ from app.ui.panels.drawing.places import (
 from app.ui.panels.drawing.style import TITLE_SIZE, load_fonts, packed, use_card_style
 from app.ui.panels.drawing.widgets import draw_widgets
 from app.ui.panels.monitor import SessionMonitor
-from app.ui.playback.requests import ChangeSetting
+from app.ui.playback.requests import SessionRequest
 
 TOP, GAP = 84.0, 12.0
 """Height of the window's top that is left to the hint, and gap between panels [design units]."""
@@ -120,7 +120,7 @@ class PanelBoard:
         """Whether a panel is new and has no place yet."""
         return any(panel.place is None for panel in self._open.values())
 
-    def draw(self, scale: float, bottom: float, *, refresh: bool) -> list[ChangeSetting]:
+    def draw(self, scale: float, bottom: float, *, refresh: bool) -> list[SessionRequest]:
         """Draw the panels, and return what the player changed.
 
         Parameters
@@ -138,7 +138,7 @@ class PanelBoard:
         if scale != self._scale:
             use_card_style(scale)
         self._display, self._scale = display, scale
-        changes: list[ChangeSetting] = []
+        changes: list[SessionRequest] = []
         for name, panel in list(self._open.items()):
             if name != LIST and (refresh or panel.content is None):
                 panel.content = PANELS[name].content(self._monitor)
@@ -153,12 +153,12 @@ class PanelBoard:
         """Release what the plots need."""
         implot.destroy_context()
 
-    def _draw(self, name: str, panel: _OpenPanel, resized: bool) -> list[ChangeSetting]:
+    def _draw(self, name: str, panel: _OpenPanel, resized: bool) -> list[SessionRequest]:
         self._put(panel, resized)
         imgui.begin(f"##{name}", None, WINDOW_FLAGS)
         width = (LIST_WIDTH if name == LIST else PANELS[name].width) * self._scale
         closed = _header("Panels" if name == LIST else PANELS[name].title, width)
-        changes: list[ChangeSetting] = []
+        changes: list[SessionRequest] = []
         if name == LIST:
             self._draw_list()
         else:

@@ -17,7 +17,7 @@ from app.preferences import PreferenceStore
 from app.ui.panels.drawing.board import PanelBoard
 from app.ui.panels.drawing.places import Rect
 from app.ui.panels.monitor import SessionMonitor
-from app.ui.playback.requests import ChangeSetting
+from app.ui.playback.requests import SessionRequest
 
 VERTEX_SHADER = """
 #version 330
@@ -114,7 +114,7 @@ class PanelLayer:
         )
         return inside or imgui.get_io().want_capture_mouse
 
-    def draw(self, bottom: float = 0.0) -> list[ChangeSetting]:
+    def draw(self, bottom: float = 0.0) -> list[SessionRequest]:
         """Draw the panels over the window's back buffer; return what the player changed.
 
         They leave `bottom` of the window's height free, in its coordinates.
@@ -130,7 +130,7 @@ class PanelLayer:
             self._texture.filter = moderngl.NEAREST, moderngl.NEAREST
             self._canvas = self._context.framebuffer([self._texture])
             self._refreshed_at = float("-inf")
-        changes: list[ChangeSetting] = []
+        changes: list[SessionRequest] = []
         now = glfw.get_time()
         refresh = now - self._refreshed_at >= REFRESH_INTERVAL_S
         if refresh or self.has_mouse or self._board.settling:
@@ -152,7 +152,7 @@ class PanelLayer:
 
     def _draw_panels(
         self, canvas: moderngl.Framebuffer, bottom: float, refresh: bool
-    ) -> list[ChangeSetting]:
+    ) -> list[SessionRequest]:
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
         imgui.new_frame()

@@ -17,11 +17,12 @@ from app.ui.panels.content import (
     Share,
     ShareBar,
     Slider,
+    Switch,
     Tone,
     Widget,
 )
 from app.ui.panels.drawing.style import FONT_SIZE, packed, rgba
-from app.ui.playback.requests import ChangeSetting
+from app.ui.playback.requests import SessionRequest
 
 TONE_COLORS: dict[Tone, Color] = {"good": HAPPY, "warning": NEUTRAL, "bad": ANGRY}
 """Colours of the dot before a value."""
@@ -35,7 +36,7 @@ LEGEND_COLUMNS = 2
 PLOT_FLAGS = implot.Flags_.canvas_only | implot.Flags_.no_inputs | implot.Flags_.no_frame
 
 
-def draw_widgets(widgets: Iterable[Widget], width: float) -> list[ChangeSetting]:
+def draw_widgets(widgets: Iterable[Widget], width: float) -> list[SessionRequest]:
     """Draw widgets below each other, `width` pixels wide; return what the player changed."""
     changes = []
     for widget in widgets:
@@ -142,7 +143,7 @@ def _legend_entry(share: Share, x: float, y: float, width: float) -> None:
     canvas.add_text((left, y), packed(INK), share.value)
 
 
-def _choice(choice: Choice, width: float) -> ChangeSetting | None:
+def _choice(choice: Choice, width: float) -> SessionRequest | None:
     change = None
     imgui.begin_disabled(not choice.enabled)
     _label(choice.name, width)
@@ -150,13 +151,13 @@ def _choice(choice: Choice, width: float) -> ChangeSetting | None:
         for value in choice.choices:
             chosen, _ = imgui.selectable(value, value == choice.value)
             if chosen and value != choice.value:
-                change = ChangeSetting(choice.setting, value)
+                change = choice.request(choice.setting, value)
         imgui.end_combo()
     imgui.end_disabled()
     return change
 
 
-def _slider(slider: Slider, width: float) -> ChangeSetting | None:
+def _slider(slider: Slider, width: float) -> SessionRequest | None:
     imgui.begin_disabled(not slider.enabled)
     _label(slider.name, width)
     moved, value = imgui.slider_float(
@@ -168,7 +169,12 @@ def _slider(slider: Slider, width: float) -> ChangeSetting | None:
         imgui.SliderFlags_.always_clamp | imgui.SliderFlags_.no_input,
     )
     imgui.end_disabled()
-    return ChangeSetting(slider.setting, round(value, 1)) if moved else None
+    return slider.request(slider.setting, round(value, 1)) if moved else None
+
+
+def _switch(switch: Switch, width: float) -> SessionRequest | None:
+    changed, value = imgui.checkbox(switch.name, switch.value)
+    return switch.request(switch.setting, value) if changed else None
 
 
 def _label(name: str, width: float) -> None:
@@ -205,13 +211,14 @@ def _contiguous(values: Any) -> Any:
     return np.ascontiguousarray(values)
 
 
-_DRAW: dict[type, Callable[[Any, float], ChangeSetting | None]] = {
+_DRAW: dict[type, Callable[[Any, float], SessionRequest | None]] = {
     Fact: _fact,
     Note: _note,
     Plot: _plot,
     ShareBar: _share_bar,
     Choice: _choice,
     Slider: _slider,
+    Switch: _switch,
     Log: _log,
 }
-"""What draws each kind of widget; it returns the setting that the player changed."""
+"""What draws each kind of widget; it returns what the player asks for."""
