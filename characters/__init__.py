@@ -11,6 +11,7 @@ from characters.control.command import (
     LocomotionIntent,
     PosedCharacter,
 )
+from characters.control.controllers import CONTROLLER_CHOICES, choose_controller
 from characters.errors import CharacterError, CharacterWarning
 from characters.formats import load_motion  # importing formats registers the file readers
 from characters.locomotion.footfalls import Footfall, Footfalls
@@ -33,6 +34,7 @@ from characters.skeleton.masks import Mask, mask_of
 from characters.skeleton.pose import Pose, Skeleton
 
 __all__ = [
+    "CONTROLLER_CHOICES",
     "IDLE_SPEED",
     "RUN_SPEED",
     "Action",
@@ -78,6 +80,7 @@ __all__ = [
     "TimeCurve",
     "Warped",
     "Window",
+    "choose_controller",
     "load_motion",
     "mask_of",
     "mirror_of",

@@ -25,6 +25,7 @@ from app.pipeline.scenario_errors import checked, scenario_errors
 from app.pipeline.step import Rect, ReplayInputs, Step
 from app.pipeline.subjects import character_region, cube_region
 from characters import Animator, Character, CharacterCommand, PosedCharacter, RootDelta
+from characters.control.controllers import ControllerFactory, first_suitable
 from characters.rendering import Box, SceneCharacter, Stage, View
 from tracking import (
     CubeControls,
@@ -76,6 +77,8 @@ class Playground:
         The player's cubes; they are recognised as the bundled ones are.
     lap
         Called at the end of each part of `step` with its name, to measure its time.
+    controller
+        Makes the controller of the characters; see `choose_controller`.
 
     Raises
     ------
@@ -97,12 +100,14 @@ class Playground:
         fixed: bool = False,
         known_cubes: Sequence[CubeModel] = (),
         lap: Lap = lambda part: None,
+        controller: ControllerFactory = first_suitable,
     ) -> None:
         if isinstance(scenario, str):
             scenario = make_scenario(scenario, cube)
         self.intrinsics = intrinsics
         self.known_cubes = tuple(known_cubes)
         self._look, self._context, self._lap = look, context, lap
+        self._controller = controller
         self.fixed = fixed
         """Whether the scenario cannot be changed now, so that the player is not told how."""
         self._stage = None if context is None else Stage(context, intrinsics.size)
@@ -120,7 +125,7 @@ class Playground:
         """
         cube = cube or CubeModel.load(scenario.cube)
         character = character or Character.load(scenario.character)
-        animator = Animator(character, place=scenario.start)
+        animator = Animator(character, place=scenario.start, controller=self._controller)
         self.scenario, self.cube, self.character = scenario, cube, character
         self._tracker = CubeTracker(cube, self.intrinsics)
         self._gestures = CubeGestures(cube)

@@ -153,9 +153,11 @@ class OpenedSession:
     @property
     def why_it_stays(self) -> str:
         """Why `keeps_scenario`, as the beginning of a sentence."""
-        if self.recording is None:
-            return "A replay from a later channel stays as it was recorded"
-        return "A recording stays as it began"
+        if self.recording is not None:
+            return "A recording stays as it began"
+        if self.options.controller != "tree":
+            return f"The controller {self.options.controller} is made for this character"
+        return "A replay from a later channel stays as it was recorded"
 
     def restart(self) -> None:
         """Play the present scenario from its beginning, with the present cube and character."""

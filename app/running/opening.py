@@ -31,7 +31,7 @@ from app.ui.playback.timeline import STRIP_HEIGHT
 from app.ui.screen import NullScreen, Screen
 from app.ui.video_file import has_sound
 from app.ui.virtual_robot import VirtualRobot
-from characters import Character
+from characters import Character, choose_controller
 from characters.control.controllers.actions import clips_of_actions
 from characters.rendering import create_context
 from tracking import (
@@ -91,6 +91,7 @@ def open_session(
     scenario = scenario_of(options, options.scenario, cube)
     character = Character.load(options.character or scenario.character)
     bank = SoundBank.load(options.sounds, clips_of_actions(character.clips))
+    controller = choose_controller(options.controller, character, options.motions)
     calibration = None if options.intrinsics is None else Intrinsics.load(options.intrinsics)
     with ExitStack() as closing:
         if source is None:
@@ -113,6 +114,7 @@ def open_session(
             fixed=options.keeps_scenario or not options.windowed,
             known_cubes=cubes,
             lap=monitor.times.lap,
+            controller=controller,
         )
         closing.callback(playground.close)
         is_session = options.source.endswith(".mcap")

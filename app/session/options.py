@@ -23,6 +23,12 @@ class SessionOptions:
     character: str | None = None
     """A bundled character or a .glb file; None for the scenario's own."""
 
+    controller: str = "tree"
+    """What moves the character: one of `characters.CONTROLLER_CHOICES`."""
+
+    motions: tuple[str, ...] = ()
+    """Files that the controller takes its motions from; none for the character's own clips."""
+
     intrinsics: Path | None = None
     """The camera's calibration file; None to take the source's intrinsics or to guess them."""
 
@@ -101,8 +107,12 @@ class SessionOptions:
 
     @property
     def keeps_scenario(self) -> bool:
-        """Whether the scenario stays: a recording holds one, and so does a replay of its stages."""
-        return self.record is not None or self.stage != "camera"
+        """Whether the scenario stays.
+
+        A recording holds one, and so does a replay of its stages; a controller is prepared for the
+        character of one.
+        """
+        return self.record is not None or self.stage != "camera" or self.controller != "tree"
 
     def metadata(self) -> dict[str, str]:
         """Return what a recording keeps of the settings: all that a replay needs."""
@@ -111,6 +121,8 @@ class SessionOptions:
             "scenario": self.scenario,
             "cube": self.cube or "",
             "character": self.character or "",
+            "controller": self.controller,
+            "motions": "\n".join(self.motions),
             "speed_map": self.speed_map,
             "turns": f"{self.turns:g}",
             "personality": self.personality or "",
@@ -126,6 +138,8 @@ class SessionOptions:
             source=source,
             cubes=(metadata["cube"],) if metadata.get("cube") else (),
             character=metadata.get("character") or None,
+            controller=metadata.get("controller", "tree"),
+            motions=tuple(metadata.get("motions", "").splitlines()),
             speed_map=metadata.get("speed_map", "corrected"),
             turns=float(metadata.get("turns", "2")),
             personality=metadata.get("personality") or None,

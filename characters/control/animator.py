@@ -7,7 +7,7 @@ import numpy as np
 
 from characters.body.posture import ExpressivityFilter
 from characters.control.command import CharacterCommand, LocomotionIntent, PosedCharacter
-from characters.control.controllers import CONTROLLERS, default_height
+from characters.control.controllers import ControllerFactory, default_height, first_suitable
 from characters.control.layers import DEFAULT_LAYERS, FrameContext, LayerFactory
 from characters.errors import CharacterError
 from characters.model.character import Character
@@ -25,8 +25,8 @@ REST_LAG_S = 0.5
 class Animator:
     """Animates a character under commands: one controller, then an ordered list of layers.
 
-    The controller is the first of `CONTROLLERS` that suits the character: the plan of the file
-    beside it, walking and running, or acting in place.
+    Unless another is given, the controller is the first of `CONTROLLERS` that suits the character:
+    the plan of the file beside it, walking and running, or acting in place.
 
     Parameters
     ----------
@@ -41,6 +41,8 @@ class Animator:
         Seed of blinks and sway.
     layers
         What is applied to the controller's poses, in order.
+    controller
+        Makes the controller; see `choose_controller`.
 
     Raises
     ------
@@ -55,12 +57,12 @@ class Animator:
         place: RootDelta | None = None,
         seed: int = 0,
         layers: Sequence[LayerFactory] = DEFAULT_LAYERS,
+        controller: ControllerFactory = first_suitable,
     ) -> None:
         if scale is None:
             scale = default_height(character) / max(character.height, 1e-9)
         self.character = character
         self.scale = scale
-        controller = next(each for each in CONTROLLERS if each.suits(character))
         self._controller = controller(character, scale, place)
         self._layers = [layer(character, seed) for layer in layers]
         self._expressivity = ExpressivityFilter()

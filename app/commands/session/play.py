@@ -16,6 +16,7 @@ from app.scenarios import find_scenario, scenario_names
 from app.scenarios.roles import check_cubes
 from app.session import SessionOptions
 from app.ui.display import has_display
+from characters import CONTROLLER_CHOICES
 
 DEFAULT_CAMERA = "camera:0"
 
@@ -57,6 +58,22 @@ CubesOption = Annotated[
 ]
 CharacterOption = Annotated[
     str | None, typer.Option(help="A bundled character, or a .glb, .gltf or .vrm file.")
+]
+ControllerOption = Annotated[
+    str,
+    typer.Option(
+        help="What moves the character: "
+        + "; ".join(f"{name}, {choice.summary}" for name, choice in CONTROLLER_CHOICES.items())
+        + ".",
+        autocompletion=lambda: list(CONTROLLER_CHOICES),
+    ),
+]
+MotionsOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="A motion for the controller: a .bvh, .amc or .glb file, CHARACTER.glb#CLIP, or a "
+        "folder of them; may be repeated. Without it, the character's own clips.",
+    ),
 ]
 PersonalityOption = Annotated[
     str | None,
@@ -121,6 +138,8 @@ def play(
     source: SourceOption = DEFAULT_CAMERA,
     cubes: CubesOption = None,
     character: CharacterOption = None,
+    controller: ControllerOption = "tree",
+    motions: MotionsOption = None,
     intrinsics: IntrinsicsOption = None,
     robot: RobotOption = "sim",
     robot_settings: RobotSettingsOption = None,
@@ -159,6 +178,8 @@ def play(
         source=source,
         cubes=tuple(cubes or ()),
         character=character,
+        controller=controller,
+        motions=tuple(motions or ()),
         intrinsics=intrinsics,
         speed_map=speed_map,
         turns=turns,

@@ -14,6 +14,7 @@ from app.commands.session.play import (
     CharacterOption,
     CodecOption,
     FolderOption,
+    MotionsOption,
     OutputOption,
     PersonalityOption,
     PicturesOption,
@@ -36,6 +37,10 @@ def replay(
     session: Annotated[Path, typer.Argument(help="A session recorded with --record.")],
     scenario: Annotated[str | None, typer.Option(help="Play it as another scenario.")] = None,
     character: CharacterOption = None,
+    controller: Annotated[
+        str | None, typer.Option(help="Move the character with another controller.")
+    ] = None,
+    motions: MotionsOption = None,
     personality: PersonalityOption = None,
     robot: RobotOption = "sim",
     robot_settings: RobotSettingsOption = None,
@@ -91,6 +96,8 @@ def replay(
         recorded,
         scenario=scenario or recorded.scenario,
         character=character or recorded.character,
+        controller=controller or recorded.controller,
+        motions=tuple(motions) if motions else () if controller else recorded.motions,
         personality=personality or recorded.personality,
         robot=robot,
         robot_settings=robot_settings,

@@ -1,10 +1,15 @@
-"""The controllers, a file each. The first that suits a character plays it."""
+"""The controllers, a file each, and the names by which a user chooses one."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 from characters.control.controllers.controller import CharacterController
 from characters.control.controllers.in_place import InPlaceController
 from characters.control.controllers.tree import TreeController
 from characters.control.controllers.walk import WalkController
+from characters.errors import CharacterError
 from characters.model.character import Character
+from characters.motion.motion import RootDelta
 
 WALKER_HEIGHT_M = 0.17
 """Default height on the table of a character that walks [m]."""
@@ -14,7 +19,72 @@ ACTOR_HEIGHT_M = 0.15
 
 
 CONTROLLERS: list[type[CharacterController]] = [TreeController, WalkController, InPlaceController]
-"""All controllers, in the order in which they are tried."""
+"""The controllers of "tree", in the order in which they are tried: the first that suits plays."""
+
+ControllerFactory = Callable[[Character, float, RootDelta | None], CharacterController]
+"""Makes the controller of a character from it, the scale and the first place on the table."""
+
+
+@dataclass(frozen=True)
+class ControllerChoice:
+    """A controller that a user may choose."""
+
+    summary: str
+    """What it plays, for the help of the command line: one phrase, no full stop."""
+
+    prepare: Callable[[Character, Sequence[str]], ControllerFactory]
+    """Prepares it for a character from the motions that the user names; may take seconds.
+
+    It raises a CharacterError if the character or a motion does not suit.
+    """
+
+
+def first_suitable(
+    character: Character, scale: float, place: RootDelta | None
+) -> CharacterController:
+    """Make the first controller of `CONTROLLERS` that suits a character."""
+    return next(each for each in CONTROLLERS if each.suits(character))(character, scale, place)
+
+
+def _tree(character: Character, motions: Sequence[str]) -> ControllerFactory:
+    if motions:
+        raise CharacterError(
+            f"{motions[0]}: the controller 'tree' plays the character's own clips; leave the "
+            "motions out, or choose a controller that takes them"
+        )
+    return first_suitable
+
+
+CONTROLLER_CHOICES: dict[str, ControllerChoice] = {
+    "tree": ControllerChoice("the character's own blend trees", _tree),
+}
+"""What a user may choose, by name; a new controller is registered here."""
+
+
+def choose_controller(
+    name: str, character: Character, motions: Sequence[str] = ()
+) -> ControllerFactory:
+    """Prepare the controller of a name for a character.
+
+    Parameters
+    ----------
+    name
+        One of `CONTROLLER_CHOICES`.
+    character
+        Whom it is to play.
+    motions
+        Files that it takes its motions from; without any, the character's own clips.
+
+    Raises
+    ------
+    CharacterError
+        If no controller has that name, or the character or a motion does not suit it.
+    """
+    if name not in CONTROLLER_CHOICES:
+        raise CharacterError(
+            f"no controller is called {name!r}: choose one of {', '.join(CONTROLLER_CHOICES)}"
+        )
+    return CONTROLLER_CHOICES[name].prepare(character, motions)
 
 
 def default_height(character: Character) -> float:
