@@ -23,6 +23,7 @@ class _Switch:
 
     time: float
     state: str
+    motion: Motion
     transition: Inertialization | None
     drift: OffsetDecay | None
     """Decaying difference of the velocity over the ground (x, z, yaw)."""
@@ -69,7 +70,7 @@ class StateMachine:
         self.length = length
         """Length of a transition [s]."""
         self._check(initial)
-        self._switches = [_Switch(0.0, initial, None, None)]
+        self._switches = [_Switch(0.0, initial, self.states[initial], None, None)]
 
     @property
     def state(self) -> str:
@@ -114,8 +115,29 @@ class StateMachine:
             If there is no such state, or the times are invalid.
         """
         self._check(state)
-        if state == self.state:
-            return
+        if state != self.state:
+            self._enter(state, self.states[state], time, crossfade, begin)
+
+    def play(self, motion: Motion, time: float) -> None:
+        """Play a motion from its start on, by inertialization; the state has no name then.
+
+        `time` [s] is not before the last request.
+
+        Raises
+        ------
+        CharacterError
+            If it is.
+        """
+        self._enter("", motion, time, 0.0, None)
+
+    def _enter(
+        self,
+        state: str,
+        motion: Motion,
+        time: float,
+        crossfade: float,
+        begin: Callable[[], None] | None,
+    ) -> None:
         if time < self.entered:
             raise CharacterError(
                 f"state {state!r} was requested for {time:.3f} s, before the last request at "
@@ -131,16 +153,20 @@ class StateMachine:
         if crossfade > 0.0 and not last.plays(state):
             if begin is not None:
                 begin()
-            switch = _Switch(time, state, None, None, last, crossfade)
+            switch = _Switch(time, state, motion, None, None, last, crossfade)
         else:
-            switch = self._inertialized(last, state, time, begin)
+            switch = self._inertialized(last, state, motion, time, begin)
         # Two switches are enough to look back over one frame.
         self._switches = [last, switch]
 
     def _inertialized(
-        self, last: _Switch, state: str, time: float, begin: Callable[[], None] | None
+        self,
+        last: _Switch,
+        state: str,
+        motion: Motion,
+        time: float,
+        begin: Callable[[], None] | None,
     ) -> _Switch:
-        motion = self.states[state]
         # Forward differences: before its start, a loop with a gap would jump.
         old = (self._shown(last, time), self._shown(last, time + _VELOCITY_STEP_S))
         old_delta = self._travel(last, time, time + _VELOCITY_STEP_S)
@@ -152,6 +178,7 @@ class StateMachine:
         return _Switch(
             time,
             state,
+            motion,
             Inertialization.begin(old, new, _VELOCITY_STEP_S, self.length),
             OffsetDecay(drift, np.zeros(3), self.length),
         )
@@ -172,7 +199,7 @@ class StateMachine:
 
     def _shown(self, switch: _Switch, time: float) -> Pose:
         """Return the pose at a time [s] without later switches."""
-        pose = self.states[switch.state].sample(time - switch.time)
+        pose = switch.motion.sample(time - switch.time)
         weight = switch.weight(time)
         if switch.below is not None and weight < 1.0:
             pose = mix([self._shown(switch.below, time), pose], [1.0 - weight, weight])
@@ -197,7 +224,7 @@ class StateMachine:
     def _own_travel(self, switch: _Switch, start: float, end: float) -> RootDelta:
         """Return the root delta of one state, with its decaying velocity difference."""
         start, end = start - switch.time, end - switch.time
-        delta = self.states[switch.state].travel(start, end)
+        delta = switch.motion.travel(start, end)
         if switch.drift is None or start >= switch.drift.length:
             return delta
         x, z, yaw = switch.drift.integral(start, end).tolist()

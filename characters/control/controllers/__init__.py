@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from characters.control.controllers.controller import CharacterController
 from characters.control.controllers.in_place import InPlaceController
+from characters.control.controllers.matching import matching_factory
 from characters.control.controllers.tree import TreeController
 from characters.control.controllers.walk import WalkController
 from characters.errors import CharacterError
@@ -57,6 +58,9 @@ def _tree(character: Character, motions: Sequence[str]) -> ControllerFactory:
 
 CONTROLLER_CHOICES: dict[str, ControllerChoice] = {
     "tree": ControllerChoice("the character's own blend trees", _tree),
+    "matching": ControllerChoice(
+        "at each moment the frame of its motions that suits best", matching_factory
+    ),
 }
 """What a user may choose, by name; a new controller is registered here."""
 

@@ -1,0 +1,1 @@
+"""Motion that is put together from recordings, a folder for each method."""
