@@ -114,6 +114,11 @@ class FootConstraint:
         if elapsed > 0.0:
             self._velocity = [(a - b) / elapsed for a, b in zip(self._shown, before, strict=True)]
 
+    @property
+    def age(self) -> float:
+        """Time since it was last held or let go [s]."""
+        return self._age
+
     def strained(self, standing: bool) -> bool:
         """Return whether its offset is too large; the limits are smaller while standing."""
         distance, twist = (

@@ -14,6 +14,8 @@ _MAX_EXTENSION = 0.997  # of a leg's length
 _MAX_PELVIS_DROP = 0.02  # [body heights]
 _PELVIS_RISE_LAG_S = 0.12
 _MIN_CHANGE = 1e-5  # [body heights]: smaller offsets are not applied
+_SOFT_EXTENSION = 0.96  # of a leg's length: a moving foot is slowed down beyond it
+_SOFTENING_S = 0.05  # after the foot is let go
 _YAW_RADIUS = 0.06  # [body heights]: converts a foot's rotation to a length
 
 
@@ -117,12 +119,18 @@ class FootLock:
         sine, cosine = math.sin(place.yaw), math.cos(place.yaw)
         ankles: list[Vector] = []
         turns: list[Quaternion] = []
-        for foot, number, toes in zip(self.feet, self._ankle, self._toes, strict=True):
+        for foot, hip, number, toes, length in zip(
+            self.feet, self._hip, self._ankle, self._toes, self._lengths, strict=True
+        ):
             offset, ankle, ball = foot.offset, frames.positions[number], frames.positions[toes]
             x, z = rotate_yaw(ankle[0] - ball[0], ankle[2] - ball[2], offset.yaw)
             x += ball[0] + cosine * offset.x - sine * offset.z
             z += ball[2] + sine * offset.x + cosine * offset.z
-            ankles.append((x, ankle[1] + offset.y, z))
+            wanted = (x, ankle[1] + offset.y, z)
+            if not foot.held:
+                softness = min(foot.age / _SOFTENING_S, 1.0)
+                wanted = _within_reach(frames.positions[hip], ankle, wanted, length, softness)
+            ankles.append(wanted)
             turns.append((0.0, math.sin(offset.yaw / 2), 0.0, math.cos(offset.yaw / 2)))
         return ankles, turns
 
@@ -140,6 +148,25 @@ class FootLock:
             foot.out_of_reach = squared < 0.0 or drop > limit
             needed = max(needed, min(drop, limit))
         return needed
+
+
+def _within_reach(
+    hip: Vector, own: Vector, wanted: Vector, length: float, softness: float
+) -> Vector:
+    """Return where an ankle comes on its way out of reach, so that the knee never snaps straight.
+
+    Beyond a limit, and beyond its `own` position in the motion, it comes nearer to the full length
+    of the leg ever more slowly ("soft IK", A. Nicholas, 2008).
+    """
+    away = math.dist(hip, wanted)
+    start = max(_SOFT_EXTENSION * length, math.dist(hip, own))
+    room = max(_MAX_EXTENSION * length - start, 1e-3 * length)
+    if away <= start:
+        return wanted
+    soft = start + room * (1.0 - math.exp((start - away) / room))
+    share = 1.0 + softness * (soft / away - 1.0)
+    x, y, z = (h + share * (w - h) for h, w in zip(hip, wanted, strict=True))
+    return x, y, z
 
 
 def _rest_foot_points(legs: LegIK) -> tuple[list[list[Vector]], list[list[float]]]:

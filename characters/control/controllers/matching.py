@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -15,7 +16,7 @@ from characters.control.controllers.actions import (
 )
 from characters.control.controllers.controller import ControllerFrame
 from characters.control.controllers.in_place import idle_clip
-from characters.control.controllers.own_takes import standing_takes, walking_takes
+from characters.control.controllers.own_takes import standing_take, walking_take
 from characters.control.controllers.recordings import read_motions
 from characters.control.controllers.walk import (
     NOT_ACTIONS,
@@ -37,7 +38,7 @@ from characters.skeleton.pose import Array
 from characters.smoothing import interpolate, low_pass
 from characters.synthesis.matching.database import MotionDatabase, Playhead
 from characters.synthesis.matching.matched_motion import MatchedMotion
-from characters.synthesis.matching.prediction import RootMotion, Wish, predict
+from characters.synthesis.matching.prediction import Impulse, Wish, predict
 
 SPEED_KNOTS = (IDLE_SPEED, 1.0, 2.0, RUN_SPEED, 3.5, 4.0, TOP_SPEED)
 """AvatAR's Speeds."""
@@ -45,11 +46,15 @@ SPEED_KNOTS = (IDLE_SPEED, 1.0, 2.0, RUN_SPEED, 3.5, 4.0, TOP_SPEED)
 PACE_KNOTS = (0.38, 0.51, 0.78, 1.26, 1.66, 1.9, 2.4)
 """The same over the ground, as the bundled human has them [body heights/s]."""
 
-MOTION_LAG_S = 0.1
+MEASURING_LAG_S = 0.1
 """Time constant of the measured speed and turning rate."""
 
 STANDING_PACE = 0.08
 """A root slower than this stands [body heights/s]."""
+
+MAX_ADJUSTED_RAD, ADJUSTMENT_LAG_S, ADJUSTMENT_RATE = math.radians(30), 0.5, 0.35
+"""A walker turns by a smaller error of its heading itself: with this time constant [s], and no
+faster than this [rad/s]."""
 
 SUDDEN_SPEED, SUDDEN_TURN_RAD = 0.2, math.radians(30)
 """A wish that changes by more is answered at once [body heights/s, rad]."""
@@ -86,7 +91,8 @@ class MatchingController:
         }
         self._time = self._weight = 0.0
         self._finished = ""
-        self._moving = RootMotion()
+        self._impulse = Impulse()
+        self._pace_now = self._turn_rate = 0.0  # over the ground [m/s], to the left [rad/s]
         self._answered: tuple[float, float] = (0.0, 0.0)
         self._arrived = self._turning = False
 
@@ -111,17 +117,19 @@ class MatchingController:
         wish = Wish() if action != "idle" else self._wish(command)
         self._play(action, command.weight, now)
         if action == "idle":
-            self._match(wish, now - self._machine.entered)
+            self._match(wish, now - self._machine.entered, elapsed)
         step = self._machine.travel(now, self._time)
         self.place = self.place.then(step.scaled(self._scale))
         if elapsed > 0.0:
-            self._measure(step, elapsed)
+            pace, rate = step.z / elapsed, step.yaw / elapsed
+            self._pace_now = low_pass(self._pace_now, pace, elapsed, MEASURING_LAG_S)
+            self._turn_rate = low_pass(self._turn_rate, rate, elapsed, MEASURING_LAG_S)
         return self._frame(wish)
 
     def _frame(self, wish: Wish) -> ControllerFrame:
         """Return what is played now."""
         state, spent = self._machine.state, self._time - self._machine.entered
-        pace = self._moving.speed / self._height
+        pace = self._pace_now / self._height
         speed = interpolate(pace, PACE_KNOTS, SPEED_KNOTS)
         going = state == "idle" and pace > STANDING_PACE and not self._turning
         action = self._actions.get(state)
@@ -132,7 +140,7 @@ class MatchingController:
             state,
             self.place,
             speed=speed if going else 0.0,
-            angular=-self._moving.turn_rate if going else 0.0,
+            angular=-self._turn_rate if going else 0.0,
             weight=self._weight if action else 0.0,
             acting=action is not None,
             shows_emotion=action is not None and action.shows_emotion,
@@ -180,26 +188,25 @@ class MatchingController:
         nearest = min(paces[max(after - 1, 0)], paces[after], key=lambda pace: abs(pace - asked))
         return float(nearest)
 
-    def _match(self, wish: Wish, time: float) -> None:
-        """Search for frames that suit a wish better."""
+    def _match(self, wish: Wish, time: float, elapsed: float) -> None:
+        """Search for frames that suit a wish better, and turn a little where none fits exactly."""
         here = RootDelta(self.place.x / self._scale, self.place.z / self._scale, self.place.yaw)
-        bearing = 0.0 if wish.target is None else here.bearing(*wish.target) + here.yaw
+        impulse = self._impulse
+        self._impulse, _ = impulse.advanced(here, wish, self._height, elapsed)
+        error = 0.0 if wish.target is None else here.bearing(*wish.target)
 
         def ahead() -> Mapping[str, Array]:
-            self._answered = wish.speed, bearing
-            return predict(here, self._moving, wish, self._height)
+            self._answered = wish.speed, error + here.yaw
+            return predict(here, impulse, wish, self._height)
 
         speed, way = self._answered
         sudden = abs(wish.speed - speed) > SUDDEN_SPEED * self._height
-        sudden |= abs(math.remainder(bearing - way, math.tau)) > SUDDEN_TURN_RAD
+        sudden |= abs(math.remainder(error + here.yaw - way, math.tau)) > SUDDEN_TURN_RAD
         self.motion.match(time, ahead, sudden)
-
-    def _measure(self, step: RootDelta, elapsed: float) -> None:
-        """Measure speed and turning rate of the root."""
-        self._moving = RootMotion(
-            low_pass(self._moving.speed, step.z / elapsed, elapsed, MOTION_LAG_S),
-            low_pass(self._moving.turn_rate, step.yaw / elapsed, elapsed, MOTION_LAG_S),
-        )
+        if self._pace_now > STANDING_PACE * self._height and abs(error) < MAX_ADJUSTED_RAD:
+            most = ADJUSTMENT_RATE * elapsed
+            turn = min(max(error - low_pass(error, 0.0, elapsed, ADJUSTMENT_LAG_S), -most), most)
+            self.place = replace(self.place, yaw=self.place.yaw + turn)
 
     def _play(self, action: str, weight: float, now: float) -> None:
         """Enter an action, or go on with it at another intensity; or go back to matching."""
@@ -242,9 +249,9 @@ def prepare_database(character: Character, motions: Sequence[str] = ()) -> Motio
     clips = read_motions(motions, character)
     for side in (1.0,) if mirror else (1.0, -1.0):
         if not motions:
-            clips += walking_takes(character, side)
+            clips.append(walking_take(character, side))
         if walks:
-            clips += standing_takes(character, side)
+            clips.append(standing_take(character, side))
     idle = character.clips.get(idle_clip(character.clips) or "")
     if idle is not None and idle.root_motion and idle.cycle.length < STANDING_PACE:
         clips.append(idle)

@@ -43,7 +43,7 @@ def read_motions(names: Sequence[str], character: Character) -> list[Clip]:
 
 def _files(names: Sequence[str]) -> Iterator[str]:
     """Yield names, and the motion files of folders."""
-    suffixes = {*MOTION_READERS} - {*CHARACTER_READERS}
+    suffixes = {*MOTION_READERS} - {*CHARACTER_READERS, ".asf"}  # an .asf holds a skeleton only
     for name in names:
         folder = Path(name)
         if not folder.is_dir():

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from characters.errors import CharacterError
 from characters.motion.clip import Clip
 from characters.motion.contacts import find_contacts
+from characters.motion.ground import joint_trajectories
 from characters.motion.mirror import Mirror
 from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.feet import find_feet
+from characters.skeleton.feet import Feet, find_feet
 from characters.skeleton.masks import subtree
 from characters.skeleton.pose import Array, Skeleton
 from characters.synthesis.matching.features import (
@@ -24,16 +25,22 @@ from characters.synthesis.matching.features import (
 )
 from characters.synthesis.matching.nearest import NearestRow
 
-LEG_WEIGHTS = {"feet": 0.75, "foot velocities": 1.0, "hips velocity": 1.0, "path": 1.0}
-LEG_WEIGHTS |= {"facing": 1.5}
-"""Weights of the features that legs and hips are matched by (Holden et al., 2020)."""
+LEG_WEIGHTS = {"feet": 0.75, "foot velocities": 1.0, "hips velocity": 1.0, "path": 2.0}
+LEG_WEIGHTS |= {"facing": 2.0}
+"""Weights of the features that legs and hips are matched by.
 
-ARM_WEIGHTS = {"hands": 1.0, "hand velocities": 1.0, "feet": 0.75, "foot velocities": 1.0}
-ARM_WEIGHTS |= {"hips velocity": 1.5}
+Path and facing count more than with Holden et al., so that a wish is answered at once.
+"""
+
+ARM_WEIGHTS = {"hands": 0.5, "hand velocities": 0.5, "feet": 1.0, "foot velocities": 1.5}
+ARM_WEIGHTS |= {"hips velocity": 2.0, "path": 1.0}
 """Weights of the features that trunk, head and arms are matched by.
 
-Hands keep the motion of the arms continuous; feet and hips tie it to the steps of the legs.
+Hands keep the motion of the arms continuous; feet, hips and path tie it to the steps of the legs.
 """
+
+MAX_STANDING_SPEED = 0.2
+"""A foot of which every joint is faster does not stand [body heights/s]."""
 
 TAIL_S = 0.3
 """The last part of a recording is played, but not jumped to [s]."""
@@ -95,12 +102,14 @@ class MotionDatabase:
         joints, upper = _joints(skeleton, anatomy)
         both = [*clips] if mirror is None else [*clips, *map(mirror.clip, clips)]
         _check(both, joints, skeleton)
+        for clip in both:
+            clip.travel(0.0, 0.0), clip.sample(0.0)  # what it computes once, it computes now
         features = [clip_features(clip, skeleton, joints) for clip in both]
         feet = find_feet(skeleton)
         return MotionDatabase(
             skeleton,
             tuple(both),
-            tuple(find_contacts(clip, skeleton, feet) for clip in both),
+            tuple(_slow_contacts(clip, skeleton, feet) for clip in both),
             FeatureSpace.of(features, LEG_WEIGHTS),
             FeatureSpace.of(features, ARM_WEIGHTS) if joints.hands else None,
             upper,
@@ -226,6 +235,21 @@ def _joints(skeleton: Skeleton, anatomy: Anatomy) -> tuple[FeatureJoints, NDArra
     spine = anatomy.joint("spine")
     upper = np.array([] if spine is None else subtree(skeleton, spine), np.intp)
     return FeatureJoints(hips, (left, right), both if len(both) == 2 and len(upper) else ()), upper
+
+
+def _slow_contacts(clip: Clip, skeleton: Skeleton, feet: Feet) -> NDArray[np.bool_]:
+    """Return which feet stand, (frames, feet), without the frames in which they already leave.
+
+    A foot that is held while the motion takes it away has far to catch up when it is let go.
+    """
+    contacts = find_contacts(clip, skeleton, feet)
+    if len(clip) < 2 or not feet:
+        return contacts
+    tracks = joint_trajectories(clip, skeleton)
+    speeds = np.linalg.norm(tracks.velocities, axis=-1)
+    slowest = np.stack([speeds[:, list(foot)].min(1) for foot in feet], axis=-1)
+    slow: NDArray[np.bool_] = contacts & (slowest < MAX_STANDING_SPEED * tracks.body_height)
+    return slow
 
 
 def _check(clips: Sequence[Clip], joints: FeatureJoints, skeleton: Skeleton) -> None:

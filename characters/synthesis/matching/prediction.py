@@ -40,44 +40,53 @@ class Wish:
 
 
 @dataclass(frozen=True)
-class RootMotion:
-    """How a root moves now."""
+class Impulse:
+    """How fast a character that follows its wish would move, by critically damped springs."""
 
     speed: float = 0.0
     """Forward [m/s]."""
 
+    acceleration: float = 0.0
+    """[m/s²]."""
+
     turn_rate: float = 0.0
     """To the left [rad/s]."""
 
+    def advanced(
+        self, place: RootDelta, wish: Wish, body_height: float, elapsed: float
+    ) -> tuple["Impulse", RootDelta]:
+        """Return the motion, and where it leads from a place [m], a time later [s].
 
-def predict(
-    place: RootDelta, moving: RootMotion, wish: Wish, body_height: float
-) -> dict[str, Array]:
-    """Return the features "path" and "facing" of the way that a wish leads.
+        It brakes before it stops, and slows down where it must turn.
+        """
+        error, wished = _course(place, wish, body_height)
+        offset, rate = damped_spring(-error, self.turn_rate, 0.0, elapsed, TURN_LAG_S)
+        turn, rate = (
+            min(max(value, -limit), limit)
+            for value, limit in ((error + offset, MAX_TURN_RATE * elapsed), (rate, MAX_TURN_RATE))
+        )
+        speed, acceleration = damped_spring(
+            self.speed, self.acceleration, wished, elapsed, SPEED_LAG_S
+        )
+        halfway, walked = place.yaw + turn / 2, speed * elapsed
+        return Impulse(speed, acceleration, rate), RootDelta(
+            place.x + math.sin(halfway) * walked,
+            place.z + math.cos(halfway) * walked,
+            place.yaw + turn,
+        )
 
-    Heading and speed follow those of the wish as critically damped springs do; it brakes before it
-    stops, and slows down where it must turn.
-    """
-    x, z, yaw = place.x, place.z, place.yaw
-    speed, rate = moving.speed, moving.turn_rate
-    acceleration, elapsed = 0.0, max(HORIZONS_S) / _STEPS
-    path, facing = [], []
-    at = [round(horizon / elapsed) for horizon in HORIZONS_S]
-    sine, cosine = math.sin(yaw), math.cos(yaw)
+
+def predict(place: RootDelta, moving: Impulse, wish: Wish, body_height: float) -> dict[str, Array]:
+    """Return the features "path" and "facing" of the way that a wish leads."""
+    elapsed = max(HORIZONS_S) / _STEPS
+    compared = [round(horizon / elapsed) for horizon in HORIZONS_S]
+    there, path, facing = place, [], []
     for step in range(1, _STEPS + 1):
-        error, wished = _course(RootDelta(x, z, yaw), wish, body_height)
-        before = yaw
-        offset, rate = damped_spring(-error, rate, 0.0, elapsed, TURN_LAG_S)
-        rate = min(max(rate, -MAX_TURN_RATE), MAX_TURN_RATE)
-        turn = min(max(error + offset, -MAX_TURN_RATE * elapsed), MAX_TURN_RATE * elapsed)
-        yaw += turn
-        speed, acceleration = damped_spring(speed, acceleration, wished, elapsed, SPEED_LAG_S)
-        x += math.sin((yaw + before) / 2) * speed * elapsed
-        z += math.cos((yaw + before) / 2) * speed * elapsed
-        if step in at:
-            dx, dz, turned = x - place.x, z - place.z, yaw - place.yaw
-            path += [cosine * dx - sine * dz, sine * dx + cosine * dz]
-            facing += [math.sin(turned), math.cos(turned)]
+        moving, there = moving.advanced(there, wish, body_height, elapsed)
+        if step in compared:
+            ahead = place.to(there)
+            path += [ahead.x, ahead.z]
+            facing += [math.sin(ahead.yaw), math.cos(ahead.yaw)]
     return {"path": np.array(path), "facing": np.array(facing)}
 
 
