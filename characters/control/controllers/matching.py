@@ -36,7 +36,7 @@ from characters.motion.state_machine import StateMachine
 from characters.skeleton.feet import find_feet
 from characters.skeleton.pose import Array
 from characters.smoothing import interpolate, low_pass
-from characters.synthesis.matching.database import MotionDatabase, Playhead
+from characters.synthesis.matching.database import MotionDatabase
 from characters.synthesis.matching.matched_motion import MatchedMotion
 from characters.synthesis.matching.prediction import Impulse, Wish, predict
 
@@ -79,8 +79,7 @@ class MatchingController:
         self.place = place or RootDelta()
         """Where it stands on the table [m] and faces [rad]."""
         self._scale, self._height = scale, character.height
-        self._stand = self._standing_head()
-        self.motion = MatchedMotion(self.database, self._stand)
+        self.motion = MatchedMotion(self.database, self.database.stillest)
         """What is matched."""
         self._actions = actions_of(character, NOT_ACTIONS)
         self._machine = StateMachine({"idle": self.motion, **self._actions}, "idle")
@@ -218,14 +217,8 @@ class MatchingController:
         elif playing is not None:
             self._weight = low_pass(self._weight, weight, self._time - now, WEIGHT_LAG_S)
             playing.set_weight(self._weight, now - self._machine.entered)
-        begin = (lambda: self.motion.restart(self._stand)) if playing is None else None
+        begin = (lambda: self.motion.restart(self.database.stillest)) if playing is None else None
         self._machine.request(action, now, begin=begin)
-
-    def _standing_head(self) -> Playhead:
-        """Return the moment of the database that stands stillest, far from an end."""
-        still = {name: np.zeros(6) for name in ("path", "facing")}
-        still["facing"][1::2] = 1.0
-        return self.database.match_legs(Playhead(0, 0.0), still, math.inf) or Playhead(0, 0.0)
 
 
 def prepare_database(character: Character, motions: Sequence[str] = ()) -> MotionDatabase:

@@ -186,6 +186,17 @@ class MotionDatabase:
         return None if found is None else self.head(int(self._candidates[found[0]]))
 
     @cached_property
+    def stillest(self) -> Playhead:
+        """The moment at which the feet are slowest, and the root stays where it is."""
+        still = np.zeros(len(self._candidates))
+        for name in ("foot velocities", "path"):
+            columns = self.legs.columns[name]
+            values = self.legs.values[self._candidates, columns]
+            at_rest = self.legs.scaled(name, np.zeros(values.shape[1]))
+            still += np.square(values - at_rest).sum(1)
+        return self.head(int(self._candidates[still.argmin()]))
+
+    @cached_property
     def _first_rows(self) -> list[int]:
         """The first row of each clip, and the number of all rows."""
         counts = [len(row_times(clip)) for clip in self.clips]
