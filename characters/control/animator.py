@@ -63,7 +63,8 @@ class Animator:
             scale = default_height(character) / max(character.height, 1e-9)
         self.character = character
         self.scale = scale
-        self._controller = controller(character, scale, place)
+        self.controller = controller(character, scale, place)
+        """What moves it."""
         self._layers = [layer(character, seed) for layer in layers]
         self._expressivity = ExpressivityFilter()
         self._rest = 1.0
@@ -72,12 +73,12 @@ class Animator:
     @property
     def actions(self) -> tuple[str, ...]:
         """The actions that the character knows, besides standing, walking and running."""
-        return self._controller.actions
+        return self.controller.actions
 
     @property
     def walks(self) -> bool:
         """Whether the character walks and runs; else it hops."""
-        return self._controller.walks
+        return self.controller.walks
 
     @property
     def length(self) -> float:
@@ -99,7 +100,7 @@ class Animator:
         self._timestamp = command.timestamp
         elapsed = min(max(elapsed, 0.0), MAX_TIME_STEP_S)
         tempo = math.sqrt(self._expressivity.value.tempo)
-        frame = self._controller.update(command, elapsed, tempo)
+        frame = self.controller.update(command, elapsed, tempo)
         activity = max(float(frame.acting), min(2.0 * frame.effort, 1.0))
         self._rest = low_pass(self._rest, 1.0 - activity, elapsed, REST_LAG_S)
         context = FrameContext(

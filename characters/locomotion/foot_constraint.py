@@ -22,6 +22,9 @@ _MAX_STEP_HEIGHT, _STEP_HEIGHT_PER_LENGTH, _MIN_STEP_HEIGHT = 0.025, 0.35, 6e-4
 # A lifting foot is raised so high once it is so far from where it stood; …
 _LIFT_HEIGHT, _LIFT_DISTANCE = 0.009, 0.02
 _LIFT_FADE_START, _LIFT_FADE_END = 0.06, 0.14  # … this fades out between these distances
+# A foot that is faster than the first of these speeds comes no nearer to the ground than this
+# height, from the second speed on: a swinging foot does not brush the ground before it lands.
+_BRUSHING_SPEEDS, _CLEARANCE = (0.5, 1.5), 0.008
 _OFFSET_DECAY_S = 0.2
 # A quick step may land early within this part of its end, if it is so near.
 _EARLY_LANDING_SHARE, _EARLY_LANDING_DISTANCE = 0.35, 0.012
@@ -98,6 +101,8 @@ class FootConstraint:
         self._heel = False
         self._last_stand = (0.0, 0.0)
         self._step_length = 0.0
+        self._ball: tuple[float, float, float] | None = None  # in the motion, one frame ago
+        self._speed = 0.0  # of the ball in the motion [body heights/s]
         self._shown = [0.0] * 4  # x, z, yaw, y of the offset
         self._velocity = [0.0] * 4
         # The decaying offset: initial value and velocity, age and length.
@@ -112,6 +117,9 @@ class FootConstraint:
         self._shown = [a + b for a, b in zip(self._goal(points), decayed, strict=True)]
         self.offset = FootOffset(*self._shown)
         if elapsed > 0.0:
+            moved = 0.0 if self._ball is None else math.dist(self._ball, points.ball)
+            self._speed = moved / (elapsed * self._body_height)
+            self._ball = points.ball
             self._velocity = [(a - b) / elapsed for a, b in zip(self._shown, before, strict=True)]
 
     @property
@@ -177,6 +185,17 @@ class FootConstraint:
             lowest = raised * min(max(fade, 0.0), 1.0) - points.ball[1]
         if self.offset.y < lowest:
             self.offset.y = lowest
+        if not self.held:
+            self.offset.y += self._clearance(points.ball[1] + self.offset.y)
+
+    def _clearance(self, height: float) -> float:
+        """Return by how much to raise a moving ball that is shown at a height [m]."""
+        slow, fast = _BRUSHING_SPEEDS
+        share = min(max((self._speed - slow) / (fast - slow), 0.0), 1.0)
+        least = _CLEARANCE * self._body_height * share
+        if least == 0.0 or height >= 2.0 * least:
+            return 0.0
+        return (2.0 * least - max(height, 0.0)) ** 2 / (4.0 * least)
 
     def may_land(self, points: FootPoints) -> bool:
         """Return whether a moving foot is near the ground, and near the end of a quick step."""

@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 from characters.errors import CharacterError
 from characters.motion.clip import Clip
 from characters.motion.contacts import find_contacts
-from characters.motion.ground import joint_trajectories
 from characters.motion.mirror import Mirror
 from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.feet import Feet, find_feet
+from characters.skeleton.feet import find_feet
 from characters.skeleton.masks import subtree
 from characters.skeleton.pose import Array, Skeleton
 from characters.synthesis.matching.features import (
@@ -38,9 +37,6 @@ ARM_WEIGHTS |= {"hips velocity": 2.0, "path": 1.0}
 
 Hands keep the motion of the arms continuous; feet, hips and path tie it to the steps of the legs.
 """
-
-MAX_STANDING_SPEED = 0.2
-"""A foot of which every joint is faster does not stand [body heights/s]."""
 
 TAIL_S = 0.3
 """The last part of a recording is played, but not jumped to [s]."""
@@ -109,7 +105,7 @@ class MotionDatabase:
         return MotionDatabase(
             skeleton,
             tuple(both),
-            tuple(_slow_contacts(clip, skeleton, feet) for clip in both),
+            tuple(find_contacts(clip, skeleton, feet) for clip in both),
             FeatureSpace.of(features, LEG_WEIGHTS),
             FeatureSpace.of(features, ARM_WEIGHTS) if joints.hands else None,
             upper,
@@ -246,21 +242,6 @@ def _joints(skeleton: Skeleton, anatomy: Anatomy) -> tuple[FeatureJoints, NDArra
     spine = anatomy.joint("spine")
     upper = np.array([] if spine is None else subtree(skeleton, spine), np.intp)
     return FeatureJoints(hips, (left, right), both if len(both) == 2 and len(upper) else ()), upper
-
-
-def _slow_contacts(clip: Clip, skeleton: Skeleton, feet: Feet) -> NDArray[np.bool_]:
-    """Return which feet stand, (frames, feet), without the frames in which they already leave.
-
-    A foot that is held while the motion takes it away has far to catch up when it is let go.
-    """
-    contacts = find_contacts(clip, skeleton, feet)
-    if len(clip) < 2 or not feet:
-        return contacts
-    tracks = joint_trajectories(clip, skeleton)
-    speeds = np.linalg.norm(tracks.velocities, axis=-1)
-    slowest = np.stack([speeds[:, list(foot)].min(1) for foot in feet], axis=-1)
-    slow: NDArray[np.bool_] = contacts & (slowest < MAX_STANDING_SPEED * tracks.body_height)
-    return slow
 
 
 def _check(clips: Sequence[Clip], joints: FeatureJoints, skeleton: Skeleton) -> None:

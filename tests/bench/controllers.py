@@ -1,0 +1,273 @@
+"""What moves a character, compared: `python -m tests.bench.controllers`.
+
+Every controller that a user may choose walks the same script of requests: to walk, run, turn and
+stop, each at several moments of the step. Lengths are scaled to a person 1.7 m tall, times are
+frames of 1/60 s. A row on CMU recordings needs them in `shared/data/cmu-mocap`.
+
+answer
+    From a request until speed or heading has gone a tenth of the way to where it settles; mean.
+    It stands for the "response" of Fernández-Baena (2015), section 3.4, for controllers whose
+    transitions cannot be looked into.
+TBF
+    Time between frames: from a request until it stays within a tenth of where it settles; mean
+    over all requests (his equation 3.3).
+LM
+    The same for each pair of gaits, mean over the moments of the request (his equation 3.4); the
+    worst pair is printed.
+slide
+    Mean speed of planted feet, as in `tests.bench.feet` [mm/s].
+jerk
+    Median and 99th percentile over hips, knees, ankles, elbows and wrists [m/s³].
+jump
+    Largest change of velocity of these joints from one frame to the next, within half a second of
+    a request [m/s]; and as a multiple of the largest in the clips themselves.
+
+Exits with 1 if matching slides more than `MAX_SLIDE_MM_S` or jumps more than `MAX_JUMP`.
+"""
+
+import sys
+import time
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+from rich.table import Table
+
+from characters import (
+    CONTROLLER_CHOICES,
+    ActionIntent,
+    Animator,
+    Character,
+    CharacterCommand,
+    Clip,
+    LocomotionIntent,
+    Pose,
+    PosedCharacter,
+    choose_controller,
+)
+from characters.control.controllers.matching import MatchingController
+from characters.control.layers import FOOT_LAYERS
+from characters.skeleton.feet import find_feet
+from tests.bench.feet import BODY_HEIGHT_M, FRAME_RATE, MAX_SLIDE_MM_S, Take, measure
+
+CMU = Path(__file__).parents[3] / "shared" / "data" / "cmu-mocap"
+MAX_JUMP = 1.2
+"""Largest change of velocity, as a multiple of that of the clips, at which the benchmark fails."""
+
+Array = NDArray[np.float64]
+
+GAITS = {"stand": 0.0, "walk": 2.0, "run": 4.5}
+"""AvatAR's Speed of each gait."""
+
+REQUESTS = (
+    *(("walk", 0), ("run", 0), ("walk", 0), ("walk", 90), ("walk", -90), ("stand", 0), ("run", 0)),
+    *(("run", 90), ("stand", 0), ("walk", 0), ("walk", 180), ("run", 0), ("run", -90)),
+    ("stand", 0),
+)
+"""Gait, and by how much the heading changes [degrees], one after the other."""
+
+ROUNDS, HOLD_FRAMES, LONGER_FRAMES = 6, 130, 7  # each round asks at other moments of the step
+JOINTS = ("hips", *(side + part for side in ("left", "right") for part in
+                    ("LowerLeg", "Foot", "LowerArm", "Hand")))  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Request:
+    """A change that is asked for."""
+
+    pair: str
+    """The gaits before and after, and the turn."""
+
+    first: int
+    """Its frame."""
+
+    end: int
+    """The frame of the next request."""
+
+    turn: float
+    """How much to turn [rad]; 0 for a change of gait."""
+
+
+@dataclass(frozen=True)
+class Film:
+    """What a controller showed."""
+
+    take: Take
+    """Its feet."""
+
+    joints: Array
+    """Of `JOINTS` in the frame of the character, (frames, joints, 3) [m of a person 1.7 m tall]."""
+
+    speed: Array
+    """Over the ground, (frames,) [m/s]."""
+
+    heading: Array
+    """(frames,) [rad]."""
+
+    requests: list[Request]
+    """What was asked for, in order."""
+
+    milliseconds: float
+    """Median time of a frame, without layers."""
+
+
+def film(character: Character, animator: Animator, rounds: int = ROUNDS) -> Film:
+    """Let an animator walk the script."""
+    shown: list[PosedCharacter] = []
+    requests: list[Request] = []
+    times: list[float] = []
+    before, yaw = "stand", 0.0
+    for number, (gait, degrees) in enumerate(REQUESTS * rounds):
+        turn = np.radians(degrees)
+        yaw += turn
+        first = len(shown)
+        end = first + HOLD_FRAMES + LONGER_FRAMES * (number // len(REQUESTS))
+        pair = f"{before} → {gait}" + (f", {degrees:+d}°" if degrees else "")
+        requests.append(Request(pair, first, end, float(turn)))
+        for frame in range(first, end):
+            command = _command(shown[-1] if shown else None, frame / FRAME_RATE, gait, yaw)
+            start = time.perf_counter()
+            shown.append(animator.update(command))
+            times.append(time.perf_counter() - start)
+        before = gait
+    size = BODY_HEIGHT_M / character.height
+    return _developed(character, shown, requests, size, 1e3 * float(np.median(times)))
+
+
+def _command(posed: PosedCharacter | None, now: float, gait: str, yaw: float) -> CharacterCommand:
+    """Return the command of going on in a direction, without end."""
+    x, z = (0.0, 0.0) if posed is None else posed.table_from_character[[0, 2], 3]
+    target = np.array([x + 100 * np.sin(yaw), z + 100 * np.cos(yaw)])
+    stand = ActionIntent("idle") if gait == "stand" else None
+    return CharacterCommand(now, LocomotionIntent(GAITS[gait], target, stop=False), stand)
+
+
+def _developed(
+    character: Character,
+    shown: Sequence[PosedCharacter],
+    requests: list[Request],
+    size: float,
+    milliseconds: float,
+) -> Film:
+    skeleton = character.skeleton
+    turns = np.stack([posed.pose.rotations for posed in shown])
+    poses = Pose(np.stack([posed.pose.translations for posed in shown]), turns)
+    placed = np.stack([posed.table_from_character for posed in shown])
+    local = poses.globals(skeleton)[..., :3, 3]
+    balls = [foot[-1] for foot in find_feet(skeleton)]
+    world = np.einsum("fij,fnj->fni", placed[:, :3, :3], local[:, balls]) + placed[:, None, :3, 3]
+    level = skeleton.rest.globals(skeleton)[balls, 1, 3] * size
+    way = placed[:, [0, 2], 3] * size
+    steps = np.linalg.norm(np.diff(way, axis=0, prepend=way[:1]), axis=1) * FRAME_RATE
+    return Film(
+        Take(world * size, level, turns, 0.0),
+        local[:, joints_of(character)] * size,
+        np.convolve(steps, np.full(7, 1 / 7), "same"),
+        np.unwrap(np.arctan2(placed[:, 0, 2], placed[:, 2, 2])),
+        requests,
+        milliseconds,
+    )
+
+
+def joints_of(character: Character) -> list[int]:
+    """Return the numbers of `JOINTS`."""
+    return [character.anatomy.joints[part] for part in JOINTS]
+
+
+def answers(seen: Film) -> dict[str, list[tuple[int, int]]]:
+    """Return, by pair, the frames from each request to the first answer and until it settles."""
+    found: dict[str, list[tuple[int, int]]] = defaultdict(list)
+    for request in seen.requests:
+        values = (seen.heading if request.turn else seen.speed)[request.first : request.end]
+        final = float(values[-20:].mean())
+        change = abs(final - values[0])
+        first = int(np.argmax(np.abs(values - values[0]) > 0.1 * change))
+        outside = np.flatnonzero(np.abs(values - final) > 0.1 * change)
+        found[request.pair].append((first, int(outside[-1]) + 1 if len(outside) else 0))
+    return found
+
+
+def velocity_jumps(joints: Array) -> Array:
+    """Return the largest change of velocity at each frame, (frames − 2,) [m/s]."""
+    jumps: Array = np.linalg.norm(np.diff(joints, 2, axis=0), axis=-1).max(-1) * FRAME_RATE
+    return jumps
+
+
+def clip_jump(character: Character, clips: Sequence[Clip]) -> float:
+    """Return the largest change of velocity in clips, played at 60 Hz [m/s]."""
+    largest, size = 0.0, BODY_HEIGHT_M / character.height
+    for clip in clips:
+        times = np.arange(0.0, clip.duration, 1 / FRAME_RATE)
+        if len(times) > 2:
+            poses = [clip.sample(at) for at in times]
+            shifts = np.stack([pose.translations for pose in poses])
+            stacked = Pose(shifts, np.stack([pose.rotations for pose in poses]))
+            joints = stacked.globals(character.skeleton)[..., :3, 3][:, joints_of(character)] * size
+            largest = max(largest, float(velocity_jumps(joints).max()))
+    return largest
+
+
+def requested_jump(seen: Film) -> float:
+    """Return the largest change of velocity within half a second of a request [m/s]."""
+    jumps = velocity_jumps(seen.joints)
+    return max(float(jumps[r.first : r.first + FRAME_RATE // 2].max()) for r in seen.requests)
+
+
+def main() -> int:
+    """Print the table and return an exit code."""
+    character = Character.load("human")
+    table = Table(title="Controllers on one script: times in frames of 1/60 s, lengths of 1.7 m")
+    headings = ("controller", "motions", "answer", "TBF", "LM, worst pair", "slide", "jerk", "jump")
+    for heading in (*headings, "× clips", "ms"):
+        table.add_column(heading, no_wrap=True)
+    failed = False
+    for name in CONTROLLER_CHOICES:
+        for motions in ((), (str(CMU),)) if name != "tree" and CMU.is_dir() else ((),):
+            animator = Animator(
+                character,
+                scale=1.0,
+                layers=FOOT_LAYERS,
+                controller=choose_controller(name, character, motions),
+            )
+            clips: Sequence[Clip] = list(character.clips.values())
+            if isinstance(animator.controller, MatchingController):
+                clips = animator.controller.database.clips
+            seen = film(character, animator)
+            slide, ratio = _row(table, name, motions, seen, clip_jump(character, clips))
+            failed |= name != "tree" and (slide >= MAX_SLIDE_MM_S or ratio > MAX_JUMP)
+    Console(width=140).print(table)
+    return int(failed)
+
+
+def _row(
+    table: Table, name: str, motions: Sequence[str], seen: Film, clips: float
+) -> tuple[float, float]:
+    """Add a row; return the slide [mm/s] and the jump as a multiple of that of the clips."""
+    found = answers(seen)
+    every = [each for pair in found.values() for each in pair]
+    means = {pair: float(np.mean([end for _, end in each])) for pair, each in found.items()}
+    worst = max(means, key=lambda pair: means[pair])
+    slide = measure(seen.take).mean
+    jerk = np.linalg.norm(np.diff(seen.joints, 3, axis=0), axis=-1) * FRAME_RATE**3
+    jump = requested_jump(seen)
+    table.add_row(
+        name,
+        "CMU" if motions else "own",
+        f"{np.mean([first for first, _ in every]):.1f}",
+        f"{np.mean([end for _, end in every]):.1f}",
+        f"{means[worst]:.0f}: {worst}",
+        f"{slide:.1f}",
+        f"{np.median(jerk):.0f}, {np.quantile(jerk, 0.99):.0f}",
+        f"{jump:.2f}",
+        f"{jump / clips:.2f}",
+        f"{seen.milliseconds:.2f}",
+    )
+    return slide, jump / clips
+
+
+if __name__ == "__main__":
+    sys.exit(main())
