@@ -15,6 +15,7 @@ from characters.skeleton.scalar_quaternions import (
 
 _MAX_EXTENSION = 0.999  # of a leg's length
 _STRAIGHT_KNEE_AXIS = (-1.0, 0.0, 0.0)  # of a straight leg, whose plane is undefined
+_MAX_OVEREXTENSION = 0.4  # sine of the angle by which a knee may be bent the wrong way
 
 
 def reach(
@@ -42,6 +43,12 @@ def reach(
     if size > 1e-9 * long * short:
         axis = (across[0] / size, across[1] / size, across[2] / size)
     bend = math.atan2(size, dot(thigh, shin))
+    if (
+        0.0 < dot(axis, _STRAIGHT_KNEE_AXIS) * -size < _MAX_OVEREXTENSION * long * short
+        and bend > 1.6
+    ):
+        # A transition has stretched the knee too far: it bends back the right way.
+        axis, bend = (-axis[0], -axis[1], -axis[2]), math.tau - bend
     cosine = (long * long + short * short - wanted * wanted) / (2 * long * short)
     half = (math.acos(min(max(cosine, -1.0), 1.0)) - bend) / 2
     sine = math.sin(half)

@@ -25,6 +25,7 @@ _LIFT_FADE_START, _LIFT_FADE_END = 0.06, 0.14  # … this fades out between thes
 # A foot that is faster than the first of these speeds comes no nearer to the ground than this
 # height, from the second speed on: a swinging foot does not brush the ground before it lands.
 _BRUSHING_SPEEDS, _CLEARANCE = (0.5, 1.5), 0.008
+_CLEARING_S = 0.08  # from when it is let go until that holds
 _OFFSET_DECAY_S = 0.2
 # A quick step may land early within this part of its end, if it is so near.
 _EARLY_LANDING_SHARE, _EARLY_LANDING_DISTANCE = 0.35, 0.012
@@ -192,6 +193,7 @@ class FootConstraint:
         """Return by how much to raise a moving ball that is shown at a height [m]."""
         slow, fast = _BRUSHING_SPEEDS
         share = min(max((self._speed - slow) / (fast - slow), 0.0), 1.0)
+        share *= min(self._age / _CLEARING_S, 1.0)
         least = _CLEARANCE * self._body_height * share
         if least == 0.0 or height >= 2.0 * least:
             return 0.0

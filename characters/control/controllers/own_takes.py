@@ -1,11 +1,12 @@
 """Takes of a character that walks by its own clips: what matching plays without recordings."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from characters.control.controllers.walk import TURN_SPEED, WalkController
-from characters.locomotion.gaits import MAX_ANGULAR_RAD
+from characters.locomotion.gaits import IDLE_SPEED, MAX_ANGULAR_RAD
 from characters.locomotion.steering import STANDSTILL, SteeringOutput
 from characters.model.character import Character
 from characters.motion.clip import Clip
@@ -19,7 +20,9 @@ TAKE_RATE_HZ = 60.0
 SPEEDS = (0.0, 0.6, 1.2, 1.8, 2.4, 3.3, 4.1, 5.0)
 """AvatAR's Speeds that are walked."""
 
-_HOLD_S = 1.2  # of one Speed and turn
+_HOLD_S = 0.8  # of one Speed and turn
+_RAMP_PER_S, _SHORTEST_RAMP_S = 5.0, 0.3  # change of Speed a second before, as a body can
+_SLOWEST = SteeringOutput(IDLE_SPEED, 0.0, 1.0)
 _TURNS = (0.0, 0.3, 1.0, 0.0, 0.6, -1.0, 0.0)  # as many as share no divisor with the changes
 
 Course = Sequence[tuple[SteeringOutput, float]]
@@ -31,11 +34,12 @@ def walking_take(character: Character, side: float = 1.0) -> Clip:
 
     The bends are mostly to the right, or to the left for a `side` of −1.
     """
-    course = []
+    course, before = [], 0.0
     for number, speed in enumerate(every_change(SPEEDS)):
         angular = side * _TURNS[number % len(_TURNS)] * MAX_ANGULAR_RAD
         going = SteeringOutput(speed, angular, 1.0) if speed > 0.0 else STANDSTILL
-        course.append((going, _HOLD_S))
+        course.append((going, _HOLD_S + _ramp(before, speed)))
+        before = speed
     return _take(character, "own walk", course)
 
 
@@ -68,12 +72,16 @@ def _take(character: Character, name: str, course: Course) -> Clip:
     controller = WalkController(character, 1.0, None)
     poses: list[Pose] = []
     places: list[RootDelta] = []
+    before = STANDSTILL
     for steering, seconds in course:
-        for _ in range(round(seconds * TAKE_RATE_HZ)):
+        for number in range(round(seconds * TAKE_RATE_HZ)):
             elapsed = 1.0 / TAKE_RATE_HZ if poses else 0.0
-            frame = controller.steer(steering, elapsed)
+            part = number / TAKE_RATE_HZ / _ramp(before.speed, steering.speed)
+            asked = _on_the_way(before, steering, part)
+            frame = controller.steer(asked, elapsed)
             poses.append(frame.pose)
             places.append(frame.place)
+        before = steering
     turns = np.stack([pose.rotations for pose in poses])
     shifts = np.stack([pose.translations for pose in poses])
     yaw = rotations.about("y", np.array([place.yaw for place in places]))
@@ -81,3 +89,32 @@ def _take(character: Character, name: str, course: Course) -> Clip:
     shifts[:, 0] = rotations.rotate(yaw, shifts[:, 0])
     shifts[:, 0] += np.array([(place.x, 0.0, place.z) for place in places])
     return Clip(name, TAKE_RATE_HZ, Pose(shifts, turns), loop=False, root_motion=True)
+
+
+def _ramp(before: float, after: float) -> float:
+    """Return how long a change of Speed takes [s]."""
+    return max(abs(after - before) / _RAMP_PER_S, _SHORTEST_RAMP_S)
+
+
+def _on_the_way(before: SteeringOutput, after: SteeringOutput, part: float) -> SteeringOutput:
+    """Return what is steered a part of the way from one course to another; slowest next to a stop.
+
+    It sets off in the direction and with the strides of the new course, and stops with the old.
+    """
+    if part >= 1.0 or before.speed == after.speed == 0.0:
+        return after
+    old = (
+        before
+        if before.speed > 0.0
+        else replace(_SLOWEST, angular=after.angular, stride=after.stride)
+    )
+    new = (
+        after
+        if after.speed > 0.0
+        else replace(_SLOWEST, angular=before.angular, stride=before.stride)
+    )
+    return SteeringOutput(
+        old.speed + part * (new.speed - old.speed),
+        old.angular + part * (new.angular - old.angular),
+        old.stride + part * (new.stride - old.stride),
+    )
