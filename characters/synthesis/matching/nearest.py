@@ -16,7 +16,7 @@ _Array32 = NDArray[np.float32]
 
 _BOX_ROWS = 32  # rows of a small box, at most
 _SMALL_PER_LARGE = 16  # a power of two
-_LARGE_AXES, _SMALL_AXES = 8, 12  # principal axes along which distances to boxes are measured
+_LARGE_AXES = 12  # principal axes along which distances to large boxes are measured
 _FIRST_BOXES = 12  # the nearest boxes are compared first: they bound the rest
 _FAR = 1e6  # of the rows that fill up a box
 
@@ -42,7 +42,7 @@ class NearestRow:
         self._per_large = min(_SMALL_PER_LARGE, len(boxes))
         shape = (-1, self._per_large, columns)
         low, high = low.reshape(shape), high.reshape(shape)
-        self._small = _Boxes(low[..., :_SMALL_AXES], high[..., :_SMALL_AXES])
+        self._small = _Boxes(low, high)
         self._large = _Boxes(low.min(1)[:, :_LARGE_AXES], high.max(1)[:, :_LARGE_AXES])
 
     def find(self, query: Array, bound: float = np.inf) -> tuple[int, float] | None:

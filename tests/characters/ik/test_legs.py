@@ -4,11 +4,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from characters import Character, Pose, Skeleton
+from characters.ik import two_bones
 from characters.ik.legs import find_legs
 from characters.locomotion.gaits import Gaits
 from characters.motion.blend import mix
 from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
+from characters.skeleton.scalar_quaternions import multiply, rotate, subtract
 
 NAMES = (
     "root", "hips",
@@ -124,3 +126,13 @@ def test_no_foot_dips_into_the_ground(human, speed):
         motion.at(phase).globals(human.skeleton)[joints, 1, 3] for phase in np.arange(40) / 40
     ]
     assert (np.array(heights) - rest).min() > -0.006  # [m] of a person 1.7 m tall
+
+
+def test_a_knee_that_is_stretched_too_far_bends_back_the_right_way():
+    hip, ankle, target = (0.0, 0.8, 0.0), (0.0, 0.0, 0.0), (0.0, 0.1, 0.0)
+    for knee in ((0.0, 0.4, 0.02), (0.0, 0.4, -0.02)):  # bent a little, and too straight
+        upper, lower = two_bones.reach(hip, knee, ankle, target)
+        x, y, z = rotate(upper, subtract(knee, hip))
+        assert z > 0.1  # the knee comes forward
+        sx, sy, sz = rotate(multiply(upper, lower), subtract(ankle, knee))
+        assert (x + sx, 0.8 + y + sy, z + sz) == pytest.approx(target, abs=1e-6)
