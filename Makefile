@@ -44,6 +44,8 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.retarget
 	$(BIN)/python -m tests.bench.loading
 	$(BIN)/python -m tests.bench.feet
+	$(BIN)/python -m tests.bench.matching
+	$(BIN)/python -m tests.bench.controllers
 	$(BIN)/python -m tests.bench.picture
 	$(BIN)/python -m tests.bench.looks
 	$(BIN)/python -m tests.bench.wire

@@ -1,6 +1,7 @@
 """A character that walks by motion matching, on a small database of the human's own loops."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from characters import (
     Clip,
     LocomotionIntent,
     Pose,
+    PosedCharacter,
     choose_controller,
     mirror_of,
 )
@@ -45,13 +47,14 @@ def animated(human, database, place=None):
         scale=1.0,
         place=place,
         layers=FOOT_LAYERS,
-        controller=lambda *which: MatchingController(*which, database),
+        controller=partial(MatchingController, database=database),
     )
 
 
 def scripted(human, database):
     """Return what is shown in `SCRIPT`, and the controller."""
-    animator, shown = animated(human, database), []
+    animator = animated(human, database)
+    shown: list[PosedCharacter] = []
     for frame in range(RATE * len(SCRIPT)):
         speed, yaw = SCRIPT[frame // RATE]
         x, z = (0.0, 0.0) if not shown else shown[-1].table_from_character[[0, 2], 3]
@@ -132,7 +135,7 @@ def test_transitions_do_not_jump(human, database):
 
 
 def test_it_comes_to_a_target_and_stands(human, database):
-    animator = Animator(human, controller=lambda *which: MatchingController(*which, database))
+    animator = Animator(human, controller=partial(MatchingController, database=database))
     for frame in range(5 * RATE):
         going = LocomotionIntent(2.0, np.array([0.1, 0.3]))
         posed = animator.update(CharacterCommand(frame / RATE, going))
