@@ -1,1 +1,1 @@
-"""Motion that is put together from recordings, a folder for each method."""
+"""Motion from recorded motion: graphs of the whole body and of its parts, motion matching."""

@@ -1,0 +1,27 @@
+"""A small library: four clips of the bundled human, which walks, turns, runs and stands."""
+
+import pytest
+
+from characters import Character, Clip, Pose
+from characters.synthesis.building import analyse
+from characters.synthesis.library import MotionLibrary
+from characters.synthesis.storage import StoredGraph
+
+
+@pytest.fixture(scope="session")
+def human() -> Character:
+    return Character.load("human")
+
+
+@pytest.fixture(scope="session")
+def library(human: Character) -> MotionLibrary:
+    clips = [human.clips[name] for name in ("Walk", "WalkLeftMedium", "Run")]
+    idle = human.clips["idle"]
+    poses = Pose(idle.poses.translations[:40], idle.poses.rotations[:40])
+    clips.append(Clip("stand", idle.rate, poses, loop=False, root_motion=True))
+    return MotionLibrary.of(clips, human.skeleton, human.anatomy)
+
+
+@pytest.fixture(scope="session")
+def stored(library: MotionLibrary) -> StoredGraph:
+    return analyse(library)
