@@ -1,0 +1,79 @@
+"""Directed weighted edges between numbered nodes, as arrays."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.skeleton.pose import Array
+
+Nodes = NDArray[np.intp]
+"""Numbers of nodes."""
+
+
+@dataclass(frozen=True)
+class Edges:
+    """The edges of a graph, sorted by their first nodes. What is not there costs ∞ (erratum 3)."""
+
+    count: int
+    """Number of nodes."""
+
+    sources: Nodes
+    """First node of each edge, ascending, (edges,)."""
+
+    targets: Nodes
+    """Second node of each edge, (edges,)."""
+
+    weights: Array
+    """Cost of each edge, not negative, (edges,)."""
+
+    @staticmethod
+    def of(count: int, sources: Nodes, targets: Nodes, weights: Array) -> "Edges":
+        """Return edges in order; of two between the same nodes, the cheaper."""
+        order = np.lexsort((weights, targets, sources))
+        sources, targets, weights = sources[order], targets[order], weights[order]
+        new = np.ones(len(sources), bool)
+        new[1:] = (np.diff(sources) != 0) | (np.diff(targets) != 0)
+        return Edges(count, sources[new], targets[new], weights[new])
+
+    def __len__(self) -> int:
+        return len(self.sources)
+
+    def within(self, nodes: NDArray[np.bool_]) -> "Edges":
+        """Return the edges between some of the nodes, (nodes,); the nodes keep their numbers."""
+        keep = nodes[self.sources] & nodes[self.targets]
+        return Edges(self.count, self.sources[keep], self.targets[keep], self.weights[keep])
+
+    @cached_property
+    def firsts(self) -> Nodes:
+        """Number of the first edge of each node, and the number of edges, (nodes + 1,)."""
+        return np.searchsorted(self.sources, np.arange(self.count + 1))
+
+    def leaving(self, node: int) -> slice:
+        """Return the edges that leave a node."""
+        return slice(int(self.firsts[node]), int(self.firsts[node + 1]))
+
+    @cached_property
+    def successors(self) -> list[list[int]]:
+        """The nodes that each node leads to."""
+        targets = self.targets.tolist()
+        firsts = self.firsts.tolist()
+        return [targets[a:b] for a, b in pairwise(firsts)]
+
+    @cached_property
+    def incoming(self) -> list[list[tuple[int, float]]]:
+        """The nodes that lead to each node, and what that costs."""
+        found: list[list[tuple[int, float]]] = [[] for _ in range(self.count)]
+        rows = zip(self.sources.tolist(), self.targets.tolist(), self.weights.tolist(), strict=True)
+        for source, target, weight in rows:
+            found[target].append((source, weight))
+        return found
+
+    @cached_property
+    def by_target(self) -> tuple[Nodes, Nodes, Nodes]:
+        """Edges in the order of their second nodes, those nodes, and the first edge of each."""
+        order = np.argsort(self.targets, kind="stable")
+        reached, firsts = np.unique(self.targets[order], return_index=True)
+        return order, reached, firsts

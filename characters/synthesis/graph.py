@@ -1,0 +1,167 @@
+"""Motion graphs: frames as nodes, continuations and jumps as edges.
+
+Source: Fernández-Baena 2015, chapters 2.3 and 3.3 (M1, M2.3); after Kovar, Gleicher and Pighin
+2002, and Lee et al. 2002.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.errors import CharacterError
+from characters.synthesis.candidates import Candidates
+from characters.synthesis.components import largest_component
+from characters.synthesis.distances.distance import FrameDistance
+from characters.synthesis.edges import Edges
+from characters.synthesis.library import MotionLibrary
+from characters.synthesis.search import CostToGo, cost_to_go
+
+EdgeRule = Literal["successor", "same"]
+
+
+@dataclass(frozen=True)
+class EdgeCosts:
+    """Which jumps there are, and what edges cost in a search."""
+
+    rule: EdgeRule = "successor"
+    """Whether frames i + 1 and j look alike at a jump from i to j, or, as the thesis prints it,
+    i and j; then a look-alike is seen twice (M1.2, [R])."""
+
+    natural_weight: float = 1.0
+    """Factor of the distance of consecutive frames; at 0 a search waits for the best jump."""
+
+    per_frame: float = 0.0
+    """Added to every edge: the price of time."""
+
+    jump: float = 0.0
+    """Added to every jump; distances are squared, so small jumps are cheap (M2.4)."""
+
+    root: bool = False
+    """Whether a jump costs the square root of its distance, which makes many small ones dear."""
+
+
+@dataclass(frozen=True)
+class MotionGraph:
+    """A pruned graph: from every kept frame, every other kept frame can be reached."""
+
+    library: MotionLibrary
+    """The frames."""
+
+    edges: Edges
+    """Continuations and jumps between kept frames."""
+
+    kept: NDArray[np.bool_]
+    """Which frames are in the largest strongly connected component, (frames,)."""
+
+    threshold: float
+    """Jumps have a smaller distance than this."""
+
+    barred_jumps: int
+    """Number of jumps that were left out because the feet stand otherwise on the other side."""
+
+    dropped_jumps: int
+    """Number of jumps that were left out because they lead nowhere, or from nowhere."""
+
+    _to_go: dict[bytes, CostToGo] = field(default_factory=dict, repr=False, compare=False)
+
+    @property
+    def connectivity(self) -> float:
+        """Share of the frames in the largest strongly connected component, 0…1 (M3)."""
+        return float(self.kept.mean())
+
+    @property
+    def jumps(self) -> int:
+        """Number of edges that are not continuations."""
+        natural = self.library.successors[self.edges.sources] == self.edges.targets
+        return int(len(natural) - natural.sum())
+
+    @property
+    def joined_clips(self) -> tuple[str, ...]:
+        """Names of the clips that have kept frames."""
+        numbers = np.unique(self.library.clip_of[self.kept])
+        return tuple(self.library.names[number] for number in numbers)
+
+    def to_go(self, goals: NDArray[np.bool_]) -> CostToGo:
+        """Return the shortest paths from all frames to goals (frames,); the result is kept."""
+        key = np.packbits(goals).tobytes()
+        if key not in self._to_go:
+            self._to_go[key] = cost_to_go(self.edges, goals & self.kept)
+        return self._to_go[key]
+
+    def path(self, start: int, goals: NDArray[np.bool_]) -> list[int]:
+        """Return the frames of the cheapest path from a kept frame to any of the goals (frames,).
+
+        Raises
+        ------
+        CharacterError
+            If the start is not in the graph, or no goal is.
+        """
+        if not self.kept[start]:
+            raise CharacterError(f"frame {start} is not in the graph; start from a kept frame")
+        if not (goals & self.kept).any():
+            raise CharacterError(
+                "what is asked for is not in the graph: its frames were pruned; "
+                "raise the threshold or add clips"
+            )
+        return self.to_go(goals).path(start)
+
+    def walk(self, start: int, rng: np.random.Generator, jump: float = 0.2) -> Iterator[int]:
+        """Yield the frames of an endless walk; at a frame with jumps it takes one so often."""
+        node = start
+        while True:
+            yield node
+            following = self.edges.successors[node]
+            natural = int(self.library.successors[node])
+            if natural in following and (len(following) == 1 or rng.random() >= jump):
+                node = natural
+            else:
+                others = [each for each in following if each != natural] or following
+                node = others[int(rng.integers(len(others)))]
+
+
+def build_graph(
+    library: MotionLibrary,
+    distance: FrameDistance,
+    candidates: Candidates,
+    threshold: float,
+    costs: EdgeCosts | None = None,
+) -> MotionGraph:
+    """Return the graph of all jumps nearer than a threshold, pruned.
+
+    What remains is the largest strongly connected component (M1.4). Consecutive frames are always
+    connected (erratum 3).
+
+    Raises
+    ------
+    CharacterError
+        If the threshold connects nothing.
+    """
+    costs = costs or EdgeCosts()
+    near = candidates.below(threshold)
+    sources = library.predecessors[near.rows] if costs.rule == "successor" else near.rows
+    usable = (sources >= 0) & (library.successors[sources] != near.columns)
+    sources, targets = sources[usable], near.columns[usable]
+    jumps = near.distances[usable]
+    jumps = (np.sqrt(jumps) if costs.root else jumps) + costs.jump
+    starts = np.flatnonzero(library.successors >= 0)
+    ends = library.successors[starts]
+    natural = costs.natural_weight * distance.pairs(starts, ends)
+    every = Edges.of(
+        len(library),
+        np.concatenate([starts, sources]),
+        np.concatenate([ends, targets]),
+        np.concatenate([natural, jumps]) + costs.per_frame,
+    )
+    kept = largest_component(every.successors)
+    edges = every.within(kept)
+    if not len(edges):
+        raise CharacterError(
+            f"a threshold of {threshold:g} connects nothing: only {len(near)} pairs of frames are "
+            "nearer; raise it"
+        )
+    inside = int((kept[sources] & kept[targets]).sum())
+    barred = candidates.barred_below(threshold)
+    return MotionGraph(library, edges, kept, threshold, barred, len(sources) - inside)

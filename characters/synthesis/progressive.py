@@ -1,0 +1,209 @@
+"""Planning a transition: the legs first, then every other part in windows around them.
+
+Source: Fernández-Baena 2015, chapter 3.3 (M2.4).
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.errors import CharacterError
+from characters.synthesis.graph import MotionGraph
+from characters.synthesis.parts import PartGraphs
+from characters.synthesis.search import HopCosts
+from characters.synthesis.transition import PartMove, Transition
+
+Goals = NDArray[np.bool_]
+"""Which frames meet a request, (frames,)."""
+
+
+@dataclass(frozen=True)
+class SearchSettings:
+    """How the parts other than the legs find their ways."""
+
+    search: Literal["bounded", "shortest"] = "bounded"
+    """"bounded": the cheapest path whose length fits; "shortest", as printed: the cheapest path,
+    rejected if its length does not fit, which fails often (M2.4)."""
+
+    window: int = 10
+    """Frames by which a part may leave and arrive after the legs (0.16 s of the thesis)."""
+
+    symmetric: bool = True
+    """Whether it may do so before them too; as printed, it may not."""
+
+    tolerance: float = 0.2
+    """Largest change of a path's time scale: 20 %."""
+
+    arrivals: int = 25
+    """Arrivals of the legs that are tried before the window is widened."""
+
+    wide_window: int = 20
+    """The widened window."""
+
+    horizon: int = 120
+    """Frames within which other arrivals of the legs are looked for."""
+
+
+class TransitionPlanner:
+    """Plans transitions of a body by its part graphs.
+
+    Where the parts find no way, it tries other arrivals of the legs, then a wider window, then the
+    graph of the whole body (M2.4, [M]).
+    """
+
+    def __init__(
+        self,
+        graphs: PartGraphs,
+        standard: MotionGraph | None = None,
+        settings: SearchSettings | None = None,
+    ) -> None:
+        self.graphs = graphs
+        self.standard = standard
+        self.settings = settings or SearchSettings()
+
+    def plan(self, request: int, goals: Goals) -> Transition:
+        """Return the transition from a frame to any of the goals (frames,).
+
+        Raises
+        ------
+        CharacterError
+            If the frame is not in all graphs, no goal is, or no way was found.
+        """
+        goals = goals & self.graphs.kept
+        if not self.graphs.kept[request]:
+            raise CharacterError(f"frame {request} is not in the graphs of all parts")
+        if not goals.any():
+            raise CharacterError(
+                "what is asked for is not in the graphs of all parts: its frames were pruned; "
+                "raise the threshold or add clips"
+            )
+        window = self.settings.window
+        first = self._complete(request, self._first(request, goals), window)
+        if first is not None:
+            return first
+        for prior in self._others(request, goals):
+            found = self._complete(request, prior, window)
+            if found is not None:
+                return replace(found, fallback="arrival")
+        wide = self._complete(request, self._first(request, goals), self.settings.wide_window)
+        if wide is not None:
+            return replace(wide, fallback="window")
+        if self.standard is not None and self.standard.kept[request]:
+            frames = self.standard.path(request, goals)
+            move = _move(self.standard, frames, self.standard.to_go(goals).costs[request])
+            rest = replace(move, cost=0.0)
+            others = (rest,) * (len(self.graphs.parts) - 1)
+            return Transition(request, (move, *others), "standard")
+        raise CharacterError(f"no transition from frame {request} keeps the parts together")
+
+    def _first(self, request: int, goals: Goals) -> PartMove:
+        """Return the cheapest way of the legs."""
+        legs = self.graphs.graphs[0]
+        to_go = legs.to_go(goals)
+        return _move(legs, to_go.path(request), to_go.costs[request])
+
+    def _others(self, request: int, goals: Goals) -> Iterator[PartMove]:
+        """Yield ways of the legs to other arrivals, the cheapest first."""
+        legs, horizon = self.graphs.graphs[0], self.settings.horizon
+        table = HopCosts.of(legs.edges, (request,), horizon)
+        arrivals = np.flatnonzero(goals)
+        costs = table.costs[:, arrivals].copy()
+        costs[0] = np.inf
+        for _ in range(self.settings.arrivals):
+            time, place = np.unravel_index(int(costs.argmin()), costs.shape)
+            if not np.isfinite(costs[time, place]):
+                return
+            frames = table.path(int(arrivals[place]), int(time)).tolist()
+            costs[:, place] = np.inf
+            if not goals[frames[1:-1]].any():
+                yield _move(legs, frames, float(table.costs[time, arrivals[place]]))
+
+    def _complete(self, request: int, prior: PartMove, window: int) -> Transition | None:
+        """Return the transition in which all other parts follow the legs, or None."""
+        find = self._bounded if self.settings.search == "bounded" else self._shortest
+        moves = [prior]
+        for graph in self.graphs.graphs[1:]:
+            move = find(graph, request, prior, window)
+            if move is None:
+                return None
+            moves.append(move)
+        return Transition(request, tuple(moves))
+
+    def _windows(
+        self, request: int, prior: PartMove, window: int
+    ) -> tuple[list[int], dict[int, int]]:
+        """Return where a part may leave, by time (−1 for nowhere), and when it may arrive where."""
+        library, back = self.graphs.library, window if self.settings.symmetric else 0
+        starts, frame = [], request
+        for time in range(prior.departure + window + 1):
+            starts.append(frame if time >= prior.departure - back else -1)
+            frame = int(library.successors[frame]) if frame >= 0 else -1
+        arrivals = {prior.arrival: int(prior.frames[-1])}
+        for time in range(prior.arrival + 1, prior.arrival + window + 1):
+            if (frame := int(library.successors[arrivals[time - 1]])) < 0:
+                break
+            arrivals[time] = frame
+        for time in range(prior.arrival - 1, max(prior.arrival - back, 1) - 1, -1):
+            if (frame := int(library.predecessors[arrivals[time + 1]])) < 0:
+                break
+            arrivals[time] = frame
+        return starts, arrivals
+
+    def _fits(self, length: int, departure: int, arrival: int) -> bool:
+        """Return whether a path can be scaled to its time: |l − l'| / l' ≤ 20 %."""
+        required = arrival - departure
+        return required > 0 and abs(length - required) <= self.settings.tolerance * required + 1e-9
+
+    def _bounded(
+        self, graph: MotionGraph, request: int, prior: PartMove, window: int
+    ) -> PartMove | None:
+        """Return the cheapest path whose length fits."""
+        starts, arrivals = self._windows(request, prior, window)
+        slack = int(self.settings.tolerance * max(arrivals))
+        table = HopCosts.of(graph.edges, tuple(starts), max(arrivals) + slack)
+        earliest = next(time for time, start in enumerate(starts) if start >= 0)
+        options = []
+        for arrival, frame in arrivals.items():
+            near = int(self.settings.tolerance * (arrival - earliest) + 1e-9)
+            for end in range(max(arrival - near, 1), arrival + near + 1):
+                options.append((float(table.costs[end, frame]), end, arrival, frame))
+        for cost, end, arrival, frame in sorted(options):
+            if not np.isfinite(cost):
+                break
+            frames = table.path(frame, end)
+            departure = end - (len(frames) - 1)
+            if len(frames) > 1 and self._fits(len(frames) - 1, departure, arrival):
+                return PartMove(departure, arrival, frames, cost)
+        return None
+
+    def _shortest(
+        self, graph: MotionGraph, request: int, prior: PartMove, window: int
+    ) -> PartMove | None:
+        """Return the cheapest of the cheapest paths between both windows whose lengths fit."""
+        starts, arrivals = self._windows(request, prior, window)
+        best: PartMove | None = None
+        for arrival, frame in arrivals.items():
+            goal = np.zeros(len(graph.library), bool)
+            goal[frame] = True
+            to_go = graph.to_go(goal)
+            for departure, start in enumerate(starts):
+                if start < 0 or to_go.following[start] < 0:
+                    continue
+                cost = to_go.costs[start]
+                if best is not None and cost >= best.cost:
+                    continue
+                frames = np.array(to_go.path(start))
+                if self._fits(len(frames) - 1, departure, arrival):
+                    best = PartMove(departure, arrival, frames, cost)
+        return best
+
+
+def _move(graph: MotionGraph, frames: list[int], cost: float) -> PartMove:
+    """Return a path from the request as a move: it leaves at the end of its natural prefix."""
+    following = graph.library.successors
+    jumps = (n for n, frame in enumerate(frames[:-1]) if following[frame] != frames[n + 1])
+    departure = next(jumps, len(frames) - 2)
+    return PartMove(departure, len(frames) - 1, np.array(frames[departure:]), cost)

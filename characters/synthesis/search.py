@@ -1,0 +1,102 @@
+"""Shortest paths: to any of several nodes, and with a bounded number of edges."""
+
+from dataclasses import dataclass
+from heapq import heappop, heappush
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.skeleton.pose import Array
+from characters.synthesis.edges import Edges, Nodes
+
+
+@dataclass(frozen=True)
+class CostToGo:
+    """The shortest paths from every node to the nearest of some goals."""
+
+    costs: list[float]
+    """Cost of the path from each node; 0 at a goal, ∞ where there is none."""
+
+    following: list[int]
+    """The next node on that path; −1 at a goal, and where there is no path."""
+
+    def path(self, start: int) -> list[int]:
+        """Return the nodes from a start to its goal, both included; [start] without a path."""
+        nodes = [start]
+        while (node := self.following[nodes[-1]]) >= 0:
+            nodes.append(node)
+        return nodes
+
+
+def cost_to_go(edges: Edges, goals: NDArray[np.bool_]) -> CostToGo:
+    """Return the shortest paths to goals (nodes,): Dijkstra 1959, from the goals backward (M1.5).
+
+    One search serves the requests from every frame, so a request in play is a walk along a list.
+    """
+    costs = [inf] * edges.count
+    following = [-1] * edges.count
+    heap = [(0.0, int(goal)) for goal in np.flatnonzero(goals)]
+    for _, goal in heap:
+        costs[goal] = 0.0
+    incoming = edges.incoming
+    while heap:
+        cost, node = heappop(heap)
+        if cost > costs[node]:
+            continue
+        for source, weight in incoming[node]:
+            total = cost + weight
+            if total < costs[source]:
+                costs[source] = total
+                following[source] = node
+                heappush(heap, (total, source))
+    return CostToGo(costs, following)
+
+
+@dataclass(frozen=True)
+class HopCosts:
+    """The least costs of reaching each node at each time, from starts at several times."""
+
+    edges: Edges
+    """The graph."""
+
+    starts: tuple[int, ...]
+    """Node at which a path may start, for each time from 0; −1 for none."""
+
+    costs: Array
+    """(times, nodes); ∞ where a node cannot be reached at that time."""
+
+    @staticmethod
+    def of(edges: Edges, starts: tuple[int, ...], hops: int) -> "HopCosts":
+        """Return the costs up to a time, counted in edges.
+
+        A dynamic programme over the number of edges: cost at time t + 1 is the least of the cost
+        at t of a node and an edge from there. A path that starts at time t costs 0 then.
+        """
+        order, reached, firsts = edges.by_target
+        sources, weights = edges.sources[order], edges.weights[order]
+        costs = np.full((hops + 1, edges.count), inf)
+        for time in range(hops + 1):
+            if time and len(order):
+                costs[time, reached] = np.minimum.reduceat(
+                    costs[time - 1, sources] + weights, firsts
+                )
+            if time < len(starts) and starts[time] >= 0:
+                costs[time, starts[time]] = 0.0
+        return HopCosts(edges, starts, costs)
+
+    def path(self, node: int, time: int) -> Nodes:
+        """Return the nodes of a cheapest path that ends at a node at a time.
+
+        It begins where it starts, so its length tells when it did.
+        """
+        order, reached, firsts = self.edges.by_target
+        nodes = [node]
+        while not (time < len(self.starts) and self.starts[time] == nodes[-1]):
+            place = int(np.searchsorted(reached, nodes[-1]))
+            stop = firsts[place + 1] if place + 1 < len(firsts) else len(order)
+            own = order[firsts[place] : stop]
+            totals = self.costs[time - 1, self.edges.sources[own]] + self.edges.weights[own]
+            nodes.append(int(self.edges.sources[own[np.argmin(totals)]]))
+            time -= 1
+        return np.array(nodes[::-1])
