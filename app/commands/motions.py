@@ -1,0 +1,203 @@
+"""`cubeling motions`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+from rich.table import Table
+
+from app.commands.output import OverwriteOption, chosen_output
+from app.errors import AppError
+from app.motion_graphs.recordings import clip_names, gather
+from characters import Character
+from characters.retargeting.root import with_root_joint
+from characters.synthesis.building import (
+    DEFAULT_PROFILE,
+    analyse,
+    check_choices,
+    part_graphs,
+    standard_graph,
+)
+from characters.synthesis.graph import MotionGraph
+from characters.synthesis.library import DEFAULT_RATE_HZ, MotionLibrary
+from characters.synthesis.parts import PartGraphs
+from characters.synthesis.storage import StoredGraph, load_graph, save_graph
+
+app = typer.Typer(
+    help="Motion graphs from your own recordings: where one clip can go over into another.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="rich",
+)
+
+PLOT_SUFFIXES = (".svg", ".pdf", ".png")
+"""Suffixes of the files that a plot can be written to."""
+
+
+@app.command()
+def build(
+    clips: Annotated[
+        list[str], typer.Argument(help="Motions: .bvh, .amc, FILE.glb#CLIP, or a character.")
+    ],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="The .graph file; default: my.graph.")
+    ] = None,
+    overwrite: OverwriteOption = False,
+    character: Annotated[
+        str, typer.Option(help="Whose skeleton the clips get: bundled, or a .glb file.")
+    ] = "human",
+    profile: Annotated[
+        str, typer.Option(help="Split profile: SMG, SP2, SP3a, SP3b, SP4a, SP4b or SP5.")
+    ] = DEFAULT_PROFILE,
+    distance: Annotated[
+        str, typer.Option(help="Distance of whole bodies: angles, lee, points or ahn-wohn.")
+    ] = "angles",
+    threshold: Annotated[
+        float | None,
+        typer.Option(help="How unlike joined frames may be; default: the least that joins all."),
+    ] = None,
+    skeleton: Annotated[
+        Path | None, typer.Option(help="The .asf of .amc files, if it is in another folder.")
+    ] = None,
+) -> None:
+    """Make a motion graph from recordings: where one clip can go over into another.
+
+    The clips are retargeted to one character, and all their frames are compared.
+
+    Example: [cyan]cubeling motions build walk.bvh run.bvh turn.amc -o my.graph[/]
+    """
+    if threshold is not None and not threshold > 0:
+        raise AppError(f"a threshold of {threshold:g} joins nothing: give a positive one")
+    target = chosen_output(output, "my.graph", "motion graph", (".graph",), overwrite)
+    check_choices(profile, distance)
+    body = with_root_joint(Character.load(character))
+    names = clip_names(clips)
+    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn()
+    console = Console()
+    with Progress(*columns, console=console, transient=True) as bar:
+        reading = bar.add_task("reading", total=len(names))
+
+        def read(name: str) -> None:
+            bar.update(reading, advance=1, description=f"reading {escape(Path(name).name)}")
+
+        found = gather(names, body, skeleton, read)
+        library = MotionLibrary.of(found, body.skeleton, body.anatomy, DEFAULT_RATE_HZ)
+        comparing = bar.add_task("comparing", total=None)
+        stored = analyse(
+            library,
+            profile,
+            distance,
+            threshold,
+            lambda part: bar.update(comparing, description=f"comparing {part}"),
+        )
+        describe(console, stored)
+    save_graph(stored, target)
+    name = escape(str(target))
+    console.print(
+        f"[bold]{name}[/] is written: [cyan]cubeling play follow --controller graph "
+        f"--motions {name}[/]",
+        soft_wrap=True,
+    )
+
+
+@app.command()
+def show(
+    graph: Annotated[Path, typer.Argument(help="A file of cubeling motions build.")],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Plot to this .svg, .pdf or .png file.")
+    ] = None,
+    overwrite: OverwriteOption = False,
+) -> None:
+    """Show a motion graph: its clips, its jumps, and what was pruned.
+
+    The plot shows the distances of all frames with the jumps, and how the share of connected frames
+    grows with the threshold. It needs matplotlib: [cyan]pip install matplotlib[/]
+
+    Example: [cyan]cubeling motions show my.graph -o my.png[/]
+    """
+    if output is not None:
+        chosen_output(output, "", "plot", PLOT_SUFFIXES, overwrite)
+    stored = load_graph(graph)
+    console = Console()
+    describe(console, stored)
+    if output is None:
+        return
+    try:
+        from app.motion_graphs.plot import save_plot
+    except ImportError as error:
+        if (error.name or "").split(".")[0] != "matplotlib":
+            raise
+        raise AppError("a plot needs matplotlib: pip install matplotlib") from error
+    save_plot(output, stored, graph.name)
+    console.print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
+
+
+def describe(console: Console, stored: StoredGraph) -> None:
+    """Print what a motion graph holds, and what was pruned."""
+    library = stored.library
+    whole, parts = standard_graph(stored), part_graphs(stored)
+    console.print(
+        f"{len(library.names)} clips, {len(library):,} frames at {library.rate:g} Hz "
+        f"({len(library) / library.rate:.1f} s), compared by {stored.distance}",
+        highlight=False,
+    )
+    console.print(_clips(library, whole))
+    console.print(_graphs(whole, parts))
+    console.print(
+        f"All parts of {stored.profile} together keep {parts.connectivity:.0%} of the frames.",
+        highlight=False,
+    )
+    for graph, what in ((whole, "graph"), (parts, "part graphs")):
+        missing = [name for name in library.names if name not in graph.joined_clips]
+        if missing:
+            console.print(
+                f"[yellow]![/] Not in the {what}: {escape(', '.join(missing))}. Record the way "
+                "there and back, or raise the threshold.",
+                highlight=False,
+            )
+
+
+def _clips(library: MotionLibrary, graph: MotionGraph) -> Table:
+    """Return a table of the clips, and of the jumps from and to each."""
+    rows = Table(title="Clips", title_justify="left", title_style="bold", box=SIMPLE_HEAD)
+    for heading in ("clip", "frames", "repeats", "kept", "jumps from", "jumps to"):
+        rows.add_column(heading, justify="left" if heading in ("clip", "repeats") else "right")
+    jumps = library.successors[graph.edges.sources] != graph.edges.targets
+    leaving = library.clip_of[graph.edges.sources[jumps]]
+    entering = library.clip_of[graph.edges.targets[jumps]]
+    for number, name in enumerate(library.names):
+        own = library.clip(name)
+        rows.add_row(
+            escape(name),
+            f"{len(own)}",
+            "loop" if library.loops[number] else "once",
+            f"{graph.kept[own].mean():.0%}",
+            f"{(leaving == number).sum()}",
+            f"{(entering == number).sum()}",
+        )
+    return rows
+
+
+def _graphs(whole: MotionGraph, parts: PartGraphs) -> Table:
+    """Return a table of the graph of the whole body and of those of its parts."""
+    rows = Table(title="Graphs", title_justify="left", title_style="bold", box=SIMPLE_HEAD)
+    headings = ("of", "threshold", "clips", "frames kept", "jumps", "other phase", "lead nowhere")
+    for heading in headings:
+        rows.add_column(heading, justify="left" if heading == "of" else "right")
+    named = [("whole body", whole)]
+    named += [(part.name, graph) for part, graph in zip(parts.parts, parts.graphs, strict=True)]
+    for name, graph in named:
+        rows.add_row(
+            name,
+            f"{graph.threshold:.4f}",
+            f"{len(graph.joined_clips)}",
+            f"{graph.connectivity:.0%}",
+            f"{graph.jumps}",
+            f"{graph.barred_jumps}",
+            f"{graph.dropped_jumps}",
+        )
+    return rows

@@ -1,0 +1,1 @@
+"""Motion graphs from a person's own recordings: building them, and showing them."""
