@@ -55,6 +55,11 @@ class Edges:
         """Return the edges that leave a node."""
         return slice(int(self.firsts[node]), int(self.firsts[node + 1]))
 
+    def weight(self, source: int, target: int) -> float:
+        """Return the cost of the edge between two nodes; there is one."""
+        own = self.leaving(source)
+        return float(self.weights[own][np.searchsorted(self.targets[own], target)])
+
     @cached_property
     def successors(self) -> list[list[int]]:
         """The nodes that each node leads to."""

@@ -91,22 +91,45 @@ class MotionGraph:
             self._to_go[key] = cost_to_go(self.edges, goals & self.kept)
         return self._to_go[key]
 
+    def next(self, node: int, goals: NDArray[np.bool_]) -> int:
+        """Return the frame after a kept frame on the cheapest path to any of the goals (frames,).
+
+        A frame that is a goal itself is left on the cheapest way to a goal.
+
+        Raises
+        ------
+        CharacterError
+            If the frame is not in the graph, or no goal is.
+        """
+        if not self.kept[node]:
+            raise CharacterError(f"frame {node} is not in the graph; start from a kept frame")
+        to_go = self.to_go(goals)
+        if to_go.following[node] >= 0:
+            return to_go.following[node]
+        own = self.edges.leaving(node)
+        totals = [
+            weight + to_go.costs[target]
+            for target, weight in zip(
+                self.edges.targets[own].tolist(), self.edges.weights[own].tolist(), strict=True
+            )
+        ]
+        best = int(np.argmin(totals))
+        if not np.isfinite(totals[best]):
+            raise CharacterError(
+                "what is asked for is not in the graph: its frames were pruned; "
+                "raise the threshold or add clips"
+            )
+        return int(self.edges.targets[own][best])
+
     def path(self, start: int, goals: NDArray[np.bool_]) -> list[int]:
-        """Return the frames of the cheapest path from a kept frame to any of the goals (frames,).
+        """Return the frames of the cheapest path to any of the goals (frames,), at least two.
 
         Raises
         ------
         CharacterError
             If the start is not in the graph, or no goal is.
         """
-        if not self.kept[start]:
-            raise CharacterError(f"frame {start} is not in the graph; start from a kept frame")
-        if not (goals & self.kept).any():
-            raise CharacterError(
-                "what is asked for is not in the graph: its frames were pruned; "
-                "raise the threshold or add clips"
-            )
-        return self.to_go(goals).path(start)
+        return [start, *self.to_go(goals).path(self.next(start, goals))]
 
     def walk(self, start: int, rng: np.random.Generator, jump: float = 0.2) -> Iterator[int]:
         """Yield the frames of an endless walk; at a frame with jumps it takes one so often."""

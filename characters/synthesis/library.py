@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from characters.errors import CharacterError
 from characters.motion.clip import Clip
 from characters.motion.contacts import find_contacts
+from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.feet import find_feet
@@ -149,11 +150,34 @@ class MotionLibrary:
         number = self.names.index(name)
         return np.arange(self.starts[number], self.starts[number + 1])
 
+    def as_clip(self, name: str) -> Clip:
+        """Return a clip of the library, with root motion; a loop ends with its first frame."""
+        frames = self.clip(name)
+        loop = bool(self.loops[self.names.index(name)])
+        places = [RootDelta()]
+        for step in self.steps[frames].tolist():
+            places.append(places[-1].then(RootDelta(*step)))
+        shown = np.append(frames, frames[0]) if loop else frames
+        return placed_clip(name, self.rate, self.poses[shown], places[: len(shown)], loop)
+
     def onward(self, frames: Frames, count: int) -> Frames:
         """Return the frames a number of frames on in their clips; at an end, the last frame."""
         for _ in range(count):
             frames = np.where(self.successors[frames] < 0, frames, self.successors[frames])
         return frames
+
+
+def placed_clip(
+    name: str, rate: float, poses: Pose, places: Sequence[RootDelta], loop: bool = False
+) -> Clip:
+    """Return poses with the root at the origin, put at places on the ground, as a clip."""
+    translations, turns = poses.translations.copy(), poses.rotations.copy()
+    track = np.array([(place.x, place.z, place.yaw) for place in places])
+    yaw = rotations.about("y", track[:, 2])
+    translations[:, 0] = rotations.rotate(yaw, translations[:, 0])
+    translations[:, 0, [0, 2]] += track[:, :2]
+    turns[:, 0] = rotations.multiply(yaw, turns[:, 0])
+    return Clip(name, rate, Pose(translations, turns), loop, root_motion=True)
 
 
 def _with_root_motion(clip: Clip, anatomy: Anatomy | None) -> Clip:

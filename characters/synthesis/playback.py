@@ -15,7 +15,7 @@ from characters.motion.curves import ease
 from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
-from characters.synthesis.library import MotionLibrary
+from characters.synthesis.library import MotionLibrary, placed_clip
 
 BLEND_S = 0.25
 """Length of the blend after a jump [s] (M1.3, [GAP])."""
@@ -101,16 +101,8 @@ def path_clip(
     for frame in frames[1:]:
         places.append(places[-1].then(player.advance(frame)))
         poses.append(player.pose())
-    return placed_clip(name, library.rate, poses, places)
-
-
-def placed_clip(name: str, rate: float, poses: Sequence[Pose], places: Sequence[RootDelta]) -> Clip:
-    """Return poses with the root at the origin, put at places on the ground, as a clip."""
-    translations = np.array([pose.translations for pose in poses])
-    turns = np.array([pose.rotations for pose in poses])
-    track = np.array([(place.x, place.z, place.yaw) for place in places])
-    yaw = rotations.about("y", track[:, 2])
-    translations[:, 0] = rotations.rotate(yaw, translations[:, 0])
-    translations[:, 0, [0, 2]] += track[:, :2]
-    turns[:, 0] = rotations.multiply(yaw, turns[:, 0])
-    return Clip(name, rate, Pose(translations, turns), loop=False, root_motion=True)
+    together = Pose(
+        np.array([pose.translations for pose in poses]),
+        np.array([pose.rotations for pose in poses]),
+    )
+    return placed_clip(name, library.rate, together, places)

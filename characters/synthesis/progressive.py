@@ -5,6 +5,7 @@ Source: Fernández-Baena 2015, chapter 3.3 (M2.4).
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -51,7 +52,7 @@ class TransitionPlanner:
     """Plans transitions of a body by its part graphs.
 
     Where the parts find no way, it tries other arrivals of the legs, then a wider window, then the
-    graph of the whole body (M2.4, [M]).
+    graph of the whole body (M2.4, [M]). Where that has no way either, all parts follow the legs.
     """
 
     def __init__(
@@ -70,7 +71,7 @@ class TransitionPlanner:
         Raises
         ------
         CharacterError
-            If the frame is not in all graphs, no goal is, or no way was found.
+            If the frame is not in all graphs, or no goal is.
         """
         goals = goals & self.graphs.kept
         if not self.graphs.kept[request]:
@@ -91,19 +92,18 @@ class TransitionPlanner:
         wide = self._complete(request, self._first(request, goals), self.settings.wide_window)
         if wide is not None:
             return replace(wide, fallback="window")
-        if self.standard is not None and self.standard.kept[request]:
-            frames = self.standard.path(request, goals)
-            move = _move(self.standard, frames, self.standard.to_go(goals).costs[request])
-            rest = replace(move, cost=0.0)
-            others = (rest,) * (len(self.graphs.parts) - 1)
-            return Transition(request, (move, *others), "standard")
-        raise CharacterError(f"no transition from frame {request} keeps the parts together")
+        whole, fallback = self.graphs.graphs[0], "legs"
+        standard = self.standard
+        if standard is not None and standard.kept[request] and (goals & standard.kept).any():
+            whole, fallback = standard, "standard"
+        move = _move(whole, whole.path(request, goals))
+        others = (replace(move, cost=0.0),) * (len(self.graphs.parts) - 1)
+        return Transition(request, (move, *others), fallback)
 
     def _first(self, request: int, goals: Goals) -> PartMove:
         """Return the cheapest way of the legs."""
         legs = self.graphs.graphs[0]
-        to_go = legs.to_go(goals)
-        return _move(legs, to_go.path(request), to_go.costs[request])
+        return _move(legs, legs.path(request, goals))
 
     def _others(self, request: int, goals: Goals) -> Iterator[PartMove]:
         """Yield ways of the legs to other arrivals, the cheapest first."""
@@ -119,7 +119,7 @@ class TransitionPlanner:
             frames = table.path(int(arrivals[place]), int(time)).tolist()
             costs[:, place] = np.inf
             if not goals[frames[1:-1]].any():
-                yield _move(legs, frames, float(table.costs[time, arrivals[place]]))
+                yield _move(legs, frames)
 
     def _complete(self, request: int, prior: PartMove, window: int) -> Transition | None:
         """Return the transition in which all other parts follow the legs, or None."""
@@ -142,14 +142,15 @@ class TransitionPlanner:
             starts.append(frame if time >= prior.departure - back else -1)
             frame = int(library.successors[frame]) if frame >= 0 else -1
         arrivals = {prior.arrival: int(prior.frames[-1])}
-        for time in range(prior.arrival + 1, prior.arrival + window + 1):
-            if (frame := int(library.successors[arrivals[time - 1]])) < 0:
-                break
-            arrivals[time] = frame
-        for time in range(prior.arrival - 1, max(prior.arrival - back, 1) - 1, -1):
-            if (frame := int(library.predecessors[arrivals[time + 1]])) < 0:
-                break
-            arrivals[time] = frame
+        ahead = range(prior.arrival + 1, prior.arrival + window + 1)
+        behind = range(prior.arrival - 1, max(prior.arrival - back, 1) - 1, -1)
+        for times, neighbours in ((ahead, library.successors), (behind, library.predecessors)):
+            frame = int(prior.frames[-1])
+            for time in times:
+                frame = int(neighbours[frame])
+                if frame < 0 or not self.graphs.kept[frame]:
+                    break
+                arrivals[time] = frame
         return starts, arrivals
 
     def _fits(self, length: int, departure: int, arrival: int) -> bool:
@@ -162,18 +163,22 @@ class TransitionPlanner:
     ) -> PartMove | None:
         """Return the cheapest path whose length fits."""
         starts, arrivals = self._windows(request, prior, window)
-        slack = int(self.settings.tolerance * max(arrivals))
-        table = HopCosts.of(graph.edges, tuple(starts), max(arrivals) + slack)
-        earliest = next(time for time, start in enumerate(starts) if start >= 0)
-        options = []
-        for arrival, frame in arrivals.items():
-            near = int(self.settings.tolerance * (arrival - earliest) + 1e-9)
-            for end in range(max(arrival - near, 1), arrival + near + 1):
-                options.append((float(table.costs[end, frame]), end, arrival, frame))
+        first = next((time for time, start in enumerate(starts) if start >= 0), None)
+        if first is None:  # the clip ends before
+            return None
+        spans = {
+            arrival: int(self.settings.tolerance * (arrival - first) + 1e-9) for arrival in arrivals
+        }
+        hops = max(arrival + near for arrival, near in spans.items()) - first
+        table = HopCosts.of(graph.edges, tuple(starts[first:]), hops)
+        options = [
+            (float(cost), end, arrival, frame)
+            for arrival, frame in arrivals.items()
+            for end in range(max(arrival - spans[arrival], first + 1), arrival + spans[arrival] + 1)
+            if np.isfinite(cost := table.costs[end - first, frame])
+        ]
         for cost, end, arrival, frame in sorted(options):
-            if not np.isfinite(cost):
-                break
-            frames = table.path(frame, end)
+            frames = table.path(frame, end - first)
             departure = end - (len(frames) - 1)
             if len(frames) > 1 and self._fits(len(frames) - 1, departure, arrival):
                 return PartMove(departure, arrival, frames, cost)
@@ -201,9 +206,10 @@ class TransitionPlanner:
         return best
 
 
-def _move(graph: MotionGraph, frames: list[int], cost: float) -> PartMove:
+def _move(graph: MotionGraph, frames: list[int]) -> PartMove:
     """Return a path from the request as a move: it leaves at the end of its natural prefix."""
     following = graph.library.successors
     jumps = (n for n, frame in enumerate(frames[:-1]) if following[frame] != frames[n + 1])
     departure = next(jumps, len(frames) - 2)
+    cost = sum(graph.edges.weight(a, b) for a, b in pairwise(frames))
     return PartMove(departure, len(frames) - 1, np.array(frames[departure:]), cost)

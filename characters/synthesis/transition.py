@@ -55,7 +55,7 @@ class Transition:
     """The move of each part, the prior one first."""
 
     fallback: str = ""
-    """How far the search had to go: "" not, "arrival", "window", "standard"."""
+    """How far the search went: "", "arrival", "window", "standard" or "legs"."""
 
     @property
     def duration(self) -> int:

@@ -1,0 +1,251 @@
+"""A character that walks and runs by a motion graph: of its whole body, or of its parts."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from characters.control.command import CharacterCommand
+from characters.control.controllers.controller import ControllerFrame
+from characters.control.controllers.walk import NOT_ACTIONS, WalkController
+from characters.errors import CharacterError
+from characters.locomotion.steering import ARRIVAL_DISTANCE_M, STANDSTILL, SteeringOutput
+from characters.model.character import Character
+from characters.motion.motion import RootDelta
+from characters.motion.state_machine import StateMachine
+from characters.retargeting.retarget import retarget
+from characters.smoothing import low_pass
+from characters.synthesis.behaviours import STANDING_M_S, Behaviours
+from characters.synthesis.building import analyse, part_graphs, standard_graph
+from characters.synthesis.graph import EdgeCosts, MotionGraph
+from characters.synthesis.library import MotionLibrary
+from characters.synthesis.live import FrameSource, LiveMotion, PartsSource, StandardSource
+from characters.synthesis.progressive import TransitionPlanner
+from characters.synthesis.search import CostToGo
+from characters.synthesis.storage import StoredGraph, load_graph, skeleton_identity
+
+YAW_RATE_PER_ANGULAR = -1.5
+"""Yaw rate [rad/s] for each radian of Angular, as the clips of the bundled characters turn."""
+
+TEMPO_LIMITS = (0.8, 1.2)
+"""By how much a clip may be slowed down or sped up to the speed that is asked for."""
+
+MAX_BEND_RAD_S = 0.5
+"""By how much the root may turn besides what the clip turns, towards the target [rad/s]."""
+
+BEND_LAG_S = 0.2
+"""Time constant of that turn [s]."""
+
+
+class GraphController(WalkController):
+    """Plays a character by a motion graph; a `CharacterController`.
+
+    Where to go and how fast is steered as for the movement tree. The frames that come nearest to
+    the speed and yaw rate asked for are the goals of the graph; what is left over is made up by
+    tempo and by a slight bend of the way. Actions are clips of the character, as elsewhere.
+    """
+
+    def __init__(
+        self,
+        character: Character,
+        scale: float,
+        place: RootDelta | None,
+        behaviours: Behaviours,
+        source: FrameSource,
+        to_stand: CostToGo,
+    ) -> None:
+        super().__init__(character, scale, place)
+        self._behaviours = behaviours
+        self._behaviour = behaviours.nearest(0.0, 0.0)
+        self._live = LiveMotion(source, behaviours.goals(self._behaviour))
+        self._machine = StateMachine({"move": self._live, **self._actions}, "move")
+        self._bend = 0.0
+        self._to_stand = to_stand
+        self._strides_m = np.hypot(*source.library.steps[:, :2].T)
+        self._braking = False
+
+    def steer(
+        self, course: SteeringOutput, elapsed: float, action: str = "idle", weight: float = 0.0
+    ) -> ControllerFrame:
+        """Advance by a time [s] on a course and return what is played; see `WalkController`."""
+        state = action if course.speed == 0.0 and action in self._actions else "move"
+        frame = super().steer(course, elapsed, state, weight)
+        turned = RootDelta(yaw=self._bend * elapsed)
+        self.place = self.place.then(turned)
+        return replace(frame, place=self.place)
+
+    def _course(self, command: CharacterCommand) -> SteeringOutput:
+        """Return where to go; it begins to stop where its way to a standing frame ends in time."""
+        course, going = super()._course(command), command.locomotion
+        source = self._live.source
+        if self._stands():
+            self._braking = False
+        elif course.speed > 0.0 and going is not None and going.target is not None and going.stop:
+            x, z = (float(value) for value in going.target)
+            left = math.hypot(x - self.place.x, z - self.place.z)
+            way = float(self._strides_m[self._to_stand.path(source.frame)].sum()) * self._scale
+            ahead = abs(self.place.bearing(x, z)) < math.pi / 2
+            self._braking = self._braking or (ahead and left < way + ARRIVAL_DISTANCE_M / 2)
+        return STANDSTILL if self._braking else course
+
+    def _stands(self) -> bool:
+        """Return whether it stands, and is to stand."""
+        stands = self._behaviours.means[self._behaviour, 0] < STANDING_M_S
+        return bool(stands and self._live.goals[self._live.source.frame])
+
+    def _play(self, steered: SteeringOutput, state: str, weight: float, now: float) -> None:
+        if state in self._actions:
+            self._perform(self._actions[state], weight, now, self._machine.state == state)
+        else:
+            self._request(steered, now)
+        self._machine.request(state, now, begin=self._live.restart if state == "move" else None)
+
+    def _request(self, steered: SteeringOutput, now: float) -> None:
+        """Choose the goals, the tempo and the bend for what is asked for."""
+        speed = self.gaits.pace(steered.speed) * steered.stride if steered.speed > 0.0 else 0.0
+        yaw_rate = YAW_RATE_PER_ANGULAR * steered.angular if speed else 0.0
+        self._behaviour = self._behaviours.nearest(speed, yaw_rate, self._behaviour)
+        self._live.goals = self._behaviours.goals(self._behaviour)
+        own_speed, own_yaw_rate = self._behaviours.means[self._behaviour].tolist()
+        moving = min(speed, own_speed) > STANDING_M_S
+        low, high = TEMPO_LIMITS
+        tempo = min(max(speed / own_speed, low), high) if moving else 1.0
+        if self._machine.state == "move":
+            self._live.set_tempo(tempo, now - self._machine.entered)
+        missing = yaw_rate - own_yaw_rate * tempo if moving else 0.0
+        asked = min(max(missing, -MAX_BEND_RAD_S), MAX_BEND_RAD_S)
+        self._bend = low_pass(self._bend, asked, 1 / 60, BEND_LAG_S)
+
+    def _frame(self, steered: SteeringOutput, going: bool) -> ControllerFrame:
+        """Return what is played now; it stands when its clip does."""
+        frame = super()._frame(steered, going)
+        return replace(frame, standing=frame.state == "idle" and self._stands())
+
+    def _feet_down(self) -> list[bool] | None:
+        """Return which feet the motion has on the ground."""
+        if self._machine.state in self._actions:
+            return super()._feet_down()
+        source = self._live.source
+        return source.library.contacts[source.frame].tolist() if self._feet else None
+
+
+class GraphFactory:
+    """Makes graph controllers: of a file, or of a character's own clips.
+
+    What was prepared for a character serves the next controller of the same character.
+
+    Parameters
+    ----------
+    kind
+        "graph" for the graph of the whole body, "parts" for the graphs of its parts.
+    motions
+        A file of `cubeling motions build`; None for the walking and running clips of the character.
+    """
+
+    def __init__(self, kind: str, motions: Path | None = None) -> None:
+        self._source = SOURCES[kind]
+        self._given = None if motions is None else load_graph(motions)
+        self._prepared: tuple[Character, StoredGraph] | None = None
+
+    def __call__(
+        self, character: Character, scale: float, place: RootDelta | None
+    ) -> GraphController:
+        """Return a controller of a character.
+
+        Raises
+        ------
+        CharacterError
+            If the character does not walk, or the motions do not fit it.
+        """
+        if not WalkController.suits(character):
+            raise CharacterError(
+                f"{character.name}: a motion graph needs a character that walks; "
+                "leave out --controller"
+            )
+        if self._prepared is None or self._prepared[0] is not character:
+            self._prepared = character, self._stored(character)
+        return GraphController(character, scale, place, *self._source(self._prepared[1]))
+
+    def _stored(self, character: Character) -> StoredGraph:
+        if self._given is None:
+            own = [clip for name, clip in character.clips.items() if name in OWN_CLIPS]
+            return analyse(MotionLibrary.of(own, character.skeleton, character.anatomy))
+        return fitted(self._given, character)
+
+
+OWN_CLIPS = ("idle", *NOT_ACTIONS)
+"""The clips of a character that its own graph is made of."""
+
+
+def fitted(stored: StoredGraph, character: Character) -> StoredGraph:
+    """Return a graph on the skeleton of a character; its clips are retargeted if they must be.
+
+    Raises
+    ------
+    CharacterError
+        If the bodies differ too much.
+    """
+    library = stored.library
+    if skeleton_identity(library.skeleton) == skeleton_identity(character.skeleton):
+        return stored
+    clips = [
+        retarget(
+            library.as_clip(name),
+            library.skeleton,
+            library.anatomy,
+            character.skeleton,
+            character.anatomy,
+        )
+        for name in library.names
+    ]
+    moved = MotionLibrary.of(clips, character.skeleton, character.anatomy, library.rate)
+    if not np.array_equal(moved.starts, library.starts):
+        raise CharacterError(f"{character.name}: its clips have other frames than the graph")
+    return replace(stored, library=moved)
+
+
+LIVE_COSTS = EdgeCosts(per_frame=0.01)
+"""What edges cost in play: to wait for a tenth of a second is as dear as a good jump."""
+
+
+def _standard(stored: StoredGraph) -> tuple[Behaviours, FrameSource, CostToGo]:
+    graph = standard_graph(stored, LIVE_COSTS)
+    behaviours = Behaviours.of(stored.library, graph.kept)
+    to_stand = _prepare(graph, behaviours)
+    return behaviours, StandardSource(graph, _standing_frame(behaviours)), to_stand
+
+
+def _parts(stored: StoredGraph) -> tuple[Behaviours, FrameSource, CostToGo]:
+    graphs = part_graphs(stored, LIVE_COSTS)
+    if not graphs.kept.any():
+        raise CharacterError(
+            "the graphs of the parts have no frame in common; raise the threshold or add clips"
+        )
+    behaviours = Behaviours.of(stored.library, graphs.kept)
+    planner = TransitionPlanner(graphs, standard_graph(stored, LIVE_COSTS))
+    to_stand = _prepare(graphs.graphs[0], behaviours)
+    return behaviours, PartsSource(planner, _standing_frame(behaviours)), to_stand
+
+
+def _prepare(graph: MotionGraph, behaviours: Behaviours) -> CostToGo:
+    """Find the shortest paths to every behaviour, so that no frame of play has to.
+
+    Returns those to standing.
+    """
+    for number in range(len(behaviours.means)):
+        graph.to_go(behaviours.goals(number))
+    return graph.to_go(behaviours.goals(behaviours.nearest(0.0, 0.0)))
+
+
+def _standing_frame(behaviours: Behaviours) -> int:
+    """Return a frame of the behaviour that is nearest to standing."""
+    return int(np.argmax(behaviours.goals(behaviours.nearest(0.0, 0.0))))
+
+
+SOURCES: dict[str, Callable[[StoredGraph], tuple[Behaviours, FrameSource, CostToGo]]] = {
+    "graph": _standard,
+    "parts": _parts,
+}
+"""What plays a stored graph, by the name of the controller."""

@@ -1,0 +1,198 @@
+"""Graphs that play on and on while what is asked of them changes."""
+
+import math
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.motion.blend import mix
+from characters.motion.inertialization import Inertialization, OffsetDecay
+from characters.motion.motion import RootDelta
+from characters.skeleton import rotations
+from characters.skeleton.pose import Array, Pose
+from characters.synthesis.graph import MotionGraph
+from characters.synthesis.library import MotionLibrary
+from characters.synthesis.playback import GraphPlayer
+from characters.synthesis.progressive import TransitionPlanner
+from characters.synthesis.stitching import StitchedMotion, stitch
+
+Goals = NDArray[np.bool_]
+"""Which frames meet a request, (frames,)."""
+
+OFFSET_S = 0.2
+"""Time over which what was shown goes over into a planned transition [s]."""
+
+_SAMPLED_FRAMES = 32  # played frames that can still be sampled
+
+
+class FrameSource(Protocol):
+    """Plays a graph, one frame at a time."""
+
+    library: MotionLibrary
+    """The frames."""
+
+    frame: int
+    """The frame that is played; with parts, that of the legs."""
+
+    pose: Pose
+    """The pose now, with the root at the origin."""
+
+    def advance(self, goals: Goals) -> RootDelta:
+        """Go on towards the goals, and return how the root moves on the way."""
+        ...
+
+
+class StandardSource:
+    """Plays the graph of the whole body; a `FrameSource`."""
+
+    def __init__(self, graph: MotionGraph, start: int) -> None:
+        self.library = graph.library
+        self._graph = graph
+        self._player = GraphPlayer(graph.library, start)
+        self.frame = start
+        self.pose = self._player.pose()
+
+    def advance(self, goals: Goals) -> RootDelta:
+        """Go on towards the goals, and return how the root moves on the way."""
+        onward = natural(self.library, self.frame, goals & self._graph.kept)
+        self.frame = self._graph.next(self.frame, goals) if onward is None else onward
+        step = self._player.advance(self.frame)
+        self.pose = self._player.pose()
+        return step
+
+
+class PartsSource:
+    """Plays the graphs of the parts; a `FrameSource`.
+
+    A transition is planned as a whole and played until all parts have arrived. What was shown goes
+    over into it by a decaying offset, so it may begin in the very frame of the request.
+    """
+
+    def __init__(self, planner: TransitionPlanner, start: int) -> None:
+        self.library = planner.graphs.library
+        self._planner = planner
+        self._planned: StitchedMotion | None = None
+        self._time = 0  # in the planned transition
+        self._begun = 0  # its time at the request
+        self._offset: Inertialization | None = None
+        self._drift = OffsetDecay(np.zeros(3), np.zeros(3), OFFSET_S)
+        self._step = self.library.steps[start]
+        self.frame = start
+        self.pose = self._before = self.library.poses[start]
+
+    def advance(self, goals: Goals) -> RootDelta:
+        """Go on towards the goals, and return how the root moves on the way."""
+        onward = natural(self.library, self.frame, goals & self._planner.graphs.kept)
+        if onward is None and (self._planned is None or self._time >= self._planned.arrived):
+            self._plan(goals)
+        step, pose = self._step_on(onward)
+        self._step, self._before, self.pose = step, self.pose, pose
+        return RootDelta(*step.tolist())
+
+    def _step_on(self, onward: int | None) -> tuple[Array, Pose]:
+        """Go on by one frame, in the planned transition or in the clip."""
+        planned = self._planned
+        if planned is None:
+            step = self.library.steps[self.frame]
+            assert onward is not None  # else a transition would have been planned
+            self.frame = onward
+            return step, self.library.poses[onward]
+        spent = (self._time - self._begun) / self.library.rate
+        step = planned.steps[self._time] + self._drift.at(spent)
+        self._time += 1
+        self.frame = int(planned.frames[self._time])
+        pose = planned.poses[self._time]
+        if self._offset is not None:
+            pose = self._offset.apply(pose, spent + 1 / self.library.rate)
+        if self._time == len(planned.steps) - 1:
+            self._planned = None
+        return step, pose
+
+    def _plan(self, goals: Goals) -> None:
+        """Plan a transition, into which goes over what is shown."""
+        planned = stitch(self._planner.graphs, self._planner.plan(self.frame, goals))
+        now = planned.before
+        turned = rotations.multiply(
+            self.pose.rotations, rotations.conjugate(self._before.rotations)
+        )
+        onward = Pose(
+            2 * self.pose.translations - self._before.translations,
+            rotations.multiply(turned, self.pose.rotations),
+        )
+        self._offset = Inertialization.begin(
+            (self.pose, onward),
+            (planned.poses[now], planned.poses[now + 1]),
+            1 / self.library.rate,
+            OFFSET_S,
+        )
+        self._drift = OffsetDecay(self._step - planned.steps[now], np.zeros(3), OFFSET_S)
+        self._planned, self._time, self._begun = planned, now, now
+
+
+class LiveMotion:
+    """A source as a `Motion` whose goals may be changed while it plays.
+
+    It can be sampled at the present time and shortly before, not far behind.
+    """
+
+    def __init__(self, source: FrameSource, goals: Goals) -> None:
+        self.source = source
+        self.goals = goals
+        """Which frames meet the request, (frames,); may be replaced at any time."""
+        self._rate = source.library.rate
+        self._place = RootDelta()
+        self._frames = {0: (source.pose, self._place)}
+        self._newest = 0
+        self._tempo = 1.0
+        self._since, self._start = 0.0, 0.0  # a time [s], and what it is in frames
+
+    @property
+    def duration(self) -> float:
+        """Infinite."""
+        return math.inf
+
+    def restart(self) -> None:
+        """Let time 0 be the newest frame: the motion is entered again, and goes on from there."""
+        self._since, self._start = 0.0, float(self._newest)
+
+    def set_tempo(self, tempo: float, time: float) -> None:
+        """Play faster or slower from a time on [s]; a step gets no longer by that."""
+        self._start, self._since, self._tempo = self._frames_at(time), time, tempo
+
+    def sample(self, time: float) -> Pose:
+        """Return the pose at a time [s]."""
+        frame, u = self._position(time)
+        first, second = self._played(frame)[0], self._played(frame + 1)[0]
+        return first if u == 0.0 else mix([first, second], [1.0 - u, u])
+
+    def travel(self, start: float, end: float) -> RootDelta:
+        """Return how the root moves over the ground between two times [s]."""
+        return self._placed(start).to(self._placed(end))
+
+    def _placed(self, time: float) -> RootDelta:
+        frame, u = self._position(time)
+        return self._played(frame)[1].interpolated(self._played(frame + 1)[1], u)
+
+    def _position(self, time: float) -> tuple[int, float]:
+        at = self._frames_at(time)
+        frame = int(at)
+        return frame, at - frame
+
+    def _frames_at(self, time: float) -> float:
+        return max(self._start + (time - self._since) * self._rate * self._tempo, 0.0)
+
+    def _played(self, frame: int) -> tuple[Pose, RootDelta]:
+        """Return pose and place of a frame; play on until it is reached."""
+        while self._newest < frame:
+            self._place = self._place.then(self.source.advance(self.goals))
+            self._newest += 1
+            self._frames[self._newest] = self.source.pose, self._place
+            self._frames.pop(self._newest - _SAMPLED_FRAMES, None)
+        return self._frames[max(frame, min(self._frames))]
+
+
+def natural(library: MotionLibrary, frame: int, goals: Goals) -> int | None:
+    """Return the next frame of the clip if both meet the request, else None."""
+    onward = int(library.successors[frame])
+    return onward if onward >= 0 and goals[frame] and goals[onward] else None

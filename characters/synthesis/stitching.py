@@ -1,0 +1,127 @@
+"""From the streams of the parts to poses: put together, and smoothed around the transition.
+
+Source: Fernández-Baena 2015, chapter 3.3 (M2.5).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from characters.motion.clip import Clip
+from characters.motion.motion import RootDelta
+from characters.skeleton import rotations
+from characters.skeleton.pose import Array, Pose
+from characters.synthesis.edges import Nodes
+from characters.synthesis.library import placed_clip
+from characters.synthesis.parts import PartGraphs
+from characters.synthesis.transition import PartStreams, Transition
+
+SIGMA_FRAMES = 2.0
+"""Standard deviation of the low-pass filter [frames] (M2.5, [GAP])."""
+
+RAMP_FRAMES = 5
+"""Frames before and after the transition over which the filter fades to nothing (M2.5)."""
+
+CONTEXT_FRAMES = RAMP_FRAMES + round(3 * SIGMA_FRAMES)
+"""Frames of the clips on both sides that a smoothed transition depends on."""
+
+
+@dataclass(frozen=True)
+class StitchedMotion:
+    """A transition as it is played, with frames of the clips before and after it."""
+
+    poses: Pose
+    """(times, joints, …), the root at the origin."""
+
+    steps: Array
+    """How the root moves from each time to the next, (times, 3): x, z [m], yaw [rad]."""
+
+    frames: Nodes
+    """The frame of the legs at each time, (times,)."""
+
+    before: int
+    """Number of times before the request."""
+
+    arrived: int
+    """The first time at which all parts play the target."""
+
+    def clip(self, rate: float, name: str = "transition") -> Clip:
+        """Return it as a clip with root motion."""
+        places = [RootDelta()]
+        for step in self.steps[:-1].tolist():
+            places.append(places[-1].then(RootDelta(*step)))
+        return placed_clip(name, rate, self.poses, places)
+
+
+def stitch(
+    graphs: PartGraphs, transition: Transition, before: int = CONTEXT_FRAMES, smooth: bool = True
+) -> StitchedMotion:
+    """Return a transition with so many frames of the clips before and after it.
+
+    The root follows the legs, whose timing never changes.
+    """
+    streams = PartStreams.of(transition, graphs.library, before, before)
+    poses, steps = _composed(graphs, streams)
+    if smooth:
+        start, end = before + transition.response, before + transition.duration
+        weights = ramp(len(steps), start, end)
+        poses = _smoothed(poses, weights)
+        steps = steps + (gaussian(steps) - steps) * weights[:, None]
+    arrived = before + transition.duration
+    return StitchedMotion(poses, steps, streams.before[0], before, arrived)
+
+
+def ramp(count: int, start: int, end: int) -> Array:
+    """Return the weight of the filter at each time: 1 from start to end, 0 five frames outside.
+
+    >>> ramp(14, 6, 7).tolist()
+    [0.0, 0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.0, 0.8, 0.6, 0.4, 0.2, 0.0, 0.0]
+    """
+    times = np.arange(count)
+    outside = np.maximum(np.maximum(start - times, times - end), 0)
+    return np.round(np.clip(1.0 - outside / RAMP_FRAMES, 0.0, 1.0), 12)
+
+
+def gaussian(values: Array) -> Array:
+    """Return values (times, n) under the low-pass filter; the ends are held."""
+    reach = round(3 * SIGMA_FRAMES)
+    offsets = np.arange(-reach, reach + 1)
+    kernel = np.exp(-0.5 * (offsets / SIGMA_FRAMES) ** 2)
+    padded = np.pad(values, ((reach, reach), (0, 0)), mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, len(kernel), axis=0)
+    smooth: Array = windows @ (kernel / kernel.sum())
+    return smooth
+
+
+def _composed(graphs: PartGraphs, streams: PartStreams) -> tuple[Pose, Array]:
+    """Return the poses of all parts together, and the steps of the legs."""
+    library = graphs.library
+    source = library.poses
+    times = streams.before.shape[1]
+    joints = len(library.skeleton)
+    turns, translations = np.empty((times, joints, 4)), np.empty((times, joints, 3))
+    for part, before, after, between in zip(
+        graphs.parts, streams.before, streams.after, streams.between, strict=True
+    ):
+        own = np.array(part.joints)
+        rows, later = before[:, None], after[:, None]
+        u = between[:, None]
+        turns[:, own] = rotations.slerp(
+            source.rotations[rows, own], source.rotations[later, own], u
+        )
+        low, high = source.translations[rows, own], source.translations[later, own]
+        translations[:, own] = low + (high - low) * u[..., None]
+    return Pose(translations, turns), library.steps[streams.before[0]]
+
+
+def _smoothed(poses: Pose, weights: Array) -> Pose:
+    """Return poses of which a share, (times,), is low-passed: rotations and translations."""
+    turns = rotations.continuous(poses.rotations)
+    count = len(turns)
+    low = rotations.normalize(gaussian(turns.reshape(count, -1)).reshape(turns.shape))
+    share = weights[:, None]
+    moved = gaussian(poses.translations.reshape(count, -1)).reshape(poses.translations.shape)
+    return Pose(
+        poses.translations + (moved - poses.translations) * share[..., None],
+        rotations.nlerp(turns, low, share),
+    )

@@ -1,0 +1,98 @@
+"""Characters that walk by a motion graph instead of the movement tree."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from characters import Animator, Character, CharacterCommand, CharacterError, LocomotionIntent
+from characters.control.command import ActionIntent, PosedCharacter
+from characters.control.controllers import chosen_controller
+from characters.synthesis.building import analyse
+from characters.synthesis.library import MotionLibrary
+from characters.synthesis.storage import save_graph
+
+RATE_HZ = 30
+TARGET = np.array([0.2, 0.25])
+
+
+@pytest.fixture(scope="module")
+def human() -> Character:
+    return Character.load("human")
+
+
+@pytest.fixture(scope="module", params=["graph", "parts"])
+def factory(request: pytest.FixtureRequest):
+    return chosen_controller(request.param)
+
+
+def _play(animator: Animator, intents: list[tuple[float, str]]) -> list[PosedCharacter]:
+    """Play a list of speeds and actions, a frame each."""
+    return [
+        animator.update(
+            CharacterCommand(
+                number / RATE_HZ,
+                LocomotionIntent(speed, TARGET),
+                ActionIntent(action) if action else None,
+            )
+        )
+        for number, (speed, action) in enumerate(intents)
+    ]
+
+
+def test_it_goes_where_it_is_sent_and_stops_there(human: Character, factory) -> None:
+    shown = _play(Animator(human, controller=factory), [(2.0, "")] * 200)
+    miss = np.linalg.norm(shown[-1].table_from_character[[0, 2], 3] - TARGET)
+    assert miss < 0.065
+    assert shown[-1].state == "idle"
+    assert {each.state for each in shown} == {"idle", "walk"}
+
+
+def test_the_same_commands_give_the_same_frames(human: Character, factory) -> None:
+    intents = [(2.0, "")] * 30 + [(4.5, "")] * 20
+    one, two = (_play(Animator(human, controller=factory), intents) for _ in range(2))
+    for a, b in zip(one, two, strict=True):
+        assert np.array_equal(a.pose.rotations, b.pose.rotations)
+        assert np.array_equal(a.table_from_character, b.table_from_character)
+
+
+def test_it_performs_actions_and_goes_on(human: Character, factory) -> None:
+    intents = [(0.0, "wave")] * 40 + [(2.0, "")] * 60
+    states = [each.state for each in _play(Animator(human, controller=factory), intents)]
+    assert states[20] == "wave"
+    assert states[-1] == "walk"
+
+
+def test_no_joint_jumps(human: Character, factory) -> None:
+    intents = [(2.0, "")] * 45 + [(4.5, "")] * 30 + [(0.0, "idle")] * 30
+    shown = _play(Animator(human, controller=factory), intents)
+    turns = np.array([each.pose.rotations for each in shown])
+    speeds = 2 * np.arccos(np.minimum(np.abs((turns[1:] * turns[:-1]).sum(-1)), 1.0)) * RATE_HZ
+    own = max(
+        float(np.median(np.sort(_joint_speeds(human.clips[name]).max(1))[-3:]))
+        for name in ("Run", "RunLeftMedium", "Walk")
+    )
+    assert speeds.max() < 1.5 * own
+
+
+def _joint_speeds(clip) -> np.ndarray:
+    turns = clip.poses.rotations[:, 1:]
+    return 2 * np.arccos(np.minimum(np.abs((turns[1:] * turns[:-1]).sum(-1)), 1.0)) * clip.rate
+
+
+def test_a_graph_of_a_file_is_retargeted_to_the_character(human: Character, tmp_path: Path) -> None:
+    clips = [human.clips[name] for name in ("idle", "Walk", "Run")]
+    path = tmp_path / "my.graph"
+    save_graph(analyse(MotionLibrary.of(clips, human.skeleton, human.anatomy)), path)
+    factory = chosen_controller("graph", path)
+    assert _play(Animator(human, controller=factory), [(2.0, "")] * 40)[-1].state == "walk"
+    with pytest.raises(CharacterError, match="needs a character that walks"):
+        Animator(Character.load("vleo"), controller=factory)
+
+
+def test_choices_that_do_not_exist_are_refused(tmp_path: Path) -> None:
+    assert chosen_controller("auto") is None
+    with pytest.raises(CharacterError, match="no controller 'fly'; there are auto, graph, parts"):
+        chosen_controller("fly")
+    with pytest.raises(CharacterError, match="motions need a controller"):
+        chosen_controller("auto", tmp_path / "my.graph")

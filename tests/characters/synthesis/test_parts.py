@@ -1,0 +1,138 @@
+import numpy as np
+import pytest
+
+from characters import CharacterError
+from characters.synthesis.body import default_body_plan, read_body_plan
+from characters.synthesis.building import part_graphs, standard_graph
+from characters.synthesis.library import MotionLibrary
+from characters.synthesis.parts import PartGraphs
+from characters.synthesis.progressive import SearchSettings, TransitionPlanner
+from characters.synthesis.stitching import CONTEXT_FRAMES, stitch
+from characters.synthesis.storage import StoredGraph
+from characters.synthesis.transition import PartStreams, Transition
+
+
+@pytest.fixture(scope="module")
+def graphs(stored: StoredGraph) -> PartGraphs:
+    return part_graphs(stored)
+
+
+def _requests(graphs: PartGraphs, count: int) -> list[tuple[int, np.ndarray]]:
+    rng = np.random.default_rng(5)
+    library = graphs.library
+    found = []
+    for frame in rng.choice(np.flatnonzero(graphs.kept), count).tolist():
+        clips = np.unique(library.clip_of[graphs.kept])
+        others = clips[clips != library.clip_of[frame]]
+        found.append((frame, library.clip_of == rng.choice(others)))
+    return found
+
+
+@pytest.fixture(scope="module")
+def transitions(graphs: PartGraphs, stored: StoredGraph) -> list[Transition]:
+    planner = TransitionPlanner(graphs, standard_graph(stored))
+    return [planner.plan(frame, goals) for frame, goals in _requests(graphs, 40)]
+
+
+def test_every_request_is_answered_at_the_target(
+    graphs: PartGraphs, transitions: list[Transition]
+) -> None:
+    for (_, goals), transition in zip(_requests(graphs, 40), transitions, strict=True):
+        assert goals[transition.moves[0].frames[-1]]
+        assert graphs.kept[transition.target(graphs.library)]
+        assert transition.fallback in ("", "arrival", "window", "standard")
+
+
+def test_all_parts_take_the_same_time_after_scaling(
+    graphs: PartGraphs, transitions: list[Transition]
+) -> None:
+    """Eq. 3.3 gives one duration for every part: acceptance (e) of M3."""
+    unequal = 0
+    for transition in transitions:
+        landing = int(transition.moves[0].frames[-1])
+        for move in transition.moves:
+            last = transition.duration - move.arrival
+            assert move.departure + move.required + last == transition.duration
+            assert move.scaling * move.length == pytest.approx(move.required)
+            assert abs(move.scaling - 1.0) <= 0.25 or transition.fallback == "standard"
+            unequal += move.length != move.required
+            way = move.arrival - transition.moves[0].arrival
+            ahead = graphs.library.onward(np.array([landing]), max(way, 0))[0]
+            back = graphs.library.onward(np.array([move.frames[-1]]), max(-way, 0))[0]
+            assert (move.frames[-1] == ahead) if way >= 0 else (back == landing)
+    assert unequal > 0
+
+
+def test_parts_are_together_before_and_after_a_transition(
+    graphs: PartGraphs, transitions: list[Transition]
+) -> None:
+    library = graphs.library
+    for transition in transitions:
+        streams = PartStreams.of(transition, library)
+        assert (streams.before[:, 0] == transition.request).all()
+        assert (streams.before[:, -1] == transition.target(library)).all()
+        assert (streams.between[:, [0, -1]] == 0.0).all()
+        legs = transition.moves[0]
+        kept = streams.before[0, legs.departure : legs.arrival + 1]
+        assert np.array_equal(kept, legs.frames)  # the timing of the legs is never altered
+
+
+def test_a_forward_window_lets_nothing_move_before_the_legs(
+    graphs: PartGraphs, stored: StoredGraph
+) -> None:
+    planner = TransitionPlanner(graphs, standard_graph(stored), SearchSettings(symmetric=False))
+    for frame, goals in _requests(graphs, 15):
+        transition = planner.plan(frame, goals)
+        assert transition.response == transition.moves[0].departure
+
+
+def test_the_bounded_search_answers_all_that_the_printed_one_does(
+    graphs: PartGraphs, stored: StoredGraph
+) -> None:
+    """Without fallback the cheapest paths rarely have the right lengths (M2.4)."""
+    answered = [0, 0]
+    for number, search in enumerate(("bounded", "shortest")):
+        planner = TransitionPlanner(graphs, None, SearchSettings(search=search, arrivals=0))
+        for frame, goals in _requests(graphs, 12):
+            transition = planner.plan(frame, goals)
+            answered[number] += transition.fallback == ""
+            if not transition.fallback:
+                fits = [
+                    abs(m.length - m.required) <= 0.2 * m.required + 1e-6 for m in transition.moves
+                ]
+                assert all(fits)
+    assert answered[0] >= answered[1]
+
+
+def test_smoothing_leaves_the_clips_alone(
+    graphs: PartGraphs, transitions: list[Transition]
+) -> None:
+    library = graphs.library
+    for transition in transitions[:5]:
+        raw, smooth = (stitch(graphs, transition, smooth=on) for on in (False, True))
+        outside = np.r_[: CONTEXT_FRAMES - 5, len(raw.steps) - 5 : len(raw.steps)]
+        dots = np.abs((raw.poses.rotations * smooth.poses.rotations).sum(-1))
+        assert np.allclose(dots[outside], 1.0, atol=1e-9)
+        assert np.allclose(raw.steps[outside], smooth.steps[outside])
+        clip = smooth.clip(library.rate)
+        steps = np.linalg.norm(np.diff(clip.track[:, :2], axis=0), axis=1)
+        assert steps.max() < np.linalg.norm(library.steps[:, :2], axis=1).max() + 1e-3
+
+
+def test_a_frame_outside_the_graphs_is_refused(graphs: PartGraphs) -> None:
+    with pytest.raises(CharacterError, match="not in the graphs of all parts"):
+        TransitionPlanner(graphs).plan(
+            int(np.flatnonzero(graphs.kept)[0]), np.zeros(len(graphs.library), bool)
+        )
+
+
+def test_the_body_plan_of_a_file_is_checked(tmp_path, library: MotionLibrary) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text("[weights]\nhips = 1\n[chains]\nHC5 = ['hips']\n[profiles]\nA = ['5']\n")
+    with pytest.raises(CharacterError, match="profile A must have each of the chains 5 once"):
+        read_body_plan(path)
+    path.write_text("[weights]\nwing = 1\n[chains]\n[profiles]\n")
+    with pytest.raises(CharacterError, match="no body part is named 'wing'"):
+        read_body_plan(path)
+    with pytest.raises(CharacterError, match="no split profile 'SP6'"):
+        default_body_plan().split("SP6", library.skeleton, library.anatomy)
