@@ -79,7 +79,8 @@ def ramp(count: int, start: int, end: int) -> Array:
     """
     times = np.arange(count)
     outside = np.maximum(np.maximum(start - times, times - end), 0)
-    return np.round(np.clip(1.0 - outside / RAMP_FRAMES, 0.0, 1.0), 12)
+    weights: Array = np.clip(1.0 - outside / RAMP_FRAMES, 0.0, 1.0)
+    return np.round(weights, 12)
 
 
 def gaussian(values: Array) -> Array:

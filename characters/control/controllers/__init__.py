@@ -3,17 +3,11 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from collections.abc import Callable
-from functools import partial
-from pathlib import Path
-
-from characters.control.controllers.controller import CharacterController, ControllerFactory
-from characters.control.controllers.graph import SOURCES, GraphFactory
+from characters.control.controllers.controller import CharacterController
 from characters.control.controllers.in_place import InPlaceController
 from characters.control.controllers.matching import matching_factory
 from characters.control.controllers.tree import TreeController
 from characters.control.controllers.walk import WalkController
-from characters.errors import CharacterError
 from characters.model.character import Character
 from characters.motion.motion import RootDelta
 
@@ -96,31 +90,6 @@ def choose_controller(
     return CONTROLLER_CHOICES[name].prepare(character, motions)
 
 
-CHOSEN_CONTROLLERS: dict[str, Callable[[Path | None], ControllerFactory]] = {
-    kind: partial(GraphFactory, kind) for kind in SOURCES
-}
-"""Controllers that are played only where they are chosen, by name; they take a file of motions."""
-
-
 def default_height(character: Character) -> float:
     """Return the default height of a character on the table [m]."""
     return WALKER_HEIGHT_M if WalkController.suits(character) else ACTOR_HEIGHT_M
-
-
-def chosen_controller(name: str, motions: Path | None = None) -> ControllerFactory | None:
-    """Return the controller of a name, for a file of motions; None for "auto".
-
-    Raises
-    ------
-    CharacterError
-        If there is no such controller, or the file cannot be read.
-    """
-    if name == "auto":
-        if motions is not None:
-            known = " or ".join(CHOSEN_CONTROLLERS)
-            raise CharacterError(f"motions need a controller that plays them: {known}")
-        return None
-    if name not in CHOSEN_CONTROLLERS:
-        known = ", ".join(["auto", *CHOSEN_CONTROLLERS])
-        raise CharacterError(f"no controller {name!r}; there are {known}")
-    return CHOSEN_CONTROLLERS[name](motions)

@@ -1,8 +1,7 @@
 """What every controller is: it decides what a character plays, and where it stands."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias
+from typing import Protocol
 
 from characters.control.command import CharacterCommand
 from characters.locomotion.gaits import TOP_SPEED
@@ -89,7 +88,3 @@ class CharacterController(Protocol):
             If the character does not know the action.
         """
         ...
-
-
-ControllerFactory: TypeAlias = Callable[[Character, float, RootDelta | None], CharacterController]
-"""Makes a controller, with the parameters of `CharacterController`."""

@@ -77,7 +77,8 @@ def test_no_joint_jumps(human: Character, factory) -> None:
 
 def _joint_speeds(clip) -> np.ndarray:
     turns = clip.poses.rotations[:, 1:]
-    return 2 * np.arccos(np.minimum(np.abs((turns[1:] * turns[:-1]).sum(-1)), 1.0)) * clip.rate
+    dots = np.abs((turns[1:] * turns[:-1]).sum(-1))
+    return np.asarray(2 * np.arccos(np.minimum(dots, 1.0)) * clip.rate)
 
 
 def test_a_graph_of_a_file_is_retargeted_to_the_character(human: Character, tmp_path: Path) -> None:

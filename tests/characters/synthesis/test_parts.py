@@ -91,8 +91,9 @@ def test_the_bounded_search_answers_all_that_the_printed_one_does(
 ) -> None:
     """Without fallback the cheapest paths rarely have the right lengths (M2.4)."""
     answered = [0, 0]
-    for number, search in enumerate(("bounded", "shortest")):
-        planner = TransitionPlanner(graphs, None, SearchSettings(search=search, arrivals=0))
+    both = SearchSettings("bounded", arrivals=0), SearchSettings("shortest", arrivals=0)
+    for number, settings in enumerate(both):
+        planner = TransitionPlanner(graphs, None, settings)
         for frame, goals in _requests(graphs, 12):
             transition = planner.plan(frame, goals)
             answered[number] += transition.fallback == ""

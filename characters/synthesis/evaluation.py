@@ -1,0 +1,149 @@
+"""How fast and how smoothly graphs answer requests.
+
+Source: Fernández-Baena 2015, chapters 3.4 and 3.5 (M3), with its errata.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.skeleton.pose import Array, Pose
+from characters.synthesis.distances import thesis_distance
+from characters.synthesis.edges import Nodes
+from characters.synthesis.graph import MotionGraph
+from characters.synthesis.library import MotionLibrary
+from characters.synthesis.progressive import TransitionPlanner
+from characters.synthesis.stitching import stitch
+
+Goals = NDArray[np.bool_]
+"""Which frames meet a request, (frames,)."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The answer to one request."""
+
+    duration: int
+    """Frames from the request until the target plays: T of eq. 3.3."""
+
+    response: int
+    """Frames until the first part leaves its clip (erratum 5)."""
+
+    cost: float
+    """Sum of the distances of consecutive full-body frames until the target plays."""
+
+    fallback: str = ""
+    """How far the search went; see `Transition`."""
+
+
+def standard_outcome(graph: MotionGraph, request: int, goals: Goals) -> Outcome:
+    """Return how the graph of the whole body answers a request."""
+    path = np.array(graph.path(request, goals))
+    leaves = np.flatnonzero(graph.library.successors[path[:-1]] != path[1:])
+    response = int(leaves[0]) if len(leaves) else len(path) - 2
+    library = graph.library
+    cost = consecutive_distances(library, library.poses[path], path).sum()
+    return Outcome(len(path) - 1, response, float(cost))
+
+
+def part_outcome(planner: TransitionPlanner, request: int, goals: Goals) -> Outcome:
+    """Return how the graphs of the parts answer a request.
+
+    The cost is that of the synchronised motion before it is smoothed.
+    """
+    transition = planner.plan(request, goals)
+    raw = stitch(planner.graphs, transition, 0, smooth=False)
+    cost = consecutive_distances(planner.graphs.library, raw.poses, raw.frames).sum()
+    return Outcome(transition.duration, transition.response, float(cost), transition.fallback)
+
+
+def consecutive_distances(library: MotionLibrary, poses: Pose, frames: Nodes) -> Array:
+    """Return the distance of M1 between each pose and the next, (times − 1,).
+
+    `frames` are those of the legs.
+    """
+    count = len(frames)
+    played = replace(
+        library,
+        names=("played",),
+        starts=np.array([0, count]),
+        loops=np.array([False]),
+        poses=poses,
+        steps=library.steps[frames],
+        contacts=library.contacts[frames],
+    )
+    times = np.arange(count - 1)
+    return thesis_distance(played).pairs(times, times + 1)
+
+
+@dataclass(frozen=True)
+class Summary:
+    """The answers to many requests."""
+
+    outcomes: tuple[Outcome, ...]
+    """All of them."""
+
+    @property
+    def duration(self) -> float:
+        """Mean duration [frames]: the time between frames, TBF (M3)."""
+        return float(np.mean([outcome.duration for outcome in self.outcomes]))
+
+    @property
+    def response(self) -> float:
+        """Mean response [frames]."""
+        return float(np.mean([outcome.response for outcome in self.outcomes]))
+
+    @property
+    def median_response(self) -> float:
+        """Median response [frames]."""
+        return float(np.median([outcome.response for outcome in self.outcomes]))
+
+    @property
+    def cost(self) -> float:
+        """Mean cost of a transition."""
+        return float(np.mean([outcome.cost for outcome in self.outcomes]))
+
+    def share(self, fallback: str) -> float:
+        """Return the share of answers that needed a fallback, 0…1."""
+        return float(np.mean([outcome.fallback == fallback for outcome in self.outcomes]))
+
+
+def requests(
+    library: MotionLibrary, kept: Goals, stride: int = 1
+) -> dict[tuple[int, int], list[int]]:
+    """Return the frames from which each clip is asked for in each other clip, by their numbers.
+
+    Every `stride`-th kept frame of a clip asks for all other clips that have kept frames.
+    """
+    clips = np.unique(library.clip_of[kept]).tolist()
+    frames = {clip: np.flatnonzero(kept & (library.clip_of == clip))[::stride] for clip in clips}
+    return {
+        (origin, target): frames[origin].tolist()
+        for origin in clips
+        for target in clips
+        if origin != target
+    }
+
+
+def by_pair(
+    answer: Callable[[int, Goals], Outcome],
+    library: MotionLibrary,
+    asked: dict[tuple[int, int], list[int]],
+) -> dict[tuple[int, int], Summary]:
+    """Return the answers to requests, by the numbers of the clips.
+
+    `answer` is `standard_outcome` or `part_outcome` of what answers.
+    """
+    return {
+        (origin, target): Summary(
+            tuple(answer(frame, library.clip_of == target) for frame in frames)
+        )
+        for (origin, target), frames in asked.items()
+    }
+
+
+def together(pairs: Sequence[Summary]) -> Summary:
+    """Return the answers of several summaries as one."""
+    return Summary(tuple(outcome for each in pairs for outcome in each.outcomes))
