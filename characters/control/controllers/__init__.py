@@ -2,8 +2,10 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from characters.control.controllers.controller import CharacterController
+from characters.control.controllers.graph import graph_factory
 from characters.control.controllers.in_place import InPlaceController
 from characters.control.controllers.matching import matching_factory
 from characters.control.controllers.tree import TreeController
@@ -57,6 +59,12 @@ def _tree(character: Character, motions: Sequence[str]) -> ControllerFactory:
 
 CONTROLLER_CHOICES: dict[str, ControllerChoice] = {
     "tree": ControllerChoice("the character's own blend trees", _tree),
+    "graph": ControllerChoice(
+        "a motion graph, of one .graph file or of its own clips", partial(graph_factory, "graph")
+    ),
+    "parts": ControllerChoice(
+        "the same with a graph for each part of its body", partial(graph_factory, "parts")
+    ),
     "matching": ControllerChoice(
         "at each moment the frame of its motions that suits best", matching_factory
     ),

@@ -1,9 +1,10 @@
 """A character that walks and runs by a motion graph: of its whole body, or of its parts."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 
@@ -131,48 +132,45 @@ class GraphController(WalkController):
         return source.library.contacts[source.frame].tolist() if self._feet else None
 
 
-class GraphFactory:
-    """Makes graph controllers: of a file, or of a character's own clips.
-
-    What was prepared for a character serves the next controller of the same character.
+def graph_factory(
+    kind: str, character: Character, motions: Sequence[str]
+) -> Callable[[Character, float, RootDelta | None], GraphController]:
+    """Prepare the graph controller of a kind for a character; see `ControllerChoice`.
 
     Parameters
     ----------
     kind
         "graph" for the graph of the whole body, "parts" for the graphs of its parts.
+    character
+        Whom it is to play.
     motions
-        A file of `cubeling motions build`; None for the walking and running clips of the character.
+        One file of `cubeling motions build`; without it, the walking and running clips of the
+        character.
+
+    Raises
+    ------
+    CharacterError
+        If the character does not walk, or the file cannot be read or does not fit it.
     """
+    if not WalkController.suits(character):
+        raise CharacterError(
+            f"{character.name}: a motion graph needs a character that walks; leave out --controller"
+        )
+    if len(motions) > 1 or any(Path(name).suffix != ".graph" for name in motions):
+        raise CharacterError(
+            f"{', '.join(motions)}: give one .graph file; build it with: cubeling motions build"
+        )
+    if motions:
+        stored = fitted(load_graph(Path(motions[0])), character)
+    else:
+        own = [clip for name, clip in character.clips.items() if name in OWN_CLIPS]
+        stored = analyse(MotionLibrary.of(own, character.skeleton, character.anatomy))
+    behaviours, make_source, to_stand = SOURCES[kind](stored)
 
-    def __init__(self, kind: str, motions: Path | None = None) -> None:
-        self._source = SOURCES[kind]
-        self._given = None if motions is None else load_graph(motions)
-        self._prepared: tuple[Character, StoredGraph] | None = None
+    def make(character: Character, scale: float, place: RootDelta | None) -> GraphController:
+        return GraphController(character, scale, place, behaviours, make_source(), to_stand)
 
-    def __call__(
-        self, character: Character, scale: float, place: RootDelta | None
-    ) -> GraphController:
-        """Return a controller of a character.
-
-        Raises
-        ------
-        CharacterError
-            If the character does not walk, or the motions do not fit it.
-        """
-        if not WalkController.suits(character):
-            raise CharacterError(
-                f"{character.name}: a motion graph needs a character that walks; "
-                "leave out --controller"
-            )
-        if self._prepared is None or self._prepared[0] is not character:
-            self._prepared = character, self._stored(character)
-        return GraphController(character, scale, place, *self._source(self._prepared[1]))
-
-    def _stored(self, character: Character) -> StoredGraph:
-        if self._given is None:
-            own = [clip for name, clip in character.clips.items() if name in OWN_CLIPS]
-            return analyse(MotionLibrary.of(own, character.skeleton, character.anatomy))
-        return fitted(self._given, character)
+    return make
 
 
 OWN_CLIPS = ("idle", *NOT_ACTIONS)
@@ -210,14 +208,19 @@ LIVE_COSTS = EdgeCosts(per_frame=0.01)
 """What edges cost in play: to wait for a tenth of a second is as dear as a good jump."""
 
 
-def _standard(stored: StoredGraph) -> tuple[Behaviours, FrameSource, CostToGo]:
+Playable: TypeAlias = tuple[Behaviours, Callable[[], FrameSource], CostToGo]
+"""What a graph can do, what makes a source that plays it, and its ways to standing."""
+
+
+def _standard(stored: StoredGraph) -> Playable:
     graph = standard_graph(stored, LIVE_COSTS)
     behaviours = Behaviours.of(stored.library, graph.kept)
     to_stand = _prepare(graph, behaviours)
-    return behaviours, StandardSource(graph, _standing_frame(behaviours)), to_stand
+    start = _standing_frame(behaviours)
+    return behaviours, lambda: StandardSource(graph, start), to_stand
 
 
-def _parts(stored: StoredGraph) -> tuple[Behaviours, FrameSource, CostToGo]:
+def _parts(stored: StoredGraph) -> Playable:
     graphs = part_graphs(stored, LIVE_COSTS)
     if not graphs.kept.any():
         raise CharacterError(
@@ -226,7 +229,8 @@ def _parts(stored: StoredGraph) -> tuple[Behaviours, FrameSource, CostToGo]:
     behaviours = Behaviours.of(stored.library, graphs.kept)
     planner = TransitionPlanner(graphs, standard_graph(stored, LIVE_COSTS))
     to_stand = _prepare(graphs.graphs[0], behaviours)
-    return behaviours, PartsSource(planner, _standing_frame(behaviours)), to_stand
+    start = _standing_frame(behaviours)
+    return behaviours, lambda: PartsSource(planner, start), to_stand
 
 
 def _prepare(graph: MotionGraph, behaviours: Behaviours) -> CostToGo:
@@ -244,7 +248,7 @@ def _standing_frame(behaviours: Behaviours) -> int:
     return int(np.argmax(behaviours.goals(behaviours.nearest(0.0, 0.0))))
 
 
-SOURCES: dict[str, Callable[[StoredGraph], tuple[Behaviours, FrameSource, CostToGo]]] = {
+SOURCES: dict[str, Callable[[StoredGraph], Playable]] = {
     "graph": _standard,
     "parts": _parts,
 }

@@ -5,9 +5,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from characters import Animator, Character, CharacterCommand, CharacterError, LocomotionIntent
+from characters import (
+    Animator,
+    Character,
+    CharacterCommand,
+    CharacterError,
+    LocomotionIntent,
+    choose_controller,
+)
 from characters.control.command import ActionIntent, PosedCharacter
-from characters.control.controllers import chosen_controller
 from characters.synthesis.building import analyse
 from characters.synthesis.library import MotionLibrary
 from characters.synthesis.storage import save_graph
@@ -22,8 +28,8 @@ def human() -> Character:
 
 
 @pytest.fixture(scope="module", params=["graph", "parts"])
-def factory(request: pytest.FixtureRequest):
-    return chosen_controller(request.param)
+def factory(request: pytest.FixtureRequest, human: Character):
+    return choose_controller(request.param, human)
 
 
 def _play(animator: Animator, intents: list[tuple[float, str]]) -> list[PosedCharacter]:
@@ -85,15 +91,19 @@ def test_a_graph_of_a_file_is_retargeted_to_the_character(human: Character, tmp_
     clips = [human.clips[name] for name in ("idle", "Walk", "Run")]
     path = tmp_path / "my.graph"
     save_graph(analyse(MotionLibrary.of(clips, human.skeleton, human.anatomy)), path)
-    factory = chosen_controller("graph", path)
+    factory = choose_controller("graph", human, [str(path)])
     assert _play(Animator(human, controller=factory), [(2.0, "")] * 40)[-1].state == "walk"
-    with pytest.raises(CharacterError, match="needs a character that walks"):
-        Animator(Character.load("vleo"), controller=factory)
 
 
-def test_choices_that_do_not_exist_are_refused(tmp_path: Path) -> None:
-    assert chosen_controller("auto") is None
-    with pytest.raises(CharacterError, match="no controller 'fly'; there are auto, graph, parts"):
-        chosen_controller("fly")
-    with pytest.raises(CharacterError, match="motions need a controller"):
-        chosen_controller("auto", tmp_path / "my.graph")
+@pytest.mark.parametrize(
+    ("name", "motions", "message"),
+    [
+        ("vleo", [], "needs a character that walks"),
+        ("human", ["walk.bvh"], r"walk.bvh: give one .graph file"),
+        ("human", ["a.graph", "b.graph"], r"give one .graph file"),
+        ("human", ["none.graph"], "No such file"),
+    ],
+)
+def test_what_cannot_be_played_is_refused(name: str, motions: list[str], message: str) -> None:
+    with pytest.raises(CharacterError, match=message):
+        choose_controller("parts", Character.load(name), motions)
