@@ -46,6 +46,14 @@ class Edges:
         keep = nodes[self.sources] & nodes[self.targets]
         return Edges(self.count, self.sources[keep], self.targets[keep], self.weights[keep])
 
+    def among(self, nodes: Nodes) -> "Edges":
+        """Return the edges between some nodes, ascending, which are numbered anew from 0."""
+        number = np.full(self.count, -1, np.intp)
+        number[nodes] = np.arange(len(nodes))
+        sources, targets = number[self.sources], number[self.targets]
+        keep = (sources >= 0) & (targets >= 0)
+        return Edges(len(nodes), sources[keep], targets[keep], self.weights[keep])
+
     @cached_property
     def firsts(self) -> Nodes:
         """Number of the first edge of each node, and the number of edges, (nodes + 1,)."""
@@ -77,8 +85,11 @@ class Edges:
         return found
 
     @cached_property
-    def by_target(self) -> tuple[Nodes, Nodes, Nodes]:
-        """Edges in the order of their second nodes, those nodes, and the first edge of each."""
+    def by_target(self) -> tuple[Nodes, Array, Nodes, Nodes]:
+        """The edges in the order of their second nodes: first nodes, costs, (edges,).
+
+        Then the second nodes themselves, and the place of the first edge to each.
+        """
         order = np.argsort(self.targets, kind="stable")
         reached, firsts = np.unique(self.targets[order], return_index=True)
-        return order, reached, firsts
+        return self.sources[order], self.weights[order], reached, firsts

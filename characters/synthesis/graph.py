@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
+from characters.skeleton.pose import Array
 from characters.synthesis.candidates import Candidates
 from characters.synthesis.components import largest_component
 from characters.synthesis.distances.distance import FrameDistance
-from characters.synthesis.edges import Edges
+from characters.synthesis.edges import Edges, Nodes
 from characters.synthesis.library import MotionLibrary
 from characters.synthesis.search import CostToGo, cost_to_go
 
@@ -38,6 +39,10 @@ class EdgeCosts:
 
     jump: float = 0.0
     """Added to every jump; distances are squared, so small jumps are cheap (M2.4)."""
+
+    most_jumps: int = 0
+    """Largest number of jumps from a frame into one clip, the cheapest ones; 0 for all. Small parts
+    of the body have hundreds, which a search in play has no time for."""
 
     root: bool = False
     """Whether a jump costs the square root of its distance, which makes many small ones dear."""
@@ -166,8 +171,10 @@ def build_graph(
     near = candidates.below(threshold)
     sources = library.predecessors[near.rows] if costs.rule == "successor" else near.rows
     usable = (sources >= 0) & (library.successors[sources] != near.columns)
-    sources, targets = sources[usable], near.columns[usable]
-    jumps = near.distances[usable]
+    sources, targets, jumps = sources[usable], near.columns[usable], near.distances[usable]
+    if costs.most_jumps:
+        best = _cheapest(sources, library.clip_of[targets], jumps, costs.most_jumps)
+        sources, targets, jumps = sources[best], targets[best], jumps[best]
     jumps = (np.sqrt(jumps) if costs.root else jumps) + costs.jump
     starts = np.flatnonzero(library.successors >= 0)
     ends = library.successors[starts]
@@ -188,3 +195,15 @@ def build_graph(
     inside = int((kept[sources] & kept[targets]).sum())
     barred = candidates.barred_below(threshold)
     return MotionGraph(library, edges, kept, threshold, barred, len(sources) - inside)
+
+
+def _cheapest(sources: Nodes, clips: Nodes, distances: Array, most: int) -> NDArray[np.bool_]:
+    """Return which jumps are among the nearest ones from their frame into their clip, (jumps,)."""
+    order = np.lexsort((distances, clips, sources))
+    new = np.ones(len(order), bool)
+    new[1:] = (np.diff(sources[order]) != 0) | (np.diff(clips[order]) != 0)
+    places = np.arange(len(order))
+    rank = places - np.maximum.accumulate(np.where(new, places, 0))
+    best = np.zeros(len(order), bool)
+    best[order] = rank < most
+    return best

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
+from characters.synthesis.edges import Edges, Nodes
 from characters.synthesis.graph import MotionGraph
 from characters.synthesis.parts import PartGraphs
 from characters.synthesis.search import HopCosts
@@ -47,6 +48,10 @@ class SearchSettings:
     horizon: int = 120
     """Frames within which other arrivals of the legs are looked for."""
 
+    direct_edges: int = 20_000
+    """In a part's graph with more edges, ways through third clips are looked for only where there
+    is none between the two clips: the search takes a time in proportion to its edges."""
+
 
 class TransitionPlanner:
     """Plans transitions of a body by its part graphs.
@@ -64,6 +69,7 @@ class TransitionPlanner:
         self.graphs = graphs
         self.standard = standard
         self.settings = settings or SearchSettings()
+        self._between: dict[tuple[int, int, int], tuple[Edges, Nodes]] = {}
 
     def plan(self, request: int, goals: Goals) -> Transition:
         """Return the transition from a frame to any of the goals (frames,).
@@ -125,8 +131,8 @@ class TransitionPlanner:
         """Return the transition in which all other parts follow the legs, or None."""
         find = self._bounded if self.settings.search == "bounded" else self._shortest
         moves = [prior]
-        for graph in self.graphs.graphs[1:]:
-            move = find(graph, request, prior, window)
+        for part in range(1, len(self.graphs.parts)):
+            move = find(part, request, prior, window)
             if move is None:
                 return None
             moves.append(move)
@@ -158,36 +164,49 @@ class TransitionPlanner:
         required = arrival - departure
         return required > 0 and abs(length - required) <= self.settings.tolerance * required + 1e-9
 
-    def _bounded(
-        self, graph: MotionGraph, request: int, prior: PartMove, window: int
-    ) -> PartMove | None:
+    def _bounded(self, part: int, request: int, prior: PartMove, window: int) -> PartMove | None:
         """Return the cheapest path whose length fits."""
         starts, arrivals = self._windows(request, prior, window)
         first = next((time for time, start in enumerate(starts) if start >= 0), None)
         if first is None:  # the clip ends before
             return None
-        spans = {
-            arrival: int(self.settings.tolerance * (arrival - first) + 1e-9) for arrival in arrivals
-        }
-        hops = max(arrival + near for arrival, near in spans.items()) - first
-        table = HopCosts.of(graph.edges, tuple(starts[first:]), hops)
-        options = [
-            (float(cost), end, arrival, frame)
-            for arrival, frame in arrivals.items()
-            for end in range(max(arrival - spans[arrival], first + 1), arrival + spans[arrival] + 1)
-            if np.isfinite(cost := table.costs[end - first, frame])
-        ]
-        for cost, end, arrival, frame in sorted(options):
-            frames = table.path(frame, end - first)
-            departure = end - (len(frames) - 1)
-            if len(frames) > 1 and self._fits(len(frames) - 1, departure, arrival):
-                return PartMove(departure, arrival, frames, cost)
+        times, frames = np.array([*arrivals]), np.array([*arrivals.values()])
+        near = np.floor(self.settings.tolerance * (times - first) + 1e-9).astype(int)
+        ends = times[:, None] + np.arange(-near.max(), near.max() + 1)
+        fits = (np.abs(ends - times[:, None]) <= near[:, None]) & (ends > first)
+        ends = np.where(fits, ends, first) - first
+        for edges, nodes in self._searched(part, request, int(prior.frames[-1])):
+            number = np.full(len(self.graphs.library) + 1, -1)  # the last is for no frame
+            number[nodes] = np.arange(len(nodes))
+            places = tuple(number[starts[first:]].tolist())
+            table = HopCosts.of(edges, places, int(ends.max()))
+            costs = np.where(fits, table.costs[ends, number[frames][:, None]], np.inf)
+            for option in np.argsort(costs, axis=None).tolist():
+                row, column = divmod(option, costs.shape[1])
+                if not np.isfinite(costs[row, column]):
+                    break
+                end, arrival = int(ends[row, column]), int(times[row])
+                path = table.path(int(number[frames[row]]), end)
+                departure = first + end - (len(path) - 1)
+                if len(path) > 1 and self._fits(len(path) - 1, departure, arrival):
+                    return PartMove(departure, arrival, nodes[path], float(costs[row, column]))
         return None
 
-    def _shortest(
-        self, graph: MotionGraph, request: int, prior: PartMove, window: int
-    ) -> PartMove | None:
+    def _searched(self, part: int, request: int, landing: int) -> Iterator[tuple[Edges, Nodes]]:
+        """Yield the edges to search, one after the other, and the frames that are their nodes."""
+        graph = self.graphs.graphs[part]
+        if len(graph.edges) > self.settings.direct_edges:
+            clip_of = graph.library.clip_of
+            one, other = sorted((int(clip_of[request]), int(clip_of[landing])))
+            if (part, one, other) not in self._between:
+                nodes = np.flatnonzero((clip_of == one) | (clip_of == other))
+                self._between[part, one, other] = graph.edges.among(nodes), nodes
+            yield self._between[part, one, other]
+        yield graph.edges, np.arange(len(graph.library))
+
+    def _shortest(self, part: int, request: int, prior: PartMove, window: int) -> PartMove | None:
         """Return the cheapest of the cheapest paths between both windows whose lengths fit."""
+        graph = self.graphs.graphs[part]
         starts, arrivals = self._windows(request, prior, window)
         best: PartMove | None = None
         for arrival, frame in arrivals.items():

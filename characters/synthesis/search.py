@@ -73,14 +73,13 @@ class HopCosts:
         A dynamic programme over the number of edges: cost at time t + 1 is the least of the cost
         at t of a node and an edge from there. A path that starts at time t costs 0 then.
         """
-        order, reached, firsts = edges.by_target
-        sources, weights = edges.sources[order], edges.weights[order]
+        sources, weights, reached, firsts = edges.by_target
         costs = np.full((hops + 1, edges.count), inf)
         for time in range(hops + 1):
-            if time and len(order):
-                costs[time, reached] = np.minimum.reduceat(
-                    costs[time - 1, sources] + weights, firsts
-                )
+            if time and len(edges):
+                totals = costs[time - 1].take(sources)
+                totals += weights
+                costs[time, reached] = np.minimum.reduceat(totals, firsts)
             if time < len(starts) and starts[time] >= 0:
                 costs[time, starts[time]] = 0.0
         return HopCosts(edges, starts, costs)
@@ -90,13 +89,13 @@ class HopCosts:
 
         It begins where it starts, so its length tells when it did.
         """
-        order, reached, firsts = self.edges.by_target
+        sources, weights, reached, firsts = self.edges.by_target
         nodes = [node]
         while not (time < len(self.starts) and self.starts[time] == nodes[-1]):
             place = int(np.searchsorted(reached, nodes[-1]))
-            stop = firsts[place + 1] if place + 1 < len(firsts) else len(order)
-            own = order[firsts[place] : stop]
-            totals = self.costs[time - 1, self.edges.sources[own]] + self.edges.weights[own]
-            nodes.append(int(self.edges.sources[own[np.argmin(totals)]]))
+            stop = firsts[place + 1] if place + 1 < len(firsts) else len(sources)
+            own = sources[firsts[place] : stop]
+            totals = self.costs[time - 1].take(own) + weights[firsts[place] : stop]
+            nodes.append(int(own[np.argmin(totals)]))
             time -= 1
         return np.array(nodes[::-1])

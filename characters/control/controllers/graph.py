@@ -204,7 +204,7 @@ def fitted(stored: StoredGraph, character: Character) -> StoredGraph:
     return replace(stored, library=moved)
 
 
-LIVE_COSTS = EdgeCosts(per_frame=0.01)
+LIVE_COSTS = EdgeCosts(per_frame=0.01, most_jumps=4)
 """What edges cost in play: to wait for a tenth of a second is as dear as a good jump."""
 
 
