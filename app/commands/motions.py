@@ -13,6 +13,7 @@ from rich.table import Table
 from app.commands.output import OverwriteOption, chosen_output
 from app.errors import AppError
 from app.motion_graphs.recordings import clip_names, gather
+from app.motion_graphs.tables import make_tables
 from characters import Character
 from characters.retargeting.root import with_root_joint
 from characters.synthesis.building import (
@@ -134,6 +135,52 @@ def show(
         raise AppError("a plot needs matplotlib: pip install matplotlib") from error
     save_plot(output, stored, graph.name)
     console.print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
+
+
+@app.command()
+def tables(
+    clips: Annotated[
+        list[str],
+        typer.Argument(help="Four motions: a walk, a run, a walk with long steps, a slow walk."),
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="The .html page; a .csv of its name is written too."),
+    ] = None,
+    overwrite: OverwriteOption = False,
+    character: Annotated[str, typer.Option(help="Whose skeleton the clips get.")] = "human",
+    stride: Annotated[
+        int, typer.Option(min=1, help="Every so many frames ask for each other clip.")
+    ] = 8,
+    skeleton: Annotated[
+        Path | None, typer.Option(help="The .asf of .amc files, if it is in another folder.")
+    ] = None,
+) -> None:
+    """Make tables 3.2 to 3.4 and the curves of Fernández-Baena's thesis from four clips.
+
+    Printed values stand beside ours. It takes a minute or two, and needs matplotlib.
+
+    Example: [cyan]cubeling motions tables walk.amc run.amc long.amc slow.amc -o tables.html[/]
+    """
+    target = chosen_output(output, "tables.html", "page", (".html",), overwrite)
+    try:
+        from app.motion_graphs.page import write_page
+    except ImportError as error:
+        if (error.name or "").split(".")[0] != "matplotlib":
+            raise
+        raise AppError("a plot needs matplotlib: pip install matplotlib") from error
+    body = with_root_joint(Character.load(character))
+    console = Console()
+    with console.status("reading") as status:
+        found = gather(clip_names(clips), body, skeleton)
+        library = MotionLibrary.of(found, body.skeleton, body.anatomy, DEFAULT_RATE_HZ)
+        made = make_tables(library, stride, lambda what: status.update(what))
+    table = write_page(made, target)
+    console.print(
+        f"[bold]{escape(str(target))}[/] and [bold]{escape(str(table))}[/] are written",
+        soft_wrap=True,
+        highlight=False,
+    )
 
 
 def describe(console: Console, stored: StoredGraph) -> None:

@@ -98,11 +98,17 @@ def _draw_connectivity(axes: Axes, stored: StoredGraph) -> None:
         style = (0, dashes or None)
         axes.step(thresholds, shares, where="post", color=color, linestyle=style, label=label)
         axes.axvline(stored.thresholds[name], color=color, linewidth=0.6, linestyle=style)
-    axes.set_xscale("log")
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    plain_log_axis(axes)
     axes.set_ylim(0.0, 1.02)
     axes.set_xlabel("threshold")
     axes.set_ylabel("frames in the largest connected part")
     axes.set_title("vertical: the thresholds in use", color=SECONDARY_COLOR, fontsize=10)
     axes.grid(True, color="#dcdfe6", linewidth=0.7)
     axes.legend(loc="lower right")
+
+
+def plain_log_axis(axes: Axes) -> None:
+    """Let the x axis be logarithmic, with numbers as people write them."""
+    axes.set_xscale("log")
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: ""))

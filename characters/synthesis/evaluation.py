@@ -3,8 +3,9 @@
 Source: Fernández-Baena 2015, chapters 3.4 and 3.5 (M3), with its errata.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -110,9 +111,14 @@ class Summary:
         return float(np.mean([outcome.fallback == fallback for outcome in self.outcomes]))
 
 
-def requests(
-    library: MotionLibrary, kept: Goals, stride: int = 1
-) -> dict[tuple[int, int], list[int]]:
+Requests: TypeAlias = dict[tuple[int, int], list[int]]
+"""The frames that ask, by the numbers of their clip and of the target clip."""
+
+Answers: TypeAlias = dict[tuple[int, int], Summary]
+"""The answers to requests, by the same."""
+
+
+def requests(library: MotionLibrary, kept: Goals, stride: int = 1) -> Requests:
     """Return the frames from which each clip is asked for in each other clip, by their numbers.
 
     Every `stride`-th kept frame of a clip asks for all other clips that have kept frames.
@@ -130,8 +136,8 @@ def requests(
 def by_pair(
     answer: Callable[[int, Goals], Outcome],
     library: MotionLibrary,
-    asked: dict[tuple[int, int], list[int]],
-) -> dict[tuple[int, int], Summary]:
+    asked: Requests,
+) -> Answers:
     """Return the answers to requests, by the numbers of the clips.
 
     `answer` is `standard_outcome` or `part_outcome` of what answers.
@@ -144,6 +150,6 @@ def by_pair(
     }
 
 
-def together(pairs: Sequence[Summary]) -> Summary:
-    """Return the answers of several summaries as one."""
-    return Summary(tuple(outcome for each in pairs for outcome in each.outcomes))
+def together(answers: Answers) -> Summary:
+    """Return the answers of all pairs of clips as one."""
+    return Summary(tuple(outcome for each in answers.values() for outcome in each.outcomes))

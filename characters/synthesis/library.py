@@ -150,6 +150,20 @@ class MotionLibrary:
         number = self.names.index(name)
         return np.arange(self.starts[number], self.starts[number + 1])
 
+    def only(self, clips: Sequence[int]) -> "MotionLibrary":
+        """Return some of the clips, by their numbers, in this order."""
+        spans = [np.arange(self.starts[clip], self.starts[clip + 1]) for clip in clips]
+        frames = np.concatenate(spans)
+        return replace(
+            self,
+            names=tuple(self.names[clip] for clip in clips),
+            starts=np.concatenate([[0], np.cumsum([len(span) for span in spans])]),
+            loops=self.loops[list(clips)],
+            poses=self.poses[frames],
+            steps=self.steps[frames],
+            contacts=self.contacts[frames],
+        )
+
     def as_clip(self, name: str) -> Clip:
         """Return a clip of the library, with root motion; a loop ends with its first frame."""
         frames = self.clip(name)

@@ -1,0 +1,164 @@
+"""The standard graph and the part graphs of the same clips, each at its critical threshold."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property, partial
+
+import numpy as np
+
+from characters.skeleton.pose import Array
+from characters.synthesis.body import BodyPart, default_body_plan
+from characters.synthesis.building import LARGEST_THRESHOLD, critical_threshold
+from characters.synthesis.candidates import Candidates, find_candidates
+from characters.synthesis.distances import JointAngles, thesis_distance
+from characters.synthesis.evaluation import (
+    Answers,
+    Requests,
+    by_pair,
+    part_outcome,
+    requests,
+    standard_outcome,
+)
+from characters.synthesis.graph import EdgeCosts, MotionGraph, build_graph
+from characters.synthesis.library import MotionLibrary
+from characters.synthesis.parts import (
+    PartGraphs,
+    part_candidates,
+    part_distance,
+    threshold_shares,
+)
+from characters.synthesis.progressive import SearchSettings, TransitionPlanner
+
+LOWEST_THRESHOLD = 1e-4
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A library, compared once, of which graphs at any threshold are made."""
+
+    library: MotionLibrary
+    """The frames."""
+
+    costs: EdgeCosts
+    """What edges cost in all graphs."""
+
+    @cached_property
+    def distance(self) -> JointAngles:
+        """The distance of the thesis."""
+        return thesis_distance(self.library)
+
+    @cached_property
+    def candidates(self) -> Candidates:
+        """Look-alikes of the whole body."""
+        return find_candidates(
+            self.distance, self.library, 2 * LARGEST_THRESHOLD, self.library.phases
+        )
+
+    def standard(self, threshold: float) -> MotionGraph:
+        """Return the graph of the whole body at a threshold."""
+        return build_graph(self.library, self.distance, self.candidates, threshold, self.costs)
+
+    @cached_property
+    def standard_threshold(self) -> float:
+        """The least threshold at which the graph of the whole body joins most clips."""
+        return critical_threshold(
+            lambda threshold: len(self.standard(threshold).joined_clips),
+            LOWEST_THRESHOLD,
+            2 * LARGEST_THRESHOLD,
+        )
+
+    def split(self, profile: str) -> "SplitComparison":
+        """Return the same for the part graphs of a split profile."""
+        library = self.library
+        parts = default_body_plan().split(profile, library.skeleton, library.anatomy)
+        candidates = {
+            part.name: part_candidates(library, part, 2 * LARGEST_THRESHOLD * share)
+            for part, share in zip(parts, threshold_shares(parts), strict=True)
+        }
+        return SplitComparison(self, parts, candidates)
+
+    def answers(self, graph: MotionGraph, asked: Requests) -> Answers:
+        """Return the answers of the graph of the whole body."""
+        return by_pair(partial(standard_outcome, graph), self.library, asked)
+
+
+@dataclass(frozen=True)
+class SplitComparison:
+    """The part graphs of a split profile at any threshold."""
+
+    whole: Comparison
+    """The library, and the graph of the whole body."""
+
+    parts: tuple[BodyPart, ...]
+    """The parts."""
+
+    candidates: Mapping[str, Candidates]
+    """Look-alikes of each part, by its name."""
+
+    def graphs(self, threshold: float) -> PartGraphs:
+        """Return the part graphs at a threshold that is shared out by weight (M2.2)."""
+        return self._at([threshold * share for share in threshold_shares(self.parts)])
+
+    def free(self) -> PartGraphs:
+        """Return the part graphs, each at its own critical threshold (M2, go beyond)."""
+        return self._at(self.free_thresholds)
+
+    @cached_property
+    def threshold(self) -> float:
+        """The least threshold at which the parts together keep most clips."""
+        return critical_threshold(
+            lambda threshold: len(self.graphs(threshold).joined_clips),
+            LOWEST_THRESHOLD,
+            2 * LARGEST_THRESHOLD,
+        )
+
+    @cached_property
+    def free_thresholds(self) -> list[float]:
+        """The least threshold of each part at which its graph joins most clips."""
+        library, found = self.whole.library, []
+        for part, share in zip(self.parts, threshold_shares(self.parts), strict=True):
+            build = partial(
+                build_graph, library, part_distance(library, part), self.candidates[part.name]
+            )
+            found.append(
+                critical_threshold(
+                    lambda threshold, build=build: len(build(threshold).joined_clips),
+                    LOWEST_THRESHOLD,
+                    2 * LARGEST_THRESHOLD * share,
+                )
+            )
+        return found
+
+    def answers(
+        self,
+        graphs: PartGraphs,
+        asked: Requests,
+        settings: SearchSettings | None = None,
+    ) -> Answers:
+        """Return the answers of the part graphs."""
+        standard = self.whole.standard(self.whole.standard_threshold)
+        planner = TransitionPlanner(graphs, standard, settings)
+        return by_pair(partial(part_outcome, planner), self.whole.library, asked)
+
+    def _at(self, thresholds: list[float]) -> PartGraphs:
+        return PartGraphs.build(
+            self.whole.library, self.parts, self.candidates, thresholds, self.whole.costs
+        )
+
+
+def common_requests(standard: MotionGraph, graphs: PartGraphs, stride: int) -> Requests:
+    """Return requests that both can answer; see `requests`."""
+    return requests(standard.library, standard.kept & graphs.kept, stride)
+
+
+def bootstrap_interval(values: Array, seed: int = 0) -> tuple[float, float]:
+    """Return the 95 % interval of a mean, (n,) values, by the percentile bootstrap.
+
+    >>> low, high = bootstrap_interval(np.array([1.0, 2.0, 3.0]))
+    >>> 1.0 <= low < 2.0 < high <= 3.0
+    True
+    """
+    rng = np.random.default_rng(seed)
+    means = rng.choice(values, (2000, len(values))).mean(axis=1)
+    low, high = np.quantile(means, [0.025, 0.975])
+    return float(low), float(high)
