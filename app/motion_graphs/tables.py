@@ -140,13 +140,10 @@ def _table_3_4(tables: Tables, library: MotionLibrary, stride: int) -> None:
             splits = {profile: pair.split(profile) for profile in PROFILES}
             least = min(split.threshold for split in splits.values())
             found = {profile: split.graphs(least) for profile, split in splits.items()}
-            best = {
-                way: min(
-                    PROFILES,
-                    key=lambda name, way=way: _rank(splits[name], found[name], way, stride),
-                )
-                for way in ((0, 1), (1, 0))
-            }
+            best = {}
+            for way in ((0, 1), (1, 0)):
+                ranks = {name: _rank(splits[name], found[name], way, stride) for name in PROFILES}
+                best[way] = min(PROFILES, key=ranks.__getitem__)
             for (a, b), name in best.items():
                 ends = (origin, target)[a], (origin, target)[b]
                 row = f"C{ends[0] + 1} → C{ends[1] + 1}"

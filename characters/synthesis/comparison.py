@@ -115,19 +115,21 @@ class SplitComparison:
     @cached_property
     def free_thresholds(self) -> list[float]:
         """The least threshold of each part at which its graph joins most clips."""
-        library, found = self.whole.library, []
-        for part, share in zip(self.parts, threshold_shares(self.parts), strict=True):
-            build = partial(
-                build_graph, library, part_distance(library, part), self.candidates[part.name]
-            )
-            found.append(
-                critical_threshold(
-                    lambda threshold, build=build: len(build(threshold).joined_clips),
-                    LOWEST_THRESHOLD,
-                    2 * LARGEST_THRESHOLD * share,
-                )
-            )
-        return found
+        shares = threshold_shares(self.parts)
+        return [
+            self._critical(part, 2 * LARGEST_THRESHOLD * share)
+            for part, share in zip(self.parts, shares, strict=True)
+        ]
+
+    def _critical(self, part: BodyPart, most: float) -> float:
+        """Return the least threshold at which the graph of a part joins most clips."""
+        library, candidates = self.whole.library, self.candidates[part.name]
+        distance = part_distance(library, part)
+
+        def joined(threshold: float) -> int:
+            return len(build_graph(library, distance, candidates, threshold).joined_clips)
+
+        return critical_threshold(joined, LOWEST_THRESHOLD, most)
 
     def answers(
         self,

@@ -10,6 +10,7 @@ from characters.control.controllers.in_place import InPlaceController
 from characters.control.controllers.matching import matching_factory
 from characters.control.controllers.tree import TreeController
 from characters.control.controllers.walk import WalkController
+from characters.errors import CharacterError
 from characters.model.character import Character
 from characters.motion.motion import RootDelta
 
