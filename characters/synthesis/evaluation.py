@@ -55,7 +55,7 @@ def part_outcome(planner: TransitionPlanner, request: int, goals: Goals) -> Outc
     The cost is that of the synchronised motion before it is smoothed.
     """
     transition = planner.plan(request, goals)
-    raw = stitch(planner.graphs, transition, 0, smooth=False)
+    raw = stitch(planner.graphs, transition, sigma=0.0)
     cost = consecutive_distances(planner.graphs.library, raw.poses, raw.frames).sum()
     return Outcome(transition.duration, transition.response, float(cost), transition.fallback)
 

@@ -22,9 +22,6 @@ SIGMA_FRAMES = 2.0
 RAMP_FRAMES = 5
 """Frames before and after the transition over which the filter fades to nothing (M2.5)."""
 
-CONTEXT_FRAMES = RAMP_FRAMES + round(3 * SIGMA_FRAMES)
-"""Frames of the clips on both sides that a smoothed transition depends on."""
-
 
 @dataclass(frozen=True)
 class StitchedMotion:
@@ -54,21 +51,28 @@ class StitchedMotion:
 
 
 def stitch(
-    graphs: PartGraphs, transition: Transition, before: int = CONTEXT_FRAMES, smooth: bool = True
+    graphs: PartGraphs, transition: Transition, sigma: float = SIGMA_FRAMES
 ) -> StitchedMotion:
-    """Return a transition with so many frames of the clips before and after it.
+    """Return a transition, with the frames of the clips on both sides that it depends on.
 
-    The root follows the legs, whose timing never changes.
+    The root follows the legs, whose timing never changes. `sigma` is the standard deviation of the
+    low-pass filter [frames]; at 0 nothing is smoothed, and nothing is added on the sides.
     """
+    before = context_frames(sigma)
     streams = PartStreams.of(transition, graphs.library, before, before)
     poses, steps = _composed(graphs, streams)
-    if smooth:
+    if sigma:
         start, end = before + transition.response, before + transition.duration
         weights = ramp(len(steps), start, end)
-        poses = _smoothed(poses, weights)
-        steps = steps + (gaussian(steps) - steps) * weights[:, None]
+        poses = _smoothed(poses, weights, sigma)
+        steps = steps + (gaussian(steps, sigma) - steps) * weights[:, None]
     arrived = before + transition.duration
     return StitchedMotion(poses, steps, streams.before[0], before, arrived)
+
+
+def context_frames(sigma: float) -> int:
+    """Return how many frames of the clips on each side a smoothed transition depends on."""
+    return RAMP_FRAMES + round(3 * sigma) if sigma else 0
 
 
 def ramp(count: int, start: int, end: int) -> Array:
@@ -83,11 +87,11 @@ def ramp(count: int, start: int, end: int) -> Array:
     return np.round(weights, 12)
 
 
-def gaussian(values: Array) -> Array:
+def gaussian(values: Array, sigma: float) -> Array:
     """Return values (times, n) under the low-pass filter; the ends are held."""
-    reach = round(3 * SIGMA_FRAMES)
+    reach = round(3 * sigma)
     offsets = np.arange(-reach, reach + 1)
-    kernel = np.exp(-0.5 * (offsets / SIGMA_FRAMES) ** 2)
+    kernel = np.exp(-0.5 * (offsets / sigma) ** 2)
     padded = np.pad(values, ((reach, reach), (0, 0)), mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(padded, len(kernel), axis=0)
     smooth: Array = windows @ (kernel / kernel.sum())
@@ -115,13 +119,13 @@ def _composed(graphs: PartGraphs, streams: PartStreams) -> tuple[Pose, Array]:
     return Pose(translations, turns), library.steps[streams.before[0]]
 
 
-def _smoothed(poses: Pose, weights: Array) -> Pose:
+def _smoothed(poses: Pose, weights: Array, sigma: float) -> Pose:
     """Return poses of which a share, (times,), is low-passed: rotations and translations."""
     turns = rotations.continuous(poses.rotations)
     count = len(turns)
-    low = rotations.normalize(gaussian(turns.reshape(count, -1)).reshape(turns.shape))
+    low = rotations.normalize(gaussian(turns.reshape(count, -1), sigma).reshape(turns.shape))
     share = weights[:, None]
-    moved = gaussian(poses.translations.reshape(count, -1)).reshape(poses.translations.shape)
+    moved = gaussian(poses.translations.reshape(count, -1), sigma).reshape(poses.translations.shape)
     return Pose(
         poses.translations + (moved - poses.translations) * share[..., None],
         rotations.nlerp(turns, low, share),

@@ -10,6 +10,7 @@ import numpy as np
 
 from characters.control.command import CharacterCommand
 from characters.control.controllers.controller import ControllerFrame
+from characters.control.controllers.recordings import read_motions
 from characters.control.controllers.walk import NOT_ACTIONS, WalkController
 from characters.errors import CharacterError
 from characters.locomotion.steering import ARRIVAL_DISTANCE_M, STANDSTILL, SteeringOutput
@@ -36,8 +37,8 @@ TEMPO_LIMITS = (0.8, 1.2)
 MAX_BEND_RAD_S = 0.5
 """By how much the root may turn besides what the clip turns, towards the target [rad/s]."""
 
-BEND_LAG_S = 0.2
-"""Time constant of that turn [s]."""
+BEND_LAG_S, TEMPO_LAG_S = 0.2, 0.3
+"""Time constants of that turn, and of the tempo [s]."""
 
 
 class GraphController(WalkController):
@@ -62,7 +63,7 @@ class GraphController(WalkController):
         self._behaviour = behaviours.nearest(0.0, 0.0)
         self._live = LiveMotion(source, behaviours.goals(self._behaviour))
         self._machine = StateMachine({"move": self._live, **self._actions}, "move")
-        self._bend = 0.0
+        self._bend, self._tempo = 0.0, 1.0
         self._to_stand = to_stand
         self._strides_m = np.hypot(*source.library.steps[:, :2].T)
         self._braking = False
@@ -113,11 +114,13 @@ class GraphController(WalkController):
         moving = min(speed, own_speed) > STANDING_M_S
         low, high = TEMPO_LIMITS
         tempo = min(max(speed / own_speed, low), high) if moving else 1.0
+        elapsed = self._time - now
+        self._tempo = low_pass(self._tempo, tempo, elapsed, TEMPO_LAG_S)
         if self._machine.state == "move":
-            self._live.set_tempo(tempo, now - self._machine.entered)
+            self._live.set_tempo(self._tempo, now - self._machine.entered)
         missing = yaw_rate - own_yaw_rate * tempo if moving else 0.0
         asked = min(max(missing, -MAX_BEND_RAD_S), MAX_BEND_RAD_S)
-        self._bend = low_pass(self._bend, asked, 1 / 60, BEND_LAG_S)
+        self._bend = low_pass(self._bend, asked, elapsed, BEND_LAG_S)
 
     def _frame(self, steered: SteeringOutput, going: bool) -> ControllerFrame:
         """Return what is played now; it stands when its clip does."""
@@ -144,8 +147,8 @@ def graph_factory(
     character
         Whom it is to play.
     motions
-        One file of `cubeling motions build`; without it, the walking and running clips of the
-        character.
+        One file of `cubeling motions build`, or motions, see `read_motions`; without any, the
+        walking and running clips of the character.
 
     Raises
     ------
@@ -156,15 +159,15 @@ def graph_factory(
         raise CharacterError(
             f"{character.name}: a motion graph needs a character that walks; leave out --controller"
         )
-    if len(motions) > 1 or any(Path(name).suffix != ".graph" for name in motions):
-        raise CharacterError(
-            f"{', '.join(motions)}: give one .graph file; build it with: cubeling motions build"
-        )
-    if motions:
-        stored = fitted(load_graph(Path(motions[0])), character)
+    files = [Path(name) for name in motions if name.endswith(".graph")]
+    if files and len(motions) > 1:
+        raise CharacterError(f"{', '.join(motions)}: give one .graph file alone, or only motions")
+    if files:
+        stored = fitted(load_graph(files[0]), character)
     else:
         own = [clip for name, clip in character.clips.items() if name in OWN_CLIPS]
-        stored = analyse(MotionLibrary.of(own, character.skeleton, character.anatomy))
+        clips = read_motions(motions, character) if motions else own
+        stored = analyse(MotionLibrary.of(clips, character.skeleton, character.anatomy))
     behaviours, make_source, to_stand = SOURCES[kind](stored)
 
     def make(character: Character, scale: float, place: RootDelta | None) -> GraphController:

@@ -99,8 +99,8 @@ def test_a_graph_of_a_file_is_retargeted_to_the_character(human: Character, tmp_
     ("name", "motions", "message"),
     [
         ("vleo", [], "needs a character that walks"),
-        ("human", ["walk.bvh"], r"walk.bvh: give one .graph file"),
-        ("human", ["a.graph", "b.graph"], r"give one .graph file"),
+        ("human", ["walk.bvh"], "walk.bvh"),
+        ("human", ["a.graph", "b.graph"], r"give one .graph file alone"),
         ("human", ["none.graph"], "No such file"),
     ],
 )

@@ -7,7 +7,7 @@ from characters.synthesis.building import part_graphs, standard_graph
 from characters.synthesis.library import MotionLibrary
 from characters.synthesis.parts import PartGraphs
 from characters.synthesis.progressive import SearchSettings, TransitionPlanner
-from characters.synthesis.stitching import CONTEXT_FRAMES, stitch
+from characters.synthesis.stitching import SIGMA_FRAMES, context_frames, stitch
 from characters.synthesis.storage import StoredGraph
 from characters.synthesis.transition import PartStreams, Transition
 
@@ -110,11 +110,12 @@ def test_smoothing_leaves_the_clips_alone(
 ) -> None:
     library = graphs.library
     for transition in transitions[:5]:
-        raw, smooth = (stitch(graphs, transition, smooth=on) for on in (False, True))
-        outside = np.r_[: CONTEXT_FRAMES - 5, len(raw.steps) - 5 : len(raw.steps)]
-        dots = np.abs((raw.poses.rotations * smooth.poses.rotations).sum(-1))
-        assert np.allclose(dots[outside], 1.0, atol=1e-9)
-        assert np.allclose(raw.steps[outside], smooth.steps[outside])
+        smooth, context = stitch(graphs, transition), context_frames(SIGMA_FRAMES)
+        outside = [*range(context - 5), *range(len(smooth.steps) - context + 5, len(smooth.steps))]
+        frames = smooth.frames[outside]
+        dots = np.abs((library.poses.rotations[frames] * smooth.poses.rotations[outside]).sum(-1))
+        assert np.allclose(dots, 1.0, atol=1e-9)
+        assert np.allclose(library.steps[frames], smooth.steps[outside])
         clip = smooth.clip(library.rate)
         steps = np.linalg.norm(np.diff(clip.track[:, :2], axis=0), axis=1)
         assert steps.max() < np.linalg.norm(library.steps[:, :2], axis=1).max() + 1e-3
