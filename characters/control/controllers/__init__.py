@@ -61,7 +61,8 @@ def _tree(character: Character, motions: Sequence[str]) -> ControllerFactory:
 CONTROLLER_CHOICES: dict[str, ControllerChoice] = {
     "tree": ControllerChoice("the character's own blend trees", _tree),
     "graph": ControllerChoice(
-        "a motion graph, of one .graph file or of its own clips", partial(graph_factory, "graph")
+        "a motion graph, of a .graph file, of motions or of its own clips",
+        partial(graph_factory, "graph"),
     ),
     "parts": ControllerChoice(
         "the same with a graph for each part of its body", partial(graph_factory, "parts")

@@ -1,15 +1,23 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from characters import CharacterError
+from characters.retargeting import load_recording
 from characters.synthesis.body import default_body_plan, read_body_plan
 from characters.synthesis.building import part_graphs, standard_graph
+from characters.synthesis.comparison import Comparison, common_requests
+from characters.synthesis.evaluation import together
+from characters.synthesis.graph import EdgeCosts
 from characters.synthesis.library import MotionLibrary
 from characters.synthesis.parts import PartGraphs
 from characters.synthesis.progressive import SearchSettings, TransitionPlanner
 from characters.synthesis.stitching import SIGMA_FRAMES, context_frames, stitch
 from characters.synthesis.storage import StoredGraph
 from characters.synthesis.transition import PartStreams, Transition
+
+CMU = Path(__file__).parents[4] / "shared" / "data" / "cmu-mocap"
 
 
 @pytest.fixture(scope="module")
@@ -138,3 +146,20 @@ def test_the_body_plan_of_a_file_is_checked(tmp_path, library: MotionLibrary) ->
         read_body_plan(path)
     with pytest.raises(CharacterError, match="no split profile 'SP6'"):
         default_body_plan().split("SP6", library.skeleton, library.anatomy)
+
+
+@pytest.mark.skipif(not CMU.is_dir(), reason="no motion capture at ../shared/data")
+def test_parts_answer_sooner_and_more_smoothly_than_the_whole_body() -> None:
+    """Orderings (b) and (d) of M3 on three recordings; many choices are a benchmark."""
+    takes = [load_recording(str(CMU / "16" / f"16_{take}.amc")) for take in (35, 21, 11)]
+    clips, first = [take.clip for take in takes], takes[0]
+    library = MotionLibrary.of(clips, first.skeleton, first.anatomy, 30.0)
+    whole = Comparison(library, EdgeCosts())
+    split = whole.split("SP4b")
+    standard = whole.standard(whole.standard_threshold)
+    graphs = split.graphs(split.threshold)
+    asked = common_requests(standard, graphs, 8)
+    one, parts = whole.answers(standard, asked), split.answers(graphs, asked)
+    assert together(one).response > 2.5 * together(parts).response
+    assert together(one).cost > together(parts).cost
+    assert together(parts).share("legs") == 0.0
