@@ -35,7 +35,7 @@ COMMANDS = {
     "calibrate": "Measure the camera's lens: wave the cube in front of it for about 20 seconds.",
     "latency": "Measure how late the picture is, with your own screen and camera.",
     "character": "Inspect characters and motions, and make clips to walk with.",
-    "motions": "Build and show motion graphs of your own recordings: where one clip can follow another.",
+    "motions": "Make motion graphs of your own recordings: where one clip can follow another.",
     "robot": "Simulate, try out and test robots, and list the serial ports.",
     "sounds": "Write all sounds as .wav files, to listen to them and to replace them.",
     "mood": "Plot and tabulate the moods of recorded sessions; print personalities.",
