@@ -48,6 +48,7 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.matching
 	$(BIN)/python -m tests.bench.controllers
 	$(BIN)/python -m tests.bench.picture
+	$(BIN)/python -m tests.bench.panels
 	$(BIN)/python -m tests.bench.looks
 	$(BIN)/python -m tests.bench.wire
 	$(BIN)/python -m tests.bench.peers

@@ -9,9 +9,12 @@ from app.ui.window import Window
 
 
 def press_at_the_end(window: Window, status) -> None:
-    """Press Enter a while after the end of the recording."""
+    """Show the panels, mirror the picture, and press Enter a while after the end."""
     report(window, status)
     waits.append(status.ending is not None)
+    if sum(waits) == 2 and status.ending is not None:
+        window.press(glfw.KEY_P)
+        window.press(glfw.KEY_M)
     if sum(waits) == 5:
         window.press(glfw.KEY_ENTER)
 

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from app.preferences import Preferences, PreferenceStore
+
 SCRIPT = Path(__file__).with_name("window_script.py")
 REPLAY_SCRIPT = SCRIPT.with_name("replay_script.py")
 
@@ -52,9 +54,13 @@ def test_the_window_shows_the_picture_and_handles_keys(on_screen, short_session)
     assert done.returncode == 0, done.stderr
 
 
-def test_a_replay_opens_the_window_and_waits_for_the_user_at_the_end(on_screen, short_session):
+def test_a_replay_opens_the_window_and_waits_for_the_user_at_the_end(
+    on_screen, short_session, tmp_path
+):
     done = on_screen(REPLAY_SCRIPT, "replay", short_session)
     assert done.returncode == 0, done.stderr
     counted = re.findall(r"(?:played|left out) +(\d+) frames", done.stdout)
     assert sum(map(int, counted)) == 60
     assert "waited 5 times" in done.stderr
+    kept = PreferenceStore(next(tmp_path.rglob("preferences.toml"))).now
+    assert kept == Preferences(panels_shown=True, mirror=True)
