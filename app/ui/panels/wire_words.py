@@ -54,7 +54,7 @@ class FrameDecoder:
                 yield Words(f"an unknown message, {body[:1].hex()}", False)
             else:
                 text = WORDS[type(message)](message, _names(catalogue))
-                yield Words(text, isinstance(message, ROUTINE))
+                yield Words(printable(text), isinstance(message, ROUTINE))
         if self._reader.errors > errors:
             yield Words("bytes that are no message", False)
 
@@ -68,10 +68,15 @@ class LineDecoder:
     def feed(self, data: bytes, catalogue: Catalogue | None) -> Iterator[Words]:
         """Return the lines that end in these bytes."""
         for line in self._reader.feed(data):
-            text = "".join(char if char.isprintable() else " " for char in line).strip()
+            text = printable(line).strip()
             if text:
                 more = "…" if len(text) > MAX_LINE_CHARS else ""
                 yield Words(text[:MAX_LINE_CHARS] + more, False)
+
+
+def printable(text: str) -> str:
+    """Return a text of a robot with blanks for control codes."""
+    return "".join(char if char.isprintable() else " " for char in text)
 
 
 DECODERS: dict[str, type[WireDecoder]] = {"cubeling": FrameDecoder}
@@ -82,9 +87,11 @@ Names = Callable[[int, int], str]
 
 
 def _names(catalogue: Catalogue | None) -> Names:
+    joints = catalogue.joints if catalogue else ()
+
     def name(item: int, index: int) -> str:
         kinds: dict[int, tuple[str, tuple[str, ...]]] = {
-            m.ITEM_JOINT: ("joint", ()),
+            m.ITEM_JOINT: ("joint", tuple(each.name for each in joints)),
             m.ITEM_MOTION: ("motion", catalogue.motions if catalogue else ()),
             m.ITEM_SOUND: ("sound", catalogue.sounds if catalogue else ()),
             m.ITEM_MOOD: ("mood", catalogue.moods if catalogue else ()),
@@ -98,6 +105,27 @@ def _names(catalogue: Catalogue | None) -> Names:
 def _express(message: m.Express, name: Names) -> str:
     mood = "" if message.mood == m.NOTHING else f" {name(m.ITEM_MOOD, message.mood)}"
     return f"{message.number}: feel{mood} {_emotion(message)}"
+
+
+def _move(message: m.Move, name: Names) -> str:
+    turned, released = (
+        [name(m.ITEM_JOINT, joint) for joint in range(m.JOINTS_MAX) if bits >> joint & 1]
+        for bits in (message.moved, message.released)
+    )
+    parts = [f"turn {', '.join(turned)} in {message.duration:.1f} s"] if turned else []
+    parts += [f"let go of {', '.join(released)}"] if released else []
+    return f"{message.number}: {' and '.join(parts) or 'move nothing'}"
+
+
+def _ack(message: m.Ack, name: Names) -> str:
+    if message.result == m.RESULT_TAKEN:
+        return f"{message.number} is taken"
+    return f"{message.number} is refused: {m.REFUSALS.get(message.result, 'another reason')}"
+
+
+def _log(message: m.Log, name: Names) -> str:
+    kind = {m.SEVERITY_INFO: "log", m.SEVERITY_WARNING: "warning"}.get(message.severity, "error")
+    return f"{kind}: {message.text}"
 
 
 def _state(message: m.State, name: Names) -> str:
@@ -121,13 +149,15 @@ WORDS: dict[type[Any], Callable[[Any, Names], str]] = {
     m.Beat: lambda beat, name: f"beat {beat.count}",
     m.Express: _express,
     m.Play: lambda play, name: f"{play.number}: play {name(play.item, play.index)}",
+    m.Move: _move,
     m.Stop: lambda stop, name: f"{stop.number}: stop",
     m.Bye: lambda bye, name: "goodbye",
     m.Welcome: lambda welcome, name: f"welcome, I am {welcome.name} with {welcome.firmware}",
     m.Joint: lambda joint, name: f"joint {joint.index} is {joint.name}",
     m.Name: lambda entry, name: f"{_names(None)(entry.item, entry.index)} is {entry.name}",
     m.State: _state,
-    m.Ack: lambda ack, name: f"{ack.number} is {'refused' if ack.result else 'taken'}",
+    m.Log: _log,
+    m.Ack: _ack,
     m.Gone: lambda gone, name: "this session is not open here",
 }
 """What each message of the protocol "cubeling" says; a test compares with `robot.protocol`."""

@@ -15,6 +15,7 @@ from app.ui.panels.drawing.places import (
     corner_of,
     entry_of,
     free_place,
+    overlap,
     place_at,
     place_of,
 )
@@ -178,11 +179,22 @@ class PanelBoard:
         return changes
 
     def _resize(self, panel: _OpenPanel, size: Size) -> None:
-        """Note a panel's size; one that has grown out of the window gets another place."""
-        grown, panel.size = size != panel.size, size
-        bottom = panel.corner[1] + size[1]
-        if grown and panel.place is not None and bottom > self._display[1] and not panel.chosen:
+        """Note a panel's size; one that has grown too large for its place gets another one."""
+        grown, panel.size = size[1] > panel.size[1], size
+        if not grown or panel.chosen or panel.place is None:
+            return
+        rect = (*panel.corner, *size)
+        outside = panel.corner[1] + size[1] > self._display[1]
+        if outside or any(overlap(rect, each) for each in self._others(panel)):
             panel.place = None
+
+    def _others(self, panel: _OpenPanel) -> list[Rect]:
+        """Return where the other panels lie."""
+        return [
+            (*each.corner, *each.size)
+            for each in self._open.values()
+            if each.place is not None and each is not panel
+        ]
 
     def _put(self, panel: _OpenPanel, resized: bool) -> None:
         """Set where a panel is drawn, unless it stays where it is."""
@@ -191,12 +203,7 @@ class PanelBoard:
             return
         if panel.place is None:
             top, gap = TOP * self._scale, GAP * self._scale
-            others = [
-                (*each.corner, *each.size)
-                for each in self._open.values()
-                if each.place is not None and each is not panel
-            ]
-            corner = free_place(panel.size, others, self._display, top, gap)
+            corner = free_place(panel.size, self._others(panel), self._display, top, gap)
             panel.place = place_at(corner, panel.size, self._display)
         elif not resized and panel.frames > MEASURED_AFTER:
             return

@@ -42,13 +42,13 @@ def free_place(
 
     def cost(corner: Size) -> tuple[float, float, float, float]:
         rect = (*corner, *size)
-        covered = sum(_overlap(rect, each) for each in others)
+        covered = sum(overlap(rect, each) for each in others)
         return covered, min(corner[0] - gap, last_column - corner[0]), *corner
 
     return min(candidates, key=cost, default=(gap, top))
 
 
-def _overlap(first: Rect, second: Rect) -> float:
+def overlap(first: Rect, second: Rect) -> float:
     """Return the area that two rectangles share [px²]."""
     wide, high = (
         min(first[axis] + first[axis + 2], second[axis] + second[axis + 2])

@@ -7,13 +7,14 @@ from hypothesis import strategies as st
 
 from app.ui.panels.wire_log import MAX_CHUNKS, MAX_MESSAGES, RATE_SPAN_S, WireLog
 from app.ui.panels.wire_words import WORDS, FrameDecoder
-from robot import Catalogue
+from robot import Catalogue, JointLimits
 from robot.protocol import messages as m
 from robot.protocol.schema import MESSAGES, pack
 from robot.protocol.wire import encode_frame
 
+JOINTS = tuple(JointLimits(name, -1.0, 1.0, 1.0) for name in ("neck", "tail"))
 CATALOGUE = Catalogue(
-    name="Dino", firmware="1", joints=(), motions=("dance", "bow"), sounds=("roar",),
+    name="Dino", firmware="1", joints=JOINTS, motions=("dance", "bow"), sounds=("roar",),
     moods=("neutral", "happy"),
 )  # fmt: skip
 
@@ -47,7 +48,7 @@ def test_messages_are_told_by_the_names_of_the_catalogue():
         ("tx", "12: feel happy (+0.50, -0.25)", 0.2),
         ("tx", "13: play dance", 0.3),
         ("rx", "12 is taken", 0.4),
-        ("rx", "13 is refused", 0.4),
+        ("rx", "13 is refused: it has no such entry", 0.4),
     ]
     assert [each.text for each in traffic.routine] == [
         "beat 3",
@@ -56,6 +57,18 @@ def test_messages_are_told_by_the_names_of_the_catalogue():
     assert traffic.rates["tx"][0] == 4 / RATE_SPAN_S
     assert traffic.rates["rx"][0] == 4 / RATE_SPAN_S
     assert log.read("cubeling", CATALOGUE, 10.0).rates == {"tx": (0.0, 0.0), "rx": (0.0, 0.0)}
+
+
+def test_moves_and_the_robots_log_are_told():
+    log = WireLog()
+    log("tx", frame(m.Move(5, 0.5, 0b10, 0b1, (0.1,) * 16)), 0.0)
+    log("rx", frame(m.Log(1, 0, 1, "low battery")) + frame(m.Log(2, 0, 7, "a\x1b[31mb")), 0.1)
+    messages = log.read("cubeling", CATALOGUE, 0.1).messages
+    assert [each.text for each in messages] == [
+        "5: turn neck in 0.5 s and let go of tail",
+        "warning: low battery",
+        "error: a [31mb",
+    ]
 
 
 def test_it_starts_in_the_middle_of_a_session_and_without_a_catalogue():
@@ -79,7 +92,15 @@ def test_any_bytes_are_survived(data):
 
 def test_every_message_can_be_told_without_names():
     for spec in MESSAGES.values():
-        kinds = {"u8": 1, "u16": 1, "u32": 1, "i16": 0.0, "text16": "x", "i16x16": (0.0,) * 16}
+        kinds = {
+            "u8": 1,
+            "u16": 1,
+            "u32": 1,
+            "i16": 0.0,
+            "text16": "x",
+            "text80": "x",
+            "i16x16": (0.0,) * 16,
+        }
         fields = {
             field.name: kinds[field.metadata["wire"][0]] for field in dataclasses.fields(spec.kind)
         }
