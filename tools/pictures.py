@@ -104,8 +104,8 @@ PANELS_TIME_S = 14.0
 
 
 def draw_panels() -> None:
-    """Draw the window with all its panels."""
-    given = {"panels": tuple(PANELS), "panels_shown": True}
+    """Draw the window with its panels; that of sound would cover the character."""
+    given = {"panels": tuple(name for name in PANELS if name != "sound"), "panels_shown": True}
     options = SessionOptions(scenario="companion", source=str(bundled("companion")))
     preferences = PreferenceStore(None, given)
     with no_display_needed(), open_session(options, preferences=preferences) as session:

@@ -14,6 +14,7 @@ import glfw
 import moderngl
 
 from app.preferences import PreferenceStore
+from app.ui.canvas import PICTURE_HEIGHT
 from app.ui.panels.drawing.board import PanelBoard
 from app.ui.panels.drawing.places import Rect
 from app.ui.panels.monitor import SessionMonitor
@@ -39,6 +40,9 @@ void main() { color = texture(panels, place); }
 
 REFRESH_INTERVAL_S = 0.2
 """Time between two contents of the panels: nobody can read numbers that change faster."""
+
+MIN_CARD_SHARE = 0.7
+"""Size of a design unit on a panel next to that on a card, at least."""
 
 PREMULTIPLIED = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
 """How colours are blended that were multiplied by their opacity."""
@@ -189,11 +193,13 @@ class PanelLayer:
 
 
 def ui_scale(window: Any) -> float:
-    """Return how many of the window's coordinates a design unit has, by the screen's settings.
+    """Return how many of the window's coordinates a design unit has.
 
-    It is 1 where the system counts in larger points than pixels, as on macOS.
+    It is what the system asks for: 1 where it counts in larger points than pixels, as on macOS. A
+    large window has more, so that who stands before it can read the panels too.
     """
     scale, _ = glfw.get_window_content_scale(window)
     pixels, _ = glfw.get_framebuffer_size(window)
-    points, _ = glfw.get_window_size(window)
-    return float(scale * points / pixels) if pixels and points else 1.0
+    points, height = glfw.get_window_size(window)
+    system = float(scale * points / pixels) if pixels and points else 1.0
+    return max(system, MIN_CARD_SHARE * height / PICTURE_HEIGHT)
