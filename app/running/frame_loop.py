@@ -45,6 +45,12 @@ class FrameLoop:
             session.robot.feel(self._hidden.emotion)
         return self._hidden
 
+    def preview(self) -> None:
+        """Show the last frame that was skipped, on the way to the one that is sought."""
+        if self._hidden is not None:
+            session = self._session
+            session.screen.preview(session.playground.drawn(self._hidden), session.robot.view())
+
     def show_skipped(self) -> None:
         """Show the last frame that was skipped, if none was shown after it."""
         if self._hidden is not None:

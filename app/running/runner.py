@@ -21,8 +21,8 @@ Progress = Callable[[Step], None]
 IDLE_INTERVAL_S = 0.02
 """While a session is paused, the player's requests are read so often."""
 
-SEEKING_INTERVAL_S = 0.1
-"""While it seeks, the screen is updated so often."""
+PREVIEW_INTERVAL_S = 0.25
+"""While it seeks, a picture on the way is shown so often."""
 
 CAMERA_LOST = "camera lost"
 CAMERA_BACK = "camera back"
@@ -81,7 +81,7 @@ class _Runner:
         self._gaps = _CameraGaps(session, summary)
         self._times = session.monitor.times
         self._start: float | None = None
-        self._updated = 0.0
+        self._shown_at = 0.0
 
     def run(self) -> None:
         screen = self._session.screen
@@ -143,7 +143,7 @@ class _Runner:
                 return
             with uninterrupted():
                 step = loop.skip(frame)
-            self._update_screen()
+            self._preview()
         elif session.pace is not None and not self._wait_for(frame, session.pace):
             loop.leave_out(frame)
             self._summary.left_out += 1
@@ -153,6 +153,7 @@ class _Runner:
             session.wire.align(frame.timestamp - session.robot.clock())
             with uninterrupted():
                 step = loop.step(frame)
+            self._shown_at = time.monotonic()
         self._transport.save_state(by_player)
         if self._progress is not None:
             self._progress(step)
@@ -165,12 +166,12 @@ class _Runner:
         self._times.lap("waiting")
         return in_time
 
-    def _update_screen(self) -> None:
-        """Let the player see where a seek is, and go on asking."""
+    def _preview(self) -> None:
+        """Let the player see how far a seek is, and ask for something else."""
         now = time.monotonic()
-        if now - self._updated >= SEEKING_INTERVAL_S:
-            self._updated = now
-            self._session.screen.wait(None)
+        if self._session.screen.attended and now - self._shown_at >= PREVIEW_INTERVAL_S:
+            self._loop.preview()
+            self._shown_at = time.monotonic()
 
 
 class _CameraGaps:

@@ -18,6 +18,9 @@ class Screen(Protocol):
     def show(self, step: Step, robot: RobotView) -> Inputs:
         """Show a step, and return what the player asks of the scenario."""
 
+    def preview(self, step: Step, robot: RobotView) -> None:
+        """Show a step on the way to the one that is sought, and process events."""
+
     def wait(self, notice: Notice | None) -> None:
         """Process events while no frame comes, and show a notice if there is one.
 
@@ -50,6 +53,9 @@ class NullScreen:
     def show(self, step: Step, robot: RobotView) -> Inputs:
         """Do nothing."""
         return Inputs()
+
+    def preview(self, step: Step, robot: RobotView) -> None:
+        """Do nothing."""
 
     def wait(self, notice: Notice | None) -> None:
         """Do nothing."""

@@ -96,13 +96,17 @@ class Window(Surface):
 
     def show(self, step: Step, robot: RobotView) -> Inputs:
         """Show a step, and return what the player asks of the scenario."""
+        self.preview(step, robot)
+        return self._layer.take_inputs()
+
+    def preview(self, step: Step, robot: RobotView) -> None:
+        """Show a step; what the player asks of the scenario is returned by the next `show`."""
         if self.closed:
-            return Inputs()
+            return
         if self._shown is not None and step.frame.timestamp < self._shown[0].frame.timestamp:
             self._layout = CardLayout()  # it goes on from an earlier frame
         self._shown = step, robot
         self._redraw()
-        return self._layer.take_inputs()
 
     def wait(self, notice: Notice | None) -> None:
         """Process events; show a notice over the last picture, or what has changed over it."""

@@ -25,7 +25,7 @@ class Player(NullScreen):
 
     def __init__(self, *script):
         self._script = deque(script)
-        self.steps = []
+        self.steps, self.previews = [], []
         self.statuses = []
         self.notices = []
         self.closed = False
@@ -35,6 +35,9 @@ class Player(NullScreen):
         self.steps.append(step)
         self._idle = 0
         return Inputs()
+
+    def preview(self, step, robot):
+        self.previews.append(step.frame.index)
 
     def wait(self, notice):
         self._idle += not self.statuses[-1].seeking
