@@ -18,15 +18,17 @@ test: .venv/ready-dev  ## run the whole test suite on all cores
 	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
 
 # The campaigns run for longer than a test suite may take, over random faults in virtual time.
-campaign: .venv/ready-dev  ## a million exchanges with robots, what the checksum misses, a day without growth
+campaign: .venv/ready-dev  ## a million exchanges with robots, what the checksum misses, a day without growth, an afternoon of key presses
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e6
 	$(BIN)/python -m tests.campaigns.crc
 	$(BIN)/python -m tests.campaigns.soak --hours 24
+	$(BIN)/python -m tests.campaigns.afternoon
 
 campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e5
 	$(BIN)/python -m tests.campaigns.crc --random 1.2e5 --trials 1e6
 	$(BIN)/python -m tests.campaigns.soak --hours 2.4
+	$(BIN)/python -m tests.campaigns.afternoon --scenes "every key" "record and replay"
 
 check: .venv/ready-dev  ## check formatting, lint, the floors of the rooms, and types
 	$(BIN)/ruff format --check .

@@ -16,7 +16,7 @@ from app.session import SessionOptions
 
 FOLDER = Path(__file__).parent.parent / "recordings"
 
-MAX_RECORDING_BYTES = 8_000_000
+MAX_RECORDING_BYTES = 6_000_000
 """Greatest size of a bundled recording [B]."""
 
 
