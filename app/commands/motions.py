@@ -29,7 +29,7 @@ from characters.synthesis.parts import PartGraphs
 from characters.synthesis.storage import StoredGraph, load_graph, save_graph
 
 app = typer.Typer(
-    help="Motion graphs from your own recordings: where one clip can go over into another.",
+    help="Make motion graphs of your own recordings: where one clip can follow another.",
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode="rich",

@@ -23,7 +23,11 @@ class _Switch:
 
     time: float
     state: str
-    motion: Motion
+    """Name of the state; "" for a motion that is none."""
+
+    motion: Motion | None
+    """What plays where it is no state, so that the states alone own their motions."""
+
     transition: Inertialization | None
     drift: OffsetDecay | None
     """Decaying difference of the velocity over the ground (x, z, yaw)."""
@@ -70,7 +74,7 @@ class StateMachine:
         self.length = length
         """Length of a transition [s]."""
         self._check(initial)
-        self._switches = [_Switch(0.0, initial, self.states[initial], None, None)]
+        self._switches = [_Switch(0.0, initial, None, None, None)]
 
     @property
     def state(self) -> str:
@@ -116,7 +120,7 @@ class StateMachine:
         """
         self._check(state)
         if state != self.state:
-            self._enter(state, self.states[state], time, crossfade, begin)
+            self._enter(state, None, time, crossfade, begin)
 
     def play(self, motion: Motion, time: float) -> None:
         """Play a motion from its start on, by inertialization; the state has no name then.
@@ -133,7 +137,7 @@ class StateMachine:
     def _enter(
         self,
         state: str,
-        motion: Motion,
+        motion: Motion | None,
         time: float,
         crossfade: float,
         begin: Callable[[], None] | None,
@@ -163,7 +167,7 @@ class StateMachine:
         self,
         last: _Switch,
         state: str,
-        motion: Motion,
+        motion: Motion | None,
         time: float,
         begin: Callable[[], None] | None,
     ) -> _Switch:
@@ -172,8 +176,9 @@ class StateMachine:
         old_delta = self._travel(last, time, time + _VELOCITY_STEP_S)
         if begin is not None:
             begin()
-        new = (motion.sample(0.0), motion.sample(_VELOCITY_STEP_S))
-        new_delta = motion.travel(0.0, _VELOCITY_STEP_S)
+        entered = motion or self.states[state]
+        new = (entered.sample(0.0), entered.sample(_VELOCITY_STEP_S))
+        new_delta = entered.travel(0.0, _VELOCITY_STEP_S)
         drift = _velocity(old_delta) - _velocity(new_delta)
         return _Switch(
             time,
@@ -197,9 +202,12 @@ class StateMachine:
             start = stop
         return total
 
+    def _motion(self, switch: _Switch) -> Motion:
+        return switch.motion or self.states[switch.state]
+
     def _shown(self, switch: _Switch, time: float) -> Pose:
         """Return the pose at a time [s] without later switches."""
-        pose = switch.motion.sample(time - switch.time)
+        pose = self._motion(switch).sample(time - switch.time)
         weight = switch.weight(time)
         if switch.below is not None and weight < 1.0:
             pose = mix([self._shown(switch.below, time), pose], [1.0 - weight, weight])
@@ -224,7 +232,7 @@ class StateMachine:
     def _own_travel(self, switch: _Switch, start: float, end: float) -> RootDelta:
         """Return the root delta of one state, with its decaying velocity difference."""
         start, end = start - switch.time, end - switch.time
-        delta = switch.motion.travel(start, end)
+        delta = self._motion(switch).travel(start, end)
         if switch.drift is None or start >= switch.drift.length:
             return delta
         x, z, yaw = switch.drift.integral(start, end).tolist()

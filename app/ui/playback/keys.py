@@ -60,7 +60,7 @@ BINDINGS: tuple[Binding, ...] = (
     *_row("Keep", "record a session, and end it", {"R": Record()}),
     *_row("View", "mirror the picture", {"M": WindowRequest.MIRROR}),
     *_row("View", "full screen, and back", {"F": WindowRequest.FULL_SCREEN}),
-    *_row("View", "panels: tracking, emotion, robot …", {"P": WindowRequest.PANELS}),
+    *_row("View", "panels with details", {"P": WindowRequest.PANELS}),
     *_row("View", "show these keys", {"?": WindowRequest.KEYS, "F1": WindowRequest.KEYS}),
     *_row("View", "close a card, then the window", {"Esc": WindowRequest.BACK}),
     *_row("View", "end the session", {"Q": WindowRequest.QUIT}),
