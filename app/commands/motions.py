@@ -16,17 +16,17 @@ from app.motion_graphs.recordings import clip_names, gather
 from app.motion_graphs.tables import make_tables
 from characters import Character
 from characters.retargeting.root import with_root_joint
-from characters.synthesis.building import (
+from characters.synthesis.graphs.building import (
     DEFAULT_PROFILE,
     analyse,
     check_choices,
     part_graphs,
     standard_graph,
 )
-from characters.synthesis.graph import MotionGraph
+from characters.synthesis.graphs.graph import MotionGraph
+from characters.synthesis.graphs.parts import PartGraphs
+from characters.synthesis.graphs.storage import StoredGraph, load_graph, save_graph
 from characters.synthesis.library import DEFAULT_RATE_HZ, MotionLibrary
-from characters.synthesis.parts import PartGraphs
-from characters.synthesis.storage import StoredGraph, load_graph, save_graph
 
 app = typer.Typer(
     help="Make motion graphs of your own recordings: where one clip can follow another.",

@@ -15,10 +15,10 @@ from app.errors import AppError
 from app.moods.colors import BORDER_COLOR, CURVE_STYLES, SECONDARY_COLOR, TEXT_COLOR
 from app.moods.plot import FILE_METADATA, PNG_DPI
 from app.moods.plot_layout import MATPLOTLIB_STYLE, printable
-from characters.synthesis.building import connectivity_curves, standard_graph
 from characters.synthesis.distances import DISTANCES, matrix
-from characters.synthesis.graph import MotionGraph
-from characters.synthesis.storage import WHOLE_BODY, StoredGraph
+from characters.synthesis.graphs.building import connectivity_curves, standard_graph
+from characters.synthesis.graphs.graph import MotionGraph
+from characters.synthesis.graphs.storage import WHOLE_BODY, StoredGraph
 
 SIZE_IN = (13.0, 6.4)
 """Width and height of the plot [in]."""

@@ -8,11 +8,17 @@ import numpy as np
 from app.motion_graphs.printed import CRITICAL, TABLE_3_2, TABLE_3_3, TABLE_3_4
 from characters.errors import CharacterError
 from characters.skeleton.pose import Array
-from characters.synthesis.comparison import Comparison, SplitComparison, common_requests
-from characters.synthesis.evaluation import Answers, Requests, Summary, requests, together
-from characters.synthesis.graph import EdgeCosts, MotionGraph
+from characters.synthesis.graphs.graph import EdgeCosts, MotionGraph
+from characters.synthesis.graphs.parts import PartGraphs
 from characters.synthesis.library import MotionLibrary
-from characters.synthesis.parts import PartGraphs
+from characters.synthesis.transitions.comparison import Comparison, SplitComparison, common_requests
+from characters.synthesis.transitions.evaluation import (
+    Answers,
+    Requests,
+    Summary,
+    requests,
+    together,
+)
 
 PROFILES = ("SP2", "SP3a", "SP3b", "SP4a", "SP4b", "SP5")
 CURVE_FACTORS = np.geomspace(0.02, 4.0, 12)

@@ -26,18 +26,18 @@ from rich.table import Table
 from app.motion_graphs.recordings import fitted
 from characters import Character
 from characters.retargeting import load_recording
-from characters.synthesis.candidates import find_candidates
-from characters.synthesis.comparison import (
+from characters.synthesis.distances import thesis_distance
+from characters.synthesis.graphs.candidates import find_candidates
+from characters.synthesis.graphs.graph import EdgeCosts, build_graph
+from characters.synthesis.graphs.parts import PartGraphs
+from characters.synthesis.library import MotionLibrary
+from characters.synthesis.transitions.comparison import (
     Comparison,
     bootstrap_interval,
     common_requests,
 )
-from characters.synthesis.distances import thesis_distance
-from characters.synthesis.evaluation import together
-from characters.synthesis.graph import EdgeCosts, build_graph
-from characters.synthesis.library import MotionLibrary
-from characters.synthesis.parts import PartGraphs
-from characters.synthesis.progressive import SearchSettings, TransitionPlanner
+from characters.synthesis.transitions.evaluation import together
+from characters.synthesis.transitions.progressive import SearchSettings, TransitionPlanner
 
 CMU = Path(__file__).parents[3] / "shared" / "data" / "cmu-mocap"
 FRAMES, MAX_GRAPH_S, MAX_MEMORY_MB, MAX_QUERY_MS = 6600, 10.0, 500.0, 5.0

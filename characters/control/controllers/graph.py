@@ -20,13 +20,18 @@ from characters.motion.state_machine import StateMachine
 from characters.retargeting.retarget import retarget
 from characters.smoothing import low_pass
 from characters.synthesis.behaviours import STANDING_M_S, Behaviours
-from characters.synthesis.building import analyse, part_graphs, standard_graph
-from characters.synthesis.graph import EdgeCosts, MotionGraph
+from characters.synthesis.graphs.building import analyse, part_graphs, standard_graph
+from characters.synthesis.graphs.graph import EdgeCosts, MotionGraph
+from characters.synthesis.graphs.search import CostToGo
+from characters.synthesis.graphs.storage import StoredGraph, load_graph, skeleton_identity
 from characters.synthesis.library import MotionLibrary
-from characters.synthesis.live import FrameSource, LiveMotion, PartsSource, StandardSource
-from characters.synthesis.progressive import TransitionPlanner
-from characters.synthesis.search import CostToGo
-from characters.synthesis.storage import StoredGraph, load_graph, skeleton_identity
+from characters.synthesis.transitions.live import (
+    FrameSource,
+    LiveMotion,
+    PartsSource,
+    StandardSource,
+)
+from characters.synthesis.transitions.progressive import TransitionPlanner
 
 YAW_RATE_PER_ANGULAR = -1.5
 """Yaw rate [rad/s] for each radian of Angular, as the clips of the bundled characters turn."""

@@ -6,7 +6,7 @@ import pytest
 from app.motion_graphs.page import write_page
 from app.motion_graphs.printed import TABLE_3_2, TABLE_3_3
 from app.motion_graphs.tables import Tables
-from characters.synthesis.storage import load_graph
+from characters.synthesis.graphs.storage import load_graph
 
 
 @pytest.fixture

@@ -14,9 +14,9 @@ from characters import (
     choose_controller,
 )
 from characters.control.command import ActionIntent, PosedCharacter
-from characters.synthesis.building import analyse
+from characters.synthesis.graphs.building import analyse
+from characters.synthesis.graphs.storage import save_graph
 from characters.synthesis.library import MotionLibrary
-from characters.synthesis.storage import save_graph
 
 RATE_HZ = 30
 TARGET = np.array([0.2, 0.25])

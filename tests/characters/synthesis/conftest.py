@@ -3,9 +3,9 @@
 import pytest
 
 from characters import Character, Clip, Pose
-from characters.synthesis.building import analyse
+from characters.synthesis.graphs.building import analyse
+from characters.synthesis.graphs.storage import StoredGraph
 from characters.synthesis.library import MotionLibrary
-from characters.synthesis.storage import StoredGraph
 
 
 @pytest.fixture(scope="session")

@@ -9,8 +9,8 @@ from characters.synthesis.body import default_body_plan
 from characters.synthesis.distances import DISTANCES, JointAngles, PointClouds, matrix
 from characters.synthesis.distances.angles import transition_probabilities
 from characters.synthesis.distances.points import windows
+from characters.synthesis.graphs.parts import part_distance, threshold_shares
 from characters.synthesis.library import MotionLibrary
-from characters.synthesis.parts import part_distance, threshold_shares
 
 
 @pytest.mark.parametrize("name", DISTANCES)

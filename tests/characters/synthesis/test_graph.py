@@ -9,16 +9,16 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
 from characters import CharacterError
-from characters.synthesis.building import standard_graph
-from characters.synthesis.candidates import Candidates, find_candidates
-from characters.synthesis.components import largest_component, strong_components
 from characters.synthesis.distances import matrix, thesis_distance
-from characters.synthesis.edges import Edges
-from characters.synthesis.graph import EdgeCosts, build_graph
+from characters.synthesis.graphs.building import standard_graph
+from characters.synthesis.graphs.candidates import Candidates, find_candidates
+from characters.synthesis.graphs.components import largest_component, strong_components
+from characters.synthesis.graphs.edges import Edges
+from characters.synthesis.graphs.graph import EdgeCosts, build_graph
+from characters.synthesis.graphs.search import HopCosts, cost_to_go
+from characters.synthesis.graphs.storage import WHOLE_BODY, StoredGraph
 from characters.synthesis.library import MotionLibrary
-from characters.synthesis.playback import path_clip
-from characters.synthesis.search import HopCosts, cost_to_go
-from characters.synthesis.storage import WHOLE_BODY, StoredGraph
+from characters.synthesis.transitions.playback import path_clip
 
 
 @st.composite

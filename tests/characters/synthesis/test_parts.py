@@ -6,16 +6,16 @@ import pytest
 from characters import CharacterError
 from characters.retargeting import load_recording
 from characters.synthesis.body import default_body_plan, read_body_plan
-from characters.synthesis.building import part_graphs, standard_graph
-from characters.synthesis.comparison import Comparison, common_requests
-from characters.synthesis.evaluation import together
-from characters.synthesis.graph import EdgeCosts
+from characters.synthesis.graphs.building import part_graphs, standard_graph
+from characters.synthesis.graphs.graph import EdgeCosts
+from characters.synthesis.graphs.parts import PartGraphs
+from characters.synthesis.graphs.storage import StoredGraph
 from characters.synthesis.library import MotionLibrary
-from characters.synthesis.parts import PartGraphs
-from characters.synthesis.progressive import SearchSettings, TransitionPlanner
-from characters.synthesis.stitching import SIGMA_FRAMES, context_frames, stitch
-from characters.synthesis.storage import StoredGraph
-from characters.synthesis.transition import PartStreams, Transition
+from characters.synthesis.transitions.comparison import Comparison, common_requests
+from characters.synthesis.transitions.evaluation import together
+from characters.synthesis.transitions.progressive import SearchSettings, TransitionPlanner
+from characters.synthesis.transitions.stitching import SIGMA_FRAMES, context_frames, stitch
+from characters.synthesis.transitions.transition import PartStreams, Transition
 
 CMU = Path(__file__).parents[4] / "shared" / "data" / "cmu-mocap"
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from characters import CharacterError
-from characters.synthesis.building import part_graphs, standard_graph
-from characters.synthesis.storage import StoredGraph, load_graph, save_graph
+from characters.synthesis.graphs.building import part_graphs, standard_graph
+from characters.synthesis.graphs.storage import StoredGraph, load_graph, save_graph
 
 
 @pytest.fixture

@@ -11,11 +11,11 @@ from characters.motion.inertialization import Inertialization, OffsetDecay
 from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
-from characters.synthesis.graph import MotionGraph
+from characters.synthesis.graphs.graph import MotionGraph
 from characters.synthesis.library import MotionLibrary
-from characters.synthesis.playback import GraphPlayer
-from characters.synthesis.progressive import TransitionPlanner
-from characters.synthesis.stitching import StitchedMotion, stitch
+from characters.synthesis.transitions.playback import GraphPlayer
+from characters.synthesis.transitions.progressive import TransitionPlanner
+from characters.synthesis.transitions.stitching import StitchedMotion, stitch
 
 Goals = NDArray[np.bool_]
 """Which frames meet a request, (frames,)."""

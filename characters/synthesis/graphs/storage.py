@@ -19,7 +19,7 @@ from characters.errors import CharacterError
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Pose, Skeleton
-from characters.synthesis.candidates import Candidates
+from characters.synthesis.graphs.candidates import Candidates
 from characters.synthesis.library import MotionLibrary
 
 FILE_VERSION = 1

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.skeleton.pose import Array
-from characters.synthesis.edges import Edges, Nodes
+from characters.synthesis.graphs.edges import Edges, Nodes
 
 
 @dataclass(frozen=True)

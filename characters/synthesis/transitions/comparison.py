@@ -8,10 +8,18 @@ import numpy as np
 
 from characters.skeleton.pose import Array
 from characters.synthesis.body import BodyPart, default_body_plan
-from characters.synthesis.building import LARGEST_THRESHOLD, critical_threshold
-from characters.synthesis.candidates import Candidates, find_candidates
 from characters.synthesis.distances import JointAngles, thesis_distance
-from characters.synthesis.evaluation import (
+from characters.synthesis.graphs.building import LARGEST_THRESHOLD, critical_threshold
+from characters.synthesis.graphs.candidates import Candidates, find_candidates
+from characters.synthesis.graphs.graph import EdgeCosts, MotionGraph, build_graph
+from characters.synthesis.graphs.parts import (
+    PartGraphs,
+    part_candidates,
+    part_distance,
+    threshold_shares,
+)
+from characters.synthesis.library import MotionLibrary
+from characters.synthesis.transitions.evaluation import (
     Answers,
     Requests,
     by_pair,
@@ -19,15 +27,7 @@ from characters.synthesis.evaluation import (
     requests,
     standard_outcome,
 )
-from characters.synthesis.graph import EdgeCosts, MotionGraph, build_graph
-from characters.synthesis.library import MotionLibrary
-from characters.synthesis.parts import (
-    PartGraphs,
-    part_candidates,
-    part_distance,
-    threshold_shares,
-)
-from characters.synthesis.progressive import SearchSettings, TransitionPlanner
+from characters.synthesis.transitions.progressive import SearchSettings, TransitionPlanner
 
 LOWEST_THRESHOLD = 1e-4
 

@@ -11,10 +11,10 @@ from characters.motion.clip import Clip
 from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
-from characters.synthesis.edges import Nodes
+from characters.synthesis.graphs.edges import Nodes
+from characters.synthesis.graphs.parts import PartGraphs
 from characters.synthesis.library import placed_clip
-from characters.synthesis.parts import PartGraphs
-from characters.synthesis.transition import PartStreams, Transition
+from characters.synthesis.transitions.transition import PartStreams, Transition
 
 SIGMA_FRAMES = 2.0
 """Standard deviation of the low-pass filter [frames] (M2.5, [GAP])."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from characters.skeleton.pose import Array
-from characters.synthesis.edges import Nodes
+from characters.synthesis.graphs.edges import Nodes
 from characters.synthesis.library import Frames, MotionLibrary
 
 

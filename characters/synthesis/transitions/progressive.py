@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
-from characters.synthesis.edges import Edges, Nodes
-from characters.synthesis.graph import MotionGraph
-from characters.synthesis.parts import PartGraphs
-from characters.synthesis.search import HopCosts
-from characters.synthesis.transition import PartMove, Transition
+from characters.synthesis.graphs.edges import Edges, Nodes
+from characters.synthesis.graphs.graph import MotionGraph
+from characters.synthesis.graphs.parts import PartGraphs
+from characters.synthesis.graphs.search import HopCosts
+from characters.synthesis.transitions.transition import PartMove, Transition
 
 Goals = NDArray[np.bool_]
 """Which frames meet a request, (frames,)."""

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.synthesis.body import BodyPart
-from characters.synthesis.candidates import Candidates, find_candidates
 from characters.synthesis.distances.angles import JointAngles
-from characters.synthesis.graph import EdgeCosts, MotionGraph, build_graph
+from characters.synthesis.graphs.candidates import Candidates, find_candidates
+from characters.synthesis.graphs.graph import EdgeCosts, MotionGraph, build_graph
 from characters.synthesis.library import MotionLibrary
 
 

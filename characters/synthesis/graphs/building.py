@@ -8,17 +8,17 @@ import numpy as np
 from characters.errors import CharacterError
 from characters.skeleton.pose import Array
 from characters.synthesis.body import default_body_plan
-from characters.synthesis.candidates import Candidates, find_candidates
 from characters.synthesis.distances import DISTANCES, FrameDistance, JointAngles
-from characters.synthesis.graph import EdgeCosts, MotionGraph, build_graph
-from characters.synthesis.library import MotionLibrary
-from characters.synthesis.parts import (
+from characters.synthesis.graphs.candidates import Candidates, find_candidates
+from characters.synthesis.graphs.graph import EdgeCosts, MotionGraph, build_graph
+from characters.synthesis.graphs.parts import (
     PartGraphs,
     part_candidates,
     part_distance,
     threshold_shares,
 )
-from characters.synthesis.storage import WHOLE_BODY, StoredGraph
+from characters.synthesis.graphs.storage import WHOLE_BODY, StoredGraph
+from characters.synthesis.library import MotionLibrary
 
 DEFAULT_PROFILE = "SP4b"
 """The split profile of evaluation I of the thesis (erratum 4)."""

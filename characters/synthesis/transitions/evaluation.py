@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from characters.skeleton.pose import Array, Pose
 from characters.synthesis.distances import thesis_distance
-from characters.synthesis.edges import Nodes
-from characters.synthesis.graph import MotionGraph
+from characters.synthesis.graphs.edges import Nodes
+from characters.synthesis.graphs.graph import MotionGraph
 from characters.synthesis.library import MotionLibrary
-from characters.synthesis.progressive import TransitionPlanner
-from characters.synthesis.stitching import stitch
+from characters.synthesis.transitions.progressive import TransitionPlanner
+from characters.synthesis.transitions.stitching import stitch
 
 Goals = NDArray[np.bool_]
 """Which frames meet a request, (frames,)."""

@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from characters.errors import CharacterError
 from characters.skeleton.pose import Array
-from characters.synthesis.candidates import Candidates
-from characters.synthesis.components import largest_component
 from characters.synthesis.distances.distance import FrameDistance
-from characters.synthesis.edges import Edges, Nodes
+from characters.synthesis.graphs.candidates import Candidates
+from characters.synthesis.graphs.components import largest_component
+from characters.synthesis.graphs.edges import Edges, Nodes
+from characters.synthesis.graphs.search import CostToGo, cost_to_go
 from characters.synthesis.library import MotionLibrary
-from characters.synthesis.search import CostToGo, cost_to_go
 
 EdgeRule = Literal["successor", "same"]
 

@@ -1,0 +1,1 @@
+"""Graphs over the frames of recordings, of the whole body and of its parts, and their files."""
