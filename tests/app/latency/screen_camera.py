@@ -1,28 +1,15 @@
-"""A camera that sees a virtual screen: an MJPEG server that reads the framebuffer of Xvfb."""
+"""A camera that sees a virtual screen: an MJPEG server that reads its pixels."""
 
 import socketserver
 import threading
 import time
 from collections import deque
 from http.server import BaseHTTPRequestHandler
-from pathlib import Path
 
 import cv2
 import numpy as np
 
 BOUNDARY = "frame"
-
-
-def framebuffer(folder: Path) -> np.ndarray:
-    """Return what `Xvfb -fbdir FOLDER` shows, (height, width, 4) BGRX, always as it is now.
-
-    The file is an X window dump: a header of big-endian numbers, a colour map, and the pixels.
-    """
-    path = folder / "Xvfb_screen0"
-    header = np.fromfile(path, ">u4", 25)
-    size, width, height, colors = (int(header[index]) for index in (0, 4, 5, 19))
-    offset = size + 12 * colors
-    return np.memmap(path, np.uint8, "r", offset, (height, width, 4))
 
 
 class ScreenCamera(socketserver.ThreadingTCPServer):
@@ -31,7 +18,7 @@ class ScreenCamera(socketserver.ThreadingTCPServer):
     Parameters
     ----------
     screen
-        From `framebuffer`.
+        `VirtualScreen.pixels`, (height, width, 4) BGRX.
     delay
         From the look to the sending of the picture [s].
     rate

@@ -3,9 +3,7 @@
 Each test runs in its own process: a graphics driver keeps the first display that it opens.
 """
 
-import os
 import re
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -13,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from app.preferences import Preferences, PreferenceStore
+from tests.virtual_screen import VirtualScreen
 
 SCRIPT = Path(__file__).with_name("window_script.py")
 REPLAY_SCRIPT = SCRIPT.with_name("replay_script.py")
@@ -21,32 +20,23 @@ REPLAY_SCRIPT = SCRIPT.with_name("replay_script.py")
 @pytest.fixture
 def on_screen(tmp_path):
     """Run Python with a virtual screen, as `.ci/run` installs it."""
-    if shutil.which("Xvfb") is None:
+    if not VirtualScreen.installed():
         pytest.skip("Xvfb is not installed")
-    server = subprocess.Popen(
-        ["Xvfb", "-displayfd", "1", "-screen", "0", "1600x900x24", "-nolisten", "tcp"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-    )
-    assert server.stdout is not None
-    display = f":{int(server.stdout.readline())}"
-    # Where the systems keep preferences: a test does not meet those of the user.
+    # Where the systems keep preferences; the tests look at them.
     folders = {name: str(tmp_path) for name in ("HOME", "XDG_CONFIG_HOME", "APPDATA")}
+    with VirtualScreen() as screen:
 
-    def run(*arguments):
-        return subprocess.run(
-            [sys.executable, *map(str, arguments)],
-            env={**os.environ, **folders, "DISPLAY": display, "COLUMNS": "120"},
-            cwd=tmp_path,
-            capture_output=True,
-            text=True,
-            timeout=120,
-        )
+        def run(*arguments):
+            return subprocess.run(
+                [sys.executable, *map(str, arguments)],
+                env={**screen.environment, **folders},
+                cwd=tmp_path,
+                capture_output=True,
+                text=True,
+                timeout=120,
+            )
 
-    yield run
-    server.terminate()
-    server.wait(timeout=10)
-    server.stdout.close()
+        yield run
 
 
 def test_the_window_shows_the_picture_and_handles_keys(on_screen, short_session):

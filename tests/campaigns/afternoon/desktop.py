@@ -1,26 +1,23 @@
 """A virtual desktop with a keyboard and a mouse, and the programs that run on it."""
 
-import os
 import subprocess
 import sys
 import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
+
+from tests.virtual_screen import VirtualScreen
 
 PATIENCE_S = 60.0
 """Longest wait for anything to happen on a busy computer with two cores."""
 
 POLL_S = 0.1
 """Time between two looks at what is waited for."""
-
-XWD_FIELDS = 25
-"""Number of 32-bit fields in the header of X's picture format."""
 
 
 class AfternoonError(Exception):
@@ -37,47 +34,12 @@ def wait_for(what: str, happens: Callable[[], Any]) -> Any:
     raise AfternoonError(f"waited {PATIENCE_S:.0f} s for {what}")
 
 
-class Desktop:
-    """An X server whose screen is a file, so that nothing has to be installed to see it.
-
-    Parameters
-    ----------
-    size
-        Width and height of the screen [px].
-    """
-
-    def __init__(self, size: tuple[int, int] = (1600, 900)) -> None:
-        self._folder = TemporaryDirectory()
-        screen = f"{size[0]}x{size[1]}x24"
-        self._server = subprocess.Popen(
-            ["Xvfb", "-displayfd", "1", "-screen", "0", screen, "-nolisten", "tcp"]
-            + ["-fbdir", self._folder.name],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-        )
-        assert self._server.stdout is not None
-        self.environment = {
-            **os.environ,
-            "DISPLAY": f":{int(self._server.stdout.readline())}",
-            "COLUMNS": "120",
-        }
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._server.terminate()
-        self._server.wait(timeout=10)
-        self._folder.cleanup()
+class Desktop(VirtualScreen):
+    """A virtual screen with a keyboard and a mouse, by xdotool."""
 
     def screenshot(self) -> NDArray[np.uint8]:
-        """Return what the screen shows, (height, width, 3) BGR."""
-        data = (Path(self._folder.name) / "Xvfb_screen0").read_bytes()
-        header = np.frombuffer(data, ">u4", XWD_FIELDS)
-        start, width, height = int(header[0] + 12 * header[19]), int(header[4]), int(header[5])
-        line = int(header[12])
-        rows = np.frombuffer(data, np.uint8, line * height, start).reshape(height, line // 4, 4)
-        return rows[:, :width, :3].copy()
+        """Return what the screen shows now, (height, width, 3) BGR."""
+        return self.pixels()[..., :3].copy()
 
     def press(self, *keys: str) -> None:
         """Press keys one after the other, by their names in X (`space`, `Left`, `question`)."""
