@@ -24,7 +24,7 @@ from app.errors import AppError
 PROGRAM = "cubeling"
 """Value of the key `program` in every file of preferences; no other file is overwritten."""
 
-HEADING = (
+FILE_COMMENT = (
     "# How the window of Cubeling was left. Options of the command line override it;\n"
     "# remove this file to start afresh.\n"
 )
@@ -150,4 +150,4 @@ def _document(preferences: Preferences) -> str:
         for name, value in values.items()
         if value is not None
     ]
-    return HEADING + "".join(lines).replace("\x7f", "\\u007f")
+    return FILE_COMMENT + "".join(lines).replace("\x7f", "\\u007f")

@@ -20,7 +20,7 @@ from characters.synthesis.transitions.evaluation import (
     together,
 )
 
-PROFILES = ("SP2", "SP3a", "SP3b", "SP4a", "SP4b", "SP5")
+SPLIT_PROFILES = ("SP2", "SP3a", "SP3b", "SP4a", "SP4b", "SP5")
 CURVE_FACTORS = np.geomspace(0.02, 4.0, 12)
 """Thresholds of the curves, as multiples of the standard graph's critical one."""
 
@@ -75,7 +75,7 @@ def make_tables(
         )
     progress("critical thresholds")
     whole = Comparison(library, EdgeCosts())
-    splits = {profile: whole.split(profile) for profile in PROFILES}
+    splits = {profile: whole.split(profile) for profile in SPLIT_PROFILES}
     critical = {"SMG": whole.standard_threshold}
     critical |= {profile: split.threshold for profile, split in splits.items()}
     tables = Tables(library.names, critical)
@@ -85,7 +85,7 @@ def make_tables(
     _table_3_3(tables, whole, splits["SP4b"], stride)
     progress("table 3.4")
     _table_3_4(tables, library, stride)
-    for profile in ("SMG", *PROFILES):
+    for profile in ("SMG", *SPLIT_PROFILES):
         progress(f"curves of {profile}")
         _curves(tables, whole, splits.get(profile), profile, 2 * stride)
     return tables
@@ -143,13 +143,15 @@ def _table_3_4(tables: Tables, library: MotionLibrary, stride: int) -> None:
     for origin in range(4):
         for target in range(origin + 1, 4):
             pair = Comparison(library.only((origin, target)), EdgeCosts())
-            splits = {profile: pair.split(profile) for profile in PROFILES}
+            splits = {profile: pair.split(profile) for profile in SPLIT_PROFILES}
             least = min(split.threshold for split in splits.values())
             found = {profile: split.graphs(least) for profile, split in splits.items()}
             best = {}
             for way in ((0, 1), (1, 0)):
-                ranks = {name: _rank(splits[name], found[name], way, stride) for name in PROFILES}
-                best[way] = min(PROFILES, key=ranks.__getitem__)
+                ranks = {
+                    name: _rank(splits[name], found[name], way, stride) for name in SPLIT_PROFILES
+                }
+                best[way] = min(SPLIT_PROFILES, key=ranks.__getitem__)
             for (a, b), name in best.items():
                 ends = (origin, target)[a], (origin, target)[b]
                 row = f"C{ends[0] + 1} → C{ends[1] + 1}"

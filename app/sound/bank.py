@@ -13,7 +13,7 @@ from app.errors import AppError
 from app.sound.sounds import SOUNDS
 from app.sound.synthesis import SAMPLE_RATE, Array, levelled
 
-VARIANTS = 4
+VARIANT_COUNT = 4
 """Variants of each synthesised sound, which differ a little, so that repetition does not tire."""
 
 MAX_FILE_S = 10.0
@@ -76,7 +76,7 @@ def synthesised(name: str) -> list[Array]:
     seed = zlib.crc32(name.encode())
     return [
         levelled(sound.make(np.random.default_rng([seed, variant])), sound.level)
-        for variant in range(VARIANTS)
+        for variant in range(VARIANT_COUNT)
     ]
 
 

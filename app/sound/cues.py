@@ -8,7 +8,7 @@ import numpy as np
 
 from affect.words import closest_word
 from app.pipeline.step import Step
-from app.sound.sounds import MOODS
+from app.sound.sounds import MOOD_SOUNDS
 from characters import Character, Footfalls, PosedCharacter
 
 EDGE_RAD = math.radians(30.0)
@@ -21,10 +21,10 @@ MOUTHS = {"kiss": ("ou", 1.05, 0.4), "shout": ("aa", 0.5, 0.3)}
 """For actions that sound each time the mouth moves: the morph, the weight from which on it sounds,
 and the weight below which it may sound again. "mwah" begins before the lips part."""
 
-GAITS = ("walk", "run")
+GAIT_STATES = ("walk", "run")
 """States of a character in which all feet leave the ground without a leap."""
 
-NO_ACTIONS = ("idle", *GAITS)
+NO_ACTIONS = ("idle", *GAIT_STATES)
 """States of a character that are no actions."""
 
 LEAP_CLEARANCE = 0.035
@@ -119,7 +119,7 @@ class _FootCues:
             for fall in falls:
                 rate = self._rate * (1.03 if fall.foot % 2 else 0.97)
                 cues.append(Cue(name, _clipped(0.25 + 0.22 * fall.speed), rate=rate))
-        leaps = self._footfalls.clearance > LEAP_CLEARANCE and posed.state not in GAITS
+        leaps = self._footfalls.clearance > LEAP_CLEARANCE and posed.state not in GAIT_STATES
         if leaps and not self._leaping:
             cues.append(Cue("hop"))
         self._leaping = leaps or (self._leaping and not falls)
@@ -166,7 +166,7 @@ class _MoodCues:
         if emotion.label == self._label or now - self._last < MIN_MOOD_S:
             return []
         self._label, self._last = emotion.label, now
-        return [Cue(closest_word(MOODS, emotion) or "neutral")]
+        return [Cue(closest_word(MOOD_SOUNDS, emotion) or "neutral")]
 
 
 def _pan(step: Step) -> float:

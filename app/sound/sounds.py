@@ -251,5 +251,5 @@ SOUNDS: dict[str, Sound] = {
 }
 """Every sound by its name; that of an action has the action's name. A new one is one line here."""
 
-MOODS = ("neutral", "happy", "angry", "sad", "surprised", "afraid", "disgusted")
+MOOD_SOUNDS = ("neutral", "happy", "angry", "sad", "surprised", "afraid", "disgusted")
 """The sounds of the robot's moods; a mood with another name sounds like the nearest of them."""

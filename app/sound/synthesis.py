@@ -28,7 +28,7 @@ MAX_HARMONIC_HZ = 8_000.0
 LOUDNESS_WINDOW_S = 0.05
 """The loudness of a sound is the RMS of its loudest part of this length."""
 
-PEAK = 0.9
+MAX_AMPLITUDE = 0.9
 """No sample of a sound is greater."""
 
 
@@ -138,4 +138,4 @@ def levelled(sound: Array, level: float) -> Array:
     ends = np.minimum(np.arange(len(sound)), np.arange(len(sound))[::-1])
     sound = sound * np.minimum(ends / (0.002 * SAMPLE_RATE), 1.0)
     sound = sound * 10.0 ** ((level - loudness(sound)) / 20.0)
-    return sound * min(1.0, PEAK / max(float(np.abs(sound).max()), 1e-12))
+    return sound * min(1.0, MAX_AMPLITUDE / max(float(np.abs(sound).max()), 1e-12))

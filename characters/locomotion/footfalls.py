@@ -16,7 +16,7 @@ from characters.skeleton.pose import Array, Pose, Skeleton
 _LANDING_HEIGHT, _LIFTING_HEIGHT = 0.015, 0.02
 _LANDING_SPEED, _LIFTING_SPEED = 0.4, 0.6
 _LANDING_SPEED_SHARE = 0.3  # of the swing's greatest speed: a fast foot slows down as it lands
-_MAX_GAP_S = 0.25  # after a longer gap between frames, the feet start anew
+_MAX_GAP_S = 0.25  # a longer gap between frames resets the feet
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.errors import AppError
-from app.preferences import HEADING, Preferences, PreferenceStore
+from app.preferences import FILE_COMMENT, Preferences, PreferenceStore
 
 SIZES = st.none() | st.tuples(st.integers(320, 9999), st.integers(180, 9999))
 PREFERENCES = st.builds(
@@ -108,7 +108,7 @@ def test_a_linked_file_stays_a_link(tmp_path):
     store.change(full_screen=True)
     store.save()
     assert link.is_symlink()
-    assert target.read_text().startswith(HEADING)
+    assert target.read_text().startswith(FILE_COMMENT)
 
 
 def test_a_window_that_is_too_small_is_refused():

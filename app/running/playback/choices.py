@@ -44,7 +44,7 @@ class Choices:
         return self._search is not None and not self._search.over
 
     def look(self) -> None:
-        """Look for choices, anew."""
+        """Look for choices again."""
         if not self.looking:
             with self._lock:
                 self._found = ()

@@ -8,7 +8,7 @@ from app.ui.panels.monitor import EMOTION_SPAN_S, SessionMonitor
 AROUSAL_COLOR = bgr("#d55e00")
 """Colour of the character's arousal, as in the mood plot."""
 
-MARKS = (
+SCALE_MARKS = (
     ((1.0, "pleasant"), (0.0, ""), (-1.0, "unpleasant")),
     ((1.0, "excited"), (0.0, ""), (-1.0, "calm")),
 )
@@ -27,7 +27,7 @@ def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
             Curve("robot", table[:, 0], table[:, column + 2], ROBOT_COLOR, 5.0),
             Curve("character", table[:, 0], table[:, column], color),
         )
-        plots.append(Plot(title, curves, EMOTION_SPAN_S, -1.0, 1.0, MARKS[column - 1]))
+        plots.append(Plot(title, curves, EMOTION_SPAN_S, -1.0, 1.0, SCALE_MARKS[column - 1]))
     return (
         Fact("Character", _words(feels.label, feels)),
         Fact("Robot", theirs, "quiet" if shown is None else "plain"),

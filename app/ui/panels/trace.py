@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 
 class Trace:
-    """Keeps rows of values for a time; time that goes back, as after a seek, starts it anew.
+    """Keeps rows of values for a time; time that goes back, as after a seek, empties it first.
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ from app.ui.panels.wire_words import DECODERS, LineDecoder, WireDecoder, Words
 from robot import Catalogue
 from robot.link.exchange import Direction
 
-DIRECTIONS: tuple[Direction, ...] = ("tx", "rx")
+BOTH_DIRECTIONS: tuple[Direction, ...] = ("tx", "rx")
 """To the robot, and from it."""
 
 MAX_CHUNKS = 512
@@ -82,8 +82,8 @@ class WireLog:
                 self._keep(words, WireMessage(time, direction, words.text))
         while self._counted and now - self._counted[0][0] > RATE_SPAN_S:
             self._counted.popleft()
-        routine = tuple(self._routine[way] for way in DIRECTIONS if way in self._routine)
-        rates = {way: self._rate(way) for way in DIRECTIONS}
+        routine = tuple(self._routine[way] for way in BOTH_DIRECTIONS if way in self._routine)
+        rates = {way: self._rate(way) for way in BOTH_DIRECTIONS}
         return Traffic(tuple(self._messages), routine, rates)
 
     def _keep(self, words: Words, message: WireMessage) -> None:

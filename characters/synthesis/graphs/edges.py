@@ -47,7 +47,7 @@ class Edges:
         return Edges(self.count, self.sources[keep], self.targets[keep], self.weights[keep])
 
     def among(self, nodes: Nodes) -> "Edges":
-        """Return the edges between some nodes, ascending, which are numbered anew from 0."""
+        """Return the edges between some nodes, ascending, which are renumbered from 0."""
         number = np.full(self.count, -1, np.intp)
         number[nodes] = np.arange(len(nodes))
         sources, targets = number[self.sources], number[self.targets]

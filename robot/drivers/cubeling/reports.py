@@ -34,7 +34,7 @@ class RobotReports:
         self._log_count: int | None = None
 
     def start_session(self) -> None:
-        """Begin the clock and the count of the log anew: the robot may have booted."""
+        """Reset the clock and the count of the log: the robot may have booted."""
         self._keep_log()
         self._clock, self._log_count = RobotClock(), None
 

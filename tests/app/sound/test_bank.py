@@ -67,7 +67,7 @@ def test_what_cannot_be_used_is_refused_in_one_line(tmp_path):
 
 
 def test_the_command_writes_sounds_that_can_be_played_again(cubeling, tmp_path, monkeypatch):
-    monkeypatch.setattr(bank, "VARIANTS", 1)  # more take longer
+    monkeypatch.setattr(bank, "VARIANT_COUNT", 1)  # more take longer
     code, out, err = cubeling("sounds", "-o", "mine")
     assert (code, err) == (0, "")
     assert "the character kisses" in out

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from app.sound import SAMPLE_RATE, SOUNDS
-from app.sound.bank import VARIANTS, SoundBank, synthesised
-from app.sound.synthesis import PEAK, loudness
+from app.sound.bank import VARIANT_COUNT, SoundBank, synthesised
+from app.sound.synthesis import MAX_AMPLITUDE, loudness
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def pitch(sound, start, end):
 def test_every_variant_is_gentle_and_as_loud_as_its_table_says(bank, name):
     for sound in bank.variants(name):
         assert np.isfinite(sound).all()
-        assert np.abs(sound).max() <= PEAK
+        assert np.abs(sound).max() <= MAX_AMPLITUDE
         assert loudness(sound) == pytest.approx(SOUNDS[name].level, abs=0.5)
         assert abs(sound.mean()) < 3e-3
         # It begins and ends in silence, and nothing in it clicks harder than a soft tap.
@@ -45,8 +45,8 @@ def test_every_variant_is_gentle_and_as_loud_as_its_table_says(bank, name):
 @pytest.mark.parametrize("name", SOUNDS)
 def test_variants_differ_and_are_the_same_every_time(bank, name):
     variants = bank.variants(name)
-    assert len(variants) == VARIANTS
-    assert len({variant.tobytes() for variant in variants}) == VARIANTS
+    assert len(variants) == VARIANT_COUNT
+    assert len({variant.tobytes() for variant in variants}) == VARIANT_COUNT
     if name in ("step", "happy"):
         for made, again in zip(variants, synthesised(name), strict=True):
             np.testing.assert_array_equal(made, again)

@@ -1,7 +1,7 @@
 """Dear ImGui over what a window shows.
 
 With software rendering it costs several milliseconds to draw the panels, and their content changes
-some times a second. So they are drawn into a texture, anew when something is to change, and each
+a few times a second. So they are drawn into a texture again when something is to change, and each
 frame shows the texture.
 """
 
