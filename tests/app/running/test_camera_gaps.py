@@ -1,6 +1,5 @@
 """A session whose camera is lost: the screen stays alive, and the gap is shown and recorded."""
 
-import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +13,8 @@ from app.session import SessionOptions, events, session_info
 from app.ui.notice import Notice, notice
 from app.ui.overlay import interrupted
 from app.ui.screen import NullScreen
-from tracking import TrackingError, open_source
+from tests.app.running.recorded_camera import RecordedCamera
+from tracking import TrackingError
 from tracking.sources.base import LiveFrames
 from tracking.sources.device import DeviceSetting, Health
 
@@ -24,17 +24,13 @@ RUNNING = Health(
 LOST = Health("camera 0", "lost", 0.0, "camera 0 delivered no image for 1 s")
 
 
-class SourceWithGap:
+class SourceWithGap(RecordedCamera):
     """Frames of a session, with so many waits without a frame after the fifth."""
 
     def __init__(self, session, waits, patience=8):
-        self._session = open_source(str(session))
-        self._frames = itertools.islice(self._session, 10)
+        super().__init__(session, 10)
         self._left, self._patience = waits, patience
         self._given, self._ended = 0, False
-        self.live, self.duration = True, None
-        self.intrinsics = self._session.intrinsics
-        self.size, self.rate = self._session.size, self._session.rate
 
     def wait(self, timeout, patience=None):
         if self._given == 5 and self._left:
@@ -55,18 +51,6 @@ class SourceWithGap:
         if self._ended:
             return replace(RUNNING, state="closed")
         return LOST if self._given == 5 and self._left else RUNNING
-
-    def __iter__(self):
-        raise AssertionError("a session calls `wait`, so that its window stays alive")
-
-    def close(self):
-        self._session.close()
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.close()
 
 
 class NoticeScreen(NullScreen):

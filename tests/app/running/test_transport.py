@@ -1,6 +1,5 @@
 """Pauses, seeks, the end and parts of recordings, without a window."""
 
-import itertools
 import math
 import time
 from dataclasses import replace
@@ -19,7 +18,8 @@ from app.session import SessionOptions, events, messages, session_info
 from app.ui.playback.requests import Pause, Record, Seek, SeekTo, StepFrames
 from robot.protocol.timing import FAILSAFE_AFTER as FAILSAFE_S
 from tests.app.running.player import Player
-from tracking import Health, open_source
+from tests.app.running.recorded_camera import RecordedCamera
+from tracking import Health
 
 
 @pytest.fixture
@@ -193,17 +193,11 @@ def start_of(path):
     return next(time for _, time, _ in messages(path, "/camera/image"))
 
 
-class LiveSession:
-    """A live camera that shows the frames of a session; a real camera's time goes on."""
-
-    live = True
-    duration: float | None = None
+class LiveSession(RecordedCamera):
+    """A live camera whose time goes on while the session pauses."""
 
     def __init__(self, session):
-        self._session = open_source(str(session))
-        self._frames = itertools.islice(self._session, 20)
-        self.intrinsics = self._session.intrinsics
-        self.size, self.rate = self._session.size, self._session.rate
+        super().__init__(session, 20)
         self.late = 0.0
         self.health = Health("camera 0", "running", 0.0)
 
@@ -213,18 +207,6 @@ class LiveSession:
             self.health = replace(self.health, state="closed")
             return None
         return replace(frame, timestamp=1000.0 + frame.timestamp + self.late)
-
-    def __iter__(self):
-        raise AssertionError("a session calls `wait`")
-
-    def close(self):
-        self._session.close()
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.close()
 
 
 def test_a_pause_of_a_live_session_leaves_no_gap_and_keeps_the_robot(short_session, tmp_path):

@@ -73,6 +73,27 @@ class VirtualBoard(RobotBoard):
         pass
 
 
+class FailingBoard(VirtualBoard):
+    """A board whose program fails once, and goes on for some seconds."""
+
+    fails_at = 200
+    """The turn of the loop in which it fails."""
+
+    turns = 0
+
+    def elapsed(self) -> int:
+        self.now += 5
+        return 5
+
+    def wait(self, ms: int) -> None:
+        self.turns += 1
+        if self.turns == self.fails_at:
+            raise MemoryError("on purpose")
+
+    def exit_requested(self) -> bool:
+        return self.turns > 600
+
+
 class Dino:
     """The firmware as a `Simulated` robot: times in seconds, bytes in and out."""
 

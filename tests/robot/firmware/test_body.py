@@ -18,7 +18,7 @@ from robot.firmware.dino.robot import run, run_until_exit
 from robot.firmware.dino.table import ServoTable
 from robot.protocol import messages as m
 from robot.simulators.cubeling import dinosaur
-from tests.robot.firmware.conftest import Dino, Pulse, VirtualBoard
+from tests.robot.firmware.conftest import Dino, FailingBoard, Pulse, VirtualBoard
 from tools import firmware_tables as generate
 from tools import wiring
 
@@ -177,27 +177,14 @@ def test_without_a_named_mood_it_chooses_the_mood_of_the_simulated_robot(valence
 
 
 def test_after_an_error_the_servos_are_limp_and_the_firmware_restarts():
-    class Failing(VirtualBoard):
+    class LimpBoard(FailingBoard):
         errors: list[BaseException] = []  # noqa: RUF012 # one board, one test
-        turns = 0
-
-        def elapsed(self) -> int:
-            self.now += 5
-            return 5
-
-        def wait(self, ms: int) -> None:
-            self.turns += 1
-            if self.turns == 200:
-                raise MemoryError("on purpose")
 
         def log_error(self, error: BaseException) -> None:
             self.errors.append(error)
             self.limp = [pulse.us for pulse in self.pulses[-5:]]
 
-        def exit_requested(self) -> bool:
-            return self.turns > 600
-
-    board = Failing()
+    board = LimpBoard()
     run(board, ServoTable(servos))
     assert [str(error) for error in board.errors] == ["on purpose"]
     assert board.limp == [0] * 5

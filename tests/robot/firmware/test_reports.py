@@ -14,7 +14,7 @@ from robot.protocol import messages as m
 from robot.protocol.schema import pack, unpack
 from robot.protocol.wire import FrameReader, encode_frame
 from robot.simulators.cubeling import log as simulated_log
-from tests.robot.firmware.conftest import Dino, VirtualBoard
+from tests.robot.firmware.conftest import Dino, FailingBoard
 
 LEVEL = (0.0,) * m.JOINTS_MAX
 
@@ -70,28 +70,19 @@ def test_an_unplugged_servo_driver_is_logged_once_and_again_when_it_is_back(dino
     ]
 
 
-class Failing(VirtualBoard):
-    """A board whose program fails once; afterwards a host comes."""
+class VisitedBoard(FailingBoard):
+    """After the failure a host comes."""
 
-    turns = 0
-
-    def elapsed(self) -> int:
-        self.now += 5
-        return 5
+    fails_at = 20
 
     def wait(self, ms: int) -> None:
-        self.turns += 1
-        if self.turns == 20:
-            raise MemoryError("on purpose")
+        super().wait(ms)
         if self.turns == 200:
             self.incoming = encode_frame(pack(m.Hello(3, 9), 1))
 
-    def exit_requested(self) -> bool:
-        return self.turns > 600
-
 
 def test_why_the_firmware_restarted_is_told_to_the_next_host():
-    board = Failing()
+    board = VisitedBoard()
     run(board, ServoTable(servos))
     received = [unpack(body, "robot")[1] for body in FrameReader().feed(board.outgoing)]
     assert [(one.severity, one.text) for one in received if isinstance(one, m.Log)] == [
