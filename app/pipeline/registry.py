@@ -1,6 +1,7 @@
 """The scenarios by name: the bundled ones, and those that other packages add."""
 
-from importlib.metadata import EntryPoint, entry_points
+from functools import cache
+from importlib.metadata import EntryPoint, EntryPoints, entry_points
 
 from affect import Personality
 from app.errors import AppError
@@ -15,10 +16,15 @@ SCENARIOS: dict[str, type[Scenario]] = {}
 """The bundled scenarios by name; `app.scenarios` registers them."""
 
 
+@cache
+def added_scenarios() -> EntryPoints:
+    """Return the scenarios of other packages; the installed packages are read once, as it is slow."""
+    return entry_points(group=ENTRY_POINT_GROUP)
+
+
 def scenario_names() -> tuple[str, ...]:
     """Return the names of all scenarios: the bundled ones, then those of other packages."""
-    added = sorted(point.name for point in entry_points(group=ENTRY_POINT_GROUP))
-    return tuple(dict.fromkeys((*SCENARIOS, *added)))
+    return tuple(dict.fromkeys((*SCENARIOS, *sorted(added_scenarios().names))))
 
 
 def find_scenario(name: str) -> type[Scenario]:
@@ -27,7 +33,7 @@ def find_scenario(name: str) -> type[Scenario]:
     Raises AppError if there is none of that name, if two packages add one, or if the package that
     adds it is broken.
     """
-    points = sorted(entry_points(group=ENTRY_POINT_GROUP, name=name), key=_package)
+    points = sorted(added_scenarios().select(name=name), key=_package)
     packages = [*(["cubeling"] if name in SCENARIOS else []), *map(_package, points)]
     if not packages:
         known = ", ".join(scenario_names())

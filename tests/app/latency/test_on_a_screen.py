@@ -9,7 +9,9 @@ import pytest
 from tests.app.latency.screen_camera import ScreenCamera
 from tests.virtual_screen import VirtualScreen
 
-DELAY_S = 0.04
+DELAY_S = 0.15
+RATE = 30.0
+FLIPS = 5
 
 
 @pytest.fixture
@@ -21,8 +23,9 @@ def screen():
 
 
 def test_the_camera_sees_the_flips_of_the_window(screen, tmp_path):
-    camera = ScreenCamera(screen.pixels(), DELAY_S)
-    arguments = ("--source", camera.url, "--flips", "5", "--scenario", "none", "--json", "l.json")
+    camera = ScreenCamera(screen.pixels(), DELAY_S, RATE)
+    asked = ("--flips", str(FLIPS), "--scenario", "none", "--json", "l.json")
+    arguments = ("--source", camera.url, *asked)
     done = subprocess.run(
         [sys.executable, "-c", "from app.cli import main; main()", "latency", *arguments],
         env=screen.environment,
@@ -34,5 +37,7 @@ def test_the_camera_sees_the_flips_of_the_window(screen, tmp_path):
     camera.close()
     assert done.returncode == 0, done.stderr
     figures = json.loads((tmp_path / "l.json").read_text())
-    assert figures["flips"] == 5
-    assert figures["age"] > 0.9 * DELAY_S
+    assert figures["flips"] == FLIPS
+    # A flip falls between two pictures, and a few flips do not tell where; `test_latency` tests how
+    # exact the figure is where the clock is ours.
+    assert figures["age"] > DELAY_S - 1 / RATE

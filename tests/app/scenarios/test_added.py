@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import app
+from app.pipeline.registry import added_scenarios
 from app.pipeline.scenario import Inputs
 from app.scenarios import make_scenario, scenario_names
 from app.session import messages, session_info
@@ -48,8 +49,10 @@ def install(tmp_path_factory, monkeypatch):
         monkeypatch.delitem(sys.modules, "app.commands.session.play", raising=False)
         monkeypatch.delitem(sys.modules, "app.commands.session.demo", raising=False)
         importlib.invalidate_caches()
+        added_scenarios.cache_clear()
 
     yield install
+    added_scenarios.cache_clear()
     for module in [name for name in sys.modules if name.startswith("cubeling_")]:
         del sys.modules[module]
     for command in ("app.commands.session.play", "app.commands.session.demo"):
