@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import cv2
 import numpy as np
@@ -20,7 +21,7 @@ class Observation:
     corners: Array
     """Its corners in the image, (4, 2) [px], in the order of `Face.corners`."""
 
-    @property
+    @cached_property
     def size(self) -> float:
         """Mean length of the four sides [px]."""
         return float(np.linalg.norm(self.corners - np.roll(self.corners, 1, axis=0), axis=1).mean())

@@ -58,6 +58,22 @@ class _FaceGeometry:
         return cls(centre, face.normal, se3.inverse(frame), side)
 
 
+class _Detections:
+    """Detected markers as arrays, so that all of them are compared with a pose at once."""
+
+    def __init__(self, observations: Sequence[Observation]) -> None:
+        self.observations = observations
+        self.faces = [seen.face.name for seen in observations]
+        self.points = np.stack([seen.face.corners for seen in observations])
+        """Their corners on the cube, (N, 4, 3) [m]."""
+        self.corners = np.stack([seen.corners for seen in observations])
+        """Their corners in the image, (N, 4, 2) [px]."""
+        self.normals = np.stack([seen.face.normal for seen in observations])
+        """Normals of their faces, (N, 3)."""
+        self.sizes = np.array([seen.size for seen in observations])
+        """Mean lengths of their sides in the image, (N,) [px]."""
+
+
 class CornerPoseSolver:
     """Solves for poses of one rigid cube seen by one camera."""
 
@@ -78,13 +94,16 @@ class CornerPoseSolver:
         with equally many markers. A second pose has as many markers as the best: the other pose of
         a single face seen from afar, or another cube.
         """
+        if not observations:
+            return []
+        detected = _Detections(observations)
         if expected is not None and len(observations) > 1:
-            solution = self._consensus(expected, observations)
+            solution = self._consensus(expected, detected)
             if solution and len(solution.observations) == len(observations):
                 return [solution]
         solutions: list[CornerPose] = []
         for start in self._proposals(observations):
-            solution = self._consensus(start, observations)
+            solution = self._consensus(start, detected)
             if solution and 1 < len(observations) == len(solution.observations):
                 return [solution]
             if solution and not any(_same(solution, other) for other in solutions):
@@ -119,35 +138,37 @@ class CornerPoseSolver:
             for marker in planar_poses(square, rays, cv2.SOLVEPNP_IPPE_SQUARE):
                 yield marker @ geometry.marker_from_cube
 
-    def _consensus(self, start: Array, observations: Sequence[Observation]) -> CornerPose | None:
+    def _consensus(self, start: Array, detected: _Detections) -> CornerPose | None:
         """Refine a proposal on all markers that agree with it, until these stay the same."""
-        agreeing = self._agreeing(start, observations, MAX_PROPOSED_ERROR)
+        agreeing = self._agreeing(start, detected, MAX_PROPOSED_ERROR)
         for _ in range(3):
             if not agreeing:
                 return None
             solution = self._refine(start, agreeing)
             start = solution.camera_from_cube
-            before, agreeing = agreeing, self._agreeing(start, observations, MAX_REFINED_ERROR)
+            before, agreeing = agreeing, self._agreeing(start, detected, MAX_REFINED_ERROR)
             if [id(seen) for seen in agreeing] == [id(seen) for seen in before]:
                 return solution
         return None
 
-    def _agreeing(
-        self, pose: Array, observations: Sequence[Observation], tolerance: float
-    ) -> list[Observation]:
+    def _agreeing(self, pose: Array, detected: _Detections, tolerance: float) -> list[Observation]:
         """Return the best marker of each face whose error is within a share of its side."""
-        best: dict[str, tuple[float, Observation]] = {}
-        for seen in observations:
-            name = seen.face.name
-            if not self.looks_at_camera(name, pose):
-                continue
-            error = self.error(pose, [seen])
-            if (
-                error < max(MIN_TOLERANCE_PX, tolerance * seen.size)
-                and error < best.get(name, (np.inf,))[0]
-            ):
-                best[name] = error, seen
-        return [seen for _, seen in best.values()]
+        rotation, shift = pose[:3, :3], pose[:3, 3]
+        in_camera = detected.points @ rotation.T + shift
+        centres = in_camera.mean(axis=1)
+        cosines = -((detected.normals @ rotation.T) * centres).sum(axis=1)
+        good = cosines > MIN_FACING_COSINE * np.linalg.norm(centres, axis=1)
+        good &= in_camera[..., 2].min(axis=1) > MIN_DEPTH
+        in_camera[~good] = (0.0, 0.0, 1.0)  # can be projected
+        pixels = self._projection.project(in_camera.reshape(-1, 3)).reshape(-1, 4, 2)
+        errors = np.sqrt(((pixels - detected.corners) ** 2).sum(axis=2).mean(axis=1))
+        good &= errors < np.maximum(MIN_TOLERANCE_PX, tolerance * detected.sizes)
+        best: dict[str, int] = {}
+        for index in np.flatnonzero(good).tolist():
+            name = detected.faces[index]
+            if name not in best or errors[index] < errors[best[name]]:
+                best[name] = index
+        return [detected.observations[index] for index in best.values()]
 
     def _refine(self, start: Array, observations: Sequence[Observation]) -> CornerPose:
         """Minimise the reprojection error by Gauss-Newton with Huber weights."""

@@ -1,5 +1,6 @@
 """Markers whose cells are smeared by motion or defocus, told by their likeness to such patterns."""
 
+from functools import cache
 from itertools import product
 
 import cv2
@@ -34,16 +35,14 @@ class SmearedPatterns:
     """
 
     def __init__(self, cube: CubeModel) -> None:
-        patterns = [marker_cells(cube.dictionary, face.marker_id) for face in cube.faces]
-        cells = len(patterns[0])
+        ids = tuple(face.marker_id for face in cube.faces)
+        cells = len(marker_cells(cube.dictionary, ids[0]))
         span = cells + 2 * PAPER_CELLS
         count = round(span * SAMPLES_PER_CELL)
         steps = ((np.arange(count) + 0.5) / count * span - PAPER_CELLS) / cells
         x, y = np.meshgrid(steps, steps)
         self._places = np.stack([x.ravel(), y.ravel()], axis=1)
-        turned = [np.rot90(pattern, turn) for pattern in patterns for turn in range(4)]
-        # Every marker in four rotations, (markers · 4, smears, samples).
-        self._patterns = _normalized(np.stack([_smeared(each, count) for each in turned]))
+        self._patterns = _smeared_patterns(cube.dictionary, ids, count)
 
     def match(self, soft: Image, quads: Quads) -> tuple[Indices, Array]:
         """Find the marker that each quad of an image, (H, W), is most like.
@@ -57,6 +56,19 @@ class SmearedPatterns:
         good = (best > MIN_CORRELATION) & (best - next_best > MIN_LEAD)
         good &= quads.visible > MIN_VISIBLE_SHARE
         return np.where(good, order[:, -1], -1), np.asarray(best, np.float64)
+
+
+@cache
+def _smeared_patterns(dictionary: str, marker_ids: tuple[int, ...], count: int) -> Floats:
+    """Return every marker in four rotations with every blur, (markers · 4, smears, count²).
+
+    Drawing them takes 0.1 s, and all trackers of a cube share them.
+    """
+    cells = [marker_cells(dictionary, number) for number in marker_ids]
+    turned = [np.rot90(each, turn) for each in cells for turn in range(4)]
+    patterns = _normalized(np.stack([_smeared(each, count) for each in turned]))
+    patterns.flags.writeable = False
+    return patterns
 
 
 def _smeared(black: Flags, count: int) -> Floats:
@@ -73,6 +85,7 @@ def _smeared(black: Flags, count: int) -> Floats:
     return np.asarray(drawn, np.float32)
 
 
+@cache
 def _kernel(length: float, angle: float) -> Floats:
     """Smear by a line of a length and direction [texels, rad], softened as the detector's image."""
     reach = int(length / 2) + 3
