@@ -8,6 +8,7 @@ import numpy as np
 
 from tracking.geometry.arrays import Array, Flags
 from tracking.geometry.intrinsics import Intrinsics
+from tracking.geometry.projection import Projection
 
 CENTRE_SIGMA = 0.04
 """Prior standard deviation of the principal point about the image centre [image widths]."""
@@ -37,7 +38,12 @@ def _matrix(camera: Array) -> Array:
     return np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1.0]])
 
 
-def project(camera: Array, points: Array) -> tuple[Array, Array, Array]:
+def project(camera: Array, points: Array) -> Array:
+    """Project points of the camera frame, (N, 3) [m] → (N, 2) [px]."""
+    return Projection(to_intrinsics(camera, (1, 1))).project(points)
+
+
+def project_with_jacobian(camera: Array, points: Array) -> tuple[Array, Array, Array]:
     """Project points of the camera frame, (N, 3) [m].
 
     Returns

@@ -65,6 +65,6 @@ def _poses(view: View, camera: Array) -> Iterator[tuple[Array, float]]:
         pose = se3.pose(se3.rotation(np.ravel(rotation)), np.ravel(origin))
         points = view.points @ pose[:3, :3].T + pose[:3, 3]
         if np.isfinite(points).all() and points[:, 2].min() > 0.01:
-            pixels = camera_vector.project(camera, points)[0]
+            pixels = camera_vector.project(camera, points)
             errors = np.einsum("ni,ni->n", view.normals, view.pixels - pixels)
             yield pose, float(np.sqrt((errors**2).mean()))

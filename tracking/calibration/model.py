@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 
 from tracking.calibration import camera_vector
-from tracking.calibration.view import View
+from tracking.calibration.view import View, join_views
 from tracking.geometry import se3
 from tracking.geometry.arrays import Array, Flags, Indices
 
@@ -67,7 +67,10 @@ class CalibrationModel:
 
     def residuals(self, views: Sequence[View]) -> list[Array]:
         """Return measured minus predicted position of each view's rows [px], each (N,)."""
-        return [self.linearise(view, number)[0] for number, view in enumerate(views)]
+        counts = [len(view.points) for view in views]
+        rows, numbers = join_views(0.0, views), np.repeat(np.arange(len(views)), counts)
+        pixels = camera_vector.project(self.camera, self._placed(rows, numbers)[2])
+        return np.split(self._misses(rows, numbers, pixels), np.cumsum(counts)[:-1])
 
     def linearise(self, view: View, number: int) -> tuple[Array, Array, Array, Array]:
         """Return the residuals (N,) [px] of view `number` and derivatives of the prediction.
@@ -75,24 +78,36 @@ class CalibrationModel:
         These are by the camera (N, 9), by the plate's pose (N, 6), and by the view's pose and bloom
         (N, 7). Steps of poses are as in `se3.moved`.
         """
-        centres, plates = self.target.centres[view.plates], self.plates[view.plates]
-        rotated = np.einsum("nij,nj->ni", plates[:, :3, :3], view.points - centres)
-        in_target = rotated + centres + plates[:, :3, 3]
-        rotation, origin = self.poses[number, :3, :3], self.poses[number, :3, 3]
-        turned = in_target @ rotation.T
-        points = turned + origin
-        near = points[:, 2:] < MIN_DEPTH_M
-        points = np.where(near, points * (1, 1, 0) + (0, 0, MIN_DEPTH_M), points)
-        pixels, by_point, by_camera = camera_vector.project(self.camera, points)
-        residual = np.einsum("ni,ni->n", view.normals, view.pixels - pixels)
-        residual -= view.bloom * self.blooms[number]
+        numbers = np.full(len(view.points), number)
+        from_plate, from_target, in_camera = self._placed(view, numbers)
+        pixels, by_point, by_camera = camera_vector.project_with_jacobian(self.camera, in_camera)
         by_point = np.einsum("ni,nij->nj", view.normals, by_point)
         by_camera = np.einsum("ni,nij->nj", view.normals, by_camera)
-        in_plate = by_point @ rotation
-        by_plate = np.concatenate([in_plate, np.cross(rotated, in_plate)], axis=1)
-        by_pose = [by_point, np.cross(turned, by_point)]
+        by_shift = by_point @ self.poses[number, :3, :3]
+        by_plate = np.concatenate([by_shift, se3.cross(from_plate, by_shift)], axis=1)
+        by_pose = [by_point, se3.cross(from_target, by_point)]
         by_view = np.concatenate([*by_pose, view.bloom[:, None]], axis=1)
-        return residual, by_camera, by_plate, by_view
+        return self._misses(view, numbers, pixels), by_camera, by_plate, by_view
+
+    def _placed(self, rows: View, numbers: Indices) -> tuple[Array, Array, Array]:
+        """Place the points of rows of the views with these numbers, (N, 3) each [m].
+
+        From their plate's centre; from the target's origin along the camera's axes; in the camera.
+        """
+        centres, plates = self.target.centres[rows.plates], self.plates[rows.plates]
+        poses = self.poses[numbers]
+        from_plate = np.einsum("nij,nj->ni", plates[:, :3, :3], rows.points - centres)
+        in_target = from_plate + centres + plates[:, :3, 3]
+        from_target = np.einsum("nij,nj->ni", poses[:, :3, :3], in_target)
+        points = from_target + poses[:, :3, 3]
+        near = points[:, 2:] < MIN_DEPTH_M
+        points = np.where(near, points * (1, 1, 0) + (0, 0, MIN_DEPTH_M), points)
+        return from_plate, from_target, points
+
+    def _misses(self, rows: View, numbers: Indices, pixels: Array) -> Array:
+        """Return how far rows were measured from predicted pixels, (N,) [px]."""
+        away = np.einsum("ni,ni->n", rows.normals, rows.pixels - pixels)
+        return np.asarray(away - rows.bloom * self.blooms[numbers], np.float64)
 
     @property
     def prior_cost(self) -> float:

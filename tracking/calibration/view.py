@@ -1,5 +1,6 @@
 """The measurements in one still image of the calibration target."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,8 +40,8 @@ class View:
     """Index of the straight edge of each row, (N,). Rows of one edge have correlated errors."""
 
 
-def join_views(timestamp: float, parts: list[View]) -> View:
-    """Combine views of single plates in one image into one view."""
+def join_views(timestamp: float, parts: Sequence[View]) -> View:
+    """Combine the rows of views into one view."""
     lines, first = [], 0
     for part in parts:
         lines.append(part.lines + first)

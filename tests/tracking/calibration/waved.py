@@ -32,7 +32,7 @@ def corner_views(
             seen = real[plate] @ pose[:3, :3].T + pose[:3, 3]
             centre = seen.mean(axis=0)
             cosine = -(pose[:3, :3] @ cube.faces[plate].normal) @ centre / np.linalg.norm(centre)
-            exact = camera_vector.project(camera, seen)[0]
+            exact = camera_vector.project(camera, seen)
             if cosine < 0.25 or (exact < 0).any() or (exact > np.array(size) - 1).any():
                 continue
             plates += [plate] * 4
