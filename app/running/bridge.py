@@ -29,10 +29,9 @@ PUBLISHED_TOPICS: dict[str, type[Any]] = {
 
 
 class RecordedPlayer:
-    """Publishes a recorded session in its own time; raises AppError if the file is none."""
+    """Publishes a recorded session in its own time."""
 
     def __init__(self, publisher: PlayerPublisher, path: Path) -> None:
-        session_info(path)  # raises AppError if it is not a session
         self._publisher = publisher
         self._messages = _messages(path)
         self._next = next(self._messages, None)
@@ -92,6 +91,8 @@ class Bridge(Closeable):
             network.member("robot", name)  # raises RobotError if it is not a valid name
         for name in sessions:
             network.member("player", name)
+        for path in sessions.values():
+            session_info(path)  # raises AppError if it is not a session
         self.network = network
         """The network."""
         self.clients: dict[str, BusClient[Any]] = {}
@@ -99,13 +100,16 @@ class Bridge(Closeable):
         self._recorded: list[RecordedPlayer] = []
         self._closing = ExitStack()
         try:
+            # Before the others hear of it: what cannot be opened never was online.
+            opened = {
+                name: self._closing.enter_context(connect(url)) for name, url in robots.items()
+            }
             self.roster: BusClient[Roster] = network.join(
                 Roster(on_message=on_message), f"{network.site}:roster"
             )
             """All members of the network."""
-            for name, url in robots.items():
+            for name, robot in opened.items():
                 member = network.member("robot", name)
-                robot = self._closing.enter_context(connect(url))
                 node = RobotNode(member, robot, network.session, follows, hold)
                 self.clients[f"robot {name}"] = network.join(node, f"{member.site}:robot:{name}")
             for name, path in sessions.items():

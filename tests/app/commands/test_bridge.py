@@ -112,9 +112,10 @@ def wrong_inputs() -> dict[str, tuple[list[str], str]]:
 @pytest.mark.parametrize("what", wrong_inputs())
 def test_invalid_options_end_in_one_line(cubeling, what):
     words, says = wrong_inputs()[what]
-    code, _, err = cubeling(*words)
+    code, out, err = cubeling(*words)
     assert (code, err.count("\n")) == (2, 1)
     assert says in err
+    assert "online" not in out
 
 
 def test_the_help_has_an_example(cubeling):
