@@ -164,6 +164,6 @@ def measured_cube(cube: CubeModel, plates: Array) -> CubeModel:
 def _check_count(count: int) -> None:
     if count < MIN_VIEWS:
         raise TrackingError(
-            f"only {count} still images show the target well, {MIN_VIEWS} are needed: "
+            f"too few still images show the target well, {count} of {MIN_VIEWS}: "
             "hold it still for a moment in more places, each time tilted in another direction"
         )

@@ -63,7 +63,7 @@ def test_frontal_views_of_one_side_are_refused():
 
 def test_too_few_views_are_refused():
     views, _ = views_of(5, count=5)
-    with pytest.raises(TrackingError, match="only 5 still images"):
+    with pytest.raises(TrackingError, match="5 of 8"):
         calibrate(views, TARGET)
 
 

@@ -61,7 +61,7 @@ def test_frames_without_a_cube_are_refused():
     with pytest.raises(TrackingError, match="no frame"):
         calibrate_camera([], CubeModel.load("locomotion"))
     blank = np.full((360, 640, 3), 128, np.uint8)
-    with pytest.raises(TrackingError, match="only 0 still images"):
+    with pytest.raises(TrackingError, match="0 of 8"):
         calibrate_camera([Frame(blank, 0.0, 0)], CubeModel.load("locomotion"))
 
 
