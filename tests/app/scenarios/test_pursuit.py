@@ -91,8 +91,8 @@ def test_the_character_stops_before_it_stands_in_the_cube(hand, name):
 
 
 def test_the_summary_names_what_gives_a_gait_to_a_character_that_hops(cubeling):
-    source = ("--source", str(bundled("follow")), "--robot", "none", "--no-pictures")
-    code, out, _ = cubeling("play", "follow", *source, "--character", "vleo")
+    part = (bundled("follow"), "--end", "8", "--no-pictures")
+    code, out, _ = cubeling("replay", *part, "--character", "vleo")
     assert code == 0
     assert "cubeling character locomotion" in " ".join(out.split())
 

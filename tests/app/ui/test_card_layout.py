@@ -7,6 +7,7 @@ import numpy as np
 from app.pipeline.playground import Playground
 from app.running.opening import intrinsics_for
 from app.session.bundled import bundled
+from app.session.replay_inputs import read_replay_inputs
 from app.ui.card_layout import MIN_STAY_S, CardLayout, Corner, card_place
 from tracking import open_source
 
@@ -70,10 +71,12 @@ def overlaps(corner, size, subjects):
 
 def test_in_the_bundled_sketch_cube_and_character_are_seldom_behind_a_card():
     layout, hidden, at_home = CardLayout(), [], []
-    with open_source(str(bundled("sketch"))) as source:
+    recording = str(bundled("sketch"))
+    with open_source(recording) as source:
         playground = Playground("sketch", intrinsics_for(source.intrinsics, source.size))
-        for frame in itertools.islice(source, 700):
-            subjects = playground.step(frame).subjects
+        recorded = read_replay_inputs(recording, "command")
+        for frame, replay in itertools.islice(zip(source, recorded, strict=True), 700):
+            subjects = playground.step(frame, replay=replay).subjects
             corners = layout.update(CARDS, subjects, WIDTH, frame.timestamp)
             hidden.append([overlaps(corners[home], CARDS[home], subjects) for home in CARDS])
             at_home.append([overlaps(home, CARDS[home], subjects) for home in CARDS])
