@@ -4,11 +4,12 @@ import os
 import platform
 from typing import Any
 
+# OpenBLAS, inside numpy, reads these when numpy is imported. Threads gain nothing on our small
+# matrices, and on a busy computer they wait for each other: frames took seven times as long.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 if platform.machine() in ("x86_64", "AMD64"):
-    # OpenBLAS, inside numpy, rounds differently for each family of processors, and a replay would
-    # differ in its last bits from one machine to the next. The oldest family's code runs on all of
-    # them and costs our small matrices nothing measurable. It must be chosen before numpy is
-    # imported.
+    # It rounds differently for each family of processors, so the last bits of a replay would differ
+    # between machines. The oldest family's code runs on all and costs us nothing measurable.
     os.environ.setdefault("OPENBLAS_CORETYPE", "Nehalem")
 
 
