@@ -15,7 +15,7 @@ from tracking.refinement.evidence import Evidence
 from tracking.refinement.footprint import Footprint
 from tracking.refinement.photometry.still_alignment import (
     EXPECTED_BLUR_PX,
-    MAX_STEPS,
+    MEASURED_STIFFNESS,
     StillAligner,
     StillAlignment,
 )
@@ -31,13 +31,13 @@ MIN_INNER_CORRELATION, MIN_PARTIAL_CORRELATION = 0.7, 0.45
 """Correlation of the cells inside the border of a whole marker, which tell it from others, and of
 all and of these of a covered one."""
 
-MAX_MISSING_CORRELATION, MISSING_EVIDENCE = 0.4, 4.0
-"""Below this correlation a marker in view is missing, and how much one or more of them speak
-against the pose: twice the logarithm of how seldom a hand covers faces."""
-
 MIN_SPEAKING = 0.6
 """Correlation from which on a marker that is not found speaks for the pose, too: little at first.
 White paper and clutter fit any marker by chance."""
+
+MISSING_CORRELATION, MISSING_EVIDENCE = 0.4, 4.0
+"""Below that correlation a marker in view speaks against the pose, in full from this one down, and
+how much one or more of them do: twice the logarithm of how seldom a hand covers faces."""
 
 MAX_FINE_FACES = 2
 """More faces than this determine a pose well enough with few samples."""
@@ -111,7 +111,7 @@ class CellSearch:
         alike = match.alignment.correlations
         seen = {face for face, share in alike.items() if share > MIN_JOINING}
         if len(seen) > len(aligned.correlations):
-            joint = self._aligned_on(patch, aligned, seen)
+            joint = self._aligner.realign(patch, aligned, seen)
             again = self._weighed(patch, joint) if joint else None
             if joint and again and again.evidence.total > match.evidence.total:
                 aligned, match = joint, again
@@ -119,27 +119,19 @@ class CellSearch:
         if len(faces) > MAX_FINE_FACES:
             return replace(match, alignment=aligned)
         # What was found coarsely is measured with more samples.
-        aligned = self._aligned_on(patch, aligned, faces, fine=True) or aligned
+        aligned = self._aligner.realign(patch, aligned, faces, fine=True) or aligned
         match = self._weighed(patch, aligned, fine=True)
+        if len(faces) == 1:
+            stiff = MEASURED_STIFFNESS
+            measured = self._aligner.realign(patch, aligned, faces, fine=True, stiffness=stiff)
+            aligned = measured or aligned
         return match and replace(match, alignment=aligned)
 
     def _weighed(
         self, patch: Patch, aligned: StillAlignment, fine: bool = False
     ) -> CellMatch | None:
         """Weigh a pose by all faces that it shows."""
-        return self._match(self._aligned_on(patch, aligned, None, steps=1, fine=fine))
-
-    def _aligned_on(
-        self,
-        patch: Patch,
-        last: StillAlignment,
-        faces: Collection[str] | None,
-        steps: int = MAX_STEPS,
-        fine: bool = False,
-    ) -> StillAlignment | None:
-        """Align from where another alignment ended."""
-        start, blur, k1 = last.camera_from_cube, last.blur, last.k1
-        return self._aligner.align(patch, start, faces, blur, steps, fine, k1)
+        return self._match(self._aligner.realign(patch, aligned, None, steps=1, fine=fine))
 
     def _read_aligned(
         self, patch: Patch, start: Array, read: Collection[str] | None
@@ -163,17 +155,22 @@ class CellSearch:
         cosines = self._faces.cosines(aligned.camera_from_cube)
         alike = aligned.correlations
         found = tuple(face for face in alike if _is_found(aligned, face))
-        blocks, missing = aligned.evidence.blocks.copy(), []
+        blocks, missing = aligned.evidence.blocks.copy(), np.zeros(len(cosines))
         for row, face in enumerate(self._faces.names):
             if face in found or face not in alike:
                 continue
-            if alike[face] < MAX_MISSING_CORRELATION and cosines[row] > MIN_SEEN_COSINE:
-                missing.append(row)
+            if cosines[row] > MIN_SEEN_COSINE:
+                absent = (MIN_SPEAKING - alike[face]) / (MIN_SPEAKING - MISSING_CORRELATION)
+                missing[row] = np.clip(absent, 0, 1)
             share = (alike[face] - MIN_SPEAKING) / (MIN_CORRELATION - MIN_SPEAKING)
             blocks[row] *= np.clip(share, 0, 1)
-        blocks[missing] -= MISSING_EVIDENCE / max(blocks[missing].size, 1)
+        if missing.any():
+            against = missing * missing.max() / missing.sum()
+            blocks -= MISSING_EVIDENCE / blocks.shape[1] * against[:, None]
         whole = any(alike[face] > MIN_CORRELATION and not aligned.wrong[face] for face in found)
-        return CellMatch(aligned, found, whole or len(found) > 1, Evidence(blocks))
+        return CellMatch(
+            aligned, found, whole or len(found) > 1, Evidence(blocks, aligned.evidence.bend)
+        )
 
 
 def _is_found(aligned: StillAlignment, face: str) -> bool:

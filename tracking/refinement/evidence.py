@@ -11,6 +11,9 @@ MIN_LEAD, MIN_DEVIATIONS, SURE_DEVIATIONS = 2.0, 1.645, 3.2
 two poses is right; the third is enough alone. Measured on the lone markers of the dodecahedron, see
 `make bench-photographs`."""
 
+MAX_BEND = 11.3
+"""A pose that bends paper more than this is not clearly right: 1 % of all paper is bent so."""
+
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
@@ -19,6 +22,10 @@ class Evidence:
     blocks: Array
     """Twice the logarithm of that ratio, for each block of each face of the cube, (faces, blocks).
     0 where a face is out of view."""
+
+    bend: float = 0.0
+    """Square of how far the paper of a lone face is bent at this pose, in its standard deviations
+    (3 degrees of freedom)."""
 
     @property
     def total(self) -> float:
@@ -31,6 +38,8 @@ class Evidence:
         Print, folds and dirt make a few blocks speak for the wrong pose, however loudly
         (Vuong, 1989, "Likelihood ratio tests for model selection and non-nested hypotheses").
         """
+        if self.bend > MAX_BEND:
+            return False
         lead = self.blocks - other.blocks
         total, deviation = float(lead.sum()), float(np.sqrt(np.square(lead).sum()))
         least = max(MIN_LEAD, MIN_DEVIATIONS * deviation)

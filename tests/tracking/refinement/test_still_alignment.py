@@ -1,5 +1,8 @@
 """A cube at rest is aligned by all cells of its markers, whatever the focus and the light."""
 
+from dataclasses import replace
+
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -8,10 +11,12 @@ from numpy.typing import NDArray
 
 from tests.tracking.drawn import held
 from tests.tracking.refinement.seen_softly import CAMERA, corners_off, drawn, patch
+from tracking.cube.faces import FacePlanes, face_frame
 from tracking.cube.model import CubeModel
 from tracking.geometry import se3
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
+from tracking.refinement.evidence import Evidence
 from tracking.refinement.photometry.still_alignment import StillAligner, StillAlignment
 
 Array = NDArray[np.float64]
@@ -167,3 +172,49 @@ def test_a_negative_of_the_cube_is_not_the_cube() -> None:
     pose = held(at=(0.0, 0.0, 0.9))
     found = ALIGNER.align(patch(0.85 - drawn(CUBE, pose)), pose)
     assert found is None or max(found.correlations.values()) < 0.5
+
+
+def bent(light: NDArray[np.float32], pose: Array, bends: tuple[float, float, float]) -> Patch:
+    """The light of the front face where its paper is bent so [m], as a camera measures it."""
+    frame = pose @ face_frame(CUBE.face("front"))
+    height, width = light.shape
+    v, u = np.mgrid[:height, :width].reshape(2, -1)
+    rays = np.linalg.solve(CAMERA.matrix, np.stack([u, v, np.ones_like(u)]))
+    rays = frame[:3, :3].T @ rays
+    eye = -frame[:3, :3].T @ frame[:3, 3]
+    half = 1.2 * CUBE.marker_size / 2
+    met = eye[:, None] - rays * eye[2] / rays[2]
+    for _ in range(5):
+        x, y = np.clip(met[:2] / half, -1, 1)
+        heights = bends @ np.stack([x**2 - 1 / 3, x * y, y**2 - 1 / 3])
+        met = eye[:, None] + rays * (heights - eye[2]) / rays[2]
+    met[2] = 0
+    seen = CAMERA.matrix @ (frame[:3, :3] @ met + frame[:3, 3:])
+    x, y = (seen[:2] / seen[2]).astype(np.float32).reshape(2, height, width)
+    return patch(np.asarray(cv2.remap(light, x, y, cv2.INTER_CUBIC), np.float32))
+
+
+@pytest.mark.parametrize("lean", [-0.6, 0.6])
+def test_bent_paper_does_not_tell_the_wrong_lean(lean: float) -> None:
+    """A dome of 0.8 mm over 36 mm moves the cells as a lean to the other side does."""
+    pose = held(lean, 0.1, 0.2, at=(0.01, 0.0, 0.6))
+    light = drawn(replace(CUBE, faces=(CUBE.face("front"),)), pose)
+    planes = FacePlanes(CUBE)
+    mirrored = planes.mirrored(pose, planes.names.index("front"))
+    for dome in (-0.0008, 0.0008):
+        seen = bent(light, pose, (dome, 0.0, dome))
+        right, wrong = (ALIGNER.align(seen, start, ("front",)) for start in (pose, mirrored))
+        assert right is not None
+        assert wrong is not None
+        assert not wrong.evidence.clearly_exceeds(right.evidence)
+        assert right.evidence.total > wrong.evidence.total
+        assert np.allclose(right.bends[0], (dome, 0, dome), atol=0.0003)
+        assert se3.angle_between(right.camera_from_cube, pose) < np.deg2rad(1.5)
+
+
+def test_a_pose_that_bends_paper_as_no_paper_is_bent_is_not_clearly_right() -> None:
+    pose = held(0.6, 0.1, 0.2, at=(0.01, 0.0, 0.6))
+    light = drawn(replace(CUBE, faces=(CUBE.face("front"),)), pose)
+    found = ALIGNER.align(bent(light, pose, (0.004, 0.0, -0.004)), pose, ("front",))
+    assert found is not None
+    assert not found.evidence.clearly_exceeds(Evidence(np.zeros_like(found.evidence.blocks)))

@@ -147,8 +147,8 @@ class PhotometricFit:
         """
         face = self.samples.face
         contrast = self.tones[self.faces : 2 * self.faces]
-        contrast = np.maximum(contrast, LEAST_CONTRAST * self.contrast)
-        error = np.hypot(TYPICAL_ERROR, LEAST_ERROR / np.maximum(contrast, LEAST_ERROR))[face] ** 2
+        contrast = np.maximum(contrast, max(LEAST_CONTRAST * self.contrast, LEAST_ERROR))
+        error = np.hypot(TYPICAL_ERROR, LEAST_ERROR / contrast)[face] ** 2
         gain = 2 * np.log((error + EVEN_ERROR**2) / (error + (self.residual / contrast[face]) ** 2))
         samples = np.bincount(self.samples.block, minlength=self.faces * blocks)
         means = np.bincount(self.samples.block, gain, len(samples)) / np.maximum(samples, 1)

@@ -70,3 +70,17 @@ def texel_slides(frames: Array, arm: Array, rays: Array, texel: float) -> Array:
     for turned, (one, two) in enumerate(((1, 2), (2, 0), (0, 1)), start=3):
         slides[:, turned] = arm[:, one] * slides[:, two] - arm[:, two] * slides[:, one]
     return slides.reshape(2, 6, -1)
+
+
+def bend_slides(frames: Array, rays: Array, places: Array) -> Array:
+    """Jacobian of the point under each ray by the bends of its face, (faces, 2, 3, N).
+
+    A face bends along its x axis, twists, and bends along its y axis, each by so much at the end of
+    that axis, or at the corner [m]. `frames` are those of the faces, (faces, 4, 4), `rays` lead to
+    the samples, (faces, 3, N), and `places` are those of the samples on a face, −1…1, (N, 2).
+    """
+    across, down = places.T
+    # The mean stays in place: a bend is no shift.
+    heights = np.stack([across**2 - 1 / 3, across * down, down**2 - 1 / 3])
+    x, y, z = (frames[:, :3, :3].transpose(0, 2, 1) @ rays).transpose(1, 0, 2)
+    return np.asarray(np.stack([x / z, y / z], axis=1)[:, :, None] * heights, np.float64)
