@@ -21,7 +21,7 @@ class Evidence:
 
     blocks: Array
     """Twice the logarithm of that ratio, for each block of each face of the cube, (faces, blocks).
-    0 where a face is out of view."""
+    0 where a face is out of view. What the bend of paper says against it are blocks, too."""
 
     bend: float = 0.0
     """Square of how far the paper of a lone face is bent at this pose, in its standard deviations

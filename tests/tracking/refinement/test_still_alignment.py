@@ -218,3 +218,14 @@ def test_a_pose_that_bends_paper_as_no_paper_is_bent_is_not_clearly_right() -> N
     found = ALIGNER.align(bent(light, pose, (0.004, 0.0, -0.004)), pose, ("front",))
     assert found is not None
     assert not found.evidence.clearly_exceeds(Evidence(np.zeros_like(found.evidence.blocks)))
+
+
+def test_what_a_slight_bend_says_alone_is_no_proof() -> None:
+    pose = held(0.5, 0.1, 0.2, at=(0.01, 0.0, 0.6))
+    light = drawn(replace(CUBE, faces=(CUBE.face("front"),)), pose)
+    found = ALIGNER.align(bent(light, pose, (0.0006, 0.0, 0.0)), pose, ("front",))
+    assert found is not None
+    blocks = found.evidence.blocks
+    flat = Evidence(np.maximum(blocks, 0))
+    assert 0.2 < flat.total - found.evidence.total < 2
+    assert not flat.clearly_exceeds(found.evidence)

@@ -37,6 +37,9 @@ EXPECTED_BLUR_PX = 0.7
 BLUR_SPREAD_PX2, MIN_BLUR_PX2 = 1.5, 0.15
 """Standard deviation of the variance of a lens's blur, and the least variance."""
 
+BEND_BLOCKS = 4
+"""What bends say of a pose counts as so many blocks: more would take it for surer than it is."""
+
 MEASURED_STIFFNESS = 16.0
 """Paper is this much flatter where a pose is measured, not searched: what neighbouring samples
 share of their errors looks like a bend, too."""
@@ -237,12 +240,12 @@ class StillAligner:
         side = 2 * self._placer.reach / self._textures.texel
         area = np.abs(np.linalg.det(placed.texels_to_pixels)) * side**2
         count = np.minimum(self._cells / CELLS_PER_MEASUREMENT, area / PIXELS_PER_MEASUREMENT)
-        evidence = np.zeros((len(bends), BLOCKS_PER_SIDE**2))
-        explained = fit.explained(evidence.shape[1]) * count[:, None]
+        blocks = BLOCKS_PER_SIDE**2
+        evidence = np.zeros((len(bends), blocks + BEND_BLOCKS))
+        evidence[placed.facing, :blocks] = fit.explained(blocks) * count[:, None] / blocks
         bent, seen = np.square(bends[placed.facing]), np.square(placed.bend_errors)[:, None]
         cost = (bent / (self._bend_errors**2 + seen)).sum(axis=1)
-        evidence[placed.facing] = explained - cost[:, None]
-        evidence /= evidence.shape[1]
+        evidence[placed.facing, blocks:] = -cost[:, None] / BEND_BLOCKS
         return StillAlignment(
             pose,
             fit.covariance(prior[: fit.samples.jacobian.shape[1] - 6])[:6, :6],
