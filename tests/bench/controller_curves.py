@@ -2,17 +2,23 @@
 
 Strips of the character and curves of hips, knees and wrists while it is asked to walk, run, turn,
 walk and stand, for each controller, and on CMU recordings (`shared/data/cmu-mocap`) where these are
-there. Needs the extra `plots`.
+there. Needs the extra `plots`. With `-o side-by-side.mp4` it is a video of all side by side, over
+dots on the ground that show feet that slide.
 """
 
 import argparse
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
 
+import cv2
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
+from app.ui.video_file import VIDEO_FORMATS, VideoFile
 from characters import (
     CONTROLLER_CHOICES,
     ActionIntent,
@@ -27,8 +33,10 @@ from characters import (
 )
 from characters.control.controllers import ControllerFactory
 from characters.control.layers import FOOT_LAYERS
-from characters.rendering import create_context
-from characters.rendering.portrait import PortraitRenderer
+from characters.rendering import FloorPath, SceneCharacter, Stage, View, create_context
+from characters.rendering.portrait import PAPER_BGR, PortraitRenderer, side_by_side
+from characters.rendering.portrait_camera import CharacterExtent, PortraitCamera
+from characters.skeleton import rotations
 from tests.bench.controllers import CMU
 from tests.bench.feet import FRAME_RATE
 
@@ -41,6 +49,17 @@ SCRIPT = (
     ("stand", 0.0, 1.57, 1.5),
 )
 """What is asked for: a name, Speed, heading [rad], and for how long [s]."""
+
+CELL, VIDEO_RATE = (480, 360), 30
+"""Size of each controller's picture in a video [px], and pictures a second."""
+
+TABLE_HEIGHT_M, ROOM = 0.17, np.array([2.2, 1.1, 2.2])
+"""Height of the character as the renderer lights it, and how much room there is around it."""
+
+DOTS_M, DOTS = 0.5, np.stack(np.meshgrid(range(-3, 4), range(-3, 4)), axis=-1).reshape(-1, 2)
+"""Distance of the dots on the ground [m], and their numbers around the character."""
+
+FONT = (cv2.FONT_HERSHEY_SIMPLEX, 0.6, (60, 60, 60), 1, cv2.LINE_AA)
 
 STRIP_FRAMES = 8
 CURVES = (("hips", 1), ("leftLowerLeg", 2), ("rightLowerLeg", 2), ("leftHand", 2), ("rightHand", 2))
@@ -64,7 +83,8 @@ def walked(character: Character, controller: ControllerFactory) -> list[PosedCha
 def main() -> None:
     """Draw the picture."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("-o", "--output", required=True, help="the picture, a .png or .jpg file")
+    parser.add_argument("-o", "--output", required=True, type=Path,
+                        help="a .png or .jpg picture, or a .mp4 video")  # fmt: skip
     output = parser.parse_args().output
     character = Character.load("human")
     runs: dict[str, list[PosedCharacter]] = {}
@@ -73,6 +93,15 @@ def main() -> None:
         if name != "tree" and CMU.is_dir():
             label = f"{name} on CMU recordings"
             runs[label] = walked(character, choose_controller(name, character, [str(CMU)]))
+    if output.suffix.lower() in VIDEO_FORMATS:
+        _draw_video(output, character, runs)
+    else:
+        _draw_picture(output, character, runs)
+
+
+def _draw_picture(
+    output: Path, character: Character, runs: dict[str, list[PosedCharacter]]
+) -> None:
     mpl.use("Agg")
     figure = Figure(figsize=(14, 2.2 * len(runs) + 1.2 * (len(CURVES) + 1)), layout="constrained")
     heights = [2.2] * len(runs) + [1.2] * (len(CURVES) + 1)
@@ -88,6 +117,48 @@ def main() -> None:
     context.release()
     _draw_curves(axes[len(runs) :], character, runs)
     figure.savefig(output, dpi=70)
+
+
+def _draw_video(output: Path, character: Character, runs: dict[str, list[PosedCharacter]]) -> None:
+    asked = [name for name, *_, seconds in SCRIPT for _ in range(round(seconds * FRAME_RATE))]
+    context = create_context()
+    stage = Stage(context, CELL)
+    columns = math.ceil(math.sqrt(len(runs)))
+    size = CELL[0] * columns, CELL[1] * math.ceil(len(runs) / columns)
+    films = [_filmed(stage, character, name, shown) for name, shown in runs.items()]
+    with VideoFile(output, size, VIDEO_RATE) as file:
+        for number, cells in enumerate(zip(*films, strict=True)):
+            picture = side_by_side(cells, columns)
+            second = number / VIDEO_RATE
+            what = f"{second:4.1f} s: {asked[number * (FRAME_RATE // VIDEO_RATE)]}"
+            cv2.putText(picture, what, (10, size[1] - 14), *FONT)
+            file.write(picture, second)
+    stage.release()
+    context.release()
+
+
+def _filmed(
+    stage: Stage, character: Character, name: str, shown: list[PosedCharacter]
+) -> Iterator[NDArray[np.uint8]]:
+    """Draw one controller from the side; the camera goes along."""
+    scale = TABLE_HEIGHT_M / character.height
+    points = CharacterExtent(character).points(character.skeleton.rest) * scale * ROOM
+    camera = PortraitCamera.around(points, 0.25, CELL)
+    paper = np.full((CELL[1], CELL[0], 3), PAPER_BGR, np.uint8)
+    view = View(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
+    side = np.eye(4)
+    side[:3, :3] = scale * rotations.to_matrix(rotations.about("y", 1.1))
+    for posed in shown[:: FRAME_RATE // VIDEO_RATE]:
+        middle = np.eye(4)
+        middle[[0, 2], 3] = -posed.table_from_character[[0, 2], 3]
+        followed = side @ middle
+        near = np.rint(-middle[[0, 2], 3] / DOTS_M) + DOTS
+        dots = np.insert(near * DOTS_M, 1, 0.0, axis=1) @ followed[:3, :3].T + followed[:3, 3]
+        floor = [FloorPath(dot[None, [0, 2]], color=(0.5, 0.55, 0.6)) for dot in dots]
+        placed = replace(posed, table_from_character=followed @ posed.table_from_character)
+        picture = stage.draw(view, [SceneCharacter(character, placed)], floor)
+        cv2.putText(picture, name, (10, 24), *FONT)
+        yield picture
 
 
 def _clip(shown: Sequence[PosedCharacter]) -> Clip:
