@@ -80,6 +80,9 @@ def calibrate(
     coverage: Coverage = None,
     seconds: Seconds = 120.0,
     window: Shown = True,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Overwrite files that exist.")
+    ] = False,
 ) -> None:
     """Measure the camera's lens: wave the cube in front of it for about 20 seconds.
 
@@ -93,13 +96,13 @@ def calibrate(
     """
     console = Console(soft_wrap=True, highlight=False)
     if print_board is not None:
-        check_output(print_board, "board", (".pdf",), overwrite=True)
+        check_output(print_board, "board", (".pdf",), overwrite=overwrite)
         write_board(print_board, paper)
         console.print(f"[bold]{escape(str(print_board))}[/] is ready. Print it and keep it flat.")
         return
     finders = target_finders(cube, board)
     saved = None if checked is None else Intrinsics.load(checked)
-    _check_paths(output, save_cube, coverage)
+    _check_paths(output, save_cube, coverage, overwrite)
     shown = window and has_display()
     with ExitStack() as closing:
         frames = closing.enter_context(open_source(source))
@@ -203,12 +206,17 @@ def _quoted(path: Path) -> str:
     return escape(shlex.quote(str(path)))
 
 
-def _check_paths(output: Path, save_cube: Path | None, coverage: Path | None) -> None:
-    """Refuse files that cannot be written, before the user waves a cube."""
+def _check_paths(
+    output: Path, save_cube: Path | None, coverage: Path | None, overwrite: bool
+) -> None:
+    """Refuse files that cannot be written, before the user waves a cube.
+
+    The camera's file of the default name is the program's own, so it may exist.
+    """
     for path, kind, suffixes in (
         (output, "camera", CAMERA_SUFFIXES),
         (save_cube, "cube", (".toml",)),
         (coverage, "picture", COVERAGE_SUFFIXES),
     ):
         if path is not None:
-            check_output(path, kind, suffixes, overwrite=True)
+            check_output(path, kind, suffixes, overwrite=overwrite or path == CAMERA_FILE)

@@ -22,7 +22,7 @@ from tracking import LiveFrames, open_source
 Source = Annotated[
     str, typer.Option("--source", "-s", help="A live camera: camera:0, http://PHONE:8080/video.")
 ]
-Flips = Annotated[int, typer.Option(min=MIN_FLIPS, max=1000, help="How many flips to see.")]
+Flips = Annotated[int, typer.Option(min=MIN_FLIPS, max=1000, help="How many flips to measure.")]
 Seed = Annotated[int, typer.Option(help="Seed of the flips' times.")]
 Scenario = Annotated[
     str, typer.Option(help="What is played in the second part; none for no second part.")
@@ -40,6 +40,9 @@ def latency(
     flips: Flips = 40,
     scenario: Scenario = "companion",
     results: Results = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Overwrite the file of --json if it exists.")
+    ] = False,
     seed: Seed = 1,
 ) -> None:
     """Measure how late the picture is, with your own screen and camera.
@@ -54,7 +57,7 @@ def latency(
     if play is not None:
         scenario_cube(play)  # refuses a misspelt name
     if results is not None:
-        check_output(results, "result", (".json",), overwrite=True)
+        check_output(results, "result", (".json",), overwrite=overwrite)
     if not has_display():
         raise AppError("the latency is that of a screen, and there is no display here")
     console = Console(highlight=False)

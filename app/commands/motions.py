@@ -59,13 +59,15 @@ def build(
     ] = "angles",
     threshold: Annotated[
         float | None,
-        typer.Option(help="How unlike joined frames may be; default: the least that joins all."),
+        typer.Option(
+            help="Largest distance of joined frames; default: the least that joins all clips."
+        ),
     ] = None,
     skeleton: Annotated[
         Path | None, typer.Option(help="The .asf of .amc files, if it is in another folder.")
     ] = None,
 ) -> None:
-    """Make a motion graph from recordings: where one clip can go over into another.
+    """Make a motion graph from recordings: where one clip can continue as another.
 
     The clips are retargeted to one character, and all their frames are compared.
 
@@ -150,7 +152,10 @@ def tables(
     overwrite: OverwriteOption = False,
     character: Annotated[str, typer.Option(help="Whose skeleton the clips get.")] = "human",
     stride: Annotated[
-        int, typer.Option(min=1, help="Every so many frames ask for each other clip.")
+        int,
+        typer.Option(
+            min=1, help="Frames from one request to the next; each asks for every other clip."
+        ),
     ] = 8,
     skeleton: Annotated[
         Path | None, typer.Option(help="The .asf of .amc files, if it is in another folder.")

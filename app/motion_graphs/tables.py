@@ -60,7 +60,7 @@ def make_tables(
     library
         The four clips, in this order.
     stride
-        Every so many frames ask for each other clip.
+        Frames from one request to the next; each asks for every other clip.
     progress
         Called with what is computed next.
 

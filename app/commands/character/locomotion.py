@@ -46,8 +46,8 @@ def locomotion(
 ) -> None:
     """Make the walking and running clips of a character from your own recordings.
 
-    One walk is enough. The best cycle of each recording is retargeted to the character and bent to
-    all the curves that steering needs, without sliding feet. Repeat [bold]--walk[/] and
+    One walk is enough. The best cycle of each recording is retargeted to the character and varied
+    for all the curves that steering needs, without sliding feet. Repeat [bold]--walk[/] and
     [bold]--run[/] for recordings of curves.
 
     Example: [cyan]cubeling character locomotion me.glb --walk walk.bvh --run run.bvh -o my.glb[/]

@@ -131,7 +131,8 @@ def test_pictures_that_make_no_camera_are_told_in_one_line(shown, waved, tmp_pat
 
 
 def test_a_wrong_word_is_refused_before_a_camera_is_opened(cubeling, tmp_path):
-    (tmp_path / "text.yaml").write_text("hello", encoding="utf-8")
+    for name in ("text.yaml", "mine.toml"):
+        (tmp_path / name).write_text("hello", encoding="utf-8")
     for arguments, words in (
         (("--board", "chess"), "use charuco"),
         (("--check", "none.yaml"), "cannot read the camera file"),
@@ -140,6 +141,8 @@ def test_a_wrong_word_is_refused_before_a_camera_is_opened(cubeling, tmp_path):
         (("-o", "none/camera.yaml"), "there is no folder 'none'"),
         (("--coverage", "seen.gif"), "a picture is written as .png, .jpg"),
         (("--save-cube", "mine.yaml"), "written as .toml, not as 'mine.yaml'"),
+        (("-o", "text.yaml"), "the camera 'text.yaml' exists already"),
+        (("--save-cube", "mine.toml"), "choose another name or add --overwrite"),
         (("--source", "synthetic:none"), "no synthetic scene"),
     ):
         code, _, err = cubeling("calibrate", *arguments)

@@ -117,10 +117,12 @@ def test_ctrl_c_at_once_says_nothing_false(simulated):
     [
         (["--scenario", "chess"], "no scenario is called 'chess'"),
         (["--json", "figures.txt"], "a result is written as .json"),
+        (["--json", "there.json"], "the result 'there.json' exists already"),
         ([], "there is no display here"),
     ],
 )
-def test_bad_input_is_one_line(cubeling, arguments, words):
+def test_bad_input_is_one_line(cubeling, tmp_path, arguments, words):
+    (tmp_path / "there.json").write_text("{}", encoding="utf-8")
     code, out, err = cubeling("latency", *arguments)
     assert (code, out) == (2, "")
     assert words in err
