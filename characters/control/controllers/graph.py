@@ -15,7 +15,7 @@ from characters.control.controllers.walk import NOT_ACTIONS, WalkController
 from characters.errors import CharacterError
 from characters.locomotion.steering import ARRIVAL_DISTANCE_M, STANDSTILL, SteeringOutput
 from characters.model.character import Character
-from characters.motion.motion import RootDelta
+from characters.motion.motion import Motion, RootDelta
 from characters.motion.state_machine import StateMachine
 from characters.retargeting.retarget import retarget
 from characters.smoothing import low_pass
@@ -51,7 +51,8 @@ class GraphController(WalkController):
 
     Where to go and how fast is steered as for the movement tree. The frames that come nearest to
     the speed and yaw rate asked for are the goals of the graph; what is left over is made up by
-    tempo and by a slight bend of the way. Actions are clips of the character, as elsewhere.
+    tempo and by a slight bend of the way. Actions are clips of the character, as elsewhere; where
+    no frame of the graph stands, so is standing.
     """
 
     def __init__(
@@ -67,7 +68,11 @@ class GraphController(WalkController):
         self._behaviours = behaviours
         self._behaviour = behaviours.nearest(0.0, 0.0)
         self._live = LiveMotion(source, behaviours.goals(self._behaviour))
-        self._machine = StateMachine({"move": self._live, **self._actions}, "move")
+        states: dict[str, Motion] = {"move": self._live, **self._actions}
+        self._stands_itself = float(behaviours.means[:, 0].min()) >= STANDING_M_S
+        if self._stands_itself:
+            states["idle"] = character.clips.get("idle", character.clips["Walk"])
+        self._machine = StateMachine(states, "idle" if self._stands_itself else "move")
         self._bend, self._tempo = 0.0, 1.0
         self._to_stand = to_stand
         self._strides_m = np.hypot(*source.library.steps[:, :2].T)
@@ -77,7 +82,9 @@ class GraphController(WalkController):
         self, course: SteeringOutput, elapsed: float, action: str = "idle", weight: float = 0.0
     ) -> ControllerFrame:
         """Advance by a time [s] on a course and return what is played; see `WalkController`."""
-        state = action if course.speed == 0.0 and action in self._actions else "move"
+        state = "move"
+        if course.speed == 0.0 and (action in self._actions or self._stands_itself):
+            state = action
         frame = super().steer(course, elapsed, state, weight)
         turned = RootDelta(yaw=self._bend * elapsed)
         self.place = self.place.then(turned)
@@ -86,6 +93,9 @@ class GraphController(WalkController):
     def _course(self, command: CharacterCommand) -> SteeringOutput:
         """Return where to go; it begins to stop where its way to a standing frame ends in time."""
         course, going = super()._course(command), command.locomotion
+        if self._stands_itself:
+            # It has no steps to turn in place with.
+            return course if course.stride > 0.0 else STANDSTILL
         source = self._live.source
         if self._stands():
             self._braking = False
@@ -99,13 +109,15 @@ class GraphController(WalkController):
 
     def _stands(self) -> bool:
         """Return whether it stands, and is to stand."""
+        if self._stands_itself:
+            return self._machine.state == "idle"
         stands = self._behaviours.means[self._behaviour, 0] < STANDING_M_S
         return bool(stands and self._live.goals[self._live.source.frame])
 
     def _play(self, steered: SteeringOutput, state: str, weight: float, now: float) -> None:
         if state in self._actions:
             self._perform(self._actions[state], weight, now, self._machine.state == state)
-        else:
+        elif state == "move":
             self._request(steered, now)
         self._machine.request(state, now, begin=self._live.restart if state == "move" else None)
 
@@ -134,7 +146,7 @@ class GraphController(WalkController):
 
     def _feet_down(self) -> list[bool] | None:
         """Return which feet the motion has on the ground."""
-        if self._machine.state in self._actions:
+        if self._machine.state != "move":
             return super()._feet_down()
         source = self._live.source
         return source.library.contacts[source.frame].tolist() if self._feet else None

@@ -54,6 +54,23 @@ def test_it_goes_where_it_is_sent_and_stops_there(human: Character, factory) -> 
     assert {each.state for each in shown} == {"idle", "walk"}
 
 
+@pytest.mark.parametrize("kind", ["graph", "parts"])
+def test_where_no_motion_stands_it_stands_by_its_own_clip_and_goes_on(
+    human: Character, kind: str
+) -> None:
+    animator = Animator(human, controller=choose_controller(kind, human, ["human#Walk"]))
+    time = 0.0
+    for x, z in ((0.2, 0.25), (-0.1, 0.1)):
+        states = []
+        for _ in range(9 * RATE_HZ):
+            command = CharacterCommand(time, LocomotionIntent(2.0, np.array([x, z])))
+            shown = animator.update(command)
+            states.append(shown.state)
+            time += 1 / RATE_HZ
+        assert np.linalg.norm(shown.table_from_character[[0, 2], 3] - (x, z)) < 0.065
+        assert states[-RATE_HZ:] == ["idle"] * RATE_HZ
+
+
 def test_the_same_commands_give_the_same_frames(human: Character, factory) -> None:
     intents = [(2.0, "")] * 30 + [(4.5, "")] * 20
     one, two = (_play(Animator(human, controller=factory), intents) for _ in range(2))
