@@ -39,8 +39,9 @@ YAW_RATE_PER_ANGULAR = -1.5
 TEMPO_LIMITS = (0.8, 1.2)
 """By how much a clip may be slowed down or sped up to the speed that is asked for."""
 
-MAX_BEND_RAD_S = 0.5
-"""By how much the root may turn besides what the clip turns, towards the target [rad/s]."""
+MAX_BEND_RAD_S, MAX_WIDE_BEND_RAD_S = 0.5, 1.5
+"""By how much the root may turn besides what the clip turns, towards the target [rad/s]; the second
+where the graph does not turn by itself to both sides."""
 
 BEND_LAG_S, TEMPO_LAG_S = 0.2, 0.3
 """Time constants of that turn, and of the tempo [s]."""
@@ -73,6 +74,9 @@ class GraphController(WalkController):
         if self._stands_itself:
             states["idle"] = character.clips.get("idle", character.clips["Walk"])
         self._machine = StateMachine(states, "idle" if self._stands_itself else "move")
+        rates = behaviours.means[:, 1]
+        turns = min(float(rates.max()), -float(rates.min())) > MAX_BEND_RAD_S
+        self._max_bend = MAX_BEND_RAD_S if turns else MAX_WIDE_BEND_RAD_S
         self._bend, self._tempo = 0.0, 1.0
         self._to_stand = to_stand
         self._strides_m = np.hypot(*source.library.steps[:, :2].T)
@@ -136,7 +140,7 @@ class GraphController(WalkController):
         if self._machine.state == "move":
             self._live.set_tempo(self._tempo, now - self._machine.entered)
         missing = yaw_rate - own_yaw_rate * tempo if moving else 0.0
-        asked = min(max(missing, -MAX_BEND_RAD_S), MAX_BEND_RAD_S)
+        asked = min(max(missing, -self._max_bend), self._max_bend)
         self._bend = low_pass(self._bend, asked, elapsed, BEND_LAG_S)
 
     def _frame(self, steered: SteeringOutput, going: bool) -> ControllerFrame:
