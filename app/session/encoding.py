@@ -15,6 +15,9 @@ from tracking import CubeControls, CubeState
 
 T = TypeVar("T")
 
+IMAGE_TOPIC = "/camera/image"
+"""The channel of the camera's frames."""
+
 MESSAGE_TYPES: dict[str, type[Any]] = {
     "/cube/state": CubeState,
     "/cube/controls": CubeControls,

@@ -15,6 +15,7 @@ from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
 from app.errors import AppError
+from app.session.encoding import IMAGE_TOPIC
 from app.session.options import SessionOptions
 
 START_OVER_EVENT = "start over"
@@ -39,7 +40,7 @@ class SessionInfo:
     """Camera frames in the file."""
 
     duration: float
-    """From the first to the last message [s]."""
+    """From the first to the last camera frame [s]; the robot's line may be recorded for longer."""
 
 
 def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:
@@ -70,16 +71,23 @@ def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:
         )
     try:
         with path.open("rb") as file:
-            summary = SeekingReader(file).get_summary()
+            reader = SeekingReader(file)
+            summary = reader.get_summary()
+            if summary is None or summary.statistics is None:
+                raise AppError(f"cannot read the session '{path}': it has no index")
+            ids = {channel.topic: number for number, channel in summary.channels.items()}
+            counts = summary.statistics.channel_message_counts
+            frames = counts.get(ids.get(IMAGE_TOPIC, -1), 0)
+            seconds = _end(reader, last=True) - _end(reader, last=False) if frames else 0.0
     except READ_ERRORS as error:
         raise AppError(f"cannot read the session '{path}': {error}") from error
-    if summary is None or summary.statistics is None:
-        raise AppError(f"cannot read the session '{path}': it has no index")
-    ids = {channel.topic: number for number, channel in summary.channels.items()}
-    statistics = summary.statistics
-    frames = statistics.channel_message_counts.get(ids.get("/camera/image", -1), 0)
-    seconds = (statistics.message_end_time - statistics.message_start_time) / 1e9
     return SessionInfo(_options(path), frames, seconds)
+
+
+def _end(reader: SeekingReader, *, last: bool) -> float:
+    """Return the timestamp of the first or last camera frame [s], from one chunk or few."""
+    _, _, message = next(reader.iter_messages(IMAGE_TOPIC, reverse=last))
+    return message.log_time / 1e9
 
 
 def _options(path: Path) -> SessionOptions:
@@ -99,7 +107,7 @@ def _options(path: Path) -> SessionOptions:
 
 def _readable_frames(path: Path) -> tuple[int, float]:
     """Return how many camera frames can be read, and their duration [s]."""
-    times = [time for _, time, _ in messages(path, "/camera/image")]
+    times = [time for _, time, _ in messages(path, IMAGE_TOPIC)]
     return len(times), times[-1] - times[0] if times else 0.0
 
 

@@ -16,7 +16,7 @@ from mcap_protobuf.schema import register_schema
 
 from app.errors import AppError
 from app.pipeline.step import Step
-from app.session.encoding import MESSAGE_TYPES, encode, schema
+from app.session.encoding import IMAGE_TOPIC, MESSAGE_TYPES, encode, schema
 from robot.contract.closeable import Closeable
 from tracking import Frame, Intrinsics
 from tracking.sources.base import nanoseconds_of
@@ -158,7 +158,7 @@ class Recorder(Closeable):
         kind = CompressedVideo if frame.encoding == "h264" else CompressedImage
         message = kind(frame_id="camera", data=frame.encoded, format=frame.encoding)
         message.timestamp.FromNanoseconds(nanoseconds_of(frame.timestamp))
-        self._protobuf("/camera/image", message, frame.timestamp)
+        self._protobuf(IMAGE_TOPIC, message, frame.timestamp)
 
     def _protobuf(self, topic: str, message: Any, timestamp: float) -> None:
         schema_id = partial(register_schema, self._writer, type(message))

@@ -23,7 +23,7 @@ INSTALL = "pip install sounddevice"
 
 
 class NoSoundError(AppError):
-    """There is no sound on this computer; `remedy` is a command that adds it, or ""."""
+    """There is no sound on this computer; `remedy` says how to add it, or is ""."""
 
     def __init__(self, message: str, remedy: str = "") -> None:
         super().__init__(message)
@@ -37,11 +37,11 @@ def load_portaudio() -> Any:
     except ImportError as error:
         raise NoSoundError("the library sounddevice is not installed", INSTALL) from error
     except OSError as error:  # PortAudio is in the wheels for Windows and macOS only
-        tool = shutil.which("apt-get")
-        remedy = "sudo apt-get install -y libportaudio2" if tool else ""
-        raise NoSoundError(
-            "the PortAudio library is missing: libportaudio2, or portaudio", remedy
-        ) from error
+        if shutil.which("apt-get"):
+            remedy = "sudo apt-get install -y libportaudio2"
+        else:
+            remedy = "install the package portaudio of your system"
+        raise NoSoundError("the library PortAudio is missing", remedy) from error
     return sounddevice
 
 

@@ -80,6 +80,12 @@ def test_a_session_describes_itself(recorded):
     assert events(path)[0] == (0.0, "started")
 
 
+def test_a_session_lasts_as_long_as_its_frames(recorded):
+    path, frames_written = recorded("jpeg", robot_after_s=30.0)
+    last = frames_written[-1].timestamp - frames_written[0].timestamp
+    assert session_info(path).duration == pytest.approx(last)
+
+
 def test_the_error_for_a_cut_session_says_how_much_can_be_read(recorded):
     path, frames_written = recorded("jpeg", count=60)
     data = path.read_bytes()
@@ -156,10 +162,11 @@ def recorder_steps(hand):
 def recorded(tmp_path, recorder_steps):
     """Record a session of noise; return its path and the frames that the tracker saw."""
 
-    def record(codec, count=20):
+    def record(codec, count=20, robot_after_s=0.0):
         path = tmp_path / "session.mcap"
         with Recorder(path, {"scenario": "follow", "cube": "locomotion"}) as recorder:
             frames_written = recorder_steps(recorder, count, codec)
+            recorder.wire("rx", b"\0", frames_written[-1].timestamp + robot_after_s)
         assert recorder.problem is None
         return path, frames_written
 
