@@ -89,7 +89,7 @@ class FrameLoop:
             character = session.playground.character
             session.sound.play(step, character, started_over=inputs.clear)
             lap("sound")
-        self._summary.add(step, view, seconds)
+        self._summary.add(step, view, seconds, follows=follows)
 
     def _take_start_over(self) -> bool:
         start_over, self._start_over = self._start_over, False

@@ -47,13 +47,13 @@ class Summary:
     """Frames in which the cube was found."""
 
     scenarios: list[tuple[float, str]] = field(default_factory=list)
-    """When each scenario began [s], and its name; a key changes it."""
+    """When each scenario began, by what was played until then [s], and its name."""
 
     states: list[tuple[float, str]] = field(default_factory=list)
-    """When each state of the character began [s], and its name."""
+    """When each state of the character began, in the same way, and its name."""
 
     moods: list[tuple[float, float, str]] = field(default_factory=list)
-    """Time [s], valence that the robot reports, and its label."""
+    """When, in the same way, the valence that the robot reports, and its label."""
 
     frame_seconds: list[float] = field(default_factory=list)
     """Processing time of each frame, from the camera's picture to the finished one [s]."""
@@ -79,35 +79,26 @@ class Summary:
     interrupted: bool = False
     """Whether Ctrl-C ended the session."""
 
-    first: float = 0.0
-    """Timestamp of the first frame [s]."""
+    duration: float = 0.0
+    """How long it has played [s]; what the player jumps over does not count."""
 
     last: float = 0.0
     """Timestamp of the last frame [s]."""
 
-    def add(self, step: Step, robot: RobotView, seconds: float) -> None:
-        """Add one frame and its processing time [s]."""
-        now = step.frame.timestamp
+    def add(self, step: Step, robot: RobotView, seconds: float, *, follows: bool = True) -> None:
+        """Add one frame and its processing time [s]; `follows` is false after a jump."""
         self.hopped = self.hopped or step.outcome.icon == "hop"
-        if self.frames == 0:
-            self.first = now
-        if now < self.last:  # the player went back: what comes is described again
-            self.states = [each for each in self.states if each[0] < now - self.first]
-            self.moods = [each for each in self.moods if each[0] < now - self.first]
-        self.last = now
+        if self.frames and follows:
+            self.duration += step.frame.timestamp - self.last
+        now, self.last = self.duration, step.frame.timestamp
         self.frames += 1
         self.tracked_frames += step.state.visible
         if step.scenario != (self.scenarios[-1][1] if self.scenarios else ""):
-            self.scenarios.append((now - self.first, step.scenario))
+            self.scenarios.append((now, step.scenario))
         if not self.states or self.states[-1][1] != step.posed.state:
-            self.states.append((now - self.first, step.posed.state))
-        self.moods.append((now - self.first, robot.mood, robot.label))
+            self.states.append((now, step.posed.state))
+        self.moods.append((now, robot.mood, robot.label))
         self.frame_seconds.append(seconds)
-
-    @property
-    def duration(self) -> float:
-        """From the first to the last frame [s]."""
-        return self.last - self.first
 
     def check(self) -> None:
         """Raise what went wrong with robot or camera; call it once everything is closed."""
