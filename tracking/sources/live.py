@@ -21,6 +21,9 @@ from tracking.sources.device import CapturedImage, Clock, Device, Health, Source
 MAX_ITERATION_GAP_S = 30.0
 """How long a plain iteration waits for a lost device."""
 
+MAX_FIRST_AGE_S = 0.5
+"""The frame of the opening gives way to a newer one when it is older: a slow robot was opened."""
+
 
 class LiveSource(FrameSource):
     """Frames that arrive by themselves; old ones are dropped in favour of newer ones.
@@ -76,7 +79,9 @@ class LiveSource(FrameSource):
         """Wait for a new frame: see `base.LiveFrames`."""
         if self._first is not None:
             first, self._first = self._first, None
-            return first
+            if self._clock() - first.timestamp < MAX_FIRST_AGE_S:
+                return first
+            return self._next(0.0) or first
         frame = self._next(timeout)
         if frame is None:
             if patience is not None:

@@ -296,6 +296,16 @@ def test_dropped_images_are_counted(bench, source):
     assert awaited(source, bench).image[0, 0, 0] == 4
 
 
+def test_an_old_frame_of_the_opening_gives_way_to_a_newer_one(bench):
+    bench.put(1)
+    with LiveSource(bench, "camera 0", bench.clock) as source:
+        for number in (2, 3):
+            bench.put(number)
+        bench.until(lambda: source.health.dropped == 1)
+        bench.clock.now += 3.5
+        assert awaited(source, bench).image[0, 0, 0] == 3
+
+
 def test_a_camera_with_a_new_number_is_found_by_its_name(tmp_path):
     links = tmp_path / "by-id"
     links.mkdir()
