@@ -13,6 +13,7 @@ from rich.markup import escape
 from app.commands.session.play import DEFAULT_CAMERA, CubeOption
 from app.errors import AppError
 from app.output_path import check_output
+from app.pipeline.other_cube import scenario_for
 from app.running.opening import intrinsics_for
 from app.ui.calibration.coach_lines import COVERAGE_SUFFIXES, CoachLines, write_coverage
 from app.ui.calibration.session import CalibrationSession, Coach
@@ -197,7 +198,8 @@ def _report_cube(
             "--save-cube my-cube.toml keeps that"
         )
     option = "" if path is None else f" --cube {_quoted(path)}"
-    command = f"cubeling play companion --intrinsics {_quoted(camera)}{option}"
+    scenario = scenario_for(cube) or "SCENARIO"
+    command = f"cubeling play {scenario} --intrinsics {_quoted(camera)}{option}"
     console.print(f"Play with it: [cyan]{command}[/]")
 
 

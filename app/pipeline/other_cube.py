@@ -94,7 +94,7 @@ def advice(cube: CubeModel, playing: str, own_cube: str, fixed: bool) -> str:
     'This is the companion cube: show me the museum cube'
     """
     this = f"This is the {_called(cube.name)}"
-    scenario = _scenario_for(cube, playing)
+    scenario = scenario_for(cube, playing)
     if not scenario:
         return this
     if fixed:
@@ -108,7 +108,7 @@ def _called(name: str) -> str:
     return name if name.lower().endswith("cube") else f"{name} cube"
 
 
-def _scenario_for(cube: CubeModel, playing: str) -> str:
+def scenario_for(cube: CubeModel, playing: str = "") -> str:
     """Return the name of the bundled scenario that a cube suits best, "" for none.
 
     That is the one that it is made for, or else the one that reads most of its roles; of several

@@ -67,7 +67,7 @@ def test_waving_the_cube_writes_camera_cube_and_coverage(shown, waved, tmp_path)
     )
     assert (code, err) == (0, "")
     assert "camera.yaml is ready: focal length" in out
-    assert "cubeling play companion --intrinsics camera.yaml --cube mine.toml" in out
+    assert "cubeling play follow --intrinsics camera.yaml --cube mine.toml" in out
     camera = Intrinsics.load(tmp_path / "camera.yaml")
     assert camera.matrix[0, 0] == pytest.approx(450, rel=0.005)
     assert camera.size == (640, 360)
