@@ -109,7 +109,7 @@ def personality_(
 ) -> None:
     """Print a bundled personality, as a template for your own; without a name, list them.
 
-    Example: [cyan]cubeling mood personality lively > my.toml[/]
+    Example: [cyan]cubeling mood personality lively > my-mood.toml[/]
     """
     if name is not None:
         typer.echo(bundled_text(name), nl=False)

@@ -28,6 +28,9 @@ TOP_SPEED = 5.0
 MAX_ANGULAR_RAD = math.pi / 2
 """Largest Angular."""
 
+MIN_CYCLE_LENGTH = 0.1
+"""A cycle that goes less far is no gait [heights of the character]."""
+
 WALK_CLIPS = {
     -90.0: "WalkLeftShort",
     -60.0: "WalkLeftMedium",

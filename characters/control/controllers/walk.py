@@ -15,6 +15,7 @@ from characters.control.controllers.controller import ControllerFrame
 from characters.locomotion.gaits import (
     IDLE_SPEED,
     MAX_ANGULAR_RAD,
+    MIN_CYCLE_LENGTH,
     RUN_CLIPS,
     RUN_SPEED,
     TOP_SPEED,
@@ -84,7 +85,11 @@ class WalkController:
     def suits(character: Character) -> bool:
         """Whether a character has a walk that moves its root."""
         walk = character.clips.get("Walk")
-        return walk is not None and walk.loop and walk.cycle.length > 0.1 * character.height
+        return (
+            walk is not None
+            and walk.loop
+            and walk.cycle.length > MIN_CYCLE_LENGTH * character.height
+        )
 
     def update(
         self, command: CharacterCommand, elapsed: float, tempo: float = 1.0

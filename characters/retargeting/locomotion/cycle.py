@@ -37,17 +37,22 @@ class LoopCut:
 
 
 def find_cycle(clip: Clip, rig: Rig, contacts: NDArray[np.bool_]) -> LoopCut:
-    """Return the cycle that closes best, with one landing of each foot, or refuse the clip.
+    """Return the cycle that closes best for the way it goes, or refuse the clip.
 
-    `contacts` say when the left and the right foot stand, (frames, 2).
+    Each foot lands once in it; `contacts` say when the left and the right foot stand, (frames, 2).
     """
     landed = np.cumsum(contacts[1:] & ~contacts[:-1], axis=0)
     landings = np.concatenate([np.zeros((1, 2), int), landed])
     shortest, longest = (round(seconds * clip.rate) for seconds in _CYCLE_DURATION_S)
-    best: LoopCut | None = None
+    best, best_cost = None, float("inf")
     for start, ends, seams in _seams(clip, rig, shortest, longest, landings):
-        nearest = int(seams.argmin())
-        if best is None or seams[nearest] < best.seam:
+        ways = np.linalg.norm(clip.track[ends, :2] - clip.track[start, :2], axis=1)
+        turns = np.abs(clip.track[ends, 2] - clip.track[start, 2])
+        # Shuffling in place and spinning close well, but are no gaits.
+        costs = seams / np.maximum(ways * np.cos(np.minimum(turns / 2, np.pi / 2)), 1e-9)
+        nearest = int(costs.argmin())
+        if best is None or costs[nearest] < best_cost:
+            best_cost = costs[nearest]
             best = LoopCut(start, int(ends[nearest]), float(seams[nearest]))
     if best is None:
         counts = " and ".join(str(int(number)) for number in landings[-1])

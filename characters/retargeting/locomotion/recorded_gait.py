@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from characters.errors import CharacterError
+from characters.locomotion.gaits import MIN_CYCLE_LENGTH
 from characters.model.character import Character
 from characters.motion.clip import Clip
 from characters.motion.motion import RootDelta
@@ -27,8 +28,6 @@ from characters.skeleton.pose import Skeleton
 MAX_RATE_HZ = 60.0
 """Finer recordings are resampled."""
 
-_MIN_SPEED = 0.1  # leg lengths a second
-
 
 def extract_gait(recording: Recording, character: Character, walker: Character) -> GaitCycle:
     """Return the best cycle of a recording; `walker` is the character with a root joint."""
@@ -42,7 +41,7 @@ def extract_gait(recording: Recording, character: Character, walker: Character) 
     delta = start.inverse().then(end)
     seconds = (cut.end - cut.start) / clip.rate
     path = ArcPath.of(delta, seconds)
-    if path.speed < _MIN_SPEED * rig.leg_length:
+    if path.speed * seconds < MIN_CYCLE_LENGTH * character.height:
         raise CharacterError(
             f"{recording.origin}: goes nowhere ({path.speed:.2f} m/s), and its feet do not stand "
             "as on a treadmill of constant speed; give a clip that walks"

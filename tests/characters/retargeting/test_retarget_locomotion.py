@@ -193,7 +193,10 @@ def test_arc_coordinates_round_trip(speed, yaw_rate, left, time, height):
 
 
 def captured(name):
-    path = SHARED / "cmu-mocap" / f"{name}.amc"
+    return load(SHARED / "cmu-mocap" / f"{name}.amc")
+
+
+def load(path):
     if not path.exists():
         pytest.skip("no shared data")
     return load_recording(str(path))
@@ -211,3 +214,10 @@ def test_motion_capture_makes_locomotion_clips_without_sliding(tmp_path):
         posed = walker.update(command)
     assert posed.state == "walk"
     assert posed.table_from_character[2, 3] > 0.1
+
+
+def test_a_walk_with_standing_and_turning_around_it_is_found():
+    recording = load(SHARED / "bvh" / "131_01.bvh")
+    (found,) = make_locomotion(Character.load("human"), [recording]).recordings
+    assert 0.9 < found.speed < 1.1, "the shuffling before the walk closes better"
+    assert 1.0 < found.duration < 1.4
