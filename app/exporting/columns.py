@@ -56,7 +56,13 @@ SESSION_COLUMNS = (
         "personality", "", "The personality; empty for the scenario's own", "options.personality"
     ),
     field("frames", "", "Camera frames"),
-    field("duration_s", "s", "From the first to the last message", "duration"),
+    field("duration_s", "s", "From the first to the last camera frame", "duration"),
+    field(
+        "clock_zero_utc",
+        "",
+        "Date and time at which time_s was 0, in UTC by ISO 8601; empty if the camera was not live",
+        "clock_zero",
+    ),
 )
 """The columns of the table `sessions`, which has a row for each session."""
 

@@ -1,6 +1,8 @@
 """A recording of a session, from its first frame or from a later one on."""
 
+import time
 from dataclasses import replace
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from app.errors import AppError
@@ -8,7 +10,7 @@ from app.pipeline.playground import Playground
 from app.pipeline.scenario import Inputs
 from app.pipeline.step import Step
 from app.running.wire_tap import WireTap
-from app.session import START_OVER_EVENT, Recorder, SessionOptions, frame_encoder
+from app.session import CLOCK_ZERO, START_OVER_EVENT, Recorder, SessionOptions, frame_encoder
 from robot.contract.closeable import Closeable
 from tracking import Frame, FrameSource
 
@@ -54,7 +56,11 @@ class SessionRecording(Closeable):
         self._last = 0.0
         self._encode = frame_encoder(options.codec, source.size, source.rate)
         named = replace(options, cubes=options.cubes or (playground.cube.name,))
-        self._recorder = Recorder(path, {**named.metadata(), "rate": f"{source.rate:g}"})
+        metadata = {**named.metadata(), "rate": f"{source.rate:g}"}
+        if source.live:  # then its timestamps are those of the monotonic clock
+            zero = datetime.now(UTC) - timedelta(seconds=time.monotonic())
+            metadata[CLOCK_ZERO] = zero.isoformat(timespec="milliseconds")
+        self._recorder = Recorder(path, metadata)
         if not from_within:  # with the bytes before the first frame
             wire.record_to(self._recorder)
 

@@ -15,6 +15,9 @@ from tracking import CubeControls, CubeState
 
 T = TypeVar("T")
 
+CLOCK_ZERO = "clock_zero_utc"
+"""In the metadata of a live session: when the clock of its timestamps was 0, by ISO 8601."""
+
 IMAGE_TOPIC = "/camera/image"
 """The channel of the camera's frames."""
 

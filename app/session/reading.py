@@ -15,7 +15,7 @@ from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
 from app.errors import AppError
-from app.session.encoding import IMAGE_TOPIC
+from app.session.encoding import CLOCK_ZERO, IMAGE_TOPIC
 from app.session.options import SessionOptions
 
 START_OVER_EVENT = "start over"
@@ -42,6 +42,9 @@ class SessionInfo:
     duration: float
     """From the first to the last camera frame [s]; the robot's line may be recorded for longer."""
 
+    clock_zero: str
+    """When the clock of a live camera was 0, in UTC by ISO 8601; "" for other sources."""
+
 
 def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:
     """Read what a session says of itself.
@@ -60,7 +63,8 @@ def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:
     """
     _check_magic(path)
     if salvage:
-        return SessionInfo(_options(path), *_readable_frames(path))
+        frames, seconds = _readable_frames(path)
+        return _info(path, frames, seconds)
     if not _is_complete(path):
         frames, seconds = _readable_frames(path)
         if not frames:
@@ -81,7 +85,7 @@ def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:
             seconds = _end(reader, last=True) - _end(reader, last=False) if frames else 0.0
     except READ_ERRORS as error:
         raise AppError(f"cannot read the session '{path}': {error}") from error
-    return SessionInfo(_options(path), frames, seconds)
+    return _info(path, frames, seconds)
 
 
 def _end(reader: SeekingReader, *, last: bool) -> float:
@@ -90,14 +94,16 @@ def _end(reader: SeekingReader, *, last: bool) -> float:
     return message.log_time / 1e9
 
 
-def _options(path: Path) -> SessionOptions:
-    """Return the settings in the metadata, which the recorder writes first."""
+def _info(path: Path, frames: int, seconds: float) -> SessionInfo:
+    """Add to the figures what the metadata say, which the recorder writes first."""
     with path.open("rb") as file:
         try:
             for record in StreamReader(file).records:
                 if isinstance(record, Metadata) and record.name == "cubeling":
                     if "scenario" in record.metadata:
-                        return SessionOptions.from_metadata(record.metadata, str(path))
+                        options = SessionOptions.from_metadata(record.metadata, str(path))
+                        clock_zero = record.metadata.get(CLOCK_ZERO, "")
+                        return SessionInfo(options, frames, seconds, clock_zero)
                 elif isinstance(record, Chunk | DataEnd):
                     break
         except READ_ERRORS:

@@ -126,8 +126,10 @@ def _action_background(name: str, moves: bool, scale: float) -> Canvas:
     """Draw what does not change during an action."""
     canvas = Canvas(ACTION_CARD_WIDTH, CARD_HEIGHT, scale)
     canvas.disc(54, 54, 38, ACTION_COLORS.get(name, INK))
-    if name in ICON_COLOURS:  # a scenario may name an action that has no icon
+    if name in ICON_COLOURS:
         canvas.icon(32, 32, 44, name, PAPER)
+    else:  # a scenario may name an action that has no icon
+        canvas.text(54, 69, name[:1].upper(), 42, PAPER, "middle")
     canvas.text(108, 42, "Idle" if name == "stand" else name.title(), 28, INK)
     canvas.bar(ACTION_BAR_X, BAR_Y, ACTION_BAR_WIDTH, 10, RULE)
     if moves:

@@ -1,6 +1,8 @@
 """A session whose camera is lost: the screen stays alive, and the gap is shown and recorded."""
 
+import time
 from dataclasses import replace
+from datetime import UTC, datetime
 
 import numpy as np
 import pytest
@@ -107,7 +109,11 @@ def test_the_window_can_be_closed_while_the_camera_is_lost(run_with_gap):
 
 def test_a_camera_that_does_not_come_back_ends_the_session_and_keeps_the_recording(run_with_gap):
     summary, path = run_with_gap(20, NullScreen())
-    assert session_info(path).frames == 5
+    info = session_info(path)
+    assert info.frames == 5
+    zero = datetime.fromisoformat(info.clock_zero)
+    since_zero = (datetime.now(UTC) - zero).total_seconds()
+    assert since_zero == pytest.approx(time.monotonic(), abs=1.0)
     with pytest.raises(TrackingError, match="delivered no image"):
         summary.check()
 
