@@ -46,14 +46,6 @@ class Edges:
         keep = nodes[self.sources] & nodes[self.targets]
         return Edges(self.count, self.sources[keep], self.targets[keep], self.weights[keep])
 
-    def among(self, nodes: Nodes) -> "Edges":
-        """Return the edges between some nodes, ascending, which are renumbered from 0."""
-        number = np.full(self.count, -1, np.intp)
-        number[nodes] = np.arange(len(nodes))
-        sources, targets = number[self.sources], number[self.targets]
-        keep = (sources >= 0) & (targets >= 0)
-        return Edges(len(nodes), sources[keep], targets[keep], self.weights[keep])
-
     @cached_property
     def firsts(self) -> Nodes:
         """Number of the first edge of each node, and the number of edges, (nodes + 1,)."""
@@ -67,6 +59,14 @@ class Edges:
         """Return the cost of the edge between two nodes; there is one."""
         own = self.leaving(source)
         return float(self.weights[own][np.searchsorted(self.targets[own], target)])
+
+    @cached_property
+    def onward(self) -> Array:
+        """Cost of the edge from each node to the next number, or ∞, (nodes − 1,)."""
+        found = np.full(self.count - 1, np.inf)
+        own = self.targets == self.sources + 1
+        found[self.sources[own]] = self.weights[own]
+        return found
 
     @cached_property
     def successors(self) -> list[list[int]]:

@@ -84,6 +84,41 @@ class HopCosts:
                 costs[time, starts[time]] = 0.0
         return HopCosts(edges, starts, costs)
 
+    @staticmethod
+    def of_few_jumps(
+        edges: Edges, starts: tuple[int, ...], hops: int, target: int, slack: int
+    ) -> "HopCosts":
+        """Return the costs of paths with one jump that leaves a start and one that lands.
+
+        They are the same one, or a third clip is between them. A landing is at most `slack` frames
+        off the target, which is what plays at time 0 in the clip to reach. A time takes an effort
+        in proportion to the nodes, instead of the edges.
+        """
+        sources, weights, reached, firsts = edges.by_target
+        ends = np.append(firsts, len(sources))
+        times = np.arange(hops + 1)[:, None]
+        bounds = np.searchsorted(reached, target + times + [-slack, slack + 1])
+        costs = np.full((hops + 1, edges.count), inf)
+        for time in range(hops + 1):
+            now = costs[time]
+            if time:
+                before = costs[time - 1]
+                np.add(before[:-1], edges.onward, out=now[1:])
+                start = starts[time - 1] if time <= len(starts) else -1
+                if start >= 0:
+                    own = edges.leaving(start)
+                    landing = edges.targets[own]
+                    now[landing] = np.minimum(now[landing], edges.weights[own])
+                a, b = bounds[time]
+                if a < b:
+                    own = slice(ends[a], ends[b])
+                    totals = before.take(sources[own]) + weights[own]
+                    least = np.minimum.reduceat(totals, firsts[a:b] - firsts[a])
+                    now[reached[a:b]] = np.minimum(now[reached[a:b]], least)
+            if time < len(starts) and starts[time] >= 0:
+                now[starts[time]] = 0.0
+        return HopCosts(edges, starts, costs)
+
     def path(self, node: int, time: int) -> Nodes:
         """Return the nodes of a cheapest path that ends at a node at a time.
 

@@ -1,6 +1,6 @@
 """The standard graph and the part graphs of the same clips, each at its critical threshold."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 
@@ -81,6 +81,17 @@ class Comparison:
         """Return the answers of the graph of the whole body."""
         return by_pair(partial(standard_outcome, graph), self.library, asked)
 
+    def part_answers(
+        self,
+        profiles: Sequence[PartGraphs],
+        asked: Requests,
+        settings: SearchSettings | None = None,
+    ) -> Answers:
+        """Return the answers of part graphs, of the best split profile for each request."""
+        standard = self.standard(self.standard_threshold)
+        planners = [TransitionPlanner(graphs, standard, settings) for graphs in profiles]
+        return by_pair(partial(part_outcome, planners), self.library, asked)
+
 
 @dataclass(frozen=True)
 class SplitComparison:
@@ -138,9 +149,7 @@ class SplitComparison:
         settings: SearchSettings | None = None,
     ) -> Answers:
         """Return the answers of the part graphs."""
-        standard = self.whole.standard(self.whole.standard_threshold)
-        planner = TransitionPlanner(graphs, standard, settings)
-        return by_pair(partial(part_outcome, planner), self.whole.library, asked)
+        return self.whole.part_answers([graphs], asked, settings)
 
     def _at(self, thresholds: list[float]) -> PartGraphs:
         return PartGraphs.build(

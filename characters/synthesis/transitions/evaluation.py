@@ -3,20 +3,17 @@
 Source: Fernández-Baena 2015, chapters 3.4 and 3.5 (M3), with its errata.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.skeleton.pose import Array, Pose
-from characters.synthesis.distances import thesis_distance
-from characters.synthesis.graphs.edges import Nodes
 from characters.synthesis.graphs.graph import MotionGraph
 from characters.synthesis.library import MotionLibrary
-from characters.synthesis.transitions.progressive import TransitionPlanner
-from characters.synthesis.transitions.stitching import stitch
+from characters.synthesis.transitions.progressive import TransitionPlanner, cheapest_plan
+from characters.synthesis.transitions.stitching import consecutive_distances, played_cost
 
 Goals = NDArray[np.bool_]
 """Which frames meet a request, (frames,)."""
@@ -49,34 +46,14 @@ def standard_outcome(graph: MotionGraph, request: int, goals: Goals) -> Outcome:
     return Outcome(len(path) - 1, response, float(cost))
 
 
-def part_outcome(planner: TransitionPlanner, request: int, goals: Goals) -> Outcome:
-    """Return how the graphs of the parts answer a request.
+def part_outcome(planners: Sequence[TransitionPlanner], request: int, goals: Goals) -> Outcome:
+    """Return how the graphs of the parts answer a request, with the best of several profiles.
 
     The cost is that of the synchronised motion before it is smoothed.
     """
-    transition = planner.plan(request, goals)
-    raw = stitch(planner.graphs, transition, sigma=0.0)
-    cost = consecutive_distances(planner.graphs.library, raw.poses, raw.frames).sum()
-    return Outcome(transition.duration, transition.response, float(cost), transition.fallback)
-
-
-def consecutive_distances(library: MotionLibrary, poses: Pose, frames: Nodes) -> Array:
-    """Return the distance of M1 between each pose and the next, (times − 1,).
-
-    `frames` are those of the legs.
-    """
-    count = len(frames)
-    played = replace(
-        library,
-        names=("played",),
-        starts=np.array([0, count]),
-        loops=np.array([False]),
-        poses=poses,
-        steps=library.steps[frames],
-        contacts=library.contacts[frames],
-    )
-    times = np.arange(count - 1)
-    return thesis_distance(played).pairs(times, times + 1)
+    graphs, transition = cheapest_plan(planners, request, goals)
+    cost = played_cost(graphs, transition)
+    return Outcome(transition.duration, transition.response, cost, transition.fallback)
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 Source: Fernández-Baena 2015, chapter 3.3 (M2.4).
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal
@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
-from characters.synthesis.graphs.edges import Edges, Nodes
+from characters.synthesis.graphs.edges import Nodes
 from characters.synthesis.graphs.graph import MotionGraph
 from characters.synthesis.graphs.parts import PartGraphs
 from characters.synthesis.graphs.search import HopCosts
+from characters.synthesis.transitions.stitching import played_cost
 from characters.synthesis.transitions.transition import PartMove, Transition
 
 Goals = NDArray[np.bool_]
@@ -39,6 +40,13 @@ class SearchSettings:
     tolerance: float = 0.2
     """Largest change of a path's time scale: 20 %."""
 
+    min_run: int = 1
+    """Frames that a part plays of a clip between two jumps, at least."""
+
+    choices: int = 1
+    """Transitions of which the one that plays cheapest is taken; each is planned whole, so several
+    are for the making of motions rather than for play."""
+
     arrivals: int = 25
     """Arrivals of the legs that are tried before the window is widened."""
 
@@ -48,9 +56,9 @@ class SearchSettings:
     horizon: int = 120
     """Frames within which other arrivals of the legs are looked for."""
 
-    direct_edges: int = 20_000
-    """In a part's graph with more edges, ways through third clips are looked for only where there
-    is none between the two clips: the search takes a time in proportion to its edges."""
+    many_edges: int = 20_000
+    """In a part's graph with more edges, paths of many jumps are looked for only where there is
+    none of two: their search takes a time in proportion to the edges."""
 
 
 class TransitionPlanner:
@@ -69,7 +77,6 @@ class TransitionPlanner:
         self.graphs = graphs
         self.standard = standard
         self.settings = settings or SearchSettings()
-        self._between: dict[tuple[int, int, int], tuple[Edges, Nodes]] = {}
 
     def plan(self, request: int, goals: Goals) -> Transition:
         """Return the transition from a frame to any of the goals (frames,).
@@ -87,14 +94,9 @@ class TransitionPlanner:
                 "what is asked for is not in the graphs of all parts: its frames were pruned; "
                 "raise the threshold or add clips"
             )
-        window = self.settings.window
-        first = self._complete(request, self._first(request, goals), window)
-        if first is not None:
-            return first
-        for prior in self._others(request, goals):
-            found = self._complete(request, prior, window)
-            if found is not None:
-                return replace(found, fallback="arrival")
+        found = self._narrow(request, goals)
+        if found is not None:
+            return found
         wide = self._complete(request, self._first(request, goals), self.settings.wide_window)
         if wide is not None:
             return replace(wide, fallback="window")
@@ -105,6 +107,22 @@ class TransitionPlanner:
         move = _move(whole, whole.path(request, goals))
         others = (replace(move, cost=0.0),) * (len(self.graphs.parts) - 1)
         return Transition(request, (move, *others), fallback)
+
+    def _narrow(self, request: int, goals: Goals) -> Transition | None:
+        """Return the transition that plays cheapest of the first few in the usual window."""
+        window, choices = self.settings.window, self.settings.choices
+        first = self._complete(request, self._first(request, goals), window)
+        found = [] if first is None else [first]
+        if len(found) < choices:
+            for prior in self._others(request, goals):
+                other = self._complete(request, prior, window)
+                if other is not None:
+                    found.append(other if first else replace(other, fallback="arrival"))
+                if len(found) >= choices:
+                    break
+        if len(found) < 2:
+            return found[0] if found else None
+        return min(found, key=lambda each: played_cost(self.graphs, each))
 
     def _first(self, request: int, goals: Goals) -> PartMove:
         """Return the cheapest way of the legs."""
@@ -159,9 +177,15 @@ class TransitionPlanner:
                 arrivals[time] = frame
         return starts, arrivals
 
-    def _fits(self, length: int, departure: int, arrival: int) -> bool:
-        """Return whether a path can be scaled to its time: |l − l'| / l' ≤ 20 %."""
-        required = arrival - departure
+    def _fits(self, path: Nodes, departure: int, arrival: int) -> bool:
+        """Return whether a path stays in each clip, and can be scaled to its time.
+
+        That is |l − l'| / l' ≤ 20 %, where l is its length and l' the time.
+        """
+        jumps = np.flatnonzero(self.graphs.library.successors[path[:-1]] != path[1:])
+        if (np.diff(jumps) < self.settings.min_run).any():
+            return False
+        length, required = len(path) - 1, arrival - departure
         return required > 0 and abs(length - required) <= self.settings.tolerance * required + 1e-9
 
     def _bounded(self, part: int, request: int, prior: PartMove, window: int) -> PartMove | None:
@@ -175,34 +199,30 @@ class TransitionPlanner:
         ends = times[:, None] + np.arange(-near.max(), near.max() + 1)
         fits = (np.abs(ends - times[:, None]) <= near[:, None]) & (ends > first)
         ends = np.where(fits, ends, first) - first
-        for edges, nodes in self._searched(part, request, int(prior.frames[-1])):
-            number = np.full(len(self.graphs.library) + 1, -1)  # the last is for no frame
-            number[nodes] = np.arange(len(nodes))
-            places = tuple(number[starts[first:]].tolist())
-            table = HopCosts.of(edges, places, int(ends.max()))
-            costs = np.where(fits, table.costs[ends, number[frames][:, None]], np.inf)
+        target = int(prior.frames[-1]) - (prior.arrival - first)
+        for table in self._tables(
+            part, tuple(starts[first:]), int(ends.max()), target, int(near.max())
+        ):
+            costs = np.where(fits, table.costs[ends, frames[:, None]], np.inf)
             for option in np.argsort(costs, axis=None).tolist():
                 row, column = divmod(option, costs.shape[1])
                 if not np.isfinite(costs[row, column]):
                     break
                 end, arrival = int(ends[row, column]), int(times[row])
-                path = table.path(int(number[frames[row]]), end)
+                path = table.path(int(frames[row]), end)
                 departure = first + end - (len(path) - 1)
-                if len(path) > 1 and self._fits(len(path) - 1, departure, arrival):
-                    return PartMove(departure, arrival, nodes[path], float(costs[row, column]))
+                if len(path) > 1 and self._fits(path, departure, arrival):
+                    return PartMove(departure, arrival, path, float(costs[row, column]))
         return None
 
-    def _searched(self, part: int, request: int, landing: int) -> Iterator[tuple[Edges, Nodes]]:
-        """Yield the edges to search, one after the other, and the frames that are their nodes."""
-        graph = self.graphs.graphs[part]
-        if len(graph.edges) > self.settings.direct_edges:
-            clip_of = graph.library.clip_of
-            one, other = sorted((int(clip_of[request]), int(clip_of[landing])))
-            if (part, one, other) not in self._between:
-                nodes = np.flatnonzero((clip_of == one) | (clip_of == other))
-                self._between[part, one, other] = graph.edges.among(nodes), nodes
-            yield self._between[part, one, other]
-        yield graph.edges, np.arange(len(graph.library))
+    def _tables(
+        self, part: int, starts: tuple[int, ...], hops: int, target: int, slack: int
+    ) -> Iterator[HopCosts]:
+        """Yield the costs of a part's paths: in a large graph first of those of few jumps."""
+        edges = self.graphs.graphs[part].edges
+        if len(edges) > self.settings.many_edges:
+            yield HopCosts.of_few_jumps(edges, starts, hops, target, slack)
+        yield HopCosts.of(edges, starts, hops)
 
     def _shortest(self, part: int, request: int, prior: PartMove, window: int) -> PartMove | None:
         """Return the cheapest of the cheapest paths between both windows whose lengths fit."""
@@ -220,9 +240,26 @@ class TransitionPlanner:
                 if best is not None and cost >= best.cost:
                     continue
                 frames = np.array(to_go.path(start))
-                if self._fits(len(frames) - 1, departure, arrival):
+                if self._fits(frames, departure, arrival):
                     best = PartMove(departure, arrival, frames, cost)
         return best
+
+
+def cheapest_plan(
+    planners: Sequence[TransitionPlanner], request: int, goals: Goals
+) -> tuple[PartGraphs, Transition]:
+    """Return the transition that plays cheapest of those of several split profiles, and its graphs.
+
+    This chooses the best profile for each request (M2 and M3, go beyond).
+
+    Raises
+    ------
+    CharacterError
+        If the frame is not in all graphs of any profile, or no goal is.
+    """
+    able = [each for each in planners if each.graphs.kept[request]] or planners
+    plans = [(each.graphs, each.plan(request, goals)) for each in able]
+    return min(plans, key=lambda plan: played_cost(*plan))
 
 
 def _move(graph: MotionGraph, frames: list[int]) -> PartMove:

@@ -3,7 +3,7 @@
 Source: Fernández-Baena 2015, chapter 3.3 (M2.5).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,9 +11,10 @@ from characters.motion.clip import Clip
 from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
+from characters.synthesis.distances import thesis_distance
 from characters.synthesis.graphs.edges import Nodes
 from characters.synthesis.graphs.parts import PartGraphs
-from characters.synthesis.library import placed_clip
+from characters.synthesis.library import MotionLibrary, placed_clip
 from characters.synthesis.transitions.transition import PartStreams, Transition
 
 SIGMA_FRAMES = 2.0
@@ -68,6 +69,31 @@ def stitch(
         steps = steps + (gaussian(steps, sigma) - steps) * weights[:, None]
     arrived = before + transition.duration
     return StitchedMotion(poses, steps, streams.before[0], before, arrived)
+
+
+def played_cost(graphs: PartGraphs, transition: Transition) -> float:
+    """Return the sum of the distances of M1 from each played frame to the next, unsmoothed (M3)."""
+    raw = stitch(graphs, transition, sigma=0.0)
+    return float(consecutive_distances(graphs.library, raw.poses, raw.frames).sum())
+
+
+def consecutive_distances(library: MotionLibrary, poses: Pose, frames: Nodes) -> Array:
+    """Return the distance of M1 between each pose and the next, (times − 1,).
+
+    `frames` are those of the legs.
+    """
+    count = len(frames)
+    played = replace(
+        library,
+        names=("played",),
+        starts=np.array([0, count]),
+        loops=np.array([False]),
+        poses=poses,
+        steps=library.steps[frames],
+        contacts=library.contacts[frames],
+    )
+    times = np.arange(count - 1)
+    return thesis_distance(played).pairs(times, times + 1)
 
 
 def context_frames(sigma: float) -> int:

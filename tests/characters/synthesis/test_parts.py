@@ -1,3 +1,4 @@
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -9,12 +10,22 @@ from characters.synthesis.body import default_body_plan, read_body_plan
 from characters.synthesis.graphs.building import part_graphs, standard_graph
 from characters.synthesis.graphs.graph import EdgeCosts
 from characters.synthesis.graphs.parts import PartGraphs
+from characters.synthesis.graphs.search import HopCosts
 from characters.synthesis.graphs.storage import StoredGraph
 from characters.synthesis.library import MotionLibrary
 from characters.synthesis.transitions.comparison import Comparison, common_requests
 from characters.synthesis.transitions.evaluation import together
-from characters.synthesis.transitions.progressive import SearchSettings, TransitionPlanner
-from characters.synthesis.transitions.stitching import SIGMA_FRAMES, context_frames, stitch
+from characters.synthesis.transitions.progressive import (
+    SearchSettings,
+    TransitionPlanner,
+    cheapest_plan,
+)
+from characters.synthesis.transitions.stitching import (
+    SIGMA_FRAMES,
+    context_frames,
+    played_cost,
+    stitch,
+)
 from characters.synthesis.transitions.transition import PartStreams, Transition
 
 CMU = Path(__file__).parents[4] / "shared" / "data" / "cmu-mocap"
@@ -111,6 +122,53 @@ def test_the_bounded_search_answers_all_that_the_printed_one_does(
                 ]
                 assert all(fits)
     assert answered[0] >= answered[1]
+
+
+def test_the_best_of_several_transitions_plays_cheaper(
+    graphs: PartGraphs, stored: StoredGraph, transitions: list[Transition]
+) -> None:
+    standard = standard_graph(stored)
+    planner = TransitionPlanner(graphs, standard, SearchSettings(choices=4))
+    first, best = [], []
+    for (frame, goals), own in zip(_requests(graphs, 40), transitions[:12], strict=False):
+        plan = cheapest_plan([planner, TransitionPlanner(graphs, standard)], frame, goals)
+        first.append(played_cost(graphs, own))
+        best.append(played_cost(*plan))
+        assert goals[plan[1].moves[0].frames[-1]]
+    assert all(b <= a + 1e-9 for a, b in zip(first, best, strict=True))
+    assert sum(best) < sum(first)
+
+
+def test_a_part_stays_in_a_clip_for_the_least_run(graphs: PartGraphs, stored: StoredGraph) -> None:
+    following = graphs.library.successors
+    runs: dict[int, list[int]] = {}
+    for least in (1, 6):
+        settings = SearchSettings(min_run=least)
+        planner = TransitionPlanner(graphs, standard_graph(stored), settings)
+        own = runs.setdefault(least, [])
+        for frame, goals in _requests(graphs, 30):
+            plan = planner.plan(frame, goals)
+            moves = plan.moves[1:] if plan.fallback != "standard" else ()
+            for move in moves:
+                jumps = np.flatnonzero(following[move.frames[:-1]] != move.frames[1:])
+                own += np.diff(jumps).tolist()
+    assert min(runs[6]) >= 6 > min(runs[1])
+
+
+def test_paths_of_few_jumps_are_paths_of_the_graph(graphs: PartGraphs) -> None:
+    edges = graphs.graphs[1].edges
+    starts = tuple(range(40, 46))
+    every = HopCosts.of(edges, starts, 12)
+    target = int(np.flatnonzero(graphs.kept)[-1]) - 10
+    few = HopCosts.of_few_jumps(edges, starts, 12, target, 2)
+    anywhere = HopCosts.of_few_jumps(edges, starts, 12, 0, edges.count)
+    assert np.array_equal(anywhere.costs, every.costs)
+    assert (few.costs >= every.costs).all()
+    reached = np.argwhere(np.isfinite(few.costs[1:])) + [1, 0]
+    for time, node in reached[:: len(reached) // 20].tolist():
+        path = few.path(node, time)
+        cost = sum(edges.weight(a, b) for a, b in pairwise(path.tolist()))
+        assert every.costs[time, node] - 1e-9 <= cost <= few.costs[time, node] + 1e-9
 
 
 def test_smoothing_leaves_the_clips_alone(
