@@ -3,13 +3,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters import Pose, RootDelta
+from characters import CharacterError, Pose, RootDelta
 from characters.skeleton import rotations
 from characters.synthesis.body import default_body_plan
 from characters.synthesis.distances import DISTANCES, JointAngles, PointClouds, matrix
 from characters.synthesis.distances.angles import transition_probabilities
 from characters.synthesis.distances.points import windows
 from characters.synthesis.graphs.parts import part_distance, threshold_shares
+from characters.synthesis.joint_weights import fit_weights, nonnegative_weights
 from characters.synthesis.library import MotionLibrary
 
 
@@ -103,6 +104,24 @@ def test_shares_of_the_threshold_are_those_of_the_thesis(library: MotionLibrary)
     parts = default_body_plan().split("SP4b", library.skeleton, library.anatomy)
     shares = [round(0.105 * share, 4) for share in threshold_shares(parts)]
     assert shares == [0.0691, 0.0102, 0.0128, 0.0128]
+
+
+def test_weights_that_made_the_distances_are_found_again() -> None:
+    rng = np.random.default_rng(3)
+    angles, truth = rng.random((500, 5)), np.array([2.0, 0.5, 0.0, 1.0, 0.1])
+    found = nonnegative_weights(angles, angles @ truth, np.ones(5), pull=0.0)
+    assert np.allclose(found, truth, atol=1e-6)
+    pulled = nonnegative_weights(angles, angles @ truth, np.ones(5), pull=1e6)
+    assert np.ptp(pulled) < 1e-3
+
+
+def test_fitted_weights_agree_with_what_is_seen(library: MotionLibrary) -> None:
+    found = fit_weights(library)
+    assert sum(found.weights.values()) == pytest.approx(8.2)
+    assert min(found.weights.values()) >= 0.0
+    assert 0.5 < found.default_agreement < found.agreement + 0.02 < 1.02
+    with pytest.raises(CharacterError, match="give at least three"):
+        fit_weights(library.only((0, 1)))
 
 
 def test_alignment_of_point_clouds_is_the_best_one(library: MotionLibrary) -> None:
