@@ -54,6 +54,7 @@ class SessionRecording(Closeable):
         self._from_within = from_within
         self._first: float | None = None
         self._last = 0.0
+        self._marks = 0
         self._encode = frame_encoder(options.codec, source.size, source.rate)
         named = replace(options, cubes=options.cubes or (playground.cube.name,))
         metadata = {**named.metadata(), "rate": f"{source.rate:g}"}
@@ -102,6 +103,12 @@ class SessionRecording(Closeable):
     def event(self, name: str, timestamp: float) -> None:
         """Record an event."""
         self._recorder.event(name, timestamp)
+
+    def mark(self, timestamp: float) -> int:
+        """Record the player's next mark, and return its number, from 1."""
+        self._marks += 1
+        self.event(f"mark {self._marks}", timestamp)
+        return self._marks
 
     def close(self) -> None:
         """Complete the file; without a frame, leave none. A second call does nothing."""

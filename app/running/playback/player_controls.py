@@ -15,6 +15,7 @@ from app.ui.playback.requests import (
     ChangeSound,
     Choose,
     ListChoices,
+    MarkMoment,
     Pause,
     Record,
     Seek,
@@ -90,6 +91,15 @@ class PlayerControls:
             played = f"cubeling replay {short_path(session.recorded[-1])}"
             session.screen.notify(f"Recorded {seconds:.0f} s. Play it: {played}")
 
+    def _mark(self, _: MarkMoment) -> None:
+        """Mark the frame that is shown, in the recording that is being made."""
+        session, now = self._session, self._transport.timestamp
+        if session.recording is None or now is None:
+            session.screen.notify("Marks are kept in a recording: R begins one")
+            return
+        number = session.recording.mark(now)
+        session.screen.notify(f"Mark {number} at {session.recording.seconds:.1f} s")
+
     def _begin_recording(self) -> None:
         session, transport = self._session, self._transport
         options = session.options
@@ -118,6 +128,7 @@ HANDLERS: dict[type[SessionRequest], Callable[[PlayerControls, Any], None]] = {
     SeekTo: lambda controls, request: controls._transport.seek(request.position),
     StepFrames: lambda controls, request: controls._transport.step_frames(request.count),
     Record: PlayerControls._record,
+    MarkMoment: PlayerControls._mark,
     ChangeSetting: PlayerControls._change_setting,
     ChangeSound: lambda controls, request: controls._session.change_sound(
         request.setting, request.value

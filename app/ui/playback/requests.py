@@ -68,6 +68,11 @@ class Record:
 
 
 @dataclass(frozen=True)
+class MarkMoment:
+    """Mark this moment in the recording that is being made."""
+
+
+@dataclass(frozen=True)
 class ListChoices:
     """Find out which cameras, characters and robots there are."""
 
@@ -109,7 +114,16 @@ PlayerInput = StartOver | PlayScenario
 """What the scenario is told."""
 
 SessionRequest = (
-    Pause | Seek | SeekTo | StepFrames | Record | ListChoices | Choose | ChangeSetting | ChangeSound
+    Pause
+    | Seek
+    | SeekTo
+    | StepFrames
+    | Record
+    | MarkMoment
+    | ListChoices
+    | Choose
+    | ChangeSetting
+    | ChangeSound
 )
 """What the session carries out."""
 

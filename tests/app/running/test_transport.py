@@ -15,7 +15,7 @@ from app.running.opening import open_session
 from app.running.replay_check import check_session
 from app.running.runner import run
 from app.session import SessionOptions, events, messages, session_info
-from app.ui.playback.requests import Pause, Record, Seek, SeekTo, StepFrames
+from app.ui.playback.requests import MarkMoment, Pause, Record, Seek, SeekTo, StepFrames
 from robot.protocol.timing import FAILSAFE_AFTER as FAILSAFE_S
 from tests.app.running.player import Player
 from tests.app.running.recorded_camera import RecordedCamera
@@ -179,6 +179,22 @@ def test_a_recording_by_key_is_a_session_of_its_own(play, short_session):
     ]
     assert player.statuses[20].recording == pytest.approx(0.3, abs=0.1)
     assert player.statuses[-1].recording is None
+
+
+def test_marks_by_key_are_events_of_the_recording(play):
+    script = (
+        (5, MarkMoment()),
+        (10, Record()),
+        (14, MarkMoment()),
+        (18, MarkMoment()),
+        (22, leave),
+    )
+    player = play(*script, stage="camera")
+    (path,) = player.session.recorded
+    marks = {name: time for time, name in events(path) if name.startswith("mark")}
+    assert marks == {"mark 1": pytest.approx(13 / 30), "mark 2": pytest.approx(17 / 30)}
+    assert player.notices[0] == "Marks are kept in a recording: R begins one"
+    assert player.notices[2:4] == ["Mark 1 at 0.1 s", "Mark 2 at 0.2 s"]
 
 
 def test_a_recording_of_a_part_is_a_session_of_its_own(cubeling, short_session, tmp_path):

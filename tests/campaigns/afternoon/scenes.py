@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from app.session import events
 from tests.campaigns.afternoon.desktop import AfternoonError, Desktop, Program, wait_for
 from tests.campaigns.afternoon.phone import PhoneServer
 
@@ -113,13 +114,16 @@ def record_and_replay(afternoon: Afternoon) -> None:
     with afternoon.play("companion") as program:
         wait_for("the character to move", afternoon.moving)
         desktop.press("r")
-        time.sleep(6)
+        time.sleep(3)
+        desktop.press("b")
+        time.sleep(3)
         afternoon.look("recording")
         desktop.press("r")
         time.sleep(1)
         afternoon.look("recorded")
         _quit(afternoon, program)
     recording = afternoon.files(".mcap")[-1]
+    _expect("mark 1" in [name for _, name in events(recording)], "B marks a moment")
     with desktop.start("replay", recording, "--check", folder=afternoon.folder) as program:
         _expect(program.end() == 0, f"the recording replays exactly: {program.printed}")
     with desktop.start("replay", recording, folder=afternoon.folder) as program:
