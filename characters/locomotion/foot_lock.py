@@ -9,10 +9,11 @@ from characters.locomotion.foot_constraint import FootConstraint, FootPoints, ro
 from characters.motion.motion import RootDelta
 from characters.skeleton.pose import Pose
 from characters.skeleton.scalar_quaternions import Quaternion, Vector, rotate
+from characters.smoothing import low_pass
 
 _MAX_EXTENSION = 0.997  # of a leg's length
 _MAX_PELVIS_DROP = 0.02  # [body heights]
-_PELVIS_RISE_LAG_S = 0.12
+_PELVIS_DROP_LAG_S, _PELVIS_RISE_LAG_S = 0.05, 0.12
 _MIN_CHANGE = 1e-5  # [body heights]: smaller offsets are not applied
 _SOFT_EXTENSION = 0.96  # of a leg's length: a moving foot is slowed down beyond it
 _SOFTENING_S = 0.05  # after the foot is let go
@@ -108,8 +109,9 @@ class FootLock:
             self._pelvis_drop = 0.0
             return pose
         ankles, turns = self._ankles(frames, place)
-        decayed = self._pelvis_drop * math.exp(-elapsed / _PELVIS_RISE_LAG_S)
-        self._pelvis_drop = max(self._needed_drop(frames, ankles), decayed)
+        needed = self._needed_drop(frames, ankles)
+        lag = _PELVIS_DROP_LAG_S if needed > self._pelvis_drop else _PELVIS_RISE_LAG_S
+        self._pelvis_drop = low_pass(self._pelvis_drop, needed, elapsed, lag)
         if self._pelvis_drop > least:
             pose, frames = self.legs.lower_pelvis(pose, frames, self._pelvis_drop)
         return self.legs.bend(pose, frames, ankles, turns)

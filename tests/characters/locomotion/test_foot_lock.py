@@ -9,6 +9,7 @@ from characters import Animator, Character, CharacterCommand, LocomotionIntent
 from characters.control.layers import FootLockLayer
 from characters.locomotion.steering import SteeringOutput
 from tests.bench.feet import (
+    BODY_HEIGHT_M,
     FRAME_RATE,
     MAX_SLIDE_MM_S,
     SCRIPTS,
@@ -52,6 +53,18 @@ def test_the_foot_lock_adds_little_joint_acceleration(human):
     course = SteeringOutput(1.5, math.radians(-75), 1.0)
     free, held = (at_point(human, course, 1.5, hold).jerk for hold in (False, True))
     assert held < 1.5 * free + 100.0
+
+
+def test_the_pelvis_is_not_lowered_at_once(human):
+    """A runner stops with one foot far behind."""
+    walker, hips = Walking(human), human.anatomy.joints["hips"]
+    heights = []
+    for number in range(107):
+        course = SteeringOutput(4.5 if number < 47 else 0.0, 0.0, 1.0)
+        pose = walker.step(course, 1 / FRAME_RATE if number else 0.0)
+        heights.append(pose.globals(human.skeleton)[hips, 1, 3])
+    changes = np.abs(np.diff(heights, 2)) * FRAME_RATE * BODY_HEIGHT_M / human.height
+    assert changes.max() < 1.0  # [m/s a frame]; 2.3 if it is lowered at once
 
 
 def test_feet_stay_in_place_after_a_stop(human):
