@@ -75,6 +75,15 @@ def test_a_second_ctrl_c_leaves_no_broken_file(cubeling, short_session, monkeypa
     assert not list(Path().iterdir())
 
 
+@pytest.fixture
+def ctrl_c_interrupts():
+    """As in a terminal: what a shell starts in the background begins with Ctrl-C ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("ctrl_c_interrupts")
 def test_ctrl_c_within_a_frame_waits_for_its_end(short_session, tmp_path):
     class Pressing(NullScreen):
         """Presses Ctrl-C while the fifth frame is shown."""
