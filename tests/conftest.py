@@ -1,3 +1,8 @@
-"""Lets numpy round in the tests as it does in the program: `app` must come before numpy."""
+"""Lets the tests compute and print as the program does on any computer."""
 
-import app as app  # for what importing it sets
+import os
+
+for name in ("FORCE_COLOR", "GITHUB_ACTIONS", "PY_COLORS"):
+    os.environ.pop(name, None)  # with them, Typer prints colours without a terminal
+
+import app as app  # noqa: E402  before numpy, whose rounding it sets
