@@ -1,6 +1,5 @@
 """A recording of a session, from its first frame or from a later one on."""
 
-import time
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -10,7 +9,7 @@ from app.pipeline.playground import Playground
 from app.pipeline.scenario import Inputs
 from app.pipeline.step import Step
 from app.running.wire_tap import WireTap
-from app.session import CLOCK_ZERO, START_OVER_EVENT, Recorder, SessionOptions, frame_encoder
+from app.session import START_OVER_EVENT, Recorder, SessionOptions, frame_encoder
 from robot.contract.closeable import Closeable
 from tracking import Frame, FrameSource
 
@@ -57,11 +56,8 @@ class SessionRecording(Closeable):
         self._marks = 0
         self._encode = frame_encoder(options.codec, source.size, source.rate)
         named = replace(options, cubes=options.cubes or (playground.cube.name,))
-        metadata = {**named.metadata(), "rate": f"{source.rate:g}"}
-        if source.live:  # then its timestamps are those of the monotonic clock
-            zero = datetime.now(UTC) - timedelta(seconds=time.monotonic())
-            metadata[CLOCK_ZERO] = zero.isoformat(timespec="milliseconds")
-        self._recorder = Recorder(path, metadata)
+        self._recorder = Recorder(path, {**named.metadata(), "rate": f"{source.rate:g}"})
+        self._live = source.live
         if not from_within:  # with the bytes before the first frame
             wire.record_to(self._recorder)
 
@@ -85,6 +81,8 @@ class SessionRecording(Closeable):
         if self._first is None:
             self._first = now
             self._recorder.camera(self._playground.intrinsics, now)
+            if self._live:  # its frames are shown as they come, and pauses shift their timestamps
+                self._recorder.clock(datetime.now(UTC) - timedelta(seconds=now))
             if self._from_within:
                 self._wire.record_to(self._recorder, now)
         self._recorder.write(step)

@@ -1,6 +1,5 @@
 """A session on disk: one .mcap file with the camera's frames and every message after them."""
 
-from app.session.encoding import CLOCK_ZERO
 from app.session.frames import FrameEncoder, check_codec, frame_encoder
 from app.session.options import SessionOptions
 from app.session.reading import (
@@ -14,7 +13,6 @@ from app.session.reading import (
 from app.session.recorder import Recorder
 
 __all__ = [
-    "CLOCK_ZERO",
     "START_OVER_EVENT",
     "FrameEncoder",
     "Recorder",

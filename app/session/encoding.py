@@ -15,8 +15,8 @@ from tracking import CubeControls, CubeState
 
 T = TypeVar("T")
 
-CLOCK_ZERO = "clock_zero_utc"
-"""In the metadata of a live session: when the clock of its timestamps was 0, by ISO 8601."""
+CLOCK_RECORD, CLOCK_ZERO = "cubeling clock", "zero_utc"
+"""Name of a live session's metadata, and their key: when its timestamps were 0, by ISO 8601."""
 
 IMAGE_TOPIC = "/camera/image"
 """The channel of the camera's frames."""

@@ -15,7 +15,7 @@ from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
 from app.errors import AppError
-from app.session.encoding import CLOCK_ZERO, IMAGE_TOPIC
+from app.session.encoding import CLOCK_RECORD, CLOCK_ZERO, IMAGE_TOPIC
 from app.session.options import SessionOptions
 
 START_OVER_EVENT = "start over"
@@ -43,7 +43,7 @@ class SessionInfo:
     """From the first to the last camera frame [s]; the robot's line may be recorded for longer."""
 
     clock_zero: str
-    """When the clock of a live camera was 0, in UTC by ISO 8601; "" for other sources."""
+    """When the timestamps of a live camera were 0, in UTC by ISO 8601; "" for other sources."""
 
 
 def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:
@@ -96,19 +96,21 @@ def _end(reader: SeekingReader, *, last: bool) -> float:
 
 def _info(path: Path, frames: int, seconds: float) -> SessionInfo:
     """Add to the figures what the metadata say, which the recorder writes first."""
+    metadata: dict[str, dict[str, str]] = {}
     with path.open("rb") as file:
         try:
             for record in StreamReader(file).records:
-                if isinstance(record, Metadata) and record.name == "cubeling":
-                    if "scenario" in record.metadata:
-                        options = SessionOptions.from_metadata(record.metadata, str(path))
-                        clock_zero = record.metadata.get(CLOCK_ZERO, "")
-                        return SessionInfo(options, frames, seconds, clock_zero)
+                if isinstance(record, Metadata):
+                    metadata[record.name] = record.metadata
                 elif isinstance(record, Chunk | DataEnd):
                     break
         except READ_ERRORS:
             pass
-    raise AppError(f"'{path}' names no scenario: it was not recorded by Cubeling")
+    if "scenario" not in metadata.get("cubeling", {}):
+        raise AppError(f"'{path}' names no scenario: it was not recorded by Cubeling")
+    options = SessionOptions.from_metadata(metadata["cubeling"], str(path))
+    clock_zero = metadata.get(CLOCK_RECORD, {}).get(CLOCK_ZERO, "")
+    return SessionInfo(options, frames, seconds, clock_zero)
 
 
 def _readable_frames(path: Path) -> tuple[int, float]:

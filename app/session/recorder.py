@@ -4,6 +4,7 @@ import json
 import queue
 import threading
 from collections.abc import Callable
+from datetime import datetime
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,14 @@ from mcap_protobuf.schema import register_schema
 
 from app.errors import AppError
 from app.pipeline.step import Step
-from app.session.encoding import IMAGE_TOPIC, MESSAGE_TYPES, encode, schema
+from app.session.encoding import (
+    CLOCK_RECORD,
+    CLOCK_ZERO,
+    IMAGE_TOPIC,
+    MESSAGE_TYPES,
+    encode,
+    schema,
+)
 from robot.contract.closeable import Closeable
 from tracking import Frame, Intrinsics
 from tracking.sources.base import nanoseconds_of
@@ -94,6 +102,11 @@ class Recorder(Closeable):
             P=[float(v) for row in intrinsics.matrix for v in (*row, 0.0)],
         )
         self._protobuf("/camera/calibration", message, timestamp)
+
+    def clock(self, zero: datetime) -> None:
+        """Record when the timestamps were 0; call it before the first frame."""
+        values = {CLOCK_ZERO: zero.isoformat(timespec="milliseconds")}
+        self._submit(partial(self._writer.add_metadata, CLOCK_RECORD, values))
 
     def write(self, step: Step) -> None:
         """Record the camera's frame and every message after it."""
