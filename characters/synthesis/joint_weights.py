@@ -19,10 +19,10 @@ from characters.synthesis.distances.angles import JointAngles
 from characters.synthesis.distances.points import PointClouds
 from characters.synthesis.library import MotionLibrary
 
-SAMPLES = 20_000
+COMPARED_PAIRS = 20_000
 """Pairs of frames that are compared."""
 
-PULLS = (0.3, 1.0, 3.0, 10.0)
+PRIOR_WEIGHTS = (0.3, 1.0, 3.0, 10.0)
 """How much the weights of the thesis count against the recordings: one of these, by the clips that
 are left out. Without them a few clips are fitted too well, and others worse than by the thesis."""
 
@@ -61,7 +61,7 @@ def fit_weights(library: MotionLibrary, seed: int = 0) -> FittedWeights:
             f"{len(clips)} clips: give at least three, so that one can be left out"
         )
     rng = np.random.default_rng(seed)
-    a, b = rng.integers(len(library), size=(2, SAMPLES))
+    a, b = rng.integers(len(library), size=(2, COMPARED_PAIRS))
     plan = default_body_plan()
     parts = {part: library.anatomy.joint(part) for part in plan.weights}
     joints = {part: joint for part, joint in parts.items() if joint is not None}
@@ -79,8 +79,8 @@ def fit_weights(library: MotionLibrary, seed: int = 0) -> FittedWeights:
         fits = [nonnegative_weights(angles[~held], seen[~held], default, pull) for held in left_out]
         return float(np.mean([agreement(*each) for each in zip(fits, left_out, strict=True)]))
 
-    agreements = {pull: cross_validated(pull) for pull in PULLS}
-    best = max(PULLS, key=agreements.__getitem__)
+    agreements = {pull: cross_validated(pull) for pull in PRIOR_WEIGHTS}
+    best = max(PRIOR_WEIGHTS, key=agreements.__getitem__)
     weights = nonnegative_weights(angles, seen, default, best)
     weights *= default.sum() / weights.sum()
     return FittedWeights(

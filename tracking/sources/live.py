@@ -77,12 +77,10 @@ class LiveSource(FrameSource):
 
     def wait(self, timeout: float, patience: float | None = None) -> Frame | None:
         """Wait for a new frame: see `base.LiveFrames`."""
-        if self._first is not None:
-            first, self._first = self._first, None
-            if self._clock() - first.timestamp < MAX_FIRST_AGE_S:
-                return first
-            return self._next(0.0) or first
-        frame = self._next(timeout)
+        first, self._first = self._first, None
+        if first is not None and self._clock() - first.timestamp < MAX_FIRST_AGE_S:
+            return first
+        frame = self._next(timeout if first is None else 0.0) or first
         if frame is None:
             if patience is not None:
                 state, since, problem = self._state()

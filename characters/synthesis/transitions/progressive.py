@@ -5,7 +5,7 @@ Source: Fernández-Baena 2015, chapter 3.3 (M2.4).
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import chain, islice, pairwise
 from typing import Literal
 
 import numpy as np
@@ -110,19 +110,15 @@ class TransitionPlanner:
 
     def _narrow(self, request: int, goals: Goals) -> Transition | None:
         """Return the transition that plays cheapest of the first few in the usual window."""
-        window, choices = self.settings.window, self.settings.choices
+        window = self.settings.window
         first = self._complete(request, self._first(request, goals), window)
-        found = [] if first is None else [first]
-        if len(found) < choices:
-            for prior in self._others(request, goals):
-                other = self._complete(request, prior, window)
-                if other is not None:
-                    found.append(other if first else replace(other, fallback="arrival"))
-                if len(found) >= choices:
-                    break
-        if len(found) < 2:
-            return found[0] if found else None
-        return min(found, key=lambda each: played_cost(self.graphs, each))
+        others = (self._complete(request, way, window) for way in self._others(request, goals))
+        whole = ((self.graphs, each) for each in chain([first], others) if each is not None)
+        found = list(islice(whole, self.settings.choices))
+        if not found:
+            return None
+        best = _cheapest(found)[1]
+        return best if first is not None else replace(best, fallback="arrival")
 
     def _first(self, request: int, goals: Goals) -> PartMove:
         """Return the cheapest way of the legs."""
@@ -259,7 +255,12 @@ def cheapest_plan(
     """
     able = [each for each in planners if each.graphs.kept[request]] or planners
     plans = [(each.graphs, each.plan(request, goals)) for each in able]
-    return min(plans, key=lambda plan: played_cost(*plan))
+    return _cheapest(plans)
+
+
+def _cheapest(plans: Sequence[tuple[PartGraphs, Transition]]) -> tuple[PartGraphs, Transition]:
+    """Return the plan that plays cheapest; a single one is not played to find out."""
+    return plans[0] if len(plans) == 1 else min(plans, key=lambda plan: played_cost(*plan))
 
 
 def _move(graph: MotionGraph, frames: list[int]) -> PartMove:
