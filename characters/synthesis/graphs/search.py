@@ -7,7 +7,6 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.skeleton.pose import Array
 from characters.synthesis.graphs.edges import Edges, Nodes
 
 
@@ -63,7 +62,7 @@ class HopCosts:
     starts: tuple[int, ...]
     """Node at which a path may start, for each time from 0; −1 for none."""
 
-    costs: Array
+    costs: NDArray[np.float32]
     """(times, nodes); ∞ where a node cannot be reached at that time."""
 
     @staticmethod
@@ -73,13 +72,14 @@ class HopCosts:
         A dynamic programme over the number of edges: cost at time t + 1 is the least of the cost
         at t of a node and an edge from there. A path that starts at time t costs 0 then.
         """
-        sources, weights, reached, firsts = edges.by_target
-        costs = np.full((hops + 1, edges.count), inf)
+        sources, weights, reached, firsts = edges.folded
+        costs = np.full((hops + 1, edges.count), inf, np.float32)
+        totals = np.empty(weights.shape, np.float32)
         for time in range(hops + 1):
             if time and len(edges):
-                totals = costs[time - 1].take(sources)
-                totals += weights
-                costs[time, reached] = np.minimum.reduceat(totals, firsts)
+                costs[time - 1].take(sources, out=totals, mode="clip")  # "raise" makes copies
+                np.add(totals, weights, out=totals)
+                costs[time, reached] = np.minimum.reduceat(totals.min(axis=0), firsts)
             if time < len(starts) and starts[time] >= 0:
                 costs[time, starts[time]] = 0.0
         return HopCosts(edges, starts, costs)
@@ -98,7 +98,7 @@ class HopCosts:
         ends = np.append(firsts, len(sources))
         times = np.arange(hops + 1)[:, None]
         bounds = np.searchsorted(reached, target + times + [-slack, slack + 1])
-        costs = np.full((hops + 1, edges.count), inf)
+        costs = np.full((hops + 1, edges.count), inf, np.float32)
         for time in range(hops + 1):
             now = costs[time]
             if time:

@@ -162,13 +162,13 @@ def test_paths_of_few_jumps_are_paths_of_the_graph(graphs: PartGraphs) -> None:
     target = int(np.flatnonzero(graphs.kept)[-1]) - 10
     few = HopCosts.of_few_jumps(edges, starts, 12, target, 2)
     anywhere = HopCosts.of_few_jumps(edges, starts, 12, 0, edges.count)
-    assert np.array_equal(anywhere.costs, every.costs)
-    assert (few.costs >= every.costs).all()
+    assert anywhere.costs == pytest.approx(every.costs, rel=1e-6)  # in single precision
+    assert (few.costs >= every.costs * (1 - 1e-6)).all()
     reached = np.argwhere(np.isfinite(few.costs[1:])) + [1, 0]
     for time, node in reached[:: len(reached) // 20].tolist():
         path = few.path(node, time)
         cost = sum(edges.weight(a, b) for a, b in pairwise(path.tolist()))
-        assert every.costs[time, node] - 1e-9 <= cost <= few.costs[time, node] + 1e-9
+        assert every.costs[time, node] - 1e-7 <= cost <= few.costs[time, node] + 1e-7
 
 
 def test_smoothing_leaves_the_clips_alone(
