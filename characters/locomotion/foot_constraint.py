@@ -102,6 +102,7 @@ class FootConstraint:
         self._heel = False
         self._last_stand = (0.0, 0.0)
         self._step_length = 0.0
+        self._raised = 0.0  # height of the offset as last shown
         self._ball: tuple[float, float, float] | None = None  # in the motion, one frame ago
         self._speed = 0.0  # of the ball in the motion [body heights/s]
         self._shown = [0.0] * 4  # x, z, yaw, y of the offset
@@ -149,6 +150,7 @@ class FootConstraint:
         self.anchor = x, z, points.heading + self.offset.yaw
         if not self.held:
             self.held = True
+            self.offset.y = self._raised
             landing = [0.0, 0.0, 0.0, self.offset.y + points.height]
             self._start_decay(landing, [0.0] * 4, _OFFSET_DECAY_S)
             self.step_time_left = 0.0
@@ -188,6 +190,7 @@ class FootConstraint:
             self.offset.y = lowest
         if not self.held:
             self.offset.y += self._clearance(points.ball[1] + self.offset.y)
+        self._raised = self.offset.y
 
     def _clearance(self, height: float) -> float:
         """Return by how much to raise a moving ball that is shown at a height [m]."""
@@ -201,7 +204,7 @@ class FootConstraint:
 
     def may_land(self, points: FootPoints) -> bool:
         """Return whether a moving foot is near the ground, and near the end of a quick step."""
-        low = points.height + self.offset.y < _MAX_LANDING_HEIGHT * self._body_height
+        low = points.height + self._raised < _MAX_LANDING_HEIGHT * self._body_height
         if self.step_time_left == 0.0:
             return low
         late = self.step_time_left < _EARLY_LANDING_SHARE * _QUICK_STEP_S

@@ -15,8 +15,9 @@ _MAX_EXTENSION = 0.997  # of a leg's length
 _MAX_PELVIS_DROP = 0.02  # [body heights]
 _PELVIS_DROP_LAG_S, _PELVIS_RISE_LAG_S = 0.05, 0.12
 _MIN_CHANGE = 1e-5  # [body heights]: smaller offsets are not applied
-_SOFT_EXTENSION = 0.96  # of a leg's length: a moving foot is slowed down beyond it
-_SOFTENING_S = 0.05  # after the foot is let go
+# Of a leg's length: beyond these it stretches ever more slowly, with its foot held or moving.
+_SOFT_EXTENSION_HELD, _SOFT_EXTENSION_MOVING = 0.98, 0.94
+_SOFTENING_S = 0.05  # over which the first goes over into the second after the foot is let go
 _YAW_RADIUS = 0.06  # [body heights]: converts a foot's rotation to a length
 
 
@@ -129,10 +130,7 @@ class FootLock:
             x += ball[0] + cosine * offset.x - sine * offset.z
             z += ball[2] + sine * offset.x + cosine * offset.z
             wanted = (x, ankle[1] + offset.y, z)
-            if not foot.held:
-                softness = min(foot.age / _SOFTENING_S, 1.0)
-                wanted = _within_reach(frames.positions[hip], ankle, wanted, length, softness)
-            ankles.append(wanted)
+            ankles.append(_within_reach(frames.positions[hip], ankle, wanted, length, foot))
             turns.append((0.0, math.sin(offset.yaw / 2), 0.0, math.cos(offset.yaw / 2)))
         return ankles, turns
 
@@ -153,7 +151,7 @@ class FootLock:
 
 
 def _within_reach(
-    hip: Vector, own: Vector, wanted: Vector, length: float, softness: float
+    hip: Vector, own: Vector, wanted: Vector, length: float, foot: FootConstraint
 ) -> Vector:
     """Return where an ankle comes on its way out of reach, so that the knee never snaps straight.
 
@@ -161,12 +159,13 @@ def _within_reach(
     of the leg ever more slowly ("soft IK", A. Nicholas, 2008).
     """
     away = math.dist(hip, wanted)
-    start = max(_SOFT_EXTENSION * length, math.dist(hip, own))
-    room = max(_MAX_EXTENSION * length - start, 1e-3 * length)
+    moving = 0.0 if foot.held else min(foot.age / _SOFTENING_S, 1.0)
+    limit = _SOFT_EXTENSION_HELD + moving * (_SOFT_EXTENSION_MOVING - _SOFT_EXTENSION_HELD)
+    start = max(limit * length, math.dist(hip, own))
     if away <= start:
         return wanted
-    soft = start + room * (1.0 - math.exp((start - away) / room))
-    share = 1.0 + softness * (soft / away - 1.0)
+    room = max(_MAX_EXTENSION * length - start, 1e-3 * length)
+    share = (start + room * (1.0 - math.exp((start - away) / room))) / away
     x, y, z = (h + share * (w - h) for h, w in zip(hip, wanted, strict=True))
     return x, y, z
 
