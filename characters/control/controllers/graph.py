@@ -36,7 +36,7 @@ from characters.synthesis.transitions.progressive import TransitionPlanner
 YAW_RATE_PER_ANGULAR = -1.5
 """Yaw rate [rad/s] for each radian of Angular, as the clips of the bundled characters turn."""
 
-TEMPO_LIMITS = (0.8, 1.2)
+TEMPO_LIMITS = (0.85, 1.15)
 """By how much a clip may be slowed down or sped up to the speed that is asked for."""
 
 MAX_BEND_RAD_S, MAX_WIDE_BEND_RAD_S = 0.5, 1.5
@@ -81,6 +81,11 @@ class GraphController(WalkController):
         self._to_stand = to_stand
         self._strides_m = np.hypot(*source.library.steps[:, :2].T)
         self._braking = False
+
+    @property
+    def library(self) -> MotionLibrary:
+        """The motions that the graph is made of."""
+        return self._live.source.library
 
     def steer(
         self, course: SteeringOutput, elapsed: float, action: str = "idle", weight: float = 0.0

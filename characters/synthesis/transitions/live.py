@@ -15,7 +15,7 @@ from characters.synthesis.graphs.graph import MotionGraph
 from characters.synthesis.library import MotionLibrary
 from characters.synthesis.transitions.playback import GraphPlayer
 from characters.synthesis.transitions.progressive import TransitionPlanner
-from characters.synthesis.transitions.stitching import StitchedMotion, stitch
+from characters.synthesis.transitions.stitching import LowPass, StitchedMotion, stitch
 
 Goals = NDArray[np.bool_]
 """Which frames meet a request, (frames,)."""
@@ -23,9 +23,9 @@ Goals = NDArray[np.bool_]
 OFFSET_S = 0.3
 """Time over which what was shown goes over into a planned transition [s]."""
 
-LIVE_SIGMA_FRAMES = 4.0
-"""Standard deviation of the low-pass filter in play [frames]; at 2, the default of M2.5, the
-velocity changes 1.5 times as fast as in the clips."""
+LIVE_LOW_PASS = LowPass(sigma_frames=3.0, ramp_frames=12)
+"""The filter in play; at the defaults of M2.5 the velocity changes 1.8 times as fast as in the
+clips."""
 
 _SAMPLED_FRAMES = 32  # played frames that can still be sampled
 
@@ -116,7 +116,7 @@ class PartsSource:
     def _plan(self, goals: Goals) -> None:
         """Plan a transition, into which goes over what is shown."""
         transition = self._planner.plan(self.frame, goals)
-        planned = stitch(self._planner.graphs, transition, LIVE_SIGMA_FRAMES)
+        planned = stitch(self._planner.graphs, transition, LIVE_LOW_PASS)
         now = planned.before
         turned = rotations.multiply(
             self.pose.rotations, rotations.conjugate(self._before.rotations)

@@ -17,8 +17,8 @@ from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
 from characters.synthesis.library import MotionLibrary, placed_clip
 
-BLEND_S = 0.25
-"""Length of the blend after a jump [s] (M1.3, [GAP])."""
+BLEND_S = 0.3
+"""Length of the blend after a jump [s] (M1.3, [GAP]); over 0.25 s some joints jump."""
 
 
 @dataclass

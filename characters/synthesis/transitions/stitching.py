@@ -17,11 +17,46 @@ from characters.synthesis.graphs.parts import PartGraphs
 from characters.synthesis.library import MotionLibrary, placed_clip
 from characters.synthesis.transitions.transition import PartStreams, Transition
 
-SIGMA_FRAMES = 2.0
-"""Standard deviation of the low-pass filter [frames] (M2.5, [GAP])."""
 
-RAMP_FRAMES = 5
-"""Frames before and after the transition over which the filter fades to nothing (M2.5)."""
+@dataclass(frozen=True)
+class LowPass:
+    """The filter that smooths a transition."""
+
+    sigma_frames: float = 2.0
+    """Standard deviation [frames] (M2.5, [GAP])."""
+
+    ramp_frames: int = 5
+    """Frames before and after the transition over which it fades to nothing (M2.5)."""
+
+    @property
+    def context_frames(self) -> int:
+        """Frames of the clips on each side that a smoothed transition depends on."""
+        return self.ramp_frames + round(3 * self.sigma_frames)
+
+    def weights(self, count: int, start: int, end: int) -> Array:
+        """Return its weight at each time, (count,): 1 from start to end, 0 outside of the ramps.
+
+        >>> LowPass().weights(14, 6, 7).tolist()
+        [0.0, 0.0, 0.104, 0.352, 0.648, 0.896, 1.0, 1.0, 0.896, 0.648, 0.352, 0.104, 0.0, 0.0]
+        """
+        times = np.arange(count)
+        outside = np.maximum(np.maximum(start - times, times - end), 0)
+        share = np.clip(1.0 - outside / self.ramp_frames, 0.0, 1.0)
+        return np.round(share * share * (3.0 - 2.0 * share), 12)
+
+    def apply(self, values: Array) -> Array:
+        """Return values (times, n) under the filter; the ends are held."""
+        reach = round(3 * self.sigma_frames)
+        offsets = np.arange(-reach, reach + 1)
+        kernel = np.exp(-0.5 * (offsets / self.sigma_frames) ** 2)
+        padded = np.pad(values, ((reach, reach), (0, 0)), mode="edge")
+        windows = np.lib.stride_tricks.sliding_window_view(padded, len(kernel), axis=0)
+        smooth: Array = windows @ (kernel / kernel.sum())
+        return smooth
+
+
+DEFAULT_LOW_PASS = LowPass()
+"""The filter of M2.5."""
 
 
 @dataclass(frozen=True)
@@ -52,28 +87,28 @@ class StitchedMotion:
 
 
 def stitch(
-    graphs: PartGraphs, transition: Transition, sigma: float = SIGMA_FRAMES
+    graphs: PartGraphs, transition: Transition, low_pass: LowPass | None = DEFAULT_LOW_PASS
 ) -> StitchedMotion:
     """Return a transition, with the frames of the clips on both sides that it depends on.
 
-    The root follows the legs, whose timing never changes. `sigma` is the standard deviation of the
-    low-pass filter [frames]; at 0 nothing is smoothed, and nothing is added on the sides.
+    The root follows the legs, whose timing never changes. Without a low-pass filter nothing is
+    added on the sides.
     """
-    before = context_frames(sigma)
+    before = low_pass.context_frames if low_pass else 0
     streams = PartStreams.of(transition, graphs.library, before, before)
     poses, steps = _composed(graphs, streams)
-    if sigma:
+    if low_pass:
         start, end = before + transition.response, before + transition.duration
-        weights = ramp(len(steps), start, end)
-        poses = _smoothed(poses, weights, sigma)
-        steps = steps + (gaussian(steps, sigma) - steps) * weights[:, None]
+        weights = low_pass.weights(len(steps), start, end)
+        poses = _smoothed(poses, weights, low_pass)
+        steps = steps + (low_pass.apply(steps) - steps) * weights[:, None]
     arrived = before + transition.duration
     return StitchedMotion(poses, steps, streams.before[0], before, arrived)
 
 
 def played_cost(graphs: PartGraphs, transition: Transition) -> float:
     """Return the sum of the distances of M1 from each played frame to the next, unsmoothed (M3)."""
-    raw = stitch(graphs, transition, sigma=0.0)
+    raw = stitch(graphs, transition, low_pass=None)
     return float(consecutive_distances(graphs.library, raw.poses, raw.frames).sum())
 
 
@@ -94,34 +129,6 @@ def consecutive_distances(library: MotionLibrary, poses: Pose, frames: Nodes) ->
     )
     times = np.arange(count - 1)
     return thesis_distance(played).pairs(times, times + 1)
-
-
-def context_frames(sigma: float) -> int:
-    """Return how many frames of the clips on each side a smoothed transition depends on."""
-    return RAMP_FRAMES + round(3 * sigma) if sigma else 0
-
-
-def ramp(count: int, start: int, end: int) -> Array:
-    """Return the weight of the filter at each time: 1 from start to end, 0 five frames outside.
-
-    >>> ramp(14, 6, 7).tolist()
-    [0.0, 0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.0, 0.8, 0.6, 0.4, 0.2, 0.0, 0.0]
-    """
-    times = np.arange(count)
-    outside = np.maximum(np.maximum(start - times, times - end), 0)
-    weights: Array = np.clip(1.0 - outside / RAMP_FRAMES, 0.0, 1.0)
-    return np.round(weights, 12)
-
-
-def gaussian(values: Array, sigma: float) -> Array:
-    """Return values (times, n) under the low-pass filter; the ends are held."""
-    reach = round(3 * sigma)
-    offsets = np.arange(-reach, reach + 1)
-    kernel = np.exp(-0.5 * (offsets / sigma) ** 2)
-    padded = np.pad(values, ((reach, reach), (0, 0)), mode="edge")
-    windows = np.lib.stride_tricks.sliding_window_view(padded, len(kernel), axis=0)
-    smooth: Array = windows @ (kernel / kernel.sum())
-    return smooth
 
 
 def _composed(graphs: PartGraphs, streams: PartStreams) -> tuple[Pose, Array]:
@@ -145,13 +152,13 @@ def _composed(graphs: PartGraphs, streams: PartStreams) -> tuple[Pose, Array]:
     return Pose(translations, turns), library.steps[streams.before[0]]
 
 
-def _smoothed(poses: Pose, weights: Array, sigma: float) -> Pose:
+def _smoothed(poses: Pose, weights: Array, low_pass: LowPass) -> Pose:
     """Return poses of which a share, (times,), is low-passed: rotations and translations."""
     turns = rotations.continuous(poses.rotations)
     count = len(turns)
-    low = rotations.normalize(gaussian(turns.reshape(count, -1), sigma).reshape(turns.shape))
+    low = rotations.normalize(low_pass.apply(turns.reshape(count, -1)).reshape(turns.shape))
     share = weights[:, None]
-    moved = gaussian(poses.translations.reshape(count, -1), sigma).reshape(poses.translations.shape)
+    moved = low_pass.apply(poses.translations.reshape(count, -1)).reshape(poses.translations.shape)
     return Pose(
         poses.translations + (moved - poses.translations) * share[..., None],
         rotations.nlerp(turns, low, share),

@@ -21,8 +21,7 @@ from characters.synthesis.transitions.progressive import (
     cheapest_plan,
 )
 from characters.synthesis.transitions.stitching import (
-    SIGMA_FRAMES,
-    context_frames,
+    LowPass,
     played_cost,
     stitch,
 )
@@ -176,7 +175,7 @@ def test_smoothing_leaves_the_clips_alone(
 ) -> None:
     library = graphs.library
     for transition in transitions[:5]:
-        smooth, context = stitch(graphs, transition), context_frames(SIGMA_FRAMES)
+        smooth, context = stitch(graphs, transition), LowPass().context_frames
         outside = [*range(context - 5), *range(len(smooth.steps) - context + 5, len(smooth.steps))]
         frames = smooth.frames[outside]
         dots = np.abs((library.poses.rotations[frames] * smooth.poses.rotations[outside]).sum(-1))
