@@ -17,6 +17,8 @@ from characters.retargeting.root import ground_positions
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
 
+_MAX_SINKING = 0.25  # of a leg's length: ankles always lower than that under rest have other ground
+
 
 def transferred_rotations(clip: Clip, source: Rig, target: Rig, mapping: JointMapping) -> Array:
     """Return the global rotations of the target, (frames, joints, 4), in the common axes."""
@@ -55,9 +57,9 @@ def hips_trajectory(clip: Clip, source: Rig, target: Rig) -> Array:
     """Return the positions of the target's hips, (frames, 3) [m], in the common axes."""
     ratio = target.leg_length / source.leg_length
     source_height = _ankle_height(source, clip)
-    target_height = ratio * source_height
-    if target.rests_on_feet:
-        target_height = _ankle_height(target, clip)
+    target_height = _rest_ankle_height(target)
+    if target_height is None:
+        target_height = ratio * source_height
     positions = clip.poses.globals(source.skeleton)[:, source.anatomy.joints["hips"], :3, 3]
     trajectory = rotations.rotate(source.common_from_skeleton, positions) * ratio
     own, others = _hips_height(target), _hips_height(source)
@@ -76,13 +78,24 @@ def _hips_height(rig: Rig) -> float:
     return float(hips - rig.rest_positions[low, 1].mean())
 
 
-def _ankle_height(rig: Rig, clip: Clip) -> float:
-    """Return the height of standing ankles [m]: at rest on its feet, or the median in a clip."""
+def _rest_ankle_height(rig: Rig) -> float | None:
+    """Return the height of the ankles at rest [m], or None if it does not rest on its feet."""
     feet = [leg.foot for leg in rig.legs[:2]]
-    if rig.rests_on_feet:
-        return float(np.mean(rig.rest_positions[feet, 1]))
+    return float(np.mean(rig.rest_positions[feet, 1])) if rig.rests_on_feet else None
+
+
+def _ankle_height(rig: Rig, clip: Clip) -> float:
+    """Return the height of standing ankles in a clip [m].
+
+    It is that at rest on the feet, else the median in the clip; so also in a recording that never
+    comes near the ground of its rest, as those whose hips are recorded from their place at rest.
+    """
+    at_rest = _rest_ankle_height(rig)
+    feet = [leg.foot for leg in rig.legs[:2]]
     clip = clip_in_common_axes(clip, rig)
     heights = clip.poses.globals(rig.skeleton)[:, feet, 1, 3]
+    if at_rest is not None and heights.max() > at_rest - _MAX_SINKING * rig.leg_length:
+        return at_rest
     contacts = find_contacts(clip, rig.skeleton, [[foot] for foot in feet])
     return float(np.median(heights[contacts] if contacts.any() else heights.min(0)))
 

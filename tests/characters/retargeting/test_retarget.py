@@ -261,3 +261,17 @@ def test_a_walk_is_retargeted_between_quadrupeds():
     rest = dinosaur.skeleton.rest.globals(dinosaur.skeleton)[list(dinosaur.anatomy.feet), 1, 3]
     assert (feet[..., 1] > rest - 1e-2).all()
     assert (np.ptp(feet[..., 2], axis=0) > 0.1 * dinosaur.height).all()
+
+
+def test_a_recording_whose_hips_count_from_their_rest_stands_on_the_ground(human):
+    """Blender and studios that drop the place of the hips write such files."""
+    walk = human.clips["Walk"]
+    hips = human.anatomy.joints["hips"]
+    skeleton = human.skeleton
+    sunk = walk.poses.translations.copy()
+    sunk[:, hips] -= skeleton.rest.translations[hips]
+    low = replace(walk, poses=replace(walk.poses, translations=sunk))
+    arguments = (skeleton, human.anatomy, skeleton, human.anatomy)
+    at, right = (places(retarget(clip, *arguments), skeleton) for clip in (low, walk))
+    feet = [human.anatomy.joints[side + "Foot"] for side in ("left", "right")]
+    assert at[:, feet, 1] == pytest.approx(right[:, feet, 1], abs=0.02)
