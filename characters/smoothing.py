@@ -1,8 +1,11 @@
-"""Smoothing of single numbers, independent of the frame rate."""
+"""Smoothing of single numbers, independent of the frame rate, and of recorded signals."""
 
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
 
 
 def low_pass(value: float, target: float, elapsed: float, lag: float) -> float:
@@ -60,3 +63,20 @@ def hermite(a: float, slope_a: float, b: float, slope_b: float, u: float) -> flo
     """
     bend = 3 * (b - a) - 2 * slope_a - slope_b
     return a + u * (slope_a + u * (bend + u * (slope_a + slope_b - 2 * (b - a))))
+
+
+def gaussian_smoothed(values: NDArray[np.float64], deviation: float) -> NDArray[np.float64]:
+    """Return values (frames, n) under a Gaussian of a standard deviation [frames].
+
+    Point reflection continues them at both ends: a body that enters or leaves keeps its speed.
+    """
+    reach = min(int(3 * deviation), len(values) - 1)
+    if reach < 1:
+        return values.copy()
+    before = 2 * values[0] - values[reach:0:-1]
+    after = 2 * values[-1] - values[-2 : -2 - reach : -1]
+    padded = np.concatenate([before, values, after])
+    offsets = np.arange(-reach, reach + 1)
+    kernel = np.exp(-0.5 * (offsets / deviation) ** 2)
+    kernel /= kernel.sum()
+    return np.stack([np.convolve(column, kernel, mode="valid") for column in padded.T], axis=-1)

@@ -19,7 +19,6 @@ from characters.motion.contacts import find_contacts, spans
 from characters.retargeting.ground_motion import GroundMotion
 from characters.retargeting.leg_ik import place_ankle
 from characters.retargeting.rig import LegJoints, Rig, global_rotations
-from characters.retargeting.root import gaussian_smoothed
 from characters.retargeting.transfer import (
     ankle_positions,
     clip_in_common_axes,
@@ -27,6 +26,7 @@ from characters.retargeting.transfer import (
 )
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
+from characters.smoothing import gaussian_smoothed
 
 # Lengths in leg lengths.
 _MAX_BALL_RISE = 0.02  # of the ball of a standing foot above its lowest position

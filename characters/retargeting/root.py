@@ -15,6 +15,7 @@ from characters.retargeting.rig import Rig, global_rotations
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Pose, Skeleton
+from characters.smoothing import gaussian_smoothed
 
 _SMOOTHING_S = 0.3  # standard deviation; removes the sway of a stride
 
@@ -31,23 +32,6 @@ def root_trajectory(clip: Clip, source: Rig, ratio: float) -> Array:
     yaw = np.unwrap(rotations.heading(from_rest))
     path = np.stack([positions[:, 0], positions[:, 2], yaw], axis=-1)
     return gaussian_smoothed(path, _SMOOTHING_S * clip.rate)
-
-
-def gaussian_smoothed(values: Array, deviation: float) -> Array:
-    """Return values (frames, n) under a Gaussian of a standard deviation [frames].
-
-    Point reflection continues them at both ends: a body that enters or leaves keeps its speed.
-    """
-    reach = min(int(3 * deviation), len(values) - 1)
-    if reach < 1:
-        return values.copy()
-    before = 2 * values[0] - values[reach:0:-1]
-    after = 2 * values[-1] - values[-2 : -2 - reach : -1]
-    padded = np.concatenate([before, values, after])
-    offsets = np.arange(-reach, reach + 1)
-    kernel = np.exp(-0.5 * (offsets / deviation) ** 2)
-    kernel /= kernel.sum()
-    return np.stack([np.convolve(column, kernel, mode="valid") for column in padded.T], axis=-1)
 
 
 def has_root_joint(skeleton: Skeleton, anatomy: Anatomy) -> bool:

@@ -47,7 +47,9 @@ class PostureVectors:
         """Return the posture vectors of a region."""
         parts = {"whole": _LOWER + _UPPER, "upper": _UPPER, "lower": _LOWER}[region]
         joints = tuple(joint for part in parts if (joint := anatomy.joint(part)) is not None)
-        return PostureVectors(skeleton, joints, None if region == "upper" else anatomy.joint("hips"))
+        return PostureVectors(
+            skeleton, joints, None if region == "upper" else anatomy.joint("hips")
+        )
 
     @property
     def size(self) -> int:
@@ -87,9 +89,9 @@ def continuous_rotation_vectors(turns: Array) -> Array:
     A logarithm has many branches: 2πn ± θ. Each frame takes the one nearest to the frame before;
     the clip as a whole stays near the origin.
 
-    >>> sweep = rotations.about("y", np.linspace(3.0, 3.4, 3))[:, None]  # beyond half a turn
+    >>> sweep = rotations.about("y", np.linspace(3.0, 3.2, 3))[:, None]  # beyond half a turn
     >>> continuous_rotation_vectors(sweep)[:, 0, 1].round(6).tolist()
-    [3.0, 3.2, 3.4]
+    [3.0, 3.1, 3.2]
     """
     turns = rotations.continuous(turns)
     turns = turns * np.where(turns[..., 3].mean(0) < 0, -1.0, 1.0)[:, None]

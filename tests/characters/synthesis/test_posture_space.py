@@ -8,6 +8,8 @@ from characters.skeleton import rotations
 from characters.synthesis.idle.posture_space import (
     PostureSpace,
     PostureVectors,
+    Region,
+    Weights,
     continuous_rotation_vectors,
 )
 
@@ -24,7 +26,7 @@ def walked(human: Character) -> np.ndarray:
 
 
 @pytest.mark.parametrize("region", ["whole", "upper", "lower"])
-def test_poses_come_back_from_their_vectors(human: Character, region: str) -> None:
+def test_poses_come_back_from_their_vectors(human: Character, region: Region) -> None:
     kind = PostureVectors.of(human.skeleton, human.anatomy, region)
     poses = human.clips["Run"].in_place
     again = kind.poses(kind.vectors(poses))
@@ -80,7 +82,7 @@ def test_what_is_left_out_is_the_variance_of_the_components_left_out(walked: np.
 
 
 @pytest.mark.parametrize("mode", ["eigen", "eigen_norm", "one"])
-def test_distances_are_a_metric(walked: np.ndarray, mode: str) -> None:
+def test_distances_are_a_metric(walked: np.ndarray, mode: Weights) -> None:
     space = PostureSpace.of(walked)
     at = space.project(walked[::3])
     found = space.distances(at, at, mode)

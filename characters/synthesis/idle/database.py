@@ -1,0 +1,130 @@
+"""What is known of a person's idle motion.
+
+Source: Egges 2006, section 3.3.2 (S6). Nothing is compared pair by pair, so that balance shifts may
+be added and removed while it plays.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from characters.errors import CharacterError
+from characters.skeleton.pose import Array
+from characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
+from characters.synthesis.idle.recordings import StandingRecording, shifts_of
+from characters.synthesis.idle.variations import COMPONENTS, Variations
+
+
+@dataclass(frozen=True)
+class BalanceShift:
+    """A recorded way from one rest to another."""
+
+    vectors: Array
+    """Its posture vectors, (frames, size)."""
+
+    start: str
+    """Balance before: "left", "both" or "right"."""
+
+    end: str
+    """Balance after."""
+
+
+@dataclass(frozen=True)
+class RestingPosture:
+    """A posture in which the person rests, and for how long she did."""
+
+    vector: Array
+    """The posture, (size,)."""
+
+    balance: str
+    """On which foot she stands."""
+
+    duration: float
+    """How long she rested so [s]."""
+
+    cut: bool
+    """Whether the recording begins or ends in this rest, so that it was longer."""
+
+
+@dataclass(frozen=True)
+class IdleDatabase:
+    """The idle motion of a person, on a skeleton."""
+
+    kind: PostureVectors
+    """What the vectors hold."""
+
+    rate: float
+    """Frame rate of the shifts [Hz]."""
+
+    space: PostureSpace
+    """The person's postures."""
+
+    postures: tuple[RestingPosture, ...]
+    """Where she rests."""
+
+    shifts: tuple[BalanceShift, ...]
+    """How she shifts her balance."""
+
+    variations: Variations
+    """How she moves while she rests."""
+
+    @staticmethod
+    def of(recordings: Sequence[StandingRecording], kind: PostureVectors) -> "IdleDatabase":
+        """Return the idle motion of the person in recordings of one rate.
+
+        Raises
+        ------
+        CharacterError
+            If there is no recording, or their rates differ.
+        """
+        if not recordings:
+            raise CharacterError("idle motion is learned from at least one recording")
+        rate = recordings[0].rate
+        if any(abs(each.rate - rate) > 1e-6 for each in recordings):
+            raise CharacterError("recordings of one person need the same frame rate")
+        space = PostureSpace.of(np.concatenate([each.vectors for each in recordings]))
+        rests = [(each, rest) for each in recordings for rest in each.rests]
+        postures = tuple(
+            RestingPosture(
+                each.vectors[rest.first : rest.end].mean(0),
+                rest.balance,
+                (rest.end - rest.first) / rate,
+                rest in (each.rests[0], each.rests[-1]),
+            )
+            for each, rest in rests
+        )
+        shifts = tuple(
+            BalanceShift(each.vectors[a.end - 1 : b.first + 1], a.balance, b.balance)
+            for each in recordings
+            for a, b in shifts_of(each)
+        )
+        calm = [space.project(each.vectors[r.first : r.end], COMPONENTS) for each, r in rests]
+        return IdleDatabase(kind, rate, space, postures, shifts, Variations.of(calm, rate))
+
+    @cached_property
+    def by_balance(self) -> dict[str, tuple[RestingPosture, ...]]:
+        """The postures of each balance that there is."""
+        names = dict.fromkeys(each.balance for each in self.postures)
+        return {name: tuple(p for p in self.postures if p.balance == name) for name in names}
+
+    def probabilities(self, balance: str) -> dict[str, float]:
+        """Return the probability of each balance after one, by counting; none if none follows."""
+        ends = [each.end for each in self.shifts if each.start == balance]
+        return {name: ends.count(name) / len(ends) for name in dict.fromkeys(ends)}
+
+    def pause_limits(self, balance: str) -> tuple[float, float]:
+        """Return the shortest and the longest rest on a balance [s]."""
+        own = self.by_balance[balance]
+        whole = [each.duration for each in own if not each.cut]
+        longest = max(each.duration for each in own)
+        return min(whole, default=longest), longest
+
+    def added(self, shift: BalanceShift) -> "IdleDatabase":
+        """Return it with one more shift."""
+        return replace(self, shifts=(*self.shifts, shift))
+
+    def removed(self, number: int) -> "IdleDatabase":
+        """Return it without one of its shifts."""
+        return replace(self, shifts=self.shifts[:number] + self.shifts[number + 1 :])

@@ -1,0 +1,179 @@
+"""From recordings of a standing person: where she rests, and how she shifts her balance.
+
+Source: Egges 2006, section 3.3.2 (S2, S6).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from characters.errors import CharacterError
+from characters.motion.clip import Clip
+from characters.motion.contacts import find_contacts, spans
+from characters.skeleton import rotations
+from characters.skeleton.anatomy import Anatomy
+from characters.skeleton.feet import find_feet
+from characters.skeleton.pose import Array, Pose, Skeleton
+from characters.smoothing import gaussian_smoothed
+from characters.synthesis.idle.posture_space import PostureVectors
+
+BALANCES = ("left", "both", "right")
+"""Categories of resting postures: on which foot she stands."""
+
+STANDING_SHARE = 0.12
+"""She stands on both feet while the hips are nearer than this to the middle between them [stances],
+where a stance is the distance of the feet."""
+
+MIN_SHIFT = 0.15
+"""Least way of the hips to the side in a balance shift [stances]."""
+
+_SHIFTING_SPEED = 0.06  # [stances/s] to the side; slower hips rest
+_SMOOTHING_S = 0.2
+_MIN_STANCE = 0.05  # [body heights]: of feet closer than this, nobody can say which one stands
+_MIN_STANDING_SHARE = 0.8  # of the frames with both feet on the ground
+_MIN_HIPS_HEIGHT = 0.75  # of those at rest: lower hips belong to somebody who sits
+_MAX_SPEED = 5.0  # [body heights/s]: a joint that is faster has jumped
+
+
+@dataclass(frozen=True)
+class Rest:
+    """Frames of a recording in which a person rests, between two shifts."""
+
+    first: int
+    """Their first frame."""
+
+    end: int
+    """The frame after their last."""
+
+    balance: str
+    """One of `BALANCES`."""
+
+
+@dataclass(frozen=True)
+class StandingRecording:
+    """A recording of a standing person, with the root held in the middle between the feet."""
+
+    name: str
+    """Of its clip."""
+
+    rate: float
+    """[Hz]."""
+
+    vectors: Array
+    """Posture vectors, (frames, size)."""
+
+    balance: Array
+    """Where the hips are between the feet, (frames,) [stances]: 0.5 above the left, −0.5 above the
+    right one."""
+
+    rests: tuple[Rest, ...]
+    """Where she rests, in order; what is between them are balance shifts."""
+
+
+def read_standing(clip: Clip, skeleton: Skeleton, anatomy: Anatomy) -> StandingRecording:
+    """Return a clip of a standing person with its rests.
+
+    Raises
+    ------
+    CharacterError
+        If she does not stand, sits, or a joint jumps.
+    """
+    hips, feet = anatomy.joint("hips"), find_feet(skeleton)
+    if hips is None or len(feet) < 2:
+        raise CharacterError(f"clip {clip.name!r}: idle motion needs hips and two feet")
+    placed = clip.poses.globals(skeleton)
+    _refuse_unrest(clip, skeleton, placed, hips)
+    poses, balance = _on_the_spot(clip, skeleton, anatomy, placed)
+    vectors = PostureVectors.of(skeleton, anatomy).vectors(poses)
+    return StandingRecording(clip.name, clip.rate, vectors, balance, find_rests(balance, clip.rate))
+
+
+def _refuse_unrest(clip: Clip, skeleton: Skeleton, placed: Array, hips: int) -> None:
+    """Refuse a clip in which nobody stands, or that jumps."""
+    rest = skeleton.rest.globals(skeleton)[:, :3, 3]
+    size = float(np.ptp(rest[:, 1]))
+    where = f"clip {clip.name!r}"
+    steps = np.linalg.norm(np.diff(placed[..., :3, 3], axis=0), axis=-1).max(1)
+    if len(steps) and steps.max() * clip.rate > _MAX_SPEED * size:
+        at = int(steps.argmax()) / clip.rate
+        raise CharacterError(f"{where}: a joint jumps at {at:.1f} s; cut the recording there")
+    height = float(np.median(placed[:, hips, 1, 3])) / rest[hips, 1]
+    if height < _MIN_HIPS_HEIGHT:
+        raise CharacterError(
+            f"{where}: the hips are at {height:.0%} of their standing height; idle motion is "
+            "learned from people who stand"
+        )
+    standing = float(find_contacts(clip, skeleton, find_feet(skeleton)).all(1).mean())
+    if standing < _MIN_STANDING_SHARE:
+        raise CharacterError(
+            f"{where}: both feet stand in only {standing:.0%} of it; idle motion is learned from "
+            "people who stand still"
+        )
+
+
+def _on_the_spot(
+    clip: Clip, skeleton: Skeleton, anatomy: Anatomy, placed: Array
+) -> tuple[Pose, Array]:
+    """Return poses with the root in the middle between the feet, and the balance of each.
+
+    The root has its mean place and heading in all frames, so that feet which stand do not move.
+    """
+    hips = anatomy.joints["hips"]
+    left, right = (placed[:, anatomy.joints[side + "Foot"], :3, 3] for side in ("left", "right"))
+    across = (left - right)[:, [0, 2]]
+    stance = np.linalg.norm(across.mean(0))
+    if stance < _MIN_STANCE * float(np.ptp(skeleton.rest.globals(skeleton)[:, 1, 3])):
+        raise CharacterError(f"clip {clip.name!r}: the feet are too close to tell them apart")
+    middle = (left + right) / 2
+    balance = ((placed[:, hips, :3, 3] - middle)[:, [0, 2]] * across).sum(1)
+    balance = balance / (across**2).sum(1)
+    heading = np.arctan2(-across.mean(0)[1], across.mean(0)[0])
+    back = rotations.about("y", -heading)
+    centre = middle.mean(0) * [1.0, 0.0, 1.0]
+    parents = skeleton.with_ancestors([hips])[:-1]
+    rest = skeleton.rest[np.array(parents, int)]
+    poses = clip.poses
+    translations, turns = poses.translations.copy(), poses.rotations.copy()
+    translations[:, parents], turns[:, parents] = rest.translations, rest.rotations
+    above = skeleton.rest.globals(skeleton)[skeleton.parents[hips]] if parents else np.eye(4)
+    there = rotations.rotate(back, placed[:, hips, :3, 3] - centre)
+    translations[:, hips] = (there - above[:3, 3]) @ above[:3, :3]
+    own = rotations.multiply(back, rotations.from_matrix(placed[:, hips, :3, :3]))
+    turns[:, hips] = rotations.multiply(
+        rotations.conjugate(rotations.from_matrix(above[:3, :3])), own
+    )
+    return Pose(translations, turns), balance
+
+
+def find_rests(balance: Array, rate: float) -> tuple[Rest, ...]:
+    """Return where a person rests between her balance shifts, (frames,) [stances].
+
+    A shift is a way to one side of at least `MIN_SHIFT`, without a stop. Between a shift and the
+    way back is at least the frame in which she turns round.
+
+    >>> sway = np.repeat([0.3, -0.3], 50) + 0.01 * np.sin(np.arange(100))
+    >>> [(rest.balance, rest.first, rest.end) for rest in find_rests(sway, 25.0)]
+    [('left', 0, 38), ('right', 62, 100)]
+    """
+    smooth = gaussian_smoothed(balance[:, None], _SMOOTHING_S * rate)[:, 0]
+    speed = np.gradient(smooth) * rate if len(smooth) > 1 else np.zeros(1)
+    bounds = [0]
+    for sign in (1, -1):
+        for first, count in spans(sign * speed > _SHIFTING_SPEED, loop=False):
+            if abs(smooth[first + count - 1] - smooth[first]) > MIN_SHIFT:
+                bounds += [first, first + count]
+    bounds = sorted([*bounds, len(smooth)])
+    rests = []
+    for first, end in zip(bounds[::2], bounds[1::2], strict=True):
+        first = min(first, len(smooth) - 1)
+        end = max(end, first + 1)
+        side = float(np.median(smooth[first:end]))
+        name = "both" if abs(side) < STANDING_SHARE else "left" if side > 0 else "right"
+        rests.append(Rest(first, end, name))
+    return tuple(rests)
+
+
+def shifts_of(recording: StandingRecording) -> Sequence[tuple[Rest, Rest]]:
+    """Return the pairs of rests between which the balance shifts."""
+    return list(zip(recording.rests[:-1], recording.rests[1:], strict=True))

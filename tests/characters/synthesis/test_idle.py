@@ -1,0 +1,259 @@
+from collections import Counter
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from characters import Character, CharacterError, Clip, Pose
+from characters.control.controllers.recordings import read_motions
+from characters.skeleton import rotations
+from characters.synthesis.idle.database import IdleDatabase
+from characters.synthesis.idle.fitting import fit, nearest_clip
+from characters.synthesis.idle.idle_motion import IdleMotion
+from characters.synthesis.idle.posture_space import PostureVectors
+from characters.synthesis.idle.recordings import (
+    Rest,
+    StandingRecording,
+    find_rests,
+    read_standing,
+)
+from characters.synthesis.idle.variations import Variations, VariationStream, extrema
+
+IDLE = Path(__file__).parents[4] / "shared" / "data" / "idle"
+RATE = 25.0
+SIDES = {"left": 0.4, "both": 0.0, "right": -0.4}
+CHANCES = {"left": (0.0, 0.3, 0.7), "both": (0.5, 0.0, 0.5), "right": (0.8, 0.2, 0.0)}
+PAUSES = (1.0, 4.0)
+
+
+@pytest.fixture(scope="module")
+def human() -> Character:
+    return Character.load("human")
+
+
+@pytest.fixture(scope="module")
+def kind(human: Character) -> PostureVectors:
+    return PostureVectors.of(human.skeleton, human.anatomy)
+
+
+def script(count: int, seed: int) -> tuple[np.ndarray, list[tuple[str, float]]]:
+    """Return the balance of a stander whose choices and pauses are known."""
+    rng = np.random.default_rng(seed)
+    name, values, truth = "both", [], []
+    for _ in range(count):
+        pause = float(rng.uniform(*PAUSES))
+        truth.append((name, pause))
+        values += [SIDES[name]] * round(pause * RATE)
+        after = str(rng.choice([*SIDES], p=CHANCES[name]))
+        u = np.linspace(0.0, 1.0, round(1.2 * RATE))
+        eased = u * u * (3.0 - 2.0 * u)
+        values += (SIDES[name] + (SIDES[after] - SIDES[name]) * eased).tolist()
+        name = after
+    return np.array(values), truth
+
+
+@pytest.fixture(scope="module")
+def database(kind: PostureVectors) -> IdleDatabase:
+    """What is learned from that stander, whose joints follow the balance and sway by themselves."""
+    balance, _ = script(60, 3)
+    rng = np.random.default_rng(4)
+    size = kind.size
+    times = np.arange(len(balance)) / RATE
+    sway = [np.sin(2 * np.pi * times * rng.uniform(0.1, 0.5) + rng.uniform(0, 6)) for _ in range(6)]
+    vectors = np.outer(balance, rng.normal(size=size) * 0.2)
+    vectors += 0.01 * np.stack(sway, axis=1) @ rng.normal(size=(6, size))
+    found = StandingRecording("anna", RATE, vectors, balance, find_rests(balance, RATE))
+    return IdleDatabase.of([found], kind)
+
+
+def test_rests_and_shifts_are_found_where_they_are() -> None:
+    balance, truth = script(200, 1)
+    rests = find_rests(balance, RATE)[:-1]
+    assert [rest.balance for rest in rests] == [name for name, _ in truth]
+    lengths = np.array([(rest.end - rest.first) / RATE for rest in rests])
+    assert lengths == pytest.approx(np.array([pause for _, pause in truth]), abs=0.5)
+
+
+def test_somebody_who_never_shifts_has_one_rest() -> None:
+    assert find_rests(np.full(100, 0.3), RATE) == (Rest(0, 100, "left"),)
+
+
+def test_probabilities_and_pauses_are_those_of_the_stander(database: IdleDatabase) -> None:
+    for name, row in CHANCES.items():
+        found = database.probabilities(name)
+        assert sum(found.values()) == pytest.approx(1.0)
+        counted = sum(shift.start == name for shift in database.shifts)
+        for after, chance in zip(SIDES, row, strict=True):
+            deviation = np.sqrt(chance * (1 - chance) / counted)
+            assert abs(found.get(after, 0.0) - chance) <= 3 * deviation
+        low, high = database.pause_limits(name)
+        assert PAUSES[0] - 0.5 <= low < high <= PAUSES[1] + 0.6
+
+
+@given(st.integers(2, 30), st.integers(0, 2**32 - 1))
+def test_a_fitted_clip_meets_its_keys(length: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    clip = rng.normal(size=(length, 4))
+    frames = sorted(rng.choice(length, min(3, length), replace=False).tolist())
+    keys = [(frame, rng.normal(size=4)) for frame in frames]
+    fitted = fit(clip, keys)
+    for frame, posture in keys:
+        assert fitted[frame] == pytest.approx(posture, abs=1e-12)
+    for end in {0, length - 1} - set(frames):
+        assert fitted[end] == pytest.approx(clip[end], abs=1e-12)
+    assert fit(fitted, keys) == pytest.approx(fitted, abs=1e-12)
+    bends = np.abs(np.diff(fitted - clip, 2, axis=0)).max(1) > 1e-9
+    assert set((np.flatnonzero(bends) + 1).tolist()) <= set(frames)
+
+
+def test_fitting_in_the_posture_space_is_fitting_the_vectors(database: IdleDatabase) -> None:
+    clip, space = database.shifts[0].vectors, database.space
+    keys = [(0, database.postures[0].vector), (len(clip) - 1, database.postures[1].vector)]
+    inside = fit(space.project(clip), [(frame, space.project(each)) for frame, each in keys])
+    assert space.restore(inside) == pytest.approx(fit(clip, keys), abs=1e-9)
+
+
+def test_the_nearest_clip_is_near_at_both_ends() -> None:
+    ends = np.array([[0.0, 9.0], [2.0, 2.0], [8.0, 0.0]])[..., None]
+    assert nearest_clip(ends[:, 0], ends[:, 1], np.zeros(1), np.zeros(1)) == 1
+
+
+def balances(motion: IdleMotion, database: IdleDatabase, seconds: float) -> list[tuple[str, int]]:
+    """Play, and return where it rested and for how many frames, without variations."""
+    found: list[tuple[str, int]] = []
+    known = {each.vector.tobytes(): each.balance for each in database.postures}
+    for _ in range(round(seconds * database.rate)):
+        name = known.get(next(motion._frames).tobytes(), "")
+        if found and found[-1][0] == name:
+            found[-1] = name, found[-1][1] + 1
+        else:
+            found.append((name, 1))
+    return found
+
+
+def test_generated_shifts_and_pauses_are_those_of_the_person(database: IdleDatabase) -> None:
+    found = [each for each in balances(IdleMotion(database, 5), database, 4000.0) if each[0]]
+    for name, frames in found[:-1]:
+        low, high = database.pause_limits(name)
+        assert low - 0.05 <= frames / RATE <= high + 0.1
+    pairs = Counter(pairwise(name for name, _ in found))
+    square = freedom = 0.0
+    for name in SIDES:
+        row = {end: pairs[name, end] for end in SIDES}
+        total = sum(row.values())
+        expected = {end: total * p for end, p in database.probabilities(name).items()}
+        square += sum((row[end] - most) ** 2 / most for end, most in expected.items())
+        freedom += len(expected) - 1
+    assert square < {3.0: 16.3}[freedom]  # p = 0.001
+
+
+def test_nothing_jumps(database: IdleDatabase, kind: PostureVectors) -> None:
+    motion = IdleMotion(database, 2)
+    frames = np.stack([motion._made(number / RATE) for number in range(3000)])
+    recorded = max(np.abs(np.diff(each.vectors, axis=0)).max() for each in database.shifts)
+    assert np.abs(np.diff(frames, axis=0)).max() < 1.5 * recorded
+
+
+def test_it_shifts_when_told_to(database: IdleDatabase) -> None:
+    waiting = IdleMotion(database, 7)
+    waiting.activation = -1.0  # long pauses
+    balances(waiting, database, 0.2)
+    waiting.shift_now()
+    assert balances(waiting, database, 0.2)[-1][0] == ""
+
+
+@pytest.mark.parametrize(("activation", "mean"), [(1.0, 0.0), (0.0, 0.5), (-1.0, 1.0)])
+def test_active_people_pause_less(database: IdleDatabase, activation: float, mean: float) -> None:
+    motion = IdleMotion(database, 8)
+    motion.activation = activation
+    posture = database.postures[0]
+    low, high = database.pause_limits(posture.balance)
+    found = np.mean([motion.pause(posture) for _ in range(1000)])
+    assert found == pytest.approx(low + mean * (high - low), abs=0.06 * (high - low))
+
+
+def test_poses_are_the_same_for_the_same_seed_only(database: IdleDatabase) -> None:
+    one, same, other = (IdleMotion(database, seed) for seed in (1, 1, 2))
+    times = np.arange(0.0, 5.0, 1 / 60)
+    poses = [np.stack([each.sample(t).rotations for t in times]) for each in (one, same, other)]
+    assert np.array_equal(poses[0], poses[1])
+    assert not np.allclose(poses[0], poses[2])
+    assert np.linalg.norm(rotations.normalize(poses[0]) - poses[0]) < 1e-9
+
+
+def test_shifts_can_be_added_and_removed_while_it_plays(database: IdleDatabase) -> None:
+    motion = IdleMotion(database, 9)
+    motion.sample(3.0)
+    motion.database = database.removed(0)
+    motion.sample(6.0)
+    motion.database = motion.database.added(database.shifts[0])
+    motion.sample(9.0)
+    assert set(map(id, motion.database.shifts)) == set(map(id, database.shifts))
+
+
+def test_somebody_without_shifts_stands_where_she_stood(database: IdleDatabase) -> None:
+    still = IdleMotion(replace(database, shifts=()), 1)
+    assert len({next(still._frames).tobytes() for _ in range(2000)}) == 1
+
+
+def signal(seed: int, seconds: float) -> np.ndarray:
+    rng = np.random.default_rng(seed)
+    noise = rng.normal(size=(round(seconds * RATE), 3))
+    kernel = np.hanning(30)
+    return np.stack([np.convolve(each, kernel / kernel.sum(), "same") for each in noise.T], axis=1)
+
+
+def test_variations_are_as_large_and_as_fast_as_recorded() -> None:
+    recorded = signal(1, 120.0)
+    stream = VariationStream(Variations.of([recorded], RATE), np.random.default_rng(2))
+    made = np.stack([stream.at(number / RATE) for number in range(7500)])
+    assert made.mean(0) == pytest.approx(0.0, abs=0.15 * recorded.std())
+    assert made.std(0) / recorded.std(0) == pytest.approx(1.0, abs=0.2)
+    error = 0.1 * recorded[:, 0].std()
+    waits = [np.diff(extrema(each[:, 0], error)).mean() for each in (recorded, made)]
+    assert waits[1] / waits[0] == pytest.approx(1.0, abs=0.25)
+
+
+def test_variations_do_not_repeat() -> None:
+    stream = VariationStream(Variations.of([signal(3, 60.0)], RATE), np.random.default_rng(4))
+    made = np.array([stream.at(number / RATE)[0] for number in range(7500)])
+    values = made[extrema(made, 1e-9)].round(9)
+    runs = [tuple(values[start : start + 5]) for start in range(len(values) - 5)]
+    assert len(set(runs)) == len(runs)
+
+
+def test_people_who_walk_or_sit_or_jump_are_refused(human: Character) -> None:
+    body = human.skeleton, human.anatomy
+    walk = human.clips["Walk"]
+    with pytest.raises(CharacterError, match=r"both feet stand in only \d+%"):
+        read_standing(walk, *body)
+    standing = Pose(*(np.repeat(each[None], 50, axis=0) for each in (
+        human.skeleton.rest.translations, human.skeleton.rest.rotations)))  # fmt: skip
+    still = Clip("still", RATE, standing, root_motion=True)
+    assert read_standing(still, *body).rests == (Rest(0, 50, "both"),)
+    low = standing.translations.copy()
+    low[:, human.anatomy.joints["hips"], 1] -= 0.4
+    with pytest.raises(CharacterError, match="hips are at 52% of their standing height"):
+        read_standing(replace(still, poses=replace(standing, translations=low)), *body)
+    leaping = standing.translations.copy()
+    leaping[25:, 0, 0] += 1.0
+    with pytest.raises(CharacterError, match=r"a joint jumps at 1\.0 s"):
+        read_standing(replace(still, poses=replace(standing, translations=leaping)), *body)
+
+
+@pytest.mark.skipif(not IDLE.is_dir(), reason="needs shared/data/idle")
+def test_a_real_person_shifts_her_balance(human: Character, kind: PostureVectors) -> None:
+    (clip,) = read_motions([str(IDLE / "007_acted.bvh")], human)
+    recording = read_standing(clip, human.skeleton, human.anatomy)
+    database = IdleDatabase.of([recording], kind)
+    assert len(database.shifts) >= 20
+    assert set(database.by_balance) == {"left", "both", "right"}
+    again = kind.poses(recording.vectors).globals(human.skeleton)[:, :, :3, 3]
+    feet = again[:, [human.anatomy.joints[side + "Foot"] for side in ("left", "right")]]
+    assert np.ptp(feet[..., [0, 2]], axis=0).max() < 0.1  # they stay, while the hips go
+    hips = again[:, human.anatomy.joints["hips"]]
+    assert np.ptp(hips[:, 0]) > 0.12
