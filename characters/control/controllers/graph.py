@@ -19,11 +19,12 @@ from characters.motion.motion import Motion, RootDelta
 from characters.motion.state_machine import StateMachine
 from characters.retargeting.retarget import retarget
 from characters.smoothing import low_pass
+from characters.synthesis.archive import skeleton_identity
 from characters.synthesis.behaviours import STANDING_M_S, Behaviours
 from characters.synthesis.graphs.building import analyse, part_graphs, standard_graph
 from characters.synthesis.graphs.graph import EdgeCosts, MotionGraph
 from characters.synthesis.graphs.search import CostToGo
-from characters.synthesis.graphs.storage import StoredGraph, load_graph, skeleton_identity
+from characters.synthesis.graphs.storage import StoredGraph, load_graph
 from characters.synthesis.library import MotionLibrary
 from characters.synthesis.transitions.live import (
     FrameSource,

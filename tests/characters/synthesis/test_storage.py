@@ -45,7 +45,7 @@ def test_a_graph_is_read_as_it_was_written(stored: StoredGraph, saved: Path) -> 
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"version": 0}, "written as version 0.*build it again"),
+        ({"version": 0}, "written as version 0.*make it again"),
         ({"format": "another"}, "not a motion graph"),
         ({"skeleton": "0123"}, "its skeleton is damaged"),
         ({"joints": ["hips"]}, "my.graph"),

@@ -1,0 +1,100 @@
+"""`cubeling idle`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from app.commands.output import OverwriteOption, chosen_output
+from characters import Character
+from characters.control.controllers.recordings import read_motions
+from characters.retargeting.root import with_root_joint
+from characters.synthesis.idle.database import IdleDatabase
+from characters.synthesis.idle.posture_space import PostureVectors
+from characters.synthesis.idle.recordings import BALANCES, read_standing
+from characters.synthesis.idle.storage import Person, load_person, save_person
+
+app = typer.Typer(
+    help="Learn how a person stands, from recordings, and let a character stand so.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="rich",
+)
+
+
+@app.command()
+def learn(
+    recordings: Annotated[
+        list[str], typer.Argument(help="Recordings of one standing person: .bvh, .amc, .glb#CLIP.")
+    ],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="The .idle file; default: my.idle.")
+    ] = None,
+    overwrite: OverwriteOption = False,
+    character: Annotated[
+        str, typer.Option(help="Whose skeleton they get: bundled, or a .glb file.")
+    ] = "human",
+) -> None:
+    """Learn the idle motion of a person: where she rests, and how she shifts her balance.
+
+    Rests, balance shifts and small variations are found without marks.
+
+    Example: [cyan]cubeling idle learn anna.bvh -o anna.idle[/]
+    """
+    target = chosen_output(output, "my.idle", "idle motion", (".idle",), overwrite)
+    body = with_root_joint(Character.load(character))
+    console = Console()
+    with console.status("reading"):
+        clips = read_motions(recordings, body)
+        found = tuple(read_standing(clip, body.skeleton, body.anatomy) for clip in clips)
+    person = body.skeleton, body.anatomy, found
+    describe(console, person)
+    save_person(person, target)
+    name = escape(str(target))
+    console.print(
+        f"[bold]{name}[/] is written: [cyan]cubeling play follow --idle {name}[/]", soft_wrap=True
+    )
+
+
+@app.command()
+def show(
+    person: Annotated[Path, typer.Argument(help="A file of cubeling idle learn.")],
+) -> None:
+    """Show a person's idle motion: her rests, pauses and balance shifts.
+
+    Example: [cyan]cubeling idle show anna.idle[/]
+    """
+    describe(Console(), load_person(person))
+
+
+def describe(console: Console, person: Person) -> None:
+    """Print what is known of a person's idle motion."""
+    skeleton, anatomy, recordings = person
+    database = IdleDatabase.of(recordings, PostureVectors.of(skeleton, anatomy))
+    length = sum(len(each.vectors) / each.rate for each in recordings)
+    explained = database.space.variances[:10].sum() / max(database.space.variances.sum(), 1e-12)
+    console.print(
+        f"{len(recordings)} recordings, {length:.1f} s; {len(database.shifts)} balance shifts; "
+        f"10 components hold {explained:.1%} of the postures",
+        highlight=False,
+    )
+    rows = Table(title="Rests", title_justify="left", title_style="bold", box=SIMPLE_HEAD)
+    for heading in ("on", "rests", "shortest", "longest", *(f"then {each}" for each in BALANCES)):
+        rows.add_column(heading, justify="left" if heading == "on" else "right")
+    for name in BALANCES:
+        own = database.by_balance.get(name)
+        if own:
+            chances = database.probabilities(name)
+            shortest, longest = database.pause_limits(name)
+            shares = [f"{chances[each]:.0%}" if each in chances else "" for each in BALANCES]
+            rows.add_row(name, f"{len(own)}", f"{shortest:.1f} s", f"{longest:.1f} s", *shares)
+    console.print(rows)
+    if not database.shifts:
+        console.print(
+            "[yellow]![/] She never shifts her balance: her character stays where it stands.",
+            highlight=False,
+        )

@@ -1,0 +1,125 @@
+"""Files of motions: NumPy archives (.npz) without pickled objects.
+
+An archive holds arrays, and one JSON text, "content", with its format, its version, names, and the
+skeleton with its identity.
+"""
+
+import hashlib
+import json
+import zipfile
+import zlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from characters.errors import CharacterError
+from characters.skeleton.anatomy import Anatomy
+from characters.skeleton.pose import Pose, Skeleton
+
+Content = Mapping[str, Any]
+"""What the JSON text says."""
+
+Arrays = Mapping[str, Any]
+"""The arrays by name."""
+
+_T = TypeVar("_T")
+
+
+@dataclass(frozen=True)
+class ArchiveFormat:
+    """A kind of file."""
+
+    name: str
+    """What the file says that it is."""
+
+    version: int
+    """It changes when older files can no longer be read."""
+
+    kind: str
+    """How messages call it: "motion graph"."""
+
+    made_by: str
+    """The command that makes one."""
+
+    def save(self, path: Path, content: Content, arrays: Arrays) -> None:
+        """Write a file."""
+        text = json.dumps({"format": self.name, "version": self.version, **content})
+        with path.open("wb") as file:
+            np.savez_compressed(file, content=np.array(text), **arrays)
+
+    def load(self, path: Path, read: Callable[[Content, Arrays], _T]) -> _T:
+        """Return what `read` makes of a file; it raises ValueError if something is wrong.
+
+        Raises
+        ------
+        CharacterError
+            If the file is missing, damaged, of another version, or something else.
+        """
+        try:
+            with path.open("rb") as file:
+                if file.read(2) != b"PK":  # every archive begins so
+                    raise ValueError("it is no archive")
+                file.seek(0)
+                with np.load(file, allow_pickle=False) as archive:
+                    content = json.loads(str(archive["content"]))
+                    if content["format"] != self.name:
+                        raise ValueError("it holds something else")
+                    if content["version"] == self.version:
+                        return read(content, {name: archive[name] for name in archive.files})
+        except OSError as error:
+            raise CharacterError(f"{path}: {error.strerror or f'not {self._one}'}") from None
+        except (
+            *(CharacterError, zipfile.BadZipFile, zlib.error),
+            *(EOFError, IndexError, KeyError, TypeError, ValueError),
+        ) as error:
+            reason = " ".join(str(error).split())[:80]
+            raise CharacterError(
+                f"{path}: not {self._one} ({reason}); make one with: {self.made_by}"
+            ) from None
+        raise CharacterError(
+            f"{path}: written as version {content['version']}, this program reads {self.version}; "
+            f"make it again with: {self.made_by}"
+        )
+
+    @property
+    def _one(self) -> str:
+        return f"{'an' if self.kind[0] in 'aeiou' else 'a'} {self.kind}"
+
+
+def skeleton_identity(skeleton: Skeleton) -> str:
+    """Return a short text that changes with the joints, their order and their rest pose."""
+    rest = np.round(
+        np.concatenate([skeleton.rest.translations, skeleton.rest.rotations], axis=1), 5
+    )
+    content = json.dumps([skeleton.names, skeleton.parents]).encode() + (rest + 0.0).tobytes()
+    return hashlib.sha256(content).hexdigest()[:16]
+
+
+def skeleton_content(skeleton: Skeleton, anatomy: Anatomy) -> tuple[Content, Arrays]:
+    """Return the part of a file that holds a skeleton."""
+    content = {
+        "joints": skeleton.names,
+        "skeleton": skeleton_identity(skeleton),
+        "anatomy": dict(anatomy.joints),
+        "kind": anatomy.kind,
+    }
+    arrays = {
+        "parents": np.array(skeleton.parents, np.int32),
+        "rest_translations": skeleton.rest.translations,
+        "rest_rotations": skeleton.rest.rotations,
+    }
+    return content, arrays
+
+
+def read_skeleton(content: Content, arrays: Arrays) -> tuple[Skeleton, Anatomy]:
+    """Return the skeleton that a file holds, and its anatomy."""
+    rest = Pose(arrays["rest_translations"], arrays["rest_rotations"])
+    parents = tuple(int(parent) for parent in arrays["parents"])
+    skeleton = Skeleton(tuple(content["joints"]), parents, rest)
+    if skeleton_identity(skeleton) != content["skeleton"]:
+        raise ValueError("its skeleton is damaged")
+    parts = {str(part): int(joint) for part, joint in content["anatomy"].items()}
+    return skeleton, Anatomy(content["kind"], parts)
