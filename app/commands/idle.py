@@ -78,7 +78,7 @@ def describe(console: Console, person: Person) -> None:
     length = sum(len(each.vectors) / each.rate for each in recordings)
     explained = database.space.variances[:10].sum() / max(database.space.variances.sum(), 1e-12)
     console.print(
-        f"{len(recordings)} recordings, {length:.1f} s; {len(database.shifts)} balance shifts; "
+        f"Recorded for {length:.1f} s, with {len(database.shifts)} balance shifts; "
         f"10 components hold {explained:.1%} of the postures",
         highlight=False,
     )

@@ -5,7 +5,6 @@ Source: Egges 2006, sections 3.3.2 and 4.1 (S8, S9, S11).
 
 import math
 from collections import deque
-from collections.abc import Iterator
 
 import numpy as np
 
@@ -22,7 +21,8 @@ class IdleMotion:
     """The idle motion of a person; a `Motion`, to be sampled in the order of time.
 
     What changes it takes effect at the next frame that is made: another database, another
-    activation, and the wish to shift now.
+    activation, and the wish to shift now. A time long before the latest enters it again: it goes
+    on from where it is.
     """
 
     def __init__(self, database: IdleDatabase, seed: int = 0) -> None:
@@ -32,10 +32,12 @@ class IdleMotion:
         """−1…1: active people shift more often, see `pause`."""
         self._rng = np.random.default_rng(seed)
         self._variations = VariationStream(database.variations, self._rng)
-        self._shift_now = False
-        self._rows: deque[Array] = deque(maxlen=max(int(_KEPT_S * database.rate), 2))
-        self._count = 0
-        self._frames = self._base()
+        self._posture = self._drawn(database.postures)
+        self._left = self.pause(self._posture)
+        self._shift: deque[Array] = deque()  # postures on the way to the next rest
+        self._kept: deque[Array] = deque(maxlen=max(int(_KEPT_S * database.rate), 2))
+        self._made = 0  # number of frames that have been made
+        self._entered = 0  # of them, before time 0
 
     @property
     def duration(self) -> float:
@@ -44,44 +46,40 @@ class IdleMotion:
 
     def shift_now(self) -> None:
         """Shift the balance as soon as the present shift, if any, has ended."""
-        self._shift_now = True
+        self._left = 0.0
 
     def sample(self, time: float) -> Pose:
-        """Return the pose at a time [s], not long before the latest."""
+        """Return the pose at a time [s]."""
         at = max(time, 0.0) * self.database.rate
-        while self._count < at + 2.0:
-            self._rows.append(self._made(self._count / self.database.rate))
-            self._count += 1
-        first = max(int(at), self._count - len(self._rows))
-        row = first - (self._count - len(self._rows))
-        u = min(max(at - first, 0.0), 1.0)
-        vector = self._rows[row] * (1.0 - u) + self._rows[row + 1] * u
+        if self._entered + int(at) < self._made - len(self._kept):
+            self._entered = self._made - int(at)
+        frame = self._entered + int(at)
+        while self._made < frame + 2:
+            varied = self._variations.at(self._made / self.database.rate)
+            components = self.database.space.components[:, : len(varied)]
+            self._kept.append(self.next_posture() + components @ varied)
+            self._made += 1
+        row, u = frame - (self._made - len(self._kept)), at - int(at)
+        vector = self._kept[row] * (1.0 - u) + self._kept[row + 1] * u
         return self.database.kind.poses(vector)
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return no movement: the feet stay."""
         return RootDelta()
 
-    def _made(self, time: float) -> Array:
-        """Return the next frame: where she rests or shifts to, and the variation."""
-        varied = self._variations.at(time)
-        return next(self._frames) + self.database.space.components[:, : len(varied)] @ varied
-
-    def _base(self) -> Iterator[Array]:
-        """Yield postures without end: rest, shift, rest (S8)."""
-        posture = self._drawn(self.database.postures)
-        while True:
-            left = self.pause(posture)
-            while left > 0.0 and not self._shift_now:
-                yield posture.vector
-                left -= 1.0 / self.database.rate
-            self._shift_now = False
-            following = self._following(posture)
-            if following is None:
-                yield posture.vector
-                continue
-            posture, shift = following
-            yield from shift[1:]
+    def next_posture(self) -> Array:
+        """Return the posture of the next frame, (size,), without variations (S8)."""
+        if self._shift:
+            return self._shift.popleft()
+        if self._left > 0.0:
+            self._left -= 1.0 / self.database.rate
+            return self._posture.vector
+        following = self._following(self._posture)
+        if following is not None:
+            self._posture, shift = following
+            self._shift.extend(shift[1:])
+        self._left = self.pause(self._posture)
+        return self._shift.popleft() if self._shift else self._posture.vector
 
     def pause(self, posture: RestingPosture) -> float:
         """Return how long to rest [s]: drawn from p_m to p_m + (1 − activation) p_o (eq. 4.2)."""

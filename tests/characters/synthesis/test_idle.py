@@ -1,3 +1,4 @@
+import copy
 from collections import Counter
 from dataclasses import replace
 from itertools import pairwise
@@ -127,7 +128,7 @@ def balances(motion: IdleMotion, database: IdleDatabase, seconds: float) -> list
     found: list[tuple[str, int]] = []
     known = {each.vector.tobytes(): each.balance for each in database.postures}
     for _ in range(round(seconds * database.rate)):
-        name = known.get(next(motion._frames).tobytes(), "")
+        name = known.get(motion.next_posture().tobytes(), "")
         if found and found[-1][0] == name:
             found[-1] = name, found[-1][1] + 1
         else:
@@ -153,9 +154,11 @@ def test_generated_shifts_and_pauses_are_those_of_the_person(database: IdleDatab
 
 def test_nothing_jumps(database: IdleDatabase, kind: PostureVectors) -> None:
     motion = IdleMotion(database, 2)
-    frames = np.stack([motion._made(number / RATE) for number in range(3000)])
+    poses = [motion.sample(number / RATE) for number in range(3000)]
+    shown = Pose(*(np.stack([getattr(each, name) for each in poses])
+                   for name in ("translations", "rotations")))  # fmt: skip
     recorded = max(np.abs(np.diff(each.vectors, axis=0)).max() for each in database.shifts)
-    assert np.abs(np.diff(frames, axis=0)).max() < 1.5 * recorded
+    assert np.abs(np.diff(kind.vectors(shown), axis=0)).max() < 1.5 * recorded
 
 
 def test_it_shifts_when_told_to(database: IdleDatabase) -> None:
@@ -185,6 +188,17 @@ def test_poses_are_the_same_for_the_same_seed_only(database: IdleDatabase) -> No
     assert np.linalg.norm(rotations.normalize(poses[0]) - poses[0]) < 1e-9
 
 
+def test_entered_again_it_goes_on(database: IdleDatabase) -> None:
+    motion, same = IdleMotion(database, 1), IdleMotion(database, 1)
+    for number in range(600):
+        motion.sample(number / 60)
+        same.sample(number / 60)
+    onward = same.sample(10.0 + 1 / RATE)
+    assert motion.sample(0.0).rotations == pytest.approx(onward.rotations, abs=1e-9)
+    later = copy.deepcopy(motion)  # as a session does before it steps back
+    assert np.array_equal(motion.sample(4.0).rotations, later.sample(4.0).rotations)
+
+
 def test_shifts_can_be_added_and_removed_while_it_plays(database: IdleDatabase) -> None:
     motion = IdleMotion(database, 9)
     motion.sample(3.0)
@@ -197,7 +211,7 @@ def test_shifts_can_be_added_and_removed_while_it_plays(database: IdleDatabase) 
 
 def test_somebody_without_shifts_stands_where_she_stood(database: IdleDatabase) -> None:
     still = IdleMotion(replace(database, shifts=()), 1)
-    assert len({next(still._frames).tobytes() for _ in range(2000)}) == 1
+    assert len({still.next_posture().tobytes() for _ in range(2000)}) == 1
 
 
 def signal(seed: int, seconds: float) -> np.ndarray:
