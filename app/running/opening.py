@@ -33,6 +33,7 @@ from app.ui.video_file import has_sound
 from app.ui.virtual_robot import VirtualRobot
 from characters import Character, choose_controller
 from characters.control.controllers.actions import clips_of_actions
+from characters.control.controllers.idle import standing_as
 from characters.rendering import create_context
 from tracking import (
     CubeModel,
@@ -90,6 +91,12 @@ def open_session(
     cube = cubes[0] if cubes else CubeModel.load(scenario_cube(options.scenario))
     scenario = scenario_of(options, options.scenario, cube)
     character = Character.load(options.character or scenario.character)
+    if options.idle is not None:
+        if options.controller != "tree":
+            raise AppError(
+                f"the controller {options.controller!r} stands by its own motions: leave out --idle"
+            )
+        character = standing_as(character, options.idle)
     bank = SoundBank.load(options.sounds, clips_of_actions(character.clips))
     controller = choose_controller(options.controller, character, options.motions)
     calibration = None if options.intrinsics is None else Intrinsics.load(options.intrinsics)

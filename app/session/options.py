@@ -29,6 +29,9 @@ class SessionOptions:
     motions: tuple[str, ...] = ()
     """Files that the controller takes its motions from; none for the character's own clips."""
 
+    idle: Path | None = None
+    """The .idle file of the person as whom the character stands; None for its own idle clip."""
+
     intrinsics: Path | None = None
     """The camera's calibration file; None to take the source's intrinsics or to guess them."""
 
@@ -109,10 +112,11 @@ class SessionOptions:
     def keeps_scenario(self) -> bool:
         """Whether the scenario stays.
 
-        A recording holds one, and so does a replay of its stages; a controller is prepared for the
-        character of one.
+        A recording holds one, and so does a replay of its stages; a controller and an idle motion
+        are prepared for the character of one.
         """
-        return self.record is not None or self.stage != "camera" or self.controller != "tree"
+        own = self.controller == "tree" and self.idle is None
+        return self.record is not None or self.stage != "camera" or not own
 
     def metadata(self) -> dict[str, str]:
         """Return what a recording keeps of the settings: all that a replay needs."""
@@ -123,6 +127,7 @@ class SessionOptions:
             "character": self.character or "",
             "controller": self.controller,
             "motions": "\n".join(self.motions),
+            "idle": "" if self.idle is None else str(self.idle),
             "speed_map": self.speed_map,
             "turns": f"{self.turns:g}",
             "personality": self.personality or "",
@@ -140,6 +145,7 @@ class SessionOptions:
             character=metadata.get("character") or None,
             controller=metadata.get("controller", "tree"),
             motions=tuple(metadata.get("motions", "").splitlines()),
+            idle=Path(metadata["idle"]) if metadata.get("idle") else None,
             speed_map=metadata.get("speed_map", "corrected"),
             turns=float(metadata.get("turns", "2")),
             personality=metadata.get("personality") or None,

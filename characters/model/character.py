@@ -12,6 +12,7 @@ from characters.errors import CharacterError
 from characters.model.mesh import Mesh
 from characters.model.sidecar import read_sidecar
 from characters.motion.clip import Clip
+from characters.motion.motion import Motion
 from characters.motion.trees.plan import Plan
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Skeleton
@@ -47,6 +48,9 @@ class Character:
 
     plan: Plan | None = None
     """How its motions are combined, if its sidecar file says so."""
+
+    standing: Callable[[], Motion] | None = None
+    """Makes the motion that it stands with, for each who plays it; None for its idle clip."""
 
     @staticmethod
     def load(name_or_path: "str | Path") -> "Character":

@@ -75,6 +75,10 @@ MotionsOption = Annotated[
         "folder of them; may be repeated. Without it, the character's own clips.",
     ),
 ]
+IdleOption = Annotated[
+    Path | None,
+    typer.Option(help="Stand as a person does: a file of [cyan]cubeling idle learn[/]."),
+]
 PersonalityOption = Annotated[
     str | None,
     typer.Option(help="A bundled personality, or your own .toml file."),
@@ -140,6 +144,7 @@ def play(
     character: CharacterOption = None,
     controller: ControllerOption = "tree",
     motions: MotionsOption = None,
+    idle: IdleOption = None,
     intrinsics: IntrinsicsOption = None,
     robot: RobotOption = "sim",
     robot_settings: RobotSettingsOption = None,
@@ -180,6 +185,7 @@ def play(
         character=character,
         controller=controller,
         motions=tuple(motions or ()),
+        idle=idle,
         intrinsics=intrinsics,
         speed_map=speed_map,
         turns=turns,

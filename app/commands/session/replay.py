@@ -14,6 +14,7 @@ from app.commands.session.play import (
     CharacterOption,
     CodecOption,
     FolderOption,
+    IdleOption,
     MotionsOption,
     OutputOption,
     PersonalityOption,
@@ -41,6 +42,7 @@ def replay(
         str | None, typer.Option(help="Move the character with another controller.")
     ] = None,
     motions: MotionsOption = None,
+    idle: IdleOption = None,
     personality: PersonalityOption = None,
     robot: RobotOption = "sim",
     robot_settings: RobotSettingsOption = None,
@@ -98,6 +100,7 @@ def replay(
         character=character or recorded.character,
         controller=controller or recorded.controller,
         motions=tuple(motions) if motions else () if controller else recorded.motions,
+        idle=idle or recorded.idle,
         personality=personality or recorded.personality,
         robot=robot,
         robot_settings=robot_settings,

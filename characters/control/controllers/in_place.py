@@ -154,6 +154,8 @@ def idle_clip(clips: Iterable[str]) -> str | None:
 
 
 def _idle(character: Character) -> Motion:
-    """Return the idle clip, or the rest pose of a character without clips."""
+    """Return what it stands with: its idle clip, or the rest pose of a character without clips."""
+    if character.standing is not None:
+        return character.standing()
     name = idle_clip(character.clips)
     return StaticPose(character.skeleton.rest, 1.0) if name is None else character.clips[name]

@@ -53,7 +53,8 @@ class WalkController:
 
     def __init__(self, character: Character, scale: float, place: RootDelta | None) -> None:
         clips, skeleton = character.clips, character.skeleton
-        idle: Motion = clips.get("idle", clips["Walk"])
+        own: Motion = clips.get("idle", clips["Walk"])
+        idle = own if character.standing is None else character.standing()
         self.gaits = Gaits(clips, skeleton, idle.sample(0.0))
         self.place = place or RootDelta()
         """Where it stands on the table [m] and faces [rad]."""
