@@ -136,3 +136,15 @@ def test_a_knee_that_is_stretched_too_far_bends_back_the_right_way():
         assert z > 0.1  # the knee comes forward
         sx, sy, sz = rotate(multiply(upper, lower), subtract(ankle, knee))
         assert (x + sx, 0.8 + y + sy, z + sz) == pytest.approx(target, abs=1e-6)
+
+
+def test_a_knee_does_not_snap_while_it_is_stretched_past_straight() -> None:
+    """A nearly straight knee of a recording also bends a little to the side."""
+    hip, target = (0.0, 1.0, 0.0), (0.0, 0.012, 0.0)
+    knees = []
+    for flexion in np.linspace(-0.06, 0.06, 121):  # forward of the line from hip to ankle [m]
+        knee = (0.04, 0.5, float(flexion))
+        upper, _ = two_bones.reach(hip, knee, (0.0, 0.0, 0.0), target)
+        knees.append(rotate(upper, subtract(knee, hip)))
+    assert np.abs(np.diff(knees, axis=0)).max() < 0.01
+    assert np.array(knees)[:, 2].min() > -0.01  # always bent the right way
