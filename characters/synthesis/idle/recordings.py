@@ -30,6 +30,7 @@ MIN_SHIFT = 0.15
 
 _SHIFTING_SPEED = 0.06  # [stances/s] to the side; slower hips rest
 _SMOOTHING_S = 0.2
+_MIN_EDGE_S = 0.2  # with a shorter rest at an end, the recording begins or ends within a shift
 _MIN_STANCE = 0.05  # [body heights]: of feet closer than this, nobody can say which one stands
 _MIN_STANDING_SHARE = 0.8  # of the frames with both feet on the ground
 _MIN_HIPS_HEIGHT = 0.75  # of those at rest: lower hips belong to somebody who sits
@@ -171,7 +172,12 @@ def find_rests(balance: Array, rate: float) -> tuple[Rest, ...]:
         side = float(np.median(smooth[first:end]))
         name = "both" if abs(side) < STANDING_SHARE else "left" if side > 0 else "right"
         rests.append(Rest(first, end, name))
-    return tuple(rests)
+    inner = [
+        rest
+        for rest in rests
+        if (rest.first > 0 and rest.end < len(smooth)) or rest.end - rest.first > _MIN_EDGE_S * rate
+    ]
+    return tuple(inner or rests)
 
 
 def shifts_of(recording: StandingRecording) -> Sequence[tuple[Rest, Rest]]:

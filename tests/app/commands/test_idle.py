@@ -1,0 +1,116 @@
+"""`cubeling idle`, and characters that stand as a person does."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from characters import Animator, Character, CharacterCommand, Clip, Pose
+from characters.control.controllers.idle import standing_as
+from characters.synthesis.idle.recordings import read_standing
+from characters.synthesis.idle.storage import load_person, save_person
+
+RATE = 25.0
+
+
+@pytest.fixture(scope="module")
+def swaying() -> Clip:
+    """A person who shifts her balance every three seconds: her hips go from side to side."""
+    human = Character.load("human")
+    times = np.arange(0.0, 30.0, 1 / RATE)
+    rest, hips = human.skeleton.rest, human.anatomy.joints["hips"]
+    moved = np.repeat(rest.translations[None], len(times), axis=0)
+    moved[:, hips, 0] += 0.06 * np.tanh(4.0 * np.sin(2 * np.pi * times / 6.0))
+    turns = np.repeat(rest.rotations[None], len(times), axis=0)
+    return Clip("swaying", RATE, Pose(moved, turns), root_motion=True)
+
+
+@pytest.fixture
+def anna(swaying: Clip, tmp_path: Path) -> Path:
+    human = Character.load("human")
+    fixed = swaying.poses.translations.copy()
+    feet = [human.anatomy.joints[side + "UpperLeg"] for side in ("left", "right")]
+    hips = human.anatomy.joints["hips"]
+    fixed[:, feet, 0] -= (fixed[:, hips, 0] - human.skeleton.rest.translations[hips, 0])[:, None]
+    clip = Clip("anna", RATE, Pose(fixed, swaying.poses.rotations), root_motion=True)
+    recording = read_standing(clip, human.skeleton, human.anatomy)
+    save_person((human.skeleton, human.anatomy, (recording,)), tmp_path / "anna.idle")
+    return tmp_path / "anna.idle"
+
+
+def test_a_person_comes_back_from_her_file(anna: Path) -> None:
+    skeleton, _, (recording,) = load_person(anna)
+    assert len(skeleton) == len(Character.load("human").skeleton)
+    assert (recording.name, recording.rate, len(recording.vectors)) == ("anna", RATE, 750)
+    assert {rest.balance for rest in recording.rests} == {"left", "right"}
+
+
+def test_shows_rests_pauses_and_shifts(cubeling, anna) -> None:
+    code, out, _ = cubeling("idle", "show", str(anna))
+    assert code == 0
+    assert "Recorded for 30.0 s" in out
+    assert "then right" in out
+    assert "100%" in out  # after the left foot comes the right one
+
+
+def test_a_character_stands_as_the_person(anna: Path) -> None:
+    human = Character.load("human")
+    lively = Animator(standing_as(human, anna), scale=1.0)
+    still = Animator(human, scale=1.0)
+    hips = human.anatomy.joints["hips"]
+    for animator, least, most in ((lively, 0.5, 1.0), (still, 0.0, 0.2)):
+        aside = np.array([
+            animator.update(CharacterCommand(t)).pose.translations[hips, 0]
+            for t in np.arange(0.0, 30.0, 1 / 30)
+        ])  # fmt: skip
+        assert least <= np.mean(np.abs(aside) > 0.045) <= most
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("show", "no.idle"), "no.idle: No such file"),
+        (("learn", "nobody.bvh"), "nobody.bvh"),
+        (("learn", "human#Walk"), "both feet stand in only"),
+        (("learn", "human#Walk", "-o", "walk.txt"), "written as .idle"),
+        (("learn", "human#Walk", "--character", "vleo"), "quadruped"),
+    ],
+)
+def test_refuses_in_one_line(cubeling, arguments, message) -> None:
+    code, _, error = cubeling("idle", *arguments)
+    assert code == 2
+    assert message in error
+    assert error.count("\n") == 1
+
+
+def test_a_file_that_is_damaged_is_refused(cubeling, anna, tmp_path) -> None:
+    with np.load(anna) as archive:
+        arrays = dict(archive)
+    arrays["rests_0"] = np.array([[0, 10**6, 0]])
+    (tmp_path / "bad.idle").write_bytes(b"")
+    np.savez(tmp_path / "bad.npz", **arrays)
+    (tmp_path / "bad.npz").rename(tmp_path / "bad.idle")
+    code, _, error = cubeling("idle", "show", "bad.idle")
+    assert code == 2
+    assert "its rests are not in its frames" in error
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("follow", "--controller", "matching"), "stands by its own motions: leave out --idle"),
+        (("companion",), "anna.idle: "),
+    ],
+)
+def test_idle_motion_that_cannot_be_played_is_refused(cubeling, anna, options, message) -> None:
+    code, _, error = cubeling(
+        "play",
+        *options,
+        "--idle",
+        str(anna),
+        "--source",
+        f"synthetic:{options[0]}",
+        "--no-pictures",
+    )
+    assert code == 2
+    assert message in error
