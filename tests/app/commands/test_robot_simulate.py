@@ -48,9 +48,11 @@ def test_the_help_explains_every_fault(cubeling):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
 def test_sighup_and_sigterm_end_it_as_ctrl_c_does():
-    program = "from app.cli import main; main()"
-    command = [sys.executable, "-c", program, "robot", "simulate", "--seconds", "60"]
     for number in (signal.SIGHUP, signal.SIGTERM):
+        # As in a terminal: what nohup starts begins with SIGHUP ignored, and so do the tests.
+        program = f"import signal; signal.signal({number:d}, signal.SIG_DFL)"
+        program += "; from app.cli import main; main()"
+        command = [sys.executable, "-c", program, "robot", "simulate", "--seconds", "60"]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as child:
             assert child.stdout is not None
             try:
