@@ -1,7 +1,7 @@
 """Egges' study of idle motion, with machines for subjects: `python -m tests.bench.idle_study`.
 
-Source: Egges 2006, section 3.3.2 (S25): people named a person in a third of the films, of eight, and
-took 46 % of the generated ones for recorded. Here classifiers judge windows of 5 s of the eight
+Source: Egges 2006, section 3.3.2 (S25): people named a person in a third of the films, of eight,
+and took 46 % of the generated ones for recorded. Here classifiers judge windows of 5 s of the eight
 people of `shared/data/idle`. They are no people, and see other things.
 
 Each recording is cut into halves. The database is learned from the first one, the classifiers from
@@ -77,14 +77,16 @@ def perlin(count: int, columns: int, rate: float, rng: np.random.Generator) -> A
         knots = rng.normal(size=(int(at[-1]) + 2, columns)) / 2**octave
         low, u = at.astype(int), (at % 1.0)[:, None]
         total += knots[low] + (knots[low + 1] - knots[low]) * (u**3 * (u * (u * 6 - 15) + 10))
-    return total / total.std(0)
+    noise: Array = total / total.std(0)
+    return noise
 
 
 def by_joint(half: StandingRecording, database: IdleDatabase, seed: int) -> Array:
     """Return the mean posture moved by noise, the same for all values."""
     rng, vectors = np.random.default_rng(seed), half.vectors
     noise = perlin(round(GENERATED_S * half.rate), vectors.shape[1], half.rate, rng)
-    return vectors.mean(0) + noise * vectors.std()
+    moved: Array = vectors.mean(0) + noise * vectors.std()
+    return moved
 
 
 def by_component(half: StandingRecording, database: IdleDatabase, seed: int) -> Array:
