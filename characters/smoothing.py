@@ -66,7 +66,7 @@ def hermite(a: float, slope_a: float, b: float, slope_b: float, u: float) -> flo
 
 
 def gaussian_smoothed(values: NDArray[np.float64], deviation: float) -> NDArray[np.float64]:
-    """Return values (frames, n) under a Gaussian of a standard deviation [frames].
+    """Return values (frames, …) under a Gaussian of a standard deviation [frames].
 
     Point reflection continues them at both ends: a body that enters or leaves keeps its speed.
     """
@@ -79,4 +79,6 @@ def gaussian_smoothed(values: NDArray[np.float64], deviation: float) -> NDArray[
     offsets = np.arange(-reach, reach + 1)
     kernel = np.exp(-0.5 * (offsets / deviation) ** 2)
     kernel /= kernel.sum()
-    return np.stack([np.convolve(column, kernel, mode="valid") for column in padded.T], axis=-1)
+    windows = np.lib.stride_tricks.sliding_window_view(padded, len(kernel), axis=0)
+    smooth: NDArray[np.float64] = windows @ kernel
+    return smooth

@@ -240,7 +240,7 @@ def _hips_drop(
     margin = round(2 * deviation)
     padded = np.pad(ground.repeat(needed), margin, mode="edge")
     greatest = np.lib.stride_tricks.sliding_window_view(padded, 2 * margin + 1).max(-1)
-    return ground.middle_cycle(gaussian_smoothed(greatest[:, None], deviation))[:, 0]
+    return ground.middle_cycle(gaussian_smoothed(greatest, deviation))
 
 
 def _with_lower_hips(pose: Pose, rig: Rig, drop: Array) -> Pose:

@@ -11,6 +11,7 @@ from characters.motion.clip import Clip
 from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
+from characters.smoothing import gaussian_smoothed
 from characters.synthesis.distances import thesis_distance
 from characters.synthesis.graphs.edges import Nodes
 from characters.synthesis.graphs.parts import PartGraphs
@@ -43,16 +44,6 @@ class LowPass:
         outside = np.maximum(np.maximum(start - times, times - end), 0)
         share = np.clip(1.0 - outside / self.ramp_frames, 0.0, 1.0)
         return np.round(share * share * (3.0 - 2.0 * share), 12)
-
-    def apply(self, values: Array) -> Array:
-        """Return values (times, n) under the filter; the ends are held."""
-        reach = round(3 * self.sigma_frames)
-        offsets = np.arange(-reach, reach + 1)
-        kernel = np.exp(-0.5 * (offsets / self.sigma_frames) ** 2)
-        padded = np.pad(values, ((reach, reach), (0, 0)), mode="edge")
-        windows = np.lib.stride_tricks.sliding_window_view(padded, len(kernel), axis=0)
-        smooth: Array = windows @ (kernel / kernel.sum())
-        return smooth
 
 
 DEFAULT_LOW_PASS = LowPass()
@@ -101,7 +92,7 @@ def stitch(
         start, end = before + transition.response, before + transition.duration
         weights = low_pass.weights(len(steps), start, end)
         poses = _smoothed(poses, weights, low_pass)
-        steps = steps + (low_pass.apply(steps) - steps) * weights[:, None]
+        steps = steps + (gaussian_smoothed(steps, low_pass.sigma_frames) - steps) * weights[:, None]
     arrived = before + transition.duration
     return StitchedMotion(poses, steps, streams.before[0], before, arrived)
 
@@ -155,10 +146,9 @@ def _composed(graphs: PartGraphs, streams: PartStreams) -> tuple[Pose, Array]:
 def _smoothed(poses: Pose, weights: Array, low_pass: LowPass) -> Pose:
     """Return poses of which a share, (times,), is low-passed: rotations and translations."""
     turns = rotations.continuous(poses.rotations)
-    count = len(turns)
-    low = rotations.normalize(low_pass.apply(turns.reshape(count, -1)).reshape(turns.shape))
+    low = rotations.normalize(gaussian_smoothed(turns, low_pass.sigma_frames))
+    moved = gaussian_smoothed(poses.translations, low_pass.sigma_frames)
     share = weights[:, None]
-    moved = low_pass.apply(poses.translations.reshape(count, -1)).reshape(poses.translations.shape)
     return Pose(
         poses.translations + (moved - poses.translations) * share[..., None],
         rotations.nlerp(turns, low, share),
