@@ -17,6 +17,7 @@ from characters.synthesis.idle.database import IdleDatabase
 from characters.synthesis.idle.posture_space import PostureVectors
 from characters.synthesis.idle.recordings import BALANCES, read_standing
 from characters.synthesis.idle.storage import Person, load_person, save_person
+from characters.synthesis.idle.variations import COMPONENTS
 
 app = typer.Typer(
     help="Learn how a person stands, from recordings, and let a character stand so.",
@@ -76,10 +77,11 @@ def describe(console: Console, person: Person) -> None:
     skeleton, anatomy, recordings = person
     database = IdleDatabase.of(recordings, PostureVectors.of(skeleton, anatomy))
     length = sum(len(each.vectors) / each.rate for each in recordings)
-    explained = database.space.variances[:10].sum() / max(database.space.variances.sum(), 1e-12)
+    spread = database.space.variances
+    explained = spread[:COMPONENTS].sum() / max(spread.sum(), 1e-12)
     console.print(
         f"Recorded for {length:.1f} s, with {len(database.shifts)} balance shifts; "
-        f"10 components hold {explained:.1%} of the postures",
+        f"{COMPONENTS} components hold {explained:.1%} of the postures",
         highlight=False,
     )
     rows = Table(title="Rests", title_justify="left", title_style="bold", box=SIMPLE_HEAD)

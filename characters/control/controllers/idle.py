@@ -8,6 +8,7 @@ from characters.errors import CharacterError
 from characters.model.bind_pose import with_bind_pose
 from characters.model.character import Character
 from characters.retargeting import retarget
+from characters.synthesis.archive import skeleton_identity
 from characters.synthesis.idle.database import IdleDatabase
 from characters.synthesis.idle.idle_motion import IdleMotion
 from characters.synthesis.idle.posture_space import PostureVectors
@@ -24,14 +25,13 @@ def standing_as(character: Character, path: Path) -> Character:
         If the file cannot be read, or its person and the character have different bodies.
     """
     person = load_person(path)
-    skeleton, anatomy, _ = person
-    body = with_bind_pose(character)
-    try:
-        clips = [
-            retarget(clip, skeleton, anatomy, body, character.anatomy) for clip in as_clips(person)
-        ]
-        recordings = [read_standing(clip, character.skeleton, character.anatomy) for clip in clips]
-    except CharacterError as error:
-        raise CharacterError(f"{path}: {error}") from None
+    skeleton, anatomy, recordings = person
+    if skeleton_identity(skeleton) != skeleton_identity(character.skeleton):
+        body, parts = with_bind_pose(character), character.anatomy
+        try:
+            clips = [retarget(each, skeleton, anatomy, body, parts) for each in as_clips(person)]
+            recordings = tuple(read_standing(clip, character.skeleton, parts) for clip in clips)
+        except CharacterError as error:
+            raise CharacterError(f"{path}: {error}") from None
     kind = PostureVectors.of(character.skeleton, character.anatomy)
     return replace(character, standing=partial(IdleMotion, IdleDatabase.of(recordings, kind)))

@@ -13,7 +13,7 @@ import numpy as np
 from characters.errors import CharacterError
 from characters.skeleton.pose import Array
 from characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
-from characters.synthesis.idle.recordings import StandingRecording, shifts_of
+from characters.synthesis.idle.recordings import StandingRecording
 from characters.synthesis.idle.variations import COMPONENTS, Variations
 
 
@@ -98,7 +98,7 @@ class IdleDatabase:
         shifts = tuple(
             BalanceShift(each.vectors[a.end - 1 : b.first + 1], a.balance, b.balance)
             for each in recordings
-            for a, b in shifts_of(each)
+            for a, b in each.shifts
         )
         calm = [space.project(each.vectors[r.first : r.end], COMPONENTS) for each, r in rests]
         return IdleDatabase(kind, rate, space, postures, shifts, Variations.of(calm, rate))

@@ -27,7 +27,7 @@ class IdleMotion:
 
     def __init__(self, database: IdleDatabase, seed: int = 0) -> None:
         self.database = database
-        """Her idle motion; may be replaced by one of the same skeleton and rate."""
+        """Her idle motion; may be replaced by one with other shifts, see `IdleDatabase.added`."""
         self.activation = 0.0
         """−1…1: active people shift more often, see `pause`."""
         self._rng = np.random.default_rng(seed)

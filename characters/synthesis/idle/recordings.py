@@ -3,8 +3,8 @@
 Source: Egges 2006, section 3.3.2 (S2, S6).
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -70,6 +70,11 @@ class StandingRecording:
 
     rests: tuple[Rest, ...]
     """Where she rests, in order; what is between them are balance shifts."""
+
+    @property
+    def shifts(self) -> tuple[tuple[Rest, Rest], ...]:
+        """The pairs of rests between which the balance shifts."""
+        return tuple(pairwise(self.rests))
 
 
 def read_standing(clip: Clip, skeleton: Skeleton, anatomy: Anatomy) -> StandingRecording:
@@ -157,7 +162,7 @@ def find_rests(balance: Array, rate: float) -> tuple[Rest, ...]:
     >>> [(rest.balance, rest.first, rest.end) for rest in find_rests(sway, 25.0)]
     [('left', 0, 38), ('right', 62, 100)]
     """
-    smooth = gaussian_smoothed(balance[:, None], _SMOOTHING_S * rate)[:, 0]
+    smooth = gaussian_smoothed(balance, _SMOOTHING_S * rate)
     speed = np.gradient(smooth) * rate if len(smooth) > 1 else np.zeros(1)
     bounds = [0]
     for sign in (1, -1):
@@ -178,8 +183,3 @@ def find_rests(balance: Array, rate: float) -> tuple[Rest, ...]:
         if (rest.first > 0 and rest.end < len(smooth)) or rest.end - rest.first > _MIN_EDGE_S * rate
     ]
     return tuple(inner or rests)
-
-
-def shifts_of(recording: StandingRecording) -> Sequence[tuple[Rest, Rest]]:
-    """Return the pairs of rests between which the balance shifts."""
-    return list(zip(recording.rests[:-1], recording.rests[1:], strict=True))
