@@ -29,6 +29,13 @@ class Pose:
     morphs: Array | None = None
     """Weights of the character's morph targets, (…, morphs), or None for zeros."""
 
+    @staticmethod
+    def of_frames(poses: "Iterable[Pose]") -> "Pose":
+        """Return single poses as the frames of one, without their scales and morphs."""
+        parts = [(pose.translations, pose.rotations) for pose in poses]
+        translations, turns = zip(*parts, strict=True)
+        return Pose(np.stack(translations), np.stack(turns))
+
     @property
     def scales_or_ones(self) -> Array:
         """The scales, (…, joints, 3); all ones if there are none."""

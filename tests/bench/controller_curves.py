@@ -162,9 +162,7 @@ def _filmed(
 
 
 def _clip(shown: Sequence[PosedCharacter]) -> Clip:
-    shifts = np.stack([posed.pose.translations for posed in shown])
-    turns = np.stack([posed.pose.rotations for posed in shown])
-    return Clip("shown", FRAME_RATE, Pose(shifts, turns), loop=False)
+    return Clip("shown", FRAME_RATE, Pose.of_frames(posed.pose for posed in shown), loop=False)
 
 
 def _draw_curves(

@@ -58,8 +58,14 @@ from characters.control.controllers.controller import CharacterController
 from characters.control.controllers.graph import GraphController
 from characters.control.controllers.walk import NOT_ACTIONS
 from characters.control.layers import FOOT_LAYERS, FrameContext
-from characters.skeleton.feet import find_feet
-from tests.bench.feet import BODY_HEIGHT_M, FRAME_RATE, MAX_SLIDE_MM_S, Take, measure
+from tests.bench.feet import (
+    BODY_HEIGHT_M,
+    FRAME_RATE,
+    MAX_SLIDE_MM_S,
+    Take,
+    measure,
+    placed_take,
+)
 
 CMU = Path(__file__).parents[3] / "shared" / "data" / "cmu-mocap"
 MAX_JUMP = 1.2
@@ -178,18 +184,13 @@ def _developed(
     size: float,
     milliseconds: Array,
 ) -> Film:
-    skeleton = character.skeleton
-    turns = np.stack([posed.pose.rotations for posed in shown])
-    poses = Pose(np.stack([posed.pose.translations for posed in shown]), turns)
+    poses = Pose.of_frames(posed.pose for posed in shown)
     placed = np.stack([posed.table_from_character for posed in shown])
-    local = poses.globals(skeleton)[..., :3, 3]
-    balls = [foot[-1] for foot in find_feet(skeleton)]
-    world = np.einsum("fij,fnj->fni", placed[:, :3, :3], local[:, balls]) + placed[:, None, :3, 3]
-    level = skeleton.rest.globals(skeleton)[balls, 1, 3] * size
+    local = poses.globals(character.skeleton)[..., :3, 3]
     way = placed[:, [0, 2], 3] * size
     steps = np.linalg.norm(np.diff(way, axis=0, prepend=way[:1]), axis=1) * FRAME_RATE
     return Film(
-        Take(world * size, level, turns, 0.0),
+        placed_take(character, poses, placed),
         local[:, joints_of(character)] * size,
         _joints(character, played),
         np.convolve(steps, np.full(7, 1 / 7), "same"),
@@ -235,9 +236,7 @@ def clip_jump(character: Character, clips: Sequence[Clip], share: float) -> floa
 
 def _joints(character: Character, poses: Sequence[Pose]) -> Array:
     """Return the positions of `JOINTS`, (poses, joints, 3) [m of a person 1.7 m tall]."""
-    shifts = np.stack([pose.translations for pose in poses])
-    stacked = Pose(shifts, np.stack([pose.rotations for pose in poses]))
-    at = stacked.globals(character.skeleton)[..., :3, 3][:, joints_of(character)]
+    at = Pose.of_frames(poses).globals(character.skeleton)[..., :3, 3][:, joints_of(character)]
     scaled: Array = at * (BODY_HEIGHT_M / character.height)
     return scaled
 

@@ -120,15 +120,26 @@ def film(character: Character, script: Script, frames: int, hold: bool = True) -
     feet = find_feet(character.skeleton)
     joints = [foot[-1] for foot in feet]
     legs = sorted({above for foot in feet for above in _upward(character, foot[-1])[:4]})
-    turns = np.stack([pose.rotations for pose in poses])
-    stacked = Pose(np.stack([pose.translations for pose in poses]), turns)
+    stacked = Pose.of_frames(poses)
     seen = stacked.globals(character.skeleton)[..., :3, 3][:, joints]
     at = np.array([(step.x, 0.0, step.z) for step in places])
     yaw = rotations.about("y", np.array([step.yaw for step in places]))
     size = BODY_HEIGHT_M / character.height
     balls = (rotations.rotate(yaw[:, None], seen) + at[:, None]) * size
     level = character.skeleton.rest.globals(character.skeleton)[..., 1, 3][joints] * size
-    return Take(balls, level, turns[:, legs], float(max((level - balls[..., 1]).max(), 0.0)))
+    return Take(
+        balls, level, stacked.rotations[:, legs], float(max((level - balls[..., 1]).max(), 0.0))
+    )
+
+
+def placed_take(character: Character, poses: Pose, placed: Array) -> Take:
+    """Return the feet of a character in poses (frames, …), where it stood, (frames, 4, 4)."""
+    skeleton, size = character.skeleton, BODY_HEIGHT_M / character.height
+    balls = [foot[-1] for foot in find_feet(skeleton)]
+    local = poses.globals(skeleton)[..., :3, 3][:, balls]
+    world = np.einsum("fij,fnj->fni", placed[:, :3, :3], local) + placed[:, None, :3, 3]
+    level = skeleton.rest.globals(skeleton)[balls, 1, 3] * size
+    return Take(world * size, level, poses.rotations, 0.0)
 
 
 def measure(take: Take, start: int = 0) -> Slide:

@@ -36,12 +36,11 @@ from characters.control.controllers.recordings import read_motions
 from characters.control.layers import FOOT_LAYERS
 from characters.rendering import create_context
 from characters.rendering.portrait import PortraitRenderer
-from characters.skeleton.feet import find_feet
 from characters.synthesis.idle.database import IdleDatabase
 from characters.synthesis.idle.idle_motion import IdleMotion
 from characters.synthesis.idle.posture_space import PostureVectors
 from characters.synthesis.idle.recordings import read_standing
-from tests.bench.feet import BODY_HEIGHT_M, FRAME_RATE, Take, measure
+from tests.bench.feet import FRAME_RATE, measure, placed_take
 
 PEOPLE = Path(__file__).parents[3] / "shared" / "data" / "idle"
 PLAYED_S = 120.0
@@ -67,16 +66,9 @@ def slide(character: Character, database: IdleDatabase) -> float:
     animator = Animator(standing, scale=1.0, layers=FOOT_LAYERS)
     times = np.arange(0.0, PLAYED_S, 1 / FRAME_RATE).tolist()
     shown = [animator.update(CharacterCommand(now)) for now in times]
-    skeleton = character.skeleton
-    turns = np.stack([posed.pose.rotations for posed in shown])
-    poses = Pose(np.stack([posed.pose.translations for posed in shown]), turns)
+    poses = Pose.of_frames(posed.pose for posed in shown)
     placed = np.stack([posed.table_from_character for posed in shown])
-    balls = [foot[-1] for foot in find_feet(skeleton)]
-    local = poses.globals(skeleton)[..., :3, 3][:, balls]
-    world = np.einsum("fij,fnj->fni", placed[:, :3, :3], local) + placed[:, None, :3, 3]
-    size = BODY_HEIGHT_M / character.height
-    level = skeleton.rest.globals(skeleton)[balls, 1, 3] * size
-    return measure(Take(world * size, level, turns, 0.0)).mean
+    return measure(placed_take(character, poses, placed)).mean
 
 
 def strip(character: Character, poses: Pose) -> NDArray[np.uint8]:
@@ -113,10 +105,7 @@ def main() -> int:
             start = time.perf_counter()
             poses.append(motion.sample(now))
             times.append(1e3 * (time.perf_counter() - start))
-        made = Pose(
-            np.stack([pose.translations for pose in poses]),
-            np.stack([pose.rotations for pose in poses]),
-        )
+        made = Pose.of_frames(poses)
         if output is not None:
             strips.append(strip(character, made))
         recorded = read_standing(clip, character.skeleton, character.anatomy).vectors

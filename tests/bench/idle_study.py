@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from characters import Character
+from characters import Character, Pose
 from characters.control.controllers.recordings import read_motions
 from characters.synthesis.idle.database import IdleDatabase
 from characters.synthesis.idle.idle_motion import IdleMotion
@@ -62,10 +62,7 @@ def generated(database: IdleDatabase, seed: int) -> Array:
     """Return posture vectors of generated motion, (frames, size)."""
     motion = IdleMotion(database, seed)
     poses = [motion.sample(n / database.rate) for n in range(round(GENERATED_S * database.rate))]
-    stacked = [
-        np.stack([getattr(p, name) for p in poses]) for name in ("translations", "rotations")
-    ]
-    return database.kind.vectors(type(poses[0])(*stacked))
+    return database.kind.vectors(Pose.of_frames(poses))
 
 
 def perlin(count: int, columns: int, rate: float, rng: np.random.Generator) -> Array:

@@ -3,16 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from characters.control.controllers.walk import TURN_SPEED, WalkController
 from characters.locomotion.gaits import IDLE_SPEED, MAX_ANGULAR_RAD
 from characters.locomotion.steering import STANDSTILL, SteeringOutput
 from characters.model.character import Character
 from characters.motion.clip import Clip
 from characters.motion.motion import RootDelta
-from characters.skeleton import rotations
 from characters.skeleton.pose import Pose
+from characters.synthesis.library import placed_clip
 
 TAKE_RATE_HZ = 60.0
 """Rate of the takes [Hz]."""
@@ -82,13 +80,7 @@ def _take(character: Character, name: str, course: Course) -> Clip:
             poses.append(frame.pose)
             places.append(frame.place)
         before = steering
-    turns = np.stack([pose.rotations for pose in poses])
-    shifts = np.stack([pose.translations for pose in poses])
-    yaw = rotations.about("y", np.array([place.yaw for place in places]))
-    turns[:, 0] = rotations.multiply(yaw, turns[:, 0])
-    shifts[:, 0] = rotations.rotate(yaw, shifts[:, 0])
-    shifts[:, 0] += np.array([(place.x, 0.0, place.z) for place in places])
-    return Clip(name, TAKE_RATE_HZ, Pose(shifts, turns), loop=False, root_motion=True)
+    return placed_clip(name, TAKE_RATE_HZ, Pose.of_frames(poses), places)
 
 
 def _ramp(before: float, after: float) -> float:

@@ -7,8 +7,6 @@ that the root has then; this accumulates the planar alignments of all jumps.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from characters.errors import CharacterError
 from characters.motion.clip import Clip
 from characters.motion.curves import ease
@@ -101,8 +99,4 @@ def path_clip(
     for frame in frames[1:]:
         places.append(places[-1].then(player.advance(frame)))
         poses.append(player.pose())
-    together = Pose(
-        np.array([pose.translations for pose in poses]),
-        np.array([pose.rotations for pose in poses]),
-    )
-    return placed_clip(name, library.rate, together, places)
+    return placed_clip(name, library.rate, Pose.of_frames(poses), places)

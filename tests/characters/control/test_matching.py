@@ -126,8 +126,7 @@ def test_transitions_do_not_jump(human, database):
             assert database.clips[motion.legs(time).clip].name == "Run"
         poses.append(motion.sample(time))
         fastest = max(fastest, motion.travel(time, time + 1e-4).z / 1e-4)
-    turns = Pose(np.stack([p.translations for p in poses]), np.stack([p.rotations for p in poses]))
-    at = turns.globals(human.skeleton)[..., :3, 3]
+    at = Pose.of_frames(poses).globals(human.skeleton)[..., :3, 3]
     changes = np.linalg.norm(np.diff(at, 2, axis=0), axis=-1).max(-1) * RATE
     around = slice(RATE // 2 - 3, RATE // 2 + 3)
     assert changes[around].max() < 2.0  # [m/s] a frame; the run itself has 1.9

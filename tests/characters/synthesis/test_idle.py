@@ -155,8 +155,7 @@ def test_generated_shifts_and_pauses_are_those_of_the_person(database: IdleDatab
 def test_nothing_jumps(database: IdleDatabase, kind: PostureVectors) -> None:
     motion = IdleMotion(database, 2)
     poses = [motion.sample(number / RATE) for number in range(3000)]
-    shown = Pose(*(np.stack([getattr(each, name) for each in poses])
-                   for name in ("translations", "rotations")))  # fmt: skip
+    shown = Pose.of_frames(poses)
     recorded = max(np.abs(np.diff(each.vectors, axis=0)).max() for each in database.shifts)
     assert np.abs(np.diff(kind.vectors(shown), axis=0)).max() < 1.5 * recorded
 
