@@ -1,5 +1,6 @@
 """`cubeling idle`, and characters that stand as a person does."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -64,6 +65,20 @@ def test_a_character_stands_as_the_person(anna: Path) -> None:
             for t in np.arange(0.0, 30.0, 1 / 30)
         ])  # fmt: skip
         assert least <= np.mean(np.abs(aside) > 0.045) <= most
+
+
+def test_a_smaller_character_stands_so_too(anna: Path) -> None:
+    human = Character.load("human")
+    rest = human.skeleton.rest
+    smaller = replace(rest, translations=0.8 * rest.translations)
+    child = replace(human, skeleton=replace(human.skeleton, rest=smaller))
+    hips = human.anatomy.joints["hips"]
+    motions = [standing_as(each, anna).standing for each in (human, child)]
+    ways = [
+        np.ptp([motion.sample(t).translations[hips, 0] for t in np.arange(0.0, 12.0, 0.1)])
+        for motion in (make() for make in motions if make is not None)
+    ]
+    assert ways[1] / ways[0] == pytest.approx(0.8, abs=0.08)
 
 
 @pytest.mark.parametrize(
