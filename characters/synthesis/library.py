@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
+from characters.motion.baking import placed_clip
 from characters.motion.clip import Clip
 from characters.motion.contacts import find_contacts
 from characters.motion.motion import RootDelta
@@ -179,19 +180,6 @@ class MotionLibrary:
         for _ in range(count):
             frames = np.where(self.successors[frames] < 0, frames, self.successors[frames])
         return frames
-
-
-def placed_clip(
-    name: str, rate: float, poses: Pose, places: Sequence[RootDelta], loop: bool = False
-) -> Clip:
-    """Return poses with the root at the origin, put at places on the ground, as a clip."""
-    translations, turns = poses.translations.copy(), poses.rotations.copy()
-    track = np.array([(place.x, place.z, place.yaw) for place in places])
-    yaw = rotations.about("y", track[:, 2])
-    translations[:, 0] = rotations.rotate(yaw, translations[:, 0])
-    translations[:, 0, [0, 2]] += track[:, :2]
-    turns[:, 0] = rotations.multiply(yaw, turns[:, 0])
-    return Clip(name, rate, Pose(translations, turns), loop, root_motion=True)
 
 
 def _with_root_motion(clip: Clip, anatomy: Anatomy | None) -> Clip:

@@ -7,10 +7,10 @@ from characters.control.controllers.walk import TURN_SPEED, WalkController
 from characters.locomotion.gaits import IDLE_SPEED, MAX_ANGULAR_RAD
 from characters.locomotion.steering import STANDSTILL, SteeringOutput
 from characters.model.character import Character
+from characters.motion.baking import placed_clip
 from characters.motion.clip import Clip
 from characters.motion.motion import RootDelta
 from characters.skeleton.pose import Pose
-from characters.synthesis.library import placed_clip
 
 TAKE_RATE_HZ = 60.0
 """Rate of the takes [Hz]."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from characters.motion.baking import placed_clip
 from characters.motion.clip import Clip
 from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
@@ -15,7 +16,7 @@ from characters.smoothing import gaussian_smoothed
 from characters.synthesis.distances import thesis_distance
 from characters.synthesis.graphs.edges import Nodes
 from characters.synthesis.graphs.parts import PartGraphs
-from characters.synthesis.library import MotionLibrary, placed_clip
+from characters.synthesis.library import MotionLibrary
 from characters.synthesis.transitions.transition import PartStreams, Transition
 
 
