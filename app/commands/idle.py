@@ -9,10 +9,12 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from affect.regions import Region, region_of
 from app.commands.output import OverwriteOption, chosen_output
 from characters import Character
 from characters.control.controllers.recordings import read_motions
 from characters.retargeting.root import with_root_joint
+from characters.synthesis.idle.alignment import Alignment
 from characters.synthesis.idle.database import IdleDatabase
 from characters.synthesis.idle.posture_space import PostureVectors
 from characters.synthesis.idle.recordings import BALANCES, read_standing
@@ -30,7 +32,10 @@ app = typer.Typer(
 @app.command()
 def learn(
     recordings: Annotated[
-        list[str], typer.Argument(help="Recordings of one standing person: .bvh, .amc, .glb#CLIP.")
+        list[str],
+        typer.Argument(
+            help="Recordings of one standing person: .bvh, .amc, .glb#CLIP; sad=FILE if she is sad."
+        ),
     ],
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="The .idle file; default: my.idle.")
@@ -39,19 +44,27 @@ def learn(
     character: Annotated[
         str, typer.Option(help="Whose skeleton they get: bundled, or a .glb file.")
     ] = "human",
+    align: Annotated[
+        Alignment, typer.Option(help="What places a recording; see docs/idle.md.")
+    ] = "feet",
 ) -> None:
     """Learn the idle motion of a person: where she rests, and how she shifts her balance.
 
-    Rests, balance shifts and small variations are found without marks.
+    Rests, balance shifts and small variations are found without marks. A recording with the word
+    of an emotion before it, such as happy=FILE, plays while the character feels so.
 
     Example: [cyan]cubeling idle learn anna.bvh -o anna.idle[/]
     """
     target = chosen_output(output, "my.idle", "idle motion", (".idle",), overwrite)
+    felt = [_felt(each) for each in recordings]
     body = with_root_joint(Character.load(character))
     console = Console()
     with console.status("reading"):
-        clips = read_motions(recordings, body)
-        found = tuple(read_standing(clip, body.skeleton, body.anatomy) for clip in clips)
+        found = tuple(
+            read_standing(clip, body.skeleton, body.anatomy, feeling, align)
+            for name, feeling in felt
+            for clip in read_motions([name], body)
+        )
     person = body.skeleton, body.anatomy, found
     describe(console, person)
     save_person(person, target)
@@ -70,6 +83,12 @@ def show(
     Example: [cyan]cubeling idle show anna.idle[/]
     """
     describe(Console(), load_person(person))
+
+
+def _felt(recording: str) -> tuple[str, Region | None]:
+    """Return the file of a recording, and the emotions that it shows."""
+    word, equals, name = recording.partition("=")
+    return (name, region_of(word)) if equals and word.isalpha() else (recording, None)
 
 
 def describe(console: Console, person: Person) -> None:

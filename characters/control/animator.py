@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -38,7 +39,7 @@ class Animator:
         Where it first stands on the table [m] and faces [rad]; left out, at the origin, or, if it
         acts in place, where it is first sent.
     seed
-        Seed of blinks and sway.
+        Seed of blinks, sway and idle motion.
     layers
         What is applied to the controller's poses, in order.
     controller
@@ -63,7 +64,7 @@ class Animator:
             scale = default_height(character) / max(character.height, 1e-9)
         self.character = character
         self.scale = scale
-        self.controller = controller(character, scale, place)
+        self.controller = controller(replace(character, seed=seed), scale, place)
         """What moves it."""
         self._layers = [layer(character, seed) for layer in layers]
         self._expressivity = ExpressivityFilter()

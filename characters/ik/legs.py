@@ -3,11 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from characters.ik import two_bones
+from characters.skeleton.anatomy import SIDES, Anatomy
 from characters.skeleton.feet import foot_joints_by_side
 from characters.skeleton.masks import subtree
 from characters.skeleton.pose import Array, Pose, Skeleton
@@ -44,6 +46,9 @@ class LegIK:
 
     joints: NDArray[np.intp]
     """Pelvis, hip, knee, ankle and toes of each leg, numbers in `skeleton`, (legs, 5)."""
+
+    knees_ahead: bool = True
+    """Whether all knees bend forward, as those of people do."""
 
     @property
     def count(self) -> int:
@@ -105,7 +110,11 @@ class LegIK:
             self._joints, ankles, turns, strict=True
         ):
             upper, lower = two_bones.reach(
-                frames.positions[hip], frames.positions[knee], frames.positions[ankle], target
+                frames.positions[hip],
+                frames.positions[knee],
+                frames.positions[ankle],
+                target,
+                knees_ahead=self.knees_ahead,
             )
             thigh = multiply(upper, frames.rotations[hip])
             shin = multiply(multiply(upper, lower), frames.rotations[knee])
@@ -148,12 +157,28 @@ def find_legs(skeleton: Skeleton) -> LegIK | None:
     chains = [chain for feet in sides for chain in _leg_chains(feet, skeleton)[:1]]
     if not chains or skeleton.rest.scales is not None:
         return None
+    return _legs(chains, skeleton)
+
+
+def find_paws(skeleton: Skeleton, anatomy: Anatomy) -> LegIK | None:
+    """Return the four legs of a quadruped, whose paws have no toes, or None."""
+    names = [(f"{side}{end}UpperLeg", f"{side}{end}LowerLeg", f"{side}{end}Foot")
+             for side in SIDES for end in ("", "Front")]  # fmt: skip
+    if anatomy.kind != "quadruped" or any(n not in anatomy.joints for leg in names for n in leg):
+        return None
+    legs = [[anatomy.joints[name] for name in leg] for leg in names]
+    chains = [[skeleton.parents[hip], hip, knee, paw, paw] for hip, knee, paw in legs]
+    jointed = all(skeleton.parents[b] == a for _, *leg, _ in chains for a, b in pairwise(leg))
+    return replace(_legs(chains, skeleton), knees_ahead=False) if jointed else None
+
+
+def _legs(chains: list[list[int]], skeleton: Skeleton) -> LegIK:
     order = skeleton.with_ancestors(joint for chain in chains for joint in chain)
     number = {joint: index for index, joint in enumerate(order)} | {-1: -1}
     part = Skeleton(
         tuple(skeleton.names[joint] for joint in order),
         tuple(number[skeleton.parents[joint]] for joint in order),
-        skeleton.rest[np.array(order)],
+        Pose(skeleton.rest.translations[order], skeleton.rest.rotations[order]),
     )
     joints = np.array([[number[joint] for joint in chain] for chain in chains])
     return LegIK(np.array(order), part, joints)

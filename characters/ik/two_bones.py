@@ -23,13 +23,13 @@ _MIN_STRAIGHT_RAD = 1.6  # between thigh and shin: a knee that is bent more is b
 
 
 def reach(
-    hip: Vector, knee: Vector, ankle: Vector, target: Vector
+    hip: Vector, knee: Vector, ankle: Vector, target: Vector, *, knees_ahead: bool = True
 ) -> tuple[Quaternion, Quaternion]:
     """Return the rotations that move an ankle to a target, or as near as the leg reaches.
 
     The second rotates the shin about the knee, then the first rotates the whole leg about the hip;
     both are given in the frame of the points. The knee stays in its plane and bends by the law of
-    cosines.
+    cosines. Unless `knees_ahead` is false, a knee that bends slightly backwards is corrected.
 
     >>> from characters.skeleton.scalar_quaternions import multiply
     >>> upper, lower = reach((0, 2, 0), (0, 1, 0.1), (0, 0, 0), (0, 0.5, 0))
@@ -46,7 +46,8 @@ def reach(
     straightened = IDENTITY
     ahead = cross(_LEFT, thigh)
     stretched = dot(shin, ahead) / (short * max(length(ahead), 1e-9))
-    if 0.0 < stretched < _MAX_OVEREXTENSION and bend > _MIN_STRAIGHT_RAD:
+    overextended = 0.0 < stretched < _MAX_OVEREXTENSION and bend > _MIN_STRAIGHT_RAD
+    if overextended and knees_ahead:
         # A transition has stretched the knee too far: it bends as far the right way.
         scale = 2.0 * dot(shin, ahead) / dot(ahead, ahead)
         x, y, z = (s - scale * a for s, a in zip(shin, ahead, strict=True))

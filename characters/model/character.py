@@ -11,8 +11,9 @@ import numpy as np
 from characters.errors import CharacterError
 from characters.model.mesh import Mesh
 from characters.model.sidecar import read_sidecar
+from characters.model.standing import StandingFactory, recordings_beside, standing_factory
 from characters.motion.clip import Clip
-from characters.motion.motion import Motion
+from characters.motion.motion import StandingMotion
 from characters.motion.trees.plan import Plan
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Skeleton
@@ -49,8 +50,11 @@ class Character:
     plan: Plan | None = None
     """How its motions are combined, if its sidecar file says so."""
 
-    standing: Callable[[], Motion] | None = None
-    """Makes the motion that it stands with, for each who plays it; None for its idle clip."""
+    standing: StandingFactory | None = None
+    """Makes the motion that it stands with from a seed; None for its idle clip."""
+
+    seed: int = 0
+    """Characters with different seeds stand differently."""
 
     @staticmethod
     def load(name_or_path: "str | Path") -> "Character":
@@ -104,6 +108,10 @@ class Character:
         """
         CHARACTER_WRITERS[".glb"](self, Path(path))
 
+    def stand(self) -> StandingMotion | None:
+        """Return a new motion for it to stand with; None if it stands with its idle clip."""
+        return None if self.standing is None else self.standing(self.seed)
+
     @cached_property
     def bounds(self) -> Array:
         """Lowest and highest corner of the rest pose, (2, 3) [m]."""
@@ -137,7 +145,7 @@ def _known_suffixes() -> str:
 
 
 def _with_sidecar(character: Character, path: Path) -> Character:
-    """Return a character with what its sidecar file adds."""
+    """Return a character with what the files of the same name add: a .toml and an .idle file."""
     sidecar_path = path.with_suffix(".toml")
     stated, plan = read_sidecar(sidecar_path, character.clips)
     for part, joint in stated.items():
@@ -146,7 +154,12 @@ def _with_sidecar(character: Character, path: Path) -> Character:
                 f"{sidecar_path}: joints.{part}: no joint {joint!r}; there are "
                 f"{', '.join(character.skeleton.names)}"
             )
-    return replace(character, semantics={**character.semantics, **stated}, plan=plan)
+    found = replace(character, semantics={**character.semantics, **stated}, plan=plan)
+    recordings = recordings_beside(path, found.skeleton)
+    if not recordings:
+        return found
+    standing = standing_factory(found.skeleton, found.anatomy, found.clips, recordings)
+    return replace(found, standing=standing)
 
 
 def skin(

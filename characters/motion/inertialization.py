@@ -111,7 +111,8 @@ class Inertialization:
         morphs = pose.morphs
         if self.morphs is not None:
             offset = self.morphs.at(time)
-            morphs = offset if morphs is None else morphs + offset
+            own = np.zeros_like(offset) if morphs is None else morphs
+            morphs = np.maximum(own + offset, np.minimum(own, 0.0))  # as the new motion fades
         return Pose(
             pose.translations + self.translations.at(time),
             rotations.multiply(turned, pose.rotations),

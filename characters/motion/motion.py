@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
+from affect import Emotion
 from characters.skeleton.pose import Pose
 from characters.skeleton.rotations import wrap
 
@@ -194,4 +195,13 @@ class Motion(Protocol):
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s], start ≤ end."""
+        ...
+
+
+@runtime_checkable
+class StandingMotion(Motion, Protocol):
+    """What a character stands with: a motion without an end that shows an emotion."""
+
+    def feel(self, emotion: Emotion | None) -> None:
+        """Show an emotion from now on, or none."""
         ...

@@ -30,7 +30,7 @@ from rich.table import Table
 from characters import Character, Pose
 from characters.control.controllers.recordings import read_motions
 from characters.synthesis.idle.database import IdleDatabase
-from characters.synthesis.idle.idle_motion import IdleMotion
+from characters.synthesis.idle.idle_motion import IdleMotion, Small
 from characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
 from characters.synthesis.idle.recordings import StandingRecording, find_rests, read_standing
 from characters.synthesis.transitions.comparison import bootstrap_interval
@@ -58,9 +58,9 @@ def halves(recording: StandingRecording) -> tuple[StandingRecording, StandingRec
     return parts[0], parts[1]
 
 
-def generated(database: IdleDatabase, seed: int) -> Array:
+def generated(database: IdleDatabase, seed: int, small: Small) -> Array:
     """Return posture vectors of generated motion, (frames, size)."""
-    motion = IdleMotion(database, seed)
+    motion = IdleMotion(database, seed, small)
     poses = [motion.sample(n / database.rate) for n in range(round(GENERATED_S * database.rate))]
     return database.kind.vectors(Pose.of_frames(poses))
 
@@ -102,7 +102,8 @@ def looped(half: StandingRecording, database: IdleDatabase, seed: int) -> Array:
 
 
 SOURCES: dict[str, Callable[[StandingRecording, IdleDatabase, int], Array]] = {
-    "generated": lambda half, database, seed: generated(database, seed),
+    "generated": lambda half, database, seed: generated(database, seed, "recorded"),
+    "generated, extrema": lambda half, database, seed: generated(database, seed, "extrema"),
     "Perlin, joints": by_joint,
     "Perlin, components": by_component,
     "looped clip": looped,

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from characters.model.character import Character
 from tools.authoring.human.character import build_human
+from tools.authoring.people import save_standing
 from tools.authoring.robot.character import build_robot
 from tools.authoring.vleo.character import build_vleo
 
@@ -26,9 +27,12 @@ def main(arguments: list[str]) -> int:
         sys.stderr.write(f"no character {unknown[0]!r} to make; there are {', '.join(BUILDERS)}\n")
         return 2
     for name in names:
+        character = BUILDERS[name]()
         path = ASSETS / f"{name}.glb"
-        BUILDERS[name]().save(path)
-        sys.stdout.write(f"{path}: {path.stat().st_size / 1024:.0f} KiB\n")
+        character.save(path)
+        save_standing(character, path.with_suffix(".idle"))
+        for written in (path, path.with_suffix(".idle")):
+            sys.stdout.write(f"{written}: {written.stat().st_size / 1024:.0f} KiB\n")
     return 0
 
 

@@ -1,17 +1,14 @@
 """Characters that stand as a person does."""
 
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 from characters.errors import CharacterError
 from characters.model.bind_pose import with_bind_pose
 from characters.model.character import Character
+from characters.model.standing import standing_factory
 from characters.retargeting import retarget
 from characters.synthesis.archive import skeleton_identity
-from characters.synthesis.idle.database import IdleDatabase
-from characters.synthesis.idle.idle_motion import IdleMotion
-from characters.synthesis.idle.posture_space import PostureVectors
 from characters.synthesis.idle.recordings import read_standing
 from characters.synthesis.idle.storage import as_clips, load_person
 
@@ -30,8 +27,13 @@ def standing_as(character: Character, path: Path) -> Character:
         body, parts = with_bind_pose(character), character.anatomy
         try:
             clips = [retarget(each, skeleton, anatomy, body, parts) for each in as_clips(person)]
-            recordings = tuple(read_standing(clip, character.skeleton, parts) for clip in clips)
+            recordings = tuple(
+                read_standing(clip, character.skeleton, parts, old.feeling)
+                for clip, old in zip(clips, recordings, strict=True)
+            )
         except CharacterError as error:
             raise CharacterError(f"{path}: {error}") from None
-    kind = PostureVectors.of(character.skeleton, character.anatomy)
-    return replace(character, standing=partial(IdleMotion, IdleDatabase.of(recordings, kind)))
+    standing = standing_factory(
+        character.skeleton, character.anatomy, character.clips, recordings, acting=False
+    )
+    return replace(character, standing=standing)

@@ -50,7 +50,9 @@ class InPlaceController:
         self._place = place or RootDelta()
         self._height = self._weight = 0.0
         self._actions = actions_of(character)
-        states: dict[str, Motion] = {"idle": _idle(character), **self._actions}
+        self._standing = character.stand()
+        idle = self._standing or _idle(character)
+        states: dict[str, Motion] = {"idle": idle, **self._actions}
         self._machine = StateMachine(states, "idle")
         self._state = "idle"
         self._time = 0.0
@@ -73,6 +75,8 @@ class InPlaceController:
         self, command: CharacterCommand, elapsed: float, tempo: float = 1.0
     ) -> ControllerFrame:
         """Advance by a time [s] under a command and return what is played."""
+        if self._standing is not None:
+            self._standing.feel(command.emotion)
         playing = elapsed * tempo if self._state == "idle" else elapsed
         now, self._time = self._time, self._time + playing
         self._act(command, elapsed, now)
@@ -154,8 +158,6 @@ def idle_clip(clips: Iterable[str]) -> str | None:
 
 
 def _idle(character: Character) -> Motion:
-    """Return what it stands with: its idle clip, or the rest pose of a character without clips."""
-    if character.standing is not None:
-        return character.standing()
+    """Return its idle clip, or the rest pose of a character without clips."""
     name = idle_clip(character.clips)
     return StaticPose(character.skeleton.rest, 1.0) if name is None else character.clips[name]

@@ -53,8 +53,8 @@ class WalkController:
 
     def __init__(self, character: Character, scale: float, place: RootDelta | None) -> None:
         clips, skeleton = character.clips, character.skeleton
-        own: Motion = clips.get("idle", clips["Walk"])
-        idle = own if character.standing is None else character.standing()
+        self._standing = character.stand()
+        idle: Motion = self._standing or clips.get("idle", clips["Walk"])
         self.gaits = Gaits(clips, skeleton, idle.sample(0.0))
         self.place = place or RootDelta()
         """Where it stands on the table [m] and faces [rad]."""
@@ -96,6 +96,8 @@ class WalkController:
         self, command: CharacterCommand, elapsed: float, tempo: float = 1.0
     ) -> ControllerFrame:
         """Advance by a time [s] under a command and return what is played."""
+        if self._standing is not None:
+            self._standing.feel(command.emotion)
         action, self._finished = next_action(
             self._machine, self._actions, command.action, self._finished, self._time
         )

@@ -7,17 +7,21 @@ be added and removed while it plays.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 
+from affect import Emotion
+from affect.regions import Region
 from characters.errors import CharacterError
 from characters.skeleton.pose import Array
 from characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
 from characters.synthesis.idle.recordings import StandingRecording
+from characters.synthesis.idle.stretches import Stretches
 from characters.synthesis.idle.variations import COMPONENTS, Variations
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class BalanceShift:
     """A recorded way from one rest to another."""
 
@@ -30,8 +34,11 @@ class BalanceShift:
     end: str
     """Balance after."""
 
+    feeling: Region | None = None
+    """The emotions that it leads to; None if it suits any."""
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, eq=False)
 class RestingPosture:
     """A posture in which the person rests, and for how long she did."""
 
@@ -46,6 +53,12 @@ class RestingPosture:
 
     cut: bool
     """Whether the recording begins or ends in this rest, so that it was longer."""
+
+    feeling: Region | None = None
+    """The emotions that it shows; None if it suits any."""
+
+
+_Felt = TypeVar("_Felt", BalanceShift, RestingPosture)
 
 
 @dataclass(frozen=True)
@@ -67,8 +80,8 @@ class IdleDatabase:
     shifts: tuple[BalanceShift, ...]
     """How she shifts her balance."""
 
-    variations: Variations
-    """How she moves while she rests."""
+    rests: tuple[Array, ...]
+    """Posture vectors of each rest, (frames, size): how she moves while she rests."""
 
     @staticmethod
     def of(recordings: Sequence[StandingRecording], kind: PostureVectors) -> "IdleDatabase":
@@ -92,16 +105,53 @@ class IdleDatabase:
                 rest.balance,
                 (rest.end - rest.first) / rate,
                 rest in (each.rests[0], each.rests[-1]),
+                each.feeling,
             )
             for each, rest in rests
         )
         shifts = tuple(
-            BalanceShift(each.vectors[a.end - 1 : b.first + 1], a.balance, b.balance)
+            BalanceShift(each.vectors[a.end - 1 : b.first + 1], a.balance, b.balance, each.feeling)
             for each in recordings
             for a, b in each.shifts
         )
-        calm = [space.project(each.vectors[r.first : r.end], COMPONENTS) for each, r in rests]
-        return IdleDatabase(kind, rate, space, postures, shifts, Variations.of(calm, rate))
+        calm = tuple(each.vectors[rest.first : rest.end] for each, rest in rests)
+        return IdleDatabase(kind, rate, space, postures, shifts, calm)
+
+    @cached_property
+    def stretches(self) -> Stretches:
+        """Her small variations as recorded."""
+        return Stretches.of(self.rests, self.rate)
+
+    @cached_property
+    def variations(self) -> Variations:
+        """Her small variations as extrema of components."""
+        return Variations.of([self.space.project(r, COMPONENTS) for r in self.rests], self.rate)
+
+    def suiting(self, emotion: Emotion) -> "IdleDatabase":
+        """Return what suits an emotion (S11).
+
+        These are the postures and shifts whose region it is in; if there is none, those that suit
+        any emotion; if there is none of them either, all. The choice is made for postures and for
+        shifts by itself.
+        """
+        there = tuple(n for n, region in enumerate(self._regions) if region.contains(emotion))
+        if there not in self._known:
+            regions = [self._regions[n] for n in there]
+            self._known[there] = replace(
+                self,
+                postures=_suiting(self.postures, regions),
+                shifts=_suiting(self.shifts, regions),
+            )
+        return self._known[there]
+
+    @cached_property
+    def _regions(self) -> list[Region]:
+        return list(dict.fromkeys(p.feeling for p in self.postures if p.feeling is not None))
+
+    @cached_property
+    def _known(self) -> "dict[tuple[int, ...], IdleDatabase]":
+        """What suits emotions, by the numbers of the regions that they are in."""
+        return {}
 
     @cached_property
     def by_balance(self) -> dict[str, tuple[RestingPosture, ...]]:
@@ -128,3 +178,9 @@ class IdleDatabase:
     def removed(self, number: int) -> "IdleDatabase":
         """Return it without one of its shifts."""
         return replace(self, shifts=self.shifts[:number] + self.shifts[number + 1 :])
+
+
+def _suiting(items: tuple[_Felt, ...], regions: Sequence[Region]) -> tuple[_Felt, ...]:
+    """Return the items of regions, or else those without a region, or else all."""
+    there = tuple(each for each in items if each.feeling in regions)
+    return there or tuple(each for each in items if each.feeling is None) or items

@@ -10,6 +10,7 @@ import numpy as np
 
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import SIDES, Anatomy
+from characters.skeleton.masks import subtree
 from characters.skeleton.pose import Array, Pose, Skeleton
 
 Region = Literal["whole", "upper", "lower"]
@@ -42,14 +43,20 @@ class PostureVectors:
     hips: int | None
     """The joint whose translation counts, or None."""
 
+    others: Pose | None = None
+    """Holds the other joints, and all scales; None for the rest pose."""
+
     @staticmethod
     def of(skeleton: Skeleton, anatomy: Anatomy, region: Region = "whole") -> "PostureVectors":
-        """Return the posture vectors of a region."""
+        """Return the posture vectors of a region; on four legs, all regions are the whole body."""
+        hips, head = anatomy.joint("hips"), anatomy.joint("head")
+        if anatomy.kind == "quadruped" and hips is not None:
+            face = set() if head is None else set(subtree(skeleton, head)) - {head}
+            body = tuple(joint for joint in subtree(skeleton, hips) if joint not in face)
+            return PostureVectors(skeleton, body, hips)
         parts = {"whole": _LOWER + _UPPER, "upper": _UPPER, "lower": _LOWER}[region]
         joints = tuple(joint for part in parts if (joint := anatomy.joint(part)) is not None)
-        return PostureVectors(
-            skeleton, joints, None if region == "upper" else anatomy.joint("hips")
-        )
+        return PostureVectors(skeleton, joints, None if region == "upper" else hips)
 
     @property
     def size(self) -> int:
@@ -68,19 +75,21 @@ class PostureVectors:
         moved = poses.translations[:, self.hips] - rest.translations[self.hips]
         return np.concatenate([vectors, moved], axis=1)
 
-    def poses(self, vectors: Array) -> Pose:
-        """Return the poses of vectors (…, size); other joints rest."""
+    def poses(self, vectors: Array, others: Pose | None = None) -> Pose:
+        """Return the poses of vectors (…, size); `others` hold what the vectors leave out."""
         rest, joints = self.skeleton.rest, list(self.joints)
-        shape = vectors.shape[:-1]
-        turns = np.broadcast_to(rest.rotations, (*shape, *rest.rotations.shape)).copy()
-        moved = np.broadcast_to(rest.translations, (*shape, *rest.translations.shape)).copy()
+        base, shape = others or self.others or rest, vectors.shape[:-1]
+        turns = np.broadcast_to(base.rotations, (*shape, *rest.rotations.shape)).copy()
+        moved = np.broadcast_to(base.translations, (*shape, *rest.translations.shape)).copy()
         own = vectors[..., : 3 * len(joints)].reshape(*shape, len(joints), 3)
         turns[..., joints, :] = rotations.multiply(
             rest.rotations[joints], rotations.from_rotation_vector(own)
         )
         if self.hips is not None:
-            moved[..., self.hips, :] += vectors[..., -3:]
-        return Pose(moved, turns)
+            moved[..., self.hips, :] = rest.translations[self.hips] + vectors[..., -3:]
+        if base.scales is None:
+            return Pose(moved, turns)
+        return Pose(moved, turns, np.broadcast_to(base.scales, moved.shape))
 
 
 def continuous_rotation_vectors(turns: Array) -> Array:

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from affect.regions import Region
 from characters.errors import CharacterError
 from characters.motion.clip import Clip
 from characters.motion.contacts import find_contacts, spans
@@ -16,6 +17,7 @@ from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.feet import find_feet
 from characters.skeleton.pose import Array, Pose, Skeleton
 from characters.smoothing import gaussian_smoothed
+from characters.synthesis.idle.alignment import Alignment, align
 from characters.synthesis.idle.posture_space import PostureVectors
 
 BALANCES = ("left", "both", "right")
@@ -71,14 +73,23 @@ class StandingRecording:
     rests: tuple[Rest, ...]
     """Where she rests, in order; what is between them are balance shifts."""
 
+    feeling: Region | None = None
+    """The emotions that it shows; None if it suits any."""
+
     @property
     def shifts(self) -> tuple[tuple[Rest, Rest], ...]:
         """The pairs of rests between which the balance shifts."""
         return tuple(pairwise(self.rests))
 
 
-def read_standing(clip: Clip, skeleton: Skeleton, anatomy: Anatomy) -> StandingRecording:
-    """Return a clip of a standing person with its rests.
+def read_standing(
+    clip: Clip,
+    skeleton: Skeleton,
+    anatomy: Anatomy,
+    feeling: Region | None = None,
+    alignment: Alignment = "feet",
+) -> StandingRecording:
+    """Return a clip of a standing person with its rests; `feeling` is what she shows.
 
     Raises
     ------
@@ -90,9 +101,18 @@ def read_standing(clip: Clip, skeleton: Skeleton, anatomy: Anatomy) -> StandingR
         raise CharacterError(f"clip {clip.name!r}: idle motion needs hips and two feet")
     placed = clip.poses.globals(skeleton)
     _refuse_unrest(clip, skeleton, placed, hips)
-    poses, balance = _on_the_spot(clip, skeleton, anatomy, placed)
+    balance, middle, heading = _balance(clip, skeleton, anatomy, placed)
+    places, turns = placed[:, hips, :3, 3], rotations.from_matrix(placed[:, hips, :3, :3])
+    if alignment == "feet":
+        back = rotations.about("y", -heading)
+        places = rotations.rotate(back, places - middle * [1.0, 0.0, 1.0])
+        turns = rotations.multiply(back, turns)
+    else:
+        places, turns = align(places, turns, alignment)
+    poses = _on_the_spot(clip.poses, skeleton, hips, places, turns)
     vectors = PostureVectors.of(skeleton, anatomy).vectors(poses)
-    return StandingRecording(clip.name, clip.rate, vectors, balance, find_rests(balance, clip.rate))
+    rests = find_rests(balance, clip.rate)
+    return StandingRecording(clip.name, clip.rate, vectors, balance, rests, feeling)
 
 
 def _refuse_unrest(clip: Clip, skeleton: Skeleton, placed: Array, hips: int) -> None:
@@ -118,13 +138,10 @@ def _refuse_unrest(clip: Clip, skeleton: Skeleton, placed: Array, hips: int) -> 
         )
 
 
-def _on_the_spot(
+def _balance(
     clip: Clip, skeleton: Skeleton, anatomy: Anatomy, placed: Array
-) -> tuple[Pose, Array]:
-    """Return poses with the root in the middle between the feet, and the balance of each.
-
-    The root has its mean place and heading in all frames, so that feet which stand do not move.
-    """
+) -> tuple[Array, Array, float]:
+    """Return the balance of each frame, and the mean place and heading of the feet."""
     hips = anatomy.joints["hips"]
     left, right = (placed[:, anatomy.joints[side + "Foot"], :3, 3] for side in ("left", "right"))
     across = (left - right)[:, [0, 2]]
@@ -134,22 +151,24 @@ def _on_the_spot(
     middle = (left + right) / 2
     balance = ((placed[:, hips, :3, 3] - middle)[:, [0, 2]] * across).sum(1)
     balance = balance / (across**2).sum(1)
-    heading = np.arctan2(-across.mean(0)[1], across.mean(0)[0])
-    back = rotations.about("y", -heading)
-    centre = middle.mean(0) * [1.0, 0.0, 1.0]
+    return balance, middle.mean(0), float(np.arctan2(-across.mean(0)[1], across.mean(0)[0]))
+
+
+def _on_the_spot(poses: Pose, skeleton: Skeleton, hips: int, places: Array, turns: Array) -> Pose:
+    """Return poses with their hips at places (frames, 3) and orientations (frames, 4) of their own.
+
+    The joints above the hips rest, so feet that stand do not move.
+    """
     parents = skeleton.with_ancestors([hips])[:-1]
     rest = skeleton.rest[np.array(parents, int)]
-    poses = clip.poses
-    translations, turns = poses.translations.copy(), poses.rotations.copy()
-    translations[:, parents], turns[:, parents] = rest.translations, rest.rotations
+    translations, local = poses.translations.copy(), poses.rotations.copy()
+    translations[:, parents], local[:, parents] = rest.translations, rest.rotations
     above = skeleton.rest.globals(skeleton)[skeleton.parents[hips]] if parents else np.eye(4)
-    there = rotations.rotate(back, placed[:, hips, :3, 3] - centre)
-    translations[:, hips] = (there - above[:3, 3]) @ above[:3, :3]
-    own = rotations.multiply(back, rotations.from_matrix(placed[:, hips, :3, :3]))
-    turns[:, hips] = rotations.multiply(
-        rotations.conjugate(rotations.from_matrix(above[:3, :3])), own
+    translations[:, hips] = (places - above[:3, 3]) @ above[:3, :3]
+    local[:, hips] = rotations.multiply(
+        rotations.conjugate(rotations.from_matrix(above[:3, :3])), turns
     )
-    return Pose(translations, turns), balance
+    return Pose(translations, local)
 
 
 def find_rests(balance: Array, rate: float) -> tuple[Rest, ...]:

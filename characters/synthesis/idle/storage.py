@@ -1,9 +1,13 @@
 """The .idle file: the recordings of one person who stands, with her rests."""
 
+from dataclasses import astuple
+from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from affect.regions import Box, Region, Sector
 from characters.motion.clip import Clip
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Skeleton
@@ -17,8 +21,11 @@ from characters.synthesis.archive import (
 from characters.synthesis.idle.posture_space import PostureVectors
 from characters.synthesis.idle.recordings import BALANCES, Rest, StandingRecording
 
-IDLE_FORMAT = ArchiveFormat("cubeling idle motion", 1, "idle motion", "cubeling idle learn")
+IDLE_FORMAT = ArchiveFormat("cubeling idle motion", 2, "idle motion", "cubeling idle learn")
 """The .idle file."""
+
+STEP = 1e-4
+"""Resolution of postures in the file [rad and m]."""
 
 Person = tuple[Skeleton, Anatomy, tuple[StandingRecording, ...]]
 """Recordings of one person, and the skeleton that they are on."""
@@ -28,9 +35,12 @@ def save_person(person: Person, path: Path) -> None:
     """Write an .idle file."""
     skeleton, anatomy, recordings = person
     content, arrays = map(dict, skeleton_content(skeleton, anatomy))
-    content["recordings"] = [[each.name, each.rate] for each in recordings]
+    content["recordings"] = [
+        [each.name, each.rate, *([_written(each.feeling)] if each.feeling else [])]
+        for each in recordings
+    ]
     for number, each in enumerate(recordings):
-        arrays[f"vectors_{number}"] = each.vectors.astype(np.float32)
+        arrays[f"vectors_{number}"] = np.rint(each.vectors / STEP).astype(np.int16)
         arrays[f"balance_{number}"] = each.balance.astype(np.float32)
         arrays[f"rests_{number}"] = np.array(
             [(rest.first, rest.end, BALANCES.index(rest.balance)) for rest in each.rests], np.int32
@@ -39,13 +49,22 @@ def save_person(person: Person, path: Path) -> None:
 
 
 def load_person(path: Path) -> Person:
-    """Read an .idle file.
+    """Read an .idle file; the same one is read once.
 
     Raises
     ------
     CharacterError
         If it is missing, damaged, of another version, or something else.
     """
+    try:
+        changed = path.stat().st_mtime_ns
+    except (OSError, ValueError):
+        changed = 0  # the reader says what is wrong
+    return _load(path, changed)
+
+
+@lru_cache(maxsize=8)
+def _load(path: Path, changed: int) -> Person:
     return IDLE_FORMAT.load(path, _person)
 
 
@@ -53,16 +72,34 @@ def _person(content: Content, arrays: Arrays) -> Person:
     skeleton, anatomy = read_skeleton(content, arrays)
     size = PostureVectors.of(skeleton, anatomy).size
     recordings = tuple(
-        _recording(str(name), float(rate), size, arrays, number)
-        for number, (name, rate) in enumerate(content["recordings"])
+        _recording(
+            str(name), float(rate), [_region(*each) for each in feeling], size, arrays, number
+        )
+        for number, (name, rate, *feeling) in enumerate(content["recordings"])
     )
     if not recordings:
         raise ValueError("it has no recording")
     return skeleton, anatomy, recordings
 
 
-def _recording(name: str, rate: float, size: int, arrays: Arrays, number: int) -> StandingRecording:
+def _written(region: Region) -> list[str | list[float]]:
+    """Return a region as it is written: its kind and its numbers."""
+    return [type(region).__name__, *astuple(region)]
+
+
+def _region(kind: str, *values: Any) -> Region:
+    if kind == "Box":
+        (a, b), (c, d) = values
+        return Box((float(a), float(b)), (float(c), float(d)))
+    middle, width, inner = map(float, values)
+    return Sector(middle, width, inner)
+
+
+def _recording(
+    name: str, rate: float, feelings: list[Region], size: int, arrays: Arrays, number: int
+) -> StandingRecording:
     vectors, balance = (arrays[f"{what}_{number}"].astype(float) for what in ("vectors", "balance"))
+    vectors *= STEP
     rests = arrays[f"rests_{number}"]
     frames = len(balance)
     if vectors.shape != (frames, size) or not rate > 0:
@@ -74,7 +111,7 @@ def _recording(name: str, rate: float, size: int, arrays: Arrays, number: int) -
     if rests[:, :2].min() < 0 or rests[:, :2].max() > frames or (rests[:, 1] <= rests[:, 0]).any():
         raise ValueError("its rests are not in its frames")
     found = tuple(Rest(int(first), int(end), BALANCES[side]) for first, end, side in rests.tolist())
-    return StandingRecording(name, rate, vectors, balance, found)
+    return StandingRecording(name, rate, vectors, balance, found, *feelings[:1])
 
 
 def as_clips(person: Person) -> list[Clip]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from characters.skeleton.pose import Array
+from characters.synthesis.idle.posture_space import PostureSpace
 from characters.synthesis.library import Frames
 
 COMPONENTS, CLUSTERS, ERROR = 10, 8, 0.1
@@ -128,24 +129,27 @@ def _clusters(points: Array, count: int, rng: np.random.Generator) -> Frames:
 class VariationStream:
     """Makes variations in the order of time."""
 
-    def __init__(self, variations: Variations, rng: np.random.Generator) -> None:
-        self._rng = rng
+    def __init__(
+        self, variations: Variations, space: PostureSpace, rng: np.random.Generator
+    ) -> None:
+        self._rng, self._axes = rng, space.components[:, : len(variations.components)]
         self._components = variations.components
         count = len(self._components)
         self._clusters = [int(rng.integers(len(each.members))) for each in self._components]
         self._before, self._after = np.zeros((count, 2)), np.zeros((count, 2))  # time, value
 
     def at(self, time: float) -> Array:
-        """Return the coordinates of the variation at a time [s], not earlier than the last one.
+        """Return the offset of the posture at a time [s], not earlier than the last one; (size,).
 
-        Between extrema they follow a cubic curve that is level at both (Hermite).
+        Between extrema, components follow a cubic curve that is level at both (Hermite).
         """
         for number in np.flatnonzero(self._after[:, 0] <= time).tolist():
             self._advance(number, time)
         u = (time - self._before[:, 0]) / np.maximum(self._after[:, 0] - self._before[:, 0], 1e-9)
         eased = u * u * (3.0 - 2.0 * u)
-        values: Array = self._before[:, 1] + (self._after[:, 1] - self._before[:, 1]) * eased
-        return values
+        values = self._before[:, 1] + (self._after[:, 1] - self._before[:, 1]) * eased
+        offset: Array = self._axes @ values
+        return offset
 
     def _advance(self, number: int, time: float) -> None:
         own = self._components[number]

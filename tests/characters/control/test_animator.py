@@ -280,7 +280,8 @@ def in_other_units(character, factor):
     skeleton = replace(
         character.skeleton, rest=replace(rest, translations=rest.translations * factor)
     )
-    return replace(character, skeleton=skeleton, clips=clips, meshes=tuple(meshes), morphs=())
+    body = replace(character, skeleton=skeleton, clips=clips, meshes=tuple(meshes), morphs=())
+    return replace(body, standing=None)  # it was recorded on the other skeleton
 
 
 @pytest.mark.parametrize("factor", [0.01, 100.0, 1000.0])

@@ -9,19 +9,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from affect import NEUTRAL, Emotion
+from affect.regions import NEUTRAL_RADIUS, region_of
 from characters import Character, CharacterError, Clip, Pose
 from characters.control.controllers.recordings import read_motions
 from characters.skeleton import rotations
 from characters.synthesis.idle.database import IdleDatabase
 from characters.synthesis.idle.fitting import fit, nearest_clip
-from characters.synthesis.idle.idle_motion import IdleMotion
-from characters.synthesis.idle.posture_space import PostureVectors
+from characters.synthesis.idle.idle_motion import REACTION_S, IdleMotion
+from characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
 from characters.synthesis.idle.recordings import (
     Rest,
     StandingRecording,
     find_rests,
     read_standing,
 )
+from characters.synthesis.idle.stretches import Stretches, StretchStream
 from characters.synthesis.idle.variations import Variations, VariationStream, extrema
 
 IDLE = Path(__file__).parents[4] / "shared" / "data" / "idle"
@@ -162,7 +165,7 @@ def test_nothing_jumps(database: IdleDatabase, kind: PostureVectors) -> None:
 
 def test_it_shifts_when_told_to(database: IdleDatabase) -> None:
     waiting = IdleMotion(database, 7)
-    waiting.activation = -1.0  # long pauses
+    waiting.feel(Emotion(0.0, -1.0))  # long pauses
     balances(waiting, database, 0.2)
     waiting.shift_now()
     assert balances(waiting, database, 0.2)[-1][0] == ""
@@ -171,10 +174,10 @@ def test_it_shifts_when_told_to(database: IdleDatabase) -> None:
 @pytest.mark.parametrize(("activation", "mean"), [(1.0, 0.0), (0.0, 0.5), (-1.0, 1.0)])
 def test_active_people_pause_less(database: IdleDatabase, activation: float, mean: float) -> None:
     motion = IdleMotion(database, 8)
-    motion.activation = activation
-    posture = database.postures[0]
+    motion.feel(Emotion(0.0, activation))
+    posture, chances = database.postures[0], np.random.default_rng(9).uniform(size=1000)
     low, high = database.pause_limits(posture.balance)
-    found = np.mean([motion.pause(posture) for _ in range(1000)])
+    found = np.mean([motion.pause(posture, chance) for chance in chances])
     assert found == pytest.approx(low + mean * (high - low), abs=0.06 * (high - low))
 
 
@@ -192,7 +195,7 @@ def test_entered_again_it_goes_on(database: IdleDatabase) -> None:
     for number in range(600):
         motion.sample(number / 60)
         same.sample(number / 60)
-    onward = same.sample(10.0 + 1 / RATE)
+    onward = same.sample(10.0 + 2 / RATE)
     assert motion.sample(0.0).rotations == pytest.approx(onward.rotations, abs=1e-9)
     later = copy.deepcopy(motion)  # as a session does before it steps back
     assert np.array_equal(motion.sample(4.0).rotations, later.sample(4.0).rotations)
@@ -220,9 +223,15 @@ def signal(seed: int, seconds: float) -> np.ndarray:
     return np.stack([np.convolve(each, kernel / kernel.sum(), "same") for each in noise.T], axis=1)
 
 
+def extrema_stream(recorded: np.ndarray, seed: int) -> VariationStream:
+    """Return the variations of a signal whose components are its own columns."""
+    space = PostureSpace(np.zeros(3), np.eye(3), np.ones(3))
+    return VariationStream(Variations.of([recorded], RATE), space, np.random.default_rng(seed))
+
+
 def test_variations_are_as_large_and_as_fast_as_recorded() -> None:
     recorded = signal(1, 120.0)
-    stream = VariationStream(Variations.of([recorded], RATE), np.random.default_rng(2))
+    stream = extrema_stream(recorded, 2)
     made = np.stack([stream.at(number / RATE) for number in range(7500)])
     assert made.mean(0) == pytest.approx(0.0, abs=0.15 * recorded.std())
     assert made.std(0) / recorded.std(0) == pytest.approx(1.0, abs=0.2)
@@ -232,11 +241,80 @@ def test_variations_are_as_large_and_as_fast_as_recorded() -> None:
 
 
 def test_variations_do_not_repeat() -> None:
-    stream = VariationStream(Variations.of([signal(3, 60.0)], RATE), np.random.default_rng(4))
+    stream = extrema_stream(signal(3, 60.0), 4)
     made = np.array([stream.at(number / RATE)[0] for number in range(7500)])
     values = made[extrema(made, 1e-9)].round(9)
     runs = [tuple(values[start : start + 5]) for start in range(len(values) - 5)]
     assert len(set(runs)) == len(runs)
+
+
+def test_stretches_move_as_the_recorded_signal_does() -> None:
+    recorded = signal(5, 60.0)
+    stream = StretchStream(Stretches.of([recorded], RATE), np.random.default_rng(6))
+    made = np.stack([stream.at(number / RATE) for number in range(7500)])
+    for order in range(4):
+        spreads = [np.diff(each, order, axis=0).std() for each in (recorded, made)]
+        assert spreads[1] / spreads[0] == pytest.approx(1.0, abs=0.2)
+    correlations = [np.corrcoef(each.T) for each in (recorded, made)]
+    assert correlations[1] == pytest.approx(correlations[0], abs=0.2)
+    seconds = made[: 7500 // 25 * 25].reshape(-1, 25 * 3)
+    apart = np.linalg.norm(seconds[:, None] - seconds, axis=-1) + 9.0 * np.eye(len(seconds))
+    assert apart.min() > 1e-3 * np.linalg.norm(seconds, axis=1).mean()
+
+
+@pytest.mark.parametrize("frames", [2, 20, 60])
+def test_short_rests_have_stretches_too(frames: int) -> None:
+    stream = StretchStream(Stretches.of([signal(7, 10.0)[:frames]], RATE), np.random.default_rng(8))
+    made = np.stack([stream.at(number / RATE) for number in range(500)])
+    assert np.isfinite(made).all()
+
+
+@pytest.fixture(scope="module")
+def moody(database: IdleDatabase) -> IdleDatabase:
+    """The same stander, who bends when she is sad and raises her arms when she is happy."""
+    felt = [None, region_of("sad"), region_of("happy")]
+    postures = tuple(
+        replace(each, vector=each.vector + number, feeling=region)
+        for number, region in enumerate(felt)
+        for each in database.postures
+    )
+    shifts = tuple(replace(s, feeling=region) for region in felt for s in database.shifts)
+    return replace(database, postures=postures, shifts=shifts)
+
+
+def test_postures_and_shifts_suit_the_emotion(moody: IdleDatabase) -> None:
+    for emotion in (Emotion(-0.6, -0.5), Emotion(0.5, 0.6)):
+        suiting = moody.suiting(emotion)
+        felt = [p.feeling for p in suiting.postures] + [s.feeling for s in suiting.shifts]
+        assert all(region is not None and region.contains(emotion) for region in felt)
+    for emotion in (NEUTRAL, Emotion(0.0, -0.9)):  # no region of its own
+        assert {each.feeling for each in moody.suiting(emotion).postures} == {None}
+
+
+def test_a_new_emotion_shows_soon_and_without_a_jump(moody: IdleDatabase) -> None:
+    motion = IdleMotion(moody, 3)
+    rows = [motion.next_posture() for _ in range(100)]
+    motion.feel(Emotion(0.5, 0.6))
+    rows += [motion.next_posture() for _ in range(400)]
+    suits = [any(np.array_equal(row, p.vector) for p in moody.suiting(Emotion(0.5, 0.6)).postures)
+             for row in rows]  # fmt: skip
+    shift = max(len(each.vectors) for each in moody.shifts)
+    assert not any(suits[:100])
+    assert any(suits[100 : 100 + round(REACTION_S * RATE) + 2 * shift])
+    assert np.abs(np.diff(rows, axis=0)).max() < 0.2  # the way of 2 is spread over a shift
+
+
+def test_small_changes_of_an_emotion_do_not_hurry_her(moody: IdleDatabase) -> None:
+    motion = IdleMotion(moody, 4)
+    edge = Emotion(NEUTRAL_RADIUS + 0.01, NEUTRAL_RADIUS + 0.01)
+    motion.feel(edge)
+    shifts = 0
+    for number in range(2500):
+        before = len(motion._shift)
+        motion.feel(Emotion(edge.valence + (-0.03 if number % 2 else 0.0), edge.arousal))
+        motion.next_posture()
+        shifts += before == 0 and len(motion._shift) > 0
+    assert shifts < 2500 / RATE / 2.0
 
 
 def test_people_who_walk_or_sit_or_jump_are_refused(human: Character) -> None:

@@ -1,0 +1,70 @@
+"""How a character stands, if it was recorded: the .idle file beside it, or another one."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+
+from characters.errors import CharacterError
+from characters.motion.clip import Clip
+from characters.motion.motion import StandingMotion
+from characters.skeleton.anatomy import Anatomy
+from characters.skeleton.pose import Skeleton
+from characters.synthesis.archive import skeleton_identity
+from characters.synthesis.idle.database import IdleDatabase
+from characters.synthesis.idle.idle_motion import IdleMotion
+from characters.synthesis.idle.posture_space import PostureVectors
+from characters.synthesis.idle.recordings import StandingRecording
+from characters.synthesis.idle.standing import PlantedPaws, StandingPerson
+from characters.synthesis.idle.storage import load_person
+
+StandingFactory = Callable[[int], StandingMotion]
+"""Makes the motion that a character stands with from a seed."""
+
+
+def standing_factory(
+    skeleton: Skeleton,
+    anatomy: Anatomy,
+    clips: Mapping[str, Clip],
+    recordings: tuple[StandingRecording, ...],
+    *,
+    acting: bool = True,
+) -> StandingFactory:
+    """Return what makes the idle motion of a person in recordings on a skeleton.
+
+    The first clip whose name contains "idle" shows how it holds what posture vectors leave out,
+    such as its fingers. All these clips are its acts, if it is `acting`.
+    """
+    acts = [clip for name, clip in clips.items() if "idle" in name.lower()]
+
+    held = acts[0].poses[0] if acts else skeleton.rest
+    paws = PlantedPaws.of(held, skeleton, anatomy)
+
+    @lru_cache(maxsize=1)
+    def database() -> IdleDatabase:
+        kind = PostureVectors.of(skeleton, anatomy)
+        return IdleDatabase.of(recordings, replace(kind, others=held))
+
+    return lambda seed: StandingPerson(
+        IdleMotion(database(), seed), acts if acting else (), seed, paws
+    )
+
+
+def recordings_beside(path: Path, skeleton: Skeleton) -> tuple[StandingRecording, ...]:
+    """Return the recordings in the .idle file beside the file of a character; () without one.
+
+    Raises
+    ------
+    CharacterError
+        If it cannot be read, or was made for another skeleton.
+    """
+    idle = path.with_suffix(".idle")
+    if not idle.exists():
+        return ()
+    own, _, recordings = load_person(idle)
+    if skeleton_identity(own) != skeleton_identity(skeleton):
+        raise CharacterError(
+            f"{idle}: made for another skeleton than that of {path.name}; make it again with "
+            f"cubeling idle learn --character {path.name}, or rename it"
+        )
+    return recordings

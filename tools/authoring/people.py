@@ -1,0 +1,69 @@
+"""The .idle files of the bundled characters: how each stands, "recorded" in nine moods."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from pathlib import Path
+
+from affect.regions import region_of
+from characters.model.character import Character
+from characters.motion.clip import Clip
+from characters.synthesis.idle.recordings import StandingRecording, read_standing
+from characters.synthesis.idle.storage import save_person
+from tools.authoring.human import standing as human
+from tools.authoring.modelling.quadruped import AnimationTracks, loop_clip
+from tools.authoring.modelling.quadruped_standing import standing_tracks
+from tools.authoring.modelling.shapes import Array
+from tools.authoring.modelling.standing import MOODS
+from tools.authoring.robot import motion as robot_motion
+from tools.authoring.robot import rig as robot
+from tools.authoring.vleo import clips as vleo_clips
+from tools.authoring.vleo import rig as vleo
+
+KEPT_FRAMES = 2
+"""One of so many frames is kept: 15 a second."""
+
+
+def save_standing(character: Character, path: Path) -> None:
+    """Write how a bundled character stands, as its .idle file."""
+    recordings = tuple(
+        _recording(character, mood, clip) for mood, clip in STANDING[character.name](character)
+    )
+    save_person((character.skeleton, character.anatomy, recordings), path)
+
+
+def _recording(character: Character, mood: str, clip: Clip) -> StandingRecording:
+    fewer = replace(clip, rate=clip.rate / KEPT_FRAMES, poses=clip.poses[::KEPT_FRAMES])
+    body = character.skeleton, character.anatomy
+    return read_standing(fewer, *body, region_of(mood), alignment="none")
+
+
+def _vleo(character: Character) -> Iterable[tuple[str, Clip]]:
+    def tail(anim: AnimationTracks, up: Array, left: Array) -> None:
+        vleo_clips.tail(anim, up, left, 1.5)
+
+    for mood in MOODS:
+        tracks = standing_tracks("vleo", mood, vleo.NECK, tail, _stance(character))
+        yield mood, loop_clip(mood, tracks, character.skeleton, vleo.FEET)
+
+
+def _robot(character: Character) -> Iterable[tuple[str, Clip]]:
+    for mood in MOODS:
+        tracks = standing_tracks(
+            "robot", mood, robot.NECK, robot_motion.tail, _stance(character), 0.009
+        )
+        yield mood, loop_clip(mood, tracks, character.skeleton, robot.FEET)
+
+
+def _stance(character: Character) -> float:
+    """Return the distance of the hind feet [m]."""
+    placed = character.skeleton.rest.globals(character.skeleton)[:, 0, 3]
+    feet = [character.anatomy.joints[side + "Foot"] for side in ("left", "right")]
+    return float(abs(placed[feet[0]] - placed[feet[1]]))
+
+
+STANDING: dict[str, Callable[[Character], Iterable[tuple[str, Clip]]]] = {
+    "human": lambda character: human.standing(character.skeleton),
+    "vleo": _vleo,
+    "robot": _robot,
+}
+"""What makes the recordings of a character, by its name."""
