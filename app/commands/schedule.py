@@ -1,0 +1,134 @@
+"""`cubeling schedule`."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.markup import escape
+
+from app.commands.output import OverwriteOption, chosen_output
+from app.errors import AppError
+from app.ui.video_file import VIDEO_FORMATS, VideoFile
+from characters import Character, CharacterError, Clip
+from characters.control.controllers.idle import standing_as
+from characters.control.controllers.recordings import read_motions
+from characters.formats.mocap.bvh_writing import save_bvh
+from characters.model.bind_pose import with_bind_pose
+from characters.model.files import read_file
+from characters.motion.baking import bake
+from characters.motion.motion import Motion
+from characters.motion.schedule_file import ScheduleReader
+from characters.rendering import create_context
+from characters.rendering.portrait import PortraitRenderer
+from characters.retargeting import load_recording
+from characters.retargeting.root import with_root_joint
+from characters.synthesis.archive import skeleton_identity
+
+MAX_BYTES = 10_000_000
+"""Larger schedules are not written by hand."""
+
+VIDEO_SIZE = 480, 560
+
+
+def schedule(
+    file: Annotated[Path, typer.Argument(help="A blending schedule, in XML.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="A .bvh, .glb or video file; default: schedule.bvh."),
+    ] = None,
+    overwrite: OverwriteOption = False,
+    character: Annotated[
+        str, typer.Option(help="Who plays it: bundled, or a .glb file.")
+    ] = "human",
+    rate: Annotated[float, typer.Option(help="Frames a second.", min=1.0, max=240.0)] = 25.0,
+    seconds: Annotated[
+        float | None, typer.Option(help="How long, if an action has no end.", min=0.1, max=3600.0)
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Seed of idle motions.")] = 0,
+) -> None:
+    """Render a blending schedule: motions on a time line that share the joints of a body.
+
+    Names of motions in it are those of files beside it, or a character and its clip: human#wave.
+
+    Example: [cyan]cubeling schedule docs/schedules/gesture.xml -o gesture.mp4[/]
+    """
+    suffixes = (".bvh", ".glb", *VIDEO_FORMATS)
+    target = chosen_output(output, "schedule.bvh", "schedule", suffixes, overwrite)
+    body = with_root_joint(Character.load(character))
+    reader = ScheduleReader(
+        body.skeleton,
+        body.anatomy,
+        lambda name: _motion(_beside(file, name), body),
+        lambda name: _idle(file, name, body, seed),
+    )
+    found = reader.read(read_file(file, MAX_BYTES), str(file))
+    ends = [action.end for action in found.actions if np.isfinite(action.end)]
+    length = seconds or max(ends, default=0.0)
+    if not length > 0.0:
+        raise AppError(f"{file}: no action has an end; say how long with --seconds")
+    clip = bake(found, rate, length, file.stem)
+    _writer(target)(clip, body, target)
+    Console(highlight=False).print(
+        f"[bold]{escape(str(target))}[/] is written: {len(clip)} frames, {length:.2f} s",
+        soft_wrap=True,
+    )
+
+
+def _beside(file: Path, name: str) -> str:
+    """Return the motion of a name in a schedule: a file beside it, else the name as it is."""
+    path, mark, clip = name.partition("#")
+    beside = file.parent / path
+    return f"{beside}{mark}{clip}" if beside.exists() else name
+
+
+def _motion(name: str, body: Character) -> Motion:
+    """Return the motion of a file or clip, retargeted if it is on another skeleton."""
+    recording = load_recording(name)
+    same = skeleton_identity(recording.skeleton) == skeleton_identity(with_bind_pose(body))
+    return recording.clip if same else read_motions([name], body)[0]
+
+
+def _idle(file: Path, name: str, body: Character, seed: int) -> Motion:
+    """Return the idle motion of an .idle file, or of a bundled character."""
+    if name.endswith(".idle"):
+        motion = standing_as(body, Path(_beside(file, name))).standing
+    else:
+        who = Character.load(_beside(file, name))
+        if len(who.skeleton) != len(body.skeleton):
+            raise CharacterError(f"{who.name} and {body.name} have different bodies")
+        motion = who.standing
+    if motion is None:
+        raise CharacterError(f"{name} has no idle motion; make it with cubeling idle learn")
+    return motion(seed)
+
+
+def _writer(target: Path) -> Callable[[Clip, Character, Path], None]:
+    """Return what writes a clip of a character to a kind of file."""
+    writers = {".bvh": _write_bvh, ".glb": _write_glb}
+    return writers.get(target.suffix.lower(), _write_video)
+
+
+def _write_bvh(clip: Clip, body: Character, target: Path) -> None:
+    save_bvh(clip, body.skeleton, body.anatomy, target)
+
+
+def _write_glb(clip: Clip, body: Character, target: Path) -> None:
+    replace(body, clips={clip.name: clip}).save(target)
+
+
+def _write_video(clip: Clip, body: Character, target: Path) -> None:
+    context = create_context()
+    renderer = PortraitRenderer(context, VIDEO_SIZE)
+    some = [clip.poses[n] for n in np.linspace(0, len(clip) - 1, 24).astype(int).tolist()]
+    try:
+        with VideoFile(target, VIDEO_SIZE, clip.rate) as video:
+            for number in range(len(clip)):
+                picture = renderer.portrait(body, clip.poses[number], extent=some)
+                video.write(picture, number / clip.rate)
+    finally:
+        renderer.release()
+        context.release()

@@ -1,0 +1,349 @@
+"""Schedules in XML, as the program `animblender` reads them.
+
+Source: Egges, *Real-time Animation of Interactive Virtual Humans*, 2006, appendices B and C (S13).
+The two appendices spell some things differently (erratum 12); both spellings are read.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from xml.parsers import expat
+
+import numpy as np
+
+from characters.errors import CharacterError
+from characters.motion.curves import Adsr, Ease, FadeCurve, Product, Weight
+from characters.motion.modifiers import Stretch, Window
+from characters.motion.motion import Motion
+from characters.motion.schedule import Action, Schedule
+from characters.skeleton.anatomy import SIDES, Anatomy
+from characters.skeleton.pose import Array, Skeleton
+
+_SIDED_HANIM = {
+    "sternoclavicular": "Shoulder",
+    "acromioclavicular": "Shoulder",
+    "shoulder": "UpperArm",
+    "elbow": "LowerArm",
+    "wrist": "Hand",
+    "hip": "UpperLeg",
+    "knee": "LowerLeg",
+    "ankle": "Foot",
+    "midtarsal": "Toes",
+}
+_HANIM_PARTS = {
+    "HumanoidRoot": "hips",
+    "vl5": "spine",
+    "vl1": "spine",
+    "vt10": "chest",
+    "vt1": "upperChest",
+    "vc4": "neck",
+    "skullbase": "head",
+    **{f"{s[0]}_{j}": s + part for s in SIDES for j, part in _SIDED_HANIM.items()},
+}
+"""Body parts by the joint names of the documents (H-Anim)."""
+
+SCOPES: dict[str, tuple[str, ...]] = {
+    "all": (),
+    "torso": ("spine",),
+    "head": ("neck", "head"),
+    "arms": ("leftShoulder", "rightShoulder"),
+    "left_arm": ("leftShoulder", "leftUpperArm"),
+    "right_arm": ("rightShoulder", "rightUpperArm"),
+    "legs": ("leftUpperLeg", "rightUpperLeg"),
+}
+"""What a scope covers: these body parts and all joints below them; "all" covers every joint."""
+
+Opener = Callable[[str], Motion]
+"""Opens the motion of a name that a schedule gives."""
+
+
+@dataclass
+class Element:
+    """An XML element, and where it begins."""
+
+    tag: str
+    attributes: Mapping[str, str]
+    line: int
+    children: list["Element"] = field(default_factory=list)
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class _Parameters:
+    """How an action takes part: weights of joints, and what changes them in time."""
+
+    weights: Array
+    """(joints,)."""
+
+    scales: Array
+    """(joints,)."""
+
+    curves: tuple[Weight, ...] = ()
+
+
+class ScheduleReader:
+    """Reads schedules for a skeleton.
+
+    Parameters
+    ----------
+    skeleton, anatomy
+        Whose joints the schedules mix.
+    open_motion, open_idle
+        Open a recorded motion, and an endless idle motion, of the names that a schedule gives.
+    """
+
+    def __init__(
+        self, skeleton: Skeleton, anatomy: Anatomy, open_motion: Opener, open_idle: Opener
+    ) -> None:
+        self._skeleton, self._anatomy = skeleton, anatomy
+        self._open_motion, self._open_idle = open_motion, open_idle
+        self._origin = ""
+
+    def read(self, text: bytes, origin: str) -> Schedule:
+        """Return the schedule in a document; `origin` names it in messages.
+
+        Raises
+        ------
+        CharacterError
+            If it is not XML, or says something that is not known; the message has the line.
+        """
+        self._origin = origin
+        root = parse(text, origin)
+        if root.tag != "blendingschedule":
+            raise self._error(root, f"<{root.tag}> is not a <blendingschedule>")
+        self._known(root, ("actionpool", "activate"))
+        pool: dict[str, Action] = {}
+        for part in root.children:
+            if part.tag == "actionpool":
+                self._known(part, ("blendingaction",))
+                pool |= {self._name(each): self._action(each) for each in part.children}
+        actions = [self._activated(e, pool) for e in root.children if e.tag == "activate"]
+        if not actions:
+            raise self._error(root, "no action is activated; add <activate>")
+        counts: dict[str, int] = {}
+        for number, action in enumerate(actions):
+            counts[action.name] = count = counts.get(action.name, 0) + 1
+            if count > 1:
+                actions[number] = replace(action, name=f"{action.name} #{count}")
+        return Schedule(tuple(actions), self._skeleton.rest)
+
+    def _action(self, element: Element) -> Action:
+        """Return an action of the pool, which starts at 0."""
+        self._known(element, ("blendingparams", "blendableobject"))
+        motion = self._object(self._one(element, "blendableobject"))
+        found = [each for each in element.children if each.tag == "blendingparams"]
+        if len(found) > 1:
+            raise self._error(found[1], "a second <blendingparams>; use one of type merge")
+        plain = _Parameters(np.ones(len(self._skeleton)), np.ones(len(self._skeleton)))
+        chosen = self._parameters(found[0], motion.duration) if found else plain
+        top = float(chosen.weights.max())
+        always = element.attributes.get("alwaysrender", "false").lower()
+        if always not in ("true", "false"):
+            raise self._error(element, f'alwaysrender="{always}" is neither true nor false')
+        return Action(
+            motion,
+            weight=Product((top, *chosen.curves)) if chosen.curves else top,
+            mask=chosen.weights / top if top > 0.0 else chosen.weights,
+            scales=None if (chosen.scales == 1.0).all() else chosen.scales,
+            always=always == "true",
+            name=self._name(element),
+        )
+
+    def _activated(self, element: Element, pool: Mapping[str, Action]) -> Action:
+        name, start = self._name(element), self._number(element, "offset", 0.0)
+        if name not in pool:
+            raise self._error(element, f"no action {name!r}; there are {', '.join(pool) or 'none'}")
+        action = pool[name]
+        return replace(action, start=start)
+
+    def _object(self, element: Element) -> Motion:
+        """Return the motion that an object describes."""
+        kind = element.attributes.get("type", "")
+        if kind == "keyframebodyanimation":
+            self._known(element, ())
+            return self._opened(self._open_motion, element)
+        if kind in ("idlemotion", "idleemotion"):
+            self._known(element, ("balance",))
+            return self._opened(self._open_idle, self._one(element, "balance"))
+        if kind == "modifier":
+            self._known(element, ("modifier", "blendableobject"))
+            inner = self._object(self._one(element, "blendableobject"))
+            return self._modified(self._one(element, "modifier"), inner)
+        kinds = "keyframebodyanimation, idlemotion, modifier"
+        raise self._error(element, f'type="{kind}" is not known here; there are {kinds}')
+
+    def _modified(self, element: Element, motion: Motion) -> Motion:
+        kind = element.attributes.get("type", "")
+        self._known(element, ("duration", "begin", "end"))
+        try:
+            if kind == "stretch":
+                return Stretch(motion, self._number(element, "duration"))
+            if kind == "window":
+                return Window(motion, self._number(element, "begin"), self._number(element, "end"))
+        except CharacterError as error:
+            raise (
+                error if self._origin in str(error) else self._error(element, str(error))
+            ) from None
+        raise self._error(element, f'type="{kind}" is not known here; there are stretch, window')
+
+    def _parameters(self, element: Element, duration: float) -> _Parameters:
+        """Return the parameters of an action that lasts a duration [s]."""
+        kind, ones = element.attributes.get("type", "none"), np.ones(len(self._skeleton))
+        if kind == "none":
+            self._known(element, ())
+            return _Parameters(ones, ones)
+        if kind == "joints":
+            return self._joints(element)
+        if kind == "merge":
+            self._known(element, ("blendingparams",))
+            merged = _Parameters(ones, ones)
+            for each in element.children:
+                one = self._parameters(each, duration)
+                merged = _Parameters(
+                    merged.weights * one.weights,
+                    merged.scales * one.scales,
+                    merged.curves + one.curves,
+                )
+            return merged
+        if kind == "curve":
+            self._known(element, ("curveshape",))
+            element = self._one(element, "curveshape")
+            kind = element.attributes.get("type", "")
+        return _Parameters(ones, ones, (self._curve(element, kind, duration),))
+
+    def _curve(self, element: Element, kind: str, duration: float) -> Weight:
+        """Return a curve; its lengths are written in percent of the duration."""
+        shapes: dict[str, Ease] = {"": "linear", "linear": "linear", "cubic": "cubic"}
+        shapes["gonio"] = "gonio"
+        for ending in ("fade", "adsr"):
+            if kind.endswith(ending) and kind[: -len(ending)] in shapes:
+                shape = shapes[kind[: -len(ending)]]
+                break
+        else:
+            known = "none, joints, merge, curve, fade, cubicfade, goniofade, adsr, gonioadsr"
+            raise self._error(element, f'type="{kind}" is not known here; there are {known}')
+        if not np.isfinite(duration):
+            raise self._error(element, "a fade in percent of a motion without an end")
+
+        def part(name: str) -> float:
+            return self._number(element, name, 0.0) / 100.0 * duration
+
+        if ending == "fade":
+            self._known(element, ("fadein", "fadeout"))
+            return FadeCurve(part("fadein"), part("fadeout"), shape)
+        self._known(element, ("attack", "decay", "sustain", "release"))
+        level = self._number(element, "sustain", 100.0) / 100.0
+        return Adsr(part("attack"), part("decay"), level, part("release"), shape)
+
+    def _joints(self, element: Element) -> _Parameters:
+        """Return weights and scales of joints; later elements override earlier ones."""
+        self._known(element, ("default", "scope", "rotation", "translation"))
+        weights, scales = np.ones(len(self._skeleton)), np.ones(len(self._skeleton))
+        order = ("default", "scope", "rotation", "translation")
+        for each in sorted(element.children, key=lambda child: order.index(child.tag)):
+            self._known(each, ())
+            joints = self._covered(each)
+            for name, values in (("weight", weights), ("scaling", scales)):
+                if name in each.attributes:
+                    values[joints] = self._number(each, name)
+        if weights.min() < 0.0:
+            raise self._error(element, "a weight below 0")
+        return _Parameters(weights, scales)
+
+    def _covered(self, element: Element) -> list[int]:
+        """Return the joints that an element is about."""
+        everything = list(range(len(self._skeleton)))
+        if element.tag == "default":
+            return everything
+        name = self._name(element)
+        if element.tag == "scope":
+            if name not in SCOPES:
+                raise self._error(element, f"no scope {name!r}; there are {', '.join(SCOPES)}")
+            tops = {self._anatomy.joint(part) for part in SCOPES[name]} - {None}
+            below = [j for j in everything if tops & {j, *self._skeleton.with_ancestors([j])}]
+            return everything if name == "all" else below
+        if name in self._skeleton.names:
+            return [self._skeleton.index(name)]
+        joint = self._anatomy.joint(_HANIM_PARTS.get(name, name))
+        if joint is None:
+            raise self._error(element, f"no joint {name!r}")
+        return [joint]
+
+    def _opened(self, opener: Opener, element: Element) -> Motion:
+        name = element.text.strip()
+        if not name:
+            raise self._error(element, f"<{element.tag}> names no file")
+        try:
+            return opener(name)
+        except CharacterError as error:
+            raise self._error(element, str(error)) from None
+
+    def _one(self, element: Element, tag: str) -> Element:
+        found = [each for each in element.children if each.tag == tag]
+        if len(found) != 1:
+            raise self._error(element, f"<{element.tag}> needs one <{tag}>, not {len(found)}")
+        return found[0]
+
+    def _known(self, element: Element, tags: tuple[str, ...]) -> None:
+        for child in element.children:
+            if child.tag not in tags:
+                there = ", ".join(f"<{tag}>" for tag in tags) or "none"
+                message = f"<{child.tag}> is not known in <{element.tag}>; there are {there}"
+                raise self._error(child, message)
+
+    def _name(self, element: Element) -> str:
+        name = element.attributes.get("id", "")
+        if not name:
+            raise self._error(element, f"<{element.tag}> has no id")
+        return name
+
+    def _number(self, element: Element, name: str, default: float | None = None) -> float:
+        """Return a number, which is an attribute or the text of an element; "0.5f" is 0.5."""
+        texts = [each.text for each in element.children if each.tag == name]
+        text = element.attributes.get(name, texts[0] if texts else None)
+        if text is None:
+            if default is None:
+                raise self._error(element, f"<{element.tag}> has no {name}")
+            return default
+        try:
+            number = float(text.strip().removesuffix("f"))
+        except ValueError:
+            number = np.nan
+        if not np.isfinite(number):
+            raise self._error(element, f'{name}="{text.strip()[:40]}" is not a number')
+        return number
+
+    def _error(self, element: Element, message: str) -> CharacterError:
+        return CharacterError(f"{self._origin}:{element.line}: {message}")
+
+
+def parse(text: bytes, origin: str) -> Element:
+    """Return the root of an XML document.
+
+    Raises
+    ------
+    CharacterError
+        If it is not well-formed, or declares entities.
+    """
+    parser, open_elements, roots = expat.ParserCreate(), list[Element](), list[Element]()
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        element = Element(tag, attributes, parser.CurrentLineNumber)
+        (open_elements[-1].children if open_elements else roots).append(element)
+        open_elements.append(element)
+
+    def add(more: str) -> None:
+        open_elements[-1].text += more
+
+    def refuse(*_: object) -> None:
+        raise CharacterError(f"{origin}:{parser.CurrentLineNumber}: entities are not read")
+
+    parser.StartElementHandler, parser.CharacterDataHandler = start, add
+    parser.EndElementHandler = lambda tag: open_elements.pop()
+    parser.EntityDeclHandler = refuse
+    try:
+        parser.Parse(text, True)
+    except expat.ExpatError as error:
+        raise CharacterError(
+            f"{origin}:{error.lineno}: not XML ({expat.errors.messages[error.code]})"
+        ) from None
+    return roots[0]

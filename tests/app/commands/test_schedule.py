@@ -1,0 +1,66 @@
+"""`cubeling schedule`."""
+
+import shutil
+from pathlib import Path
+
+import av
+import pytest
+
+from characters import Character, load_motion
+
+EXAMPLES = Path(__file__).parents[3] / "docs" / "schedules"
+
+
+@pytest.mark.parametrize(
+    ("name", "rate", "frames"),
+    [("copy", "25", 226), ("copy", "10", 91), ("stretch", "25", 126), ("endless", "25", 91)],
+)
+def test_the_examples_become_motions(cubeling, tmp_path, name, rate, frames) -> None:
+    code, out, _ = cubeling(
+        "schedule", str(EXAMPLES / f"{name}.xml"), "-o", "a.bvh", "--rate", rate
+    )
+    assert code == 0
+    assert f"a.bvh is written: {frames} frames" in out
+    assert len(load_motion(tmp_path / "a.bvh", scale=1.0).clip) == frames
+
+
+def test_it_writes_characters_and_films(cubeling, tmp_path) -> None:
+    schedule = str(EXAMPLES / "fade.xml")
+    assert cubeling("schedule", schedule, "-o", "fade.glb")[0] == 0
+    assert Character.load(tmp_path / "fade.glb").clips["fade"].duration == pytest.approx(9.0)
+    short = ("-o", "fade.mp4", "--seconds", "0.5", "--rate", "10")
+    assert cubeling("schedule", schedule, *short)[0] == 0
+    with av.open(str(tmp_path / "fade.mp4")) as film:
+        assert len(list(film.decode(video=0))) == 6
+
+
+def test_motions_are_found_beside_the_schedule(cubeling, tmp_path) -> None:
+    (tmp_path / "own").mkdir()
+    text = (EXAMPLES / "copy.xml").read_text().replace("human#idle", "mine.bvh")
+    (tmp_path / "own" / "copy.xml").write_text(text)
+    cubeling("schedule", str(EXAMPLES / "stretch.xml"), "-o", "first.bvh")
+    shutil.move(tmp_path / "first.bvh", tmp_path / "own" / "mine.bvh")
+    code, out, _ = cubeling("schedule", "own/copy.xml", "-o", "second.bvh")
+    assert code == 0
+    assert "126 frames, 5.00 s" in out
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("<a>", "bad.xml:1: not XML"),
+        ((EXAMPLES / "copy.xml").read_text().replace("human#idle", "no.bvh"), "bad.xml:5: no.bvh"),
+        ((EXAMPLES / "copy.xml").read_text().replace("activate", "start"), "<start> is not known"),
+        (
+            (EXAMPLES / "endless.xml").read_text().replace(">human<", ">vleo<"),
+            "bad.xml:10: vleo and human have different bodies",
+        ),
+    ],
+)
+def test_refuses_in_one_line(cubeling, tmp_path, text, message) -> None:
+    (tmp_path / "bad.xml").write_text(text)
+    code, _, error = cubeling("schedule", "bad.xml")
+    assert code == 2
+    assert message in error
+    assert error.count("\n") == 1
+    assert not (tmp_path / "schedule.bvh").exists()
