@@ -50,7 +50,9 @@ def schedule(
     ] = None,
     seed: Annotated[int, typer.Option(help="Seed of idle motions.")] = 0,
 ) -> None:
-    """Render a blending schedule: motions on a time line that share the joints of a body.
+    """Render a blending schedule in XML to a motion file or a video.
+
+    A schedule puts motions on a time line, where they share the joints of a body.
 
     Names of motions in it are those of files beside it, or a character and its clip: human#wave.
 
