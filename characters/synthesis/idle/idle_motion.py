@@ -12,10 +12,10 @@ import numpy as np
 from affect import NEUTRAL, Emotion
 from characters.motion.motion import RootDelta
 from characters.skeleton.pose import Array, Pose
+from characters.synthesis.idle.bridges import bridge, fitted_shift, hurried, nearest_balance
 from characters.synthesis.idle.database import IdleDatabase, RestingPosture
-from characters.synthesis.idle.fitting import fit, nearest_clip
 from characters.synthesis.idle.stretches import StretchStream
-from characters.synthesis.idle.variations import COMPONENTS, VariationStream
+from characters.synthesis.idle.variations import VariationStream
 
 Small = Literal["recorded", "extrema"]
 """How small variations are made: of recorded stretches, or of clustered extrema as published."""
@@ -26,6 +26,10 @@ REACTION_S = 0.7
 MARGIN = 0.1
 """How far an emotion may leave the region of a posture before that does not suit it."""
 
+RAMP_S = 0.4
+"""How long small variations take to come and go [s]."""
+
+_UNHURRIED = 10**6  # frames
 _KEPT_S = 2.0  # played time that can still be sampled [s]
 
 
@@ -49,10 +53,14 @@ class IdleMotion:
         )
         self._posture = self._drawn(self._suiting.postures)
         self._rested, self._chance = 0.0, self._rng.uniform()
+        self._here = self._posture.vector  # the posture of the latest frame
         self._shift: deque[Array] = deque()  # postures on the way to the next rest
         self._kept: deque[Array] = deque(maxlen=max(int(_KEPT_S * database.rate), 4))
         self._made = 0  # number of frames that have been made
         self._entered = 0  # of them, before time 0
+        self._asked = 0.0  # for which time, the last one [s]
+        self._lively = 1.0  # how much of the small variations shows
+        self._calming = 0  # for how many frames they fade out at the end of a way; 0: not leading
 
     @property
     def duration(self) -> float:
@@ -92,15 +100,57 @@ class IdleMotion:
         """Shift the balance as soon as the present shift, if any, has ended."""
         self._rested = math.inf
 
+    def begin_at(self, posture: Array) -> None:
+        """Stand in a posture, (size,), from the next frame on, and go on from there."""
+        balance = nearest_balance(self._database, posture)
+        self._posture = RestingPosture(posture, balance, 0.0, cut=True)
+        self._here = posture
+        self._shift.clear()
+        self._kept.clear()
+        self._rested = self._lively = 0.0
+        self.go_on()
+
+    def lead_to(self, posture: Array, within: float = math.inf) -> float:
+        """Go to a posture, (size,), by the shortest way and stay there; see `bridge`.
+
+        Parameters
+        ----------
+        within
+            When to be there at the latest, from the last time that was asked for [s]; at least two
+            frames.
+
+        Returns
+        -------
+        float
+            When it is exactly there [s], from that time.
+        """
+        database, rate = self._database, self._database.rate
+        asked = self._asked * rate + self._entered
+        limit = _UNHURRIED
+        if math.isfinite(within):
+            limit = max(int(asked + within * rate + 1e-6) - self._made + 1, 1)
+        way = bridge(database, self._posture, posture, self._rng, limit - len(self._shift))
+        rows = hurried(np.stack([self._here, *self._shift, *way[1:]]), limit)
+        self._shift = deque(rows)
+        self._posture = RestingPosture(posture, nearest_balance(database, posture), 0.0, cut=True)
+        self._calming = min(round(RAMP_S * rate), len(rows))
+        return (self._made + len(rows) - 1 - asked) / rate
+
+    def go_on(self) -> None:
+        """Go on after `lead_to`."""
+        self._calming = 0
+
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]."""
-        at = max(time, 0.0) * self.database.rate
+        self._asked = max(time, 0.0)
+        at = self._asked * self.database.rate
         if self._entered + int(at) < self._made - len(self._kept):
             self._entered = self._made - int(at)
         frame = self._entered + int(at)
         while self._made < frame + 3:
+            self._here = self.next_posture()
             varied = self._variations.at(self._made / self.database.rate)
-            self._kept.append(self.next_posture() + varied)
+            self._kept.append(self._here + self._liveliness() * varied)
             self._made += 1
         first = frame - (self._made - len(self._kept))
         rows = [self._kept[max(first + n, 0)] for n in (-1, 0, 1, 2)]
@@ -114,6 +164,8 @@ class IdleMotion:
         """Return the posture of the next frame, (size,), without variations (S8)."""
         if self._shift:
             return self._shift.popleft()
+        if self._calming:
+            return self._posture.vector
         if self._rested < self.pause(self._posture, self._chance):
             self._rested += 1.0 / self.database.rate
             return self._posture.vector
@@ -123,6 +175,14 @@ class IdleMotion:
             self._shift.extend(shift[1:])
         self._rested, self._chance = 0.0, self._rng.uniform()
         return self._shift.popleft() if self._shift else self._posture.vector
+
+    def _liveliness(self) -> float:
+        """Return how much of the small variations shows in the next frame."""
+        if self._calming:
+            self._lively = min(self._lively, len(self._shift) / self._calming)
+        else:
+            self._lively = min(self._lively + 1.0 / (RAMP_S * self._database.rate), 1.0)
+        return self._lively
 
     def pause(self, posture: RestingPosture, chance: float) -> float:
         """Return how long to rest [s]: p_m + chance · (1 − activation) · p_o (eq. 4.2)."""
@@ -146,12 +206,7 @@ class IdleMotion:
         balance = names[int(self._rng.choice(len(names), p=odds / odds.sum()))]
         end = self._drawn(database.by_balance.get(balance) or database.postures)
         fitting = [each for each in shifts if each.end == balance]
-        ends = np.stack([each.vectors[[0, -1]] for each in fitting])
-        at = database.space.project(
-            np.concatenate([ends, [[posture.vector, end.vector]]]), COMPONENTS
-        )
-        chosen = fitting[nearest_clip(at[:-1, 0], at[:-1, 1], at[-1, 0], at[-1, 1])].vectors
-        return end, fit(chosen, [(0, posture.vector), (len(chosen) - 1, end.vector)])
+        return end, fitted_shift(database, fitting, posture.vector, end.vector)
 
     def _drawn(self, postures: tuple[RestingPosture, ...]) -> RestingPosture:
         return postures[int(self._rng.integers(len(postures)))]

@@ -2,6 +2,7 @@
 
 Source: Egges, Molet and Magnenat-Thalmann 2004, section 4: besides balance shifts and small
 variations there are acts, such as to touch one's hair, which are played as they were recorded.
+It goes to the posture in which an act begins first (section 7.1).
 """
 
 import math
@@ -17,7 +18,7 @@ from characters.motion.clip import Clip
 from characters.motion.motion import RootDelta
 from characters.motion.state_machine import StateMachine
 from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Pose, Skeleton
+from characters.skeleton.pose import Array, Pose, Skeleton
 from characters.skeleton.scalar_quaternions import conjugate, multiply
 from characters.synthesis.idle.idle_motion import IdleMotion
 
@@ -70,8 +71,9 @@ class StandingPerson:
         self._machine = StateMachine({"": idle, **self._acts}, "", TRANSITION_S)
         self._rng = np.random.default_rng([seed, 1])
         self._neutral = True
+        self._next = ""  # the act that it goes to
         self._clock = self._last = 0.0  # played, and asked for last [s]
-        self._change = self._rng.uniform(*PAUSE_S)  # when the present state ends [s]
+        self._change = self._rng.uniform(*PAUSE_S)  # when something else begins [s]
 
     @property
     def duration(self) -> float:
@@ -88,18 +90,34 @@ class StandingPerson:
         """Return the pose at a time [s]; one long before the latest goes on from where it is."""
         self._clock += max(time - self._last, 0.0)
         self._last = time
-        acting = self._machine.state != ""
-        if acting and (not self._neutral or self._clock >= self._change):
-            self._machine.request("", self._clock)
-            self._change = self._clock + self._rng.uniform(*PAUSE_S)
-        elif not acting and self._acts and self._clock >= self._change:
-            self._change = self._clock + self._rng.uniform(*PAUSE_S)
-            if self._neutral:
-                name = [*self._acts][int(self._rng.integers(len(self._acts)))]
-                self._machine.request(name, self._clock)
-                self._change = self._clock + self._acts[name].duration - TRANSITION_S
+        occupied = self._next != "" or self._machine.state != ""
+        if self._clock >= self._change or (occupied and not self._neutral):
+            self._go_on()
         pose = self._machine.sample(self._clock)
         return pose if self._paws is None else self._paws.hold(pose)
+
+    def _go_on(self) -> None:
+        """Go to an act, then play it, then stand; one who feels only stands."""
+        ended, ready = self._machine.state, self._next
+        self._next = ""
+        lasts = self._rng.uniform(*PAUSE_S)
+        if ended:
+            self._machine.request("", self._clock)
+            self._idle.begin_at(self._vectors(self._acts[ended], -1 if self._neutral else 0))
+        elif not self._neutral:
+            self._idle.go_on()
+        elif ready:
+            self._machine.request(ready, self._clock)
+            lasts = self._acts[ready].duration - TRANSITION_S
+        elif self._acts:
+            self._next = [*self._acts][int(self._rng.integers(len(self._acts)))]
+            lasts = self._idle.lead_to(self._vectors(self._acts[self._next], 0))
+        self._change = self._clock + lasts
+
+    def _vectors(self, act: Clip, frame: int) -> Array:
+        """Return the posture vector of a frame of an act."""
+        vectors: Array = self._idle.database.kind.vectors(act.poses[frame][None])[0]
+        return vectors
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return no movement: the feet stay."""
