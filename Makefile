@@ -49,6 +49,10 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.feet
 	$(BIN)/python -m tests.bench.matching
 	$(BIN)/python -m tests.bench.controllers
+	$(BIN)/python -m tests.bench.idle
+	$(BIN)/python -m tests.bench.idle_study
+	$(BIN)/python -m tests.bench.postures
+	$(BIN)/python -m tests.bench.upper_body
 	$(BIN)/python -m tests.bench.picture
 	$(BIN)/python -m tests.bench.panels
 	$(BIN)/python -m tests.bench.looks
