@@ -3,9 +3,12 @@
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+_Value = TypeVar("_Value", float, NDArray[np.float64])
 
 
 def low_pass(value: float, target: float, elapsed: float, lag: float) -> float:
@@ -55,7 +58,7 @@ def damped_spring(
     return target + (offset + slope * elapsed) * decay, (speed - rate * slope * elapsed) * decay
 
 
-def hermite(a: float, slope_a: float, b: float, slope_b: float, u: float) -> float:
+def hermite(a: _Value, slope_a: _Value, b: _Value, slope_b: _Value, u: float) -> _Value:
     """Return the cubic from a at u = 0 to b at u = 1 with the given slopes at its ends.
 
     >>> hermite(1.0, 2.0, 3.0, 2.0, 0.5)

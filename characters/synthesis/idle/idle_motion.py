@@ -12,6 +12,7 @@ import numpy as np
 from affect import NEUTRAL, Emotion
 from characters.motion.motion import RootDelta
 from characters.skeleton.pose import Array, Pose
+from characters.smoothing import hermite
 from characters.synthesis.idle.bridges import bridge, fitted_shift, hurried, nearest_balance
 from characters.synthesis.idle.database import IdleDatabase, RestingPosture
 from characters.synthesis.idle.stretches import StretchStream
@@ -215,10 +216,4 @@ class IdleMotion:
 def _between(rows: list[Array], u: float) -> Array:
     """Return the cubic curve through four rows, at u from the second to the third (Catmull-Rom)."""
     before, start, end, after = rows
-    leaving, arriving = (end - before) / 2.0, (after - start) / 2.0
-    rise = end - start
-    curve: Array = start + u * (
-        leaving
-        + u * (3.0 * rise - 2.0 * leaving - arriving + u * (leaving + arriving - 2.0 * rise))
-    )
-    return curve
+    return hermite(start, (end - before) / 2.0, end, (after - start) / 2.0, u)

@@ -4,15 +4,18 @@ Egges joins extrema of each component by itself (`variations`). That keeps how f
 one goes, but not how joints move together, nor that people are calm and lively in turn. Here
 stretches of a few seconds follow each other, each a little faster or slower, larger or smaller than
 it was recorded, and each begins where the one before is nearly (as motion textures do: Li, Wang and
-Shum 2002).
+Shum 2002). A few minutes of recordings would come again soon, so that other stretches, played
+backwards, are mixed in.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from characters.skeleton.pose import Array
+from characters.smoothing import hermite
 
 MIN_REST_S = 3.0
 """Shorter rests are left out, unless all are [s]."""
@@ -20,13 +23,16 @@ MIN_REST_S = 3.0
 MIN_STRETCH_S, MAX_STRETCH_S = 2.0, 6.0
 """How long a stretch is played [s]."""
 
-CROSSFADE_S = 0.5
+CROSSFADE_S = 0.8
 """How long a stretch goes over into the next one [s]."""
 
 TEMPO, SIZE = 0.15, 0.2
 """How much faster or larger than recorded it is at most, as a logarithm."""
 
-CANDIDATES = 100
+BACKWARD_SHARE = 0.3
+"""Amplitude of what is played backwards; with that of the others, the variance is as recorded."""
+
+CANDIDATES = 20
 """Stretches of which the nearest is taken."""
 
 _VELOCITY_SHARE = 0.1  # [s²] of the squared distance of velocities in that of stretches
@@ -64,6 +70,17 @@ class Stretches:
             rate,
         )
 
+    def backward(self) -> "Stretches":
+        """Return the rests as they look when time runs backwards."""
+        ends = np.unique(self.last)
+        firsts = np.repeat([0, *(ends[:-1] + 1)], np.diff([-1, *ends]))
+        return Stretches(
+            self.offsets[::-1],
+            -self.velocities[::-1],
+            (len(firsts) - 1 - firsts)[::-1],
+            self.rate,
+        )
+
 
 @dataclass(frozen=True)
 class _Played:
@@ -89,13 +106,29 @@ class _Played:
         at = self.first + (time - self.begin) * self.tempo * stretches.rate
         frame = min(int(at), int(self.last) - 1)
         u = min(at - frame, 1.0)
-        offsets = stretches.offsets
-        found: Array = self.size * (offsets[frame] * (1.0 - u) + offsets[frame + 1] * u)
-        return found
+        (a, b), slopes = (
+            stretches.offsets[frame : frame + 2],
+            stretches.velocities[frame : frame + 2] / stretches.rate,
+        )
+        offset: Array = self.size * hermite(a, slopes[0], b, slopes[1], u)
+        return offset
 
 
 class StretchStream:
-    """Plays stretches in the order of time."""
+    """Makes small variations of stretches, in the order of time."""
+
+    def __init__(self, stretches: Stretches, rng: np.random.Generator) -> None:
+        self._forward = _Sequence(stretches, rng)
+        self._backward = _Sequence(stretches.backward(), rng)
+
+    def at(self, time: float) -> Array:
+        """Return the offset of the posture, (size,), at a time [s] not before the last one."""
+        share = math.sqrt(1.0 - BACKWARD_SHARE**2)
+        return share * self._forward.at(time) + BACKWARD_SHARE * self._backward.at(time)
+
+
+class _Sequence:
+    """One stretch after the other."""
 
     def __init__(self, stretches: Stretches, rng: np.random.Generator) -> None:
         self._stretches, self._rng = stretches, rng
