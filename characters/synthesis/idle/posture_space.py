@@ -4,9 +4,11 @@ Source: Egges 2006, sections 2.1.2, 3.2 and 3.3.1 (S1, S4, S5).
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import SIDES, Anatomy
@@ -58,6 +60,15 @@ class PostureVectors:
         joints = tuple(joint for part in parts if (joint := anatomy.joint(part)) is not None)
         return PostureVectors(skeleton, joints, None if region == "upper" else hips)
 
+    @cached_property
+    def _joints(self) -> NDArray[np.intp]:
+        return np.array(self.joints, np.intp)
+
+    @cached_property
+    def _resting(self) -> Array:
+        """Rest rotations of the joints, (n, 4)."""
+        return self.skeleton.rest.rotations[self._joints]
+
     @property
     def size(self) -> int:
         """Number of values in a vector."""
@@ -65,9 +76,9 @@ class PostureVectors:
 
     def vectors(self, poses: Pose) -> Array:
         """Return the vectors of a clip's poses, (frames, size), without jumps within the clip."""
-        rest, joints = self.skeleton.rest, list(self.joints)
+        rest = self.skeleton.rest
         turns = rotations.multiply(
-            rotations.conjugate(rest.rotations[joints]), poses.rotations[:, joints]
+            rotations.conjugate(self._resting), poses.rotations[:, self._joints]
         )
         vectors = continuous_rotation_vectors(turns).reshape(len(turns), -1)
         if self.hips is None:
@@ -77,14 +88,14 @@ class PostureVectors:
 
     def poses(self, vectors: Array, others: Pose | None = None) -> Pose:
         """Return the poses of vectors (…, size); `others` hold what the vectors leave out."""
-        rest, joints = self.skeleton.rest, list(self.joints)
+        rest, count = self.skeleton.rest, len(self.joints)
         base, shape = others or self.others or rest, vectors.shape[:-1]
-        turns = np.broadcast_to(base.rotations, (*shape, *rest.rotations.shape)).copy()
-        moved = np.broadcast_to(base.translations, (*shape, *rest.translations.shape)).copy()
-        own = vectors[..., : 3 * len(joints)].reshape(*shape, len(joints), 3)
-        turns[..., joints, :] = rotations.multiply(
-            rest.rotations[joints], rotations.from_rotation_vector(own)
+        turns, moved = (
+            np.broadcast_to(part, (*shape, *part.shape[-2:])).copy() if shape else part.copy()
+            for part in (base.rotations, base.translations)
         )
+        own = rotations.from_rotation_vector(vectors[..., : 3 * count].reshape(*shape, count, 3))
+        turns[..., self._joints, :] = rotations.multiply(self._resting, own)
         if self.hips is not None:
             moved[..., self.hips, :] = rest.translations[self.hips] + vectors[..., -3:]
         if base.scales is None:
