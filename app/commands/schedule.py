@@ -16,6 +16,7 @@ from app.ui.video_file import VIDEO_FORMATS, VideoFile
 from characters import Character, CharacterError, Clip
 from characters.control.controllers.idle import standing_as
 from characters.control.controllers.recordings import read_motions
+from characters.control.layers.upper_body import dependent_joints_of, safe_ranges_of
 from characters.formats.mocap.bvh_writing import save_bvh
 from characters.model.bind_pose import with_bind_pose
 from characters.model.files import read_file
@@ -66,6 +67,10 @@ def schedule(
         body.anatomy,
         lambda name: _motion(_beside(file, name), body),
         lambda name: _idle(file, name, body, seed),
+        {
+            "dependentjoints": lambda: dependent_joints_of(body).move,
+            "selfcollision": lambda: safe_ranges_of(body).keep,
+        },
     )
     found = reader.read(read_file(file, MAX_BYTES), str(file))
     ends = [action.end for action in found.actions if np.isfinite(action.end)]

@@ -62,6 +62,9 @@ class DependentJoints:
         filtered: Array = self.neutral + (vectors - self.neutral) @ self.operator
         return filtered
 
-    def move(self, poses: Pose) -> Pose:
-        """Return poses (frames, …) with all joints of the upper body moved; legs stay."""
-        return self.kind.poses(self.apply(self.kind.vectors(poses)), poses)
+    def move(self, pose: Pose, share: float = 1.0) -> Pose:
+        """Return a pose (…) with a share of the filter; legs and root stay."""
+        single = pose.rotations.ndim == 2
+        own = self.kind.vectors(pose[None] if single else pose)
+        moved = own + share * (self.apply(own) - own)
+        return self.kind.poses(moved[0] if single else moved, pose)

@@ -112,6 +112,8 @@ class SafeRanges:
         vectors = self.kind.vectors(frames)
         at = self.space.project(vectors, len(self.high))
         kept = -damped(-damped(at, self.high), -self.low)
+        if np.array_equal(kept, at):
+            return pose
         moved = vectors + (kept - at) @ self.space.components[:, : len(self.high)].T
         changed = self.kind.poses(moved, frames)
         turns = np.where((kept != at).any(1)[:, None, None], changed.rotations, frames.rotations)

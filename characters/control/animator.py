@@ -9,7 +9,7 @@ import numpy as np
 from characters.body.posture import ExpressivityFilter
 from characters.control.command import CharacterCommand, LocomotionIntent, PosedCharacter
 from characters.control.controllers import ControllerFactory, default_height, first_suitable
-from characters.control.layers import DEFAULT_LAYERS, FrameContext, LayerFactory
+from characters.control.layers import FrameContext, LayerFactory, layers_of
 from characters.errors import CharacterError
 from characters.model.character import Character
 from characters.motion.motion import RootDelta
@@ -41,7 +41,7 @@ class Animator:
     seed
         Seed of blinks, sway and idle motion.
     layers
-        What is applied to the controller's poses, in order.
+        What is applied to the controller's poses, in order; left out, those of `layers_of`.
     controller
         Makes the controller; see `choose_controller`.
 
@@ -57,7 +57,7 @@ class Animator:
         scale: float | None = None,
         place: RootDelta | None = None,
         seed: int = 0,
-        layers: Sequence[LayerFactory] = DEFAULT_LAYERS,
+        layers: Sequence[LayerFactory] | None = None,
         controller: ControllerFactory = first_suitable,
     ) -> None:
         if scale is None:
@@ -66,7 +66,8 @@ class Animator:
         self.scale = scale
         self.controller = controller(replace(character, seed=seed), scale, place)
         """What moves it."""
-        self._layers = [layer(character, seed) for layer in layers]
+        used = layers_of(character) if layers is None else layers
+        self._layers = [layer(character, seed) for layer in used]
         self._expressivity = ExpressivityFilter()
         self._rest = 1.0
         self._timestamp: float | None = None

@@ -50,6 +50,9 @@ class Character:
     plan: Plan | None = None
     """How its motions are combined, if its sidecar file says so."""
 
+    body_layers: tuple[str, ...] = ()
+    """What its sidecar file asks for besides the layers of all characters."""
+
     standing: StandingFactory | None = None
     """Makes the motion that it stands with from a seed; None for its idle clip."""
 
@@ -147,14 +150,19 @@ def _known_suffixes() -> str:
 def _with_sidecar(character: Character, path: Path) -> Character:
     """Return a character with what the files of the same name add: a .toml and an .idle file."""
     sidecar_path = path.with_suffix(".toml")
-    stated, plan = read_sidecar(sidecar_path, character.clips)
-    for part, joint in stated.items():
+    sidecar = read_sidecar(sidecar_path, character.clips)
+    for part, joint in sidecar.joints.items():
         if joint and joint not in character.skeleton.names:
             raise CharacterError(
                 f"{sidecar_path}: joints.{part}: no joint {joint!r}; there are "
                 f"{', '.join(character.skeleton.names)}"
             )
-    found = replace(character, semantics={**character.semantics, **stated}, plan=plan)
+    found = replace(
+        character,
+        semantics={**character.semantics, **sidecar.joints},
+        plan=sidecar.plan,
+        body_layers=sidecar.body_layers,
+    )
     recordings = recordings_beside(path, found.skeleton)
     if not recordings:
         return found

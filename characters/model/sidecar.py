@@ -1,9 +1,10 @@
-"""The sidecar file of a character, `fox.toml` for `fox.glb`: body parts and motion plans."""
+"""The sidecar file of a character, `fox.toml` for `fox.glb`: body parts, motion plans, layers."""
 
 import difflib
 import os
 import tomllib
 from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,17 +17,34 @@ from characters.skeleton.anatomy import BODY_PARTS
 _MAX_BYTES = 1_000_000  # larger files are not written by hand
 
 
-def read_sidecar(path: Path, clips: Collection[str]) -> tuple[Mapping[str, str], Plan | None]:
-    """Return joint by body part, as in `Character.semantics`, and how motions are combined.
+BODY_LAYERS = ("dependent_joints", "self_collision")
+"""Layers that the table [body] switches on; `characters.control.layers` makes them."""
 
-    A file that does not exist is empty. `clips` are the names of the character's clips.
+
+@dataclass(frozen=True)
+class Sidecar:
+    """What a file beside a character says of it."""
+
+    joints: Mapping[str, str]
+    """Joint by body part, as in `Character.semantics`."""
+
+    plan: Plan | None
+    """How its motions are combined."""
+
+    body_layers: tuple[str, ...]
+    """Which of `BODY_LAYERS` it has."""
+
+
+def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
+    """Return what the file of a character says; one that does not exist is empty.
+
+    `clips` are the names of the character's clips.
     """
     document = _document(path)
     for key in document:
-        if key not in ("joints", *PLAN_TABLES):
-            raise CharacterError(
-                f"{path}: [{key}] is not a known table; there are joints, {', '.join(PLAN_TABLES)}"
-            )
+        if key not in ("joints", "body", *PLAN_TABLES):
+            tables = ", ".join(("joints", "body", *PLAN_TABLES))
+            raise CharacterError(f"{path}: [{key}] is not a known table; there are {tables}")
     joints = document.get("joints", {})
     if not isinstance(joints, dict) or not all(isinstance(j, str) for j in joints.values()):
         raise CharacterError(f'{path}: joints: write part = "name of a joint"')
@@ -35,7 +53,13 @@ def read_sidecar(path: Path, clips: Collection[str]) -> tuple[Mapping[str, str],
             near = difflib.get_close_matches(part, BODY_PARTS, 1)
             hint = f"; did you mean {near[0]!r}?" if near else ""
             raise CharacterError(f"{path}: joints.{part}: not a body part{hint}")
-    return joints, read_plan(document, str(path), clips)
+    body = document.get("body", {})
+    for name, value in body.items() if isinstance(body, dict) else [("", None)]:
+        if name not in BODY_LAYERS or not isinstance(value, bool):
+            known = " and ".join(f"{each} = true" for each in BODY_LAYERS)
+            raise CharacterError(f"{path}: body.{name}: the table [body] may have {known}")
+    layers = tuple(name for name in BODY_LAYERS if body.get(name))
+    return Sidecar(joints, read_plan(document, str(path), clips), layers)
 
 
 def _document(path: Path) -> dict[str, Any]:

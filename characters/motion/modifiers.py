@@ -3,6 +3,7 @@
 import itertools
 import math
 from bisect import bisect_right
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -148,6 +149,26 @@ class RootOffset(TransformedMotion):
     def delta(self, delta: RootDelta) -> RootDelta:
         """Return a delta of the motion in the frame of the new place."""
         return self.offset.then(delta).then(self.offset.inverse())
+
+
+PoseFilter = Callable[[Pose], Pose]
+"""Changes a pose by itself, not where it is on the ground."""
+
+
+@dataclass(frozen=True)
+class Filtered(TransformedMotion):
+    """A motion whose poses go through a filter; `Cyclic`."""
+
+    filter: PoseFilter
+    """The filter."""
+
+    def pose(self, pose: Pose) -> Pose:
+        """Return a filtered pose."""
+        return self.filter(pose)
+
+    def delta(self, delta: RootDelta) -> RootDelta:
+        """Return the same delta."""
+        return delta
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ import numpy as np
 
 from characters.errors import CharacterError
 from characters.motion.curves import Adsr, Ease, FadeCurve, Product, Weight
-from characters.motion.modifiers import Stretch, Window
+from characters.motion.modifiers import Filtered, PoseFilter, Stretch, Window
 from characters.motion.motion import Motion
 from characters.motion.schedule import Action, Schedule
 from characters.skeleton.anatomy import SIDES, Anatomy
@@ -89,13 +89,21 @@ class ScheduleReader:
         Whose joints the schedules mix.
     open_motion, open_idle
         Open a recorded motion, and an endless idle motion, of the names that a schedule gives.
+    filters
+        Make filters of poses, by the type of the modifier that asks for one.
     """
 
     def __init__(
-        self, skeleton: Skeleton, anatomy: Anatomy, open_motion: Opener, open_idle: Opener
+        self,
+        skeleton: Skeleton,
+        anatomy: Anatomy,
+        open_motion: Opener,
+        open_idle: Opener,
+        filters: Mapping[str, Callable[[], PoseFilter]] | None = None,
     ) -> None:
         self._skeleton, self._anatomy = skeleton, anatomy
         self._open_motion, self._open_idle = open_motion, open_idle
+        self._filters = dict(filters or {})
         self._origin = ""
 
     def read(self, text: bytes, origin: str) -> Schedule:
@@ -179,11 +187,14 @@ class ScheduleReader:
                 return Stretch(motion, self._number(element, "duration"))
             if kind == "window":
                 return Window(motion, self._number(element, "begin"), self._number(element, "end"))
+            if kind in self._filters:
+                return Filtered(motion, self._filters[kind]())
         except CharacterError as error:
             raise (
                 error if self._origin in str(error) else self._error(element, str(error))
             ) from None
-        raise self._error(element, f'type="{kind}" is not known here; there are stretch, window')
+        known = ", ".join(("stretch", "window", *self._filters))
+        raise self._error(element, f'type="{kind}" is not known here; there are {known}')
 
     def _parameters(self, element: Element, duration: float) -> _Parameters:
         """Return the parameters of an action that lasts a duration [s]."""

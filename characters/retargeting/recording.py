@@ -52,7 +52,7 @@ def load_recording(name: str, skeleton: "str | Path | None" = None) -> Recording
     if is_motion_only(file):
         motion = load_motion(file, clip or None, skeleton=skeleton)
         sidecar = Path(file).with_suffix(".toml")
-        joints, _ = read_sidecar(sidecar, (motion.clip.name,))
+        joints = read_sidecar(sidecar, (motion.clip.name,)).joints
         try:
             anatomy = Anatomy.guess(motion.skeleton, joints)
         except CharacterError as error:

@@ -6,6 +6,8 @@ from characters.control.layers.foot_lock import FootLockLayer
 from characters.control.layers.gaze import GazeLayer
 from characters.control.layers.layer import FrameContext, LayerFactory
 from characters.control.layers.posture import PostureLayer
+from characters.control.layers.upper_body import DependentJointsLayer, SelfCollisionLayer
+from characters.model.character import Character
 
 FOOT_LAYERS: tuple[LayerFactory, ...] = (FootLockLayer,)
 """What a character needs besides its clips."""
@@ -14,13 +16,32 @@ LIVELINESS_LAYERS: tuple[LayerFactory, ...] = (PostureLayer, GazeLayer, FaceLaye
 """What makes it look alive: it sways, looks, blinks, breathes and shows its emotion."""
 
 DEFAULT_LAYERS: tuple[LayerFactory, ...] = (*FOOT_LAYERS, *LIVELINESS_LAYERS)
-"""The layers of an `Animator` by default."""
+"""The layers of every character."""
+
+BODY_LAYERS: dict[str, LayerFactory] = {
+    "dependent_joints": DependentJointsLayer,
+    "self_collision": SelfCollisionLayer,
+}
+"""What the file beside a character may ask for, by name."""
+
+
+def layers_of(character: Character) -> tuple[LayerFactory, ...]:
+    """Return the layers of an `Animator` by default: what an action moves along comes first."""
+    asked = {name: (BODY_LAYERS[name],) for name in character.body_layers}
+    return (
+        *asked.get("dependent_joints", ()),
+        *DEFAULT_LAYERS,
+        *asked.get("self_collision", ()),
+    )
+
 
 __all__ = [
+    "BODY_LAYERS",
     "DEFAULT_LAYERS",
     "FOOT_LAYERS",
     "LIVELINESS_LAYERS",
     "FootLockLayer",
     "FrameContext",
     "LayerFactory",
+    "layers_of",
 ]

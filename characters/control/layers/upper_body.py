@@ -6,47 +6,67 @@ from characters.body.capsules import CapsuleBody
 from characters.body.dependent_joints import DependentJoints
 from characters.body.self_collision import SafeRanges
 from characters.control.layers.layer import FrameContext
+from characters.errors import CharacterError
 from characters.model.character import Character
 from characters.skeleton.pose import Pose
 from characters.synthesis.idle.posture_space import PostureVectors
 
 
-class SelfCollisionLayer:
-    """Damps the upper body before it reaches through itself; humanoids with an idle clip only.
+def dependent_joints_of(character: Character) -> DependentJoints:
+    """Return the filter of a humanoid's own clips.
 
-    The ranges are those of its own clips.
+    Raises
+    ------
+    CharacterError
+        If it is no humanoid, or has no clips.
     """
+    if character.anatomy.kind != "humanoid" or not character.clips:
+        raise CharacterError(f"{character.name}: dependent joints need a person with clips")
+    kind = PostureVectors.of(character.skeleton, character.anatomy, "upper")
+    return DependentJoints.of([clip.poses for clip in character.clips.values()], kind)
+
+
+def safe_ranges_of(character: Character) -> SafeRanges:
+    """Return the ranges of a humanoid in which it does not reach through itself.
+
+    They are within the postures of its own clips, and about the first one of its idle clip.
+
+    Raises
+    ------
+    CharacterError
+        If it is no humanoid, or has no clip of idling or no skin.
+    """
+    idle = next((clip for name, clip in character.clips.items() if "idle" in name.lower()), None)
+    if character.anatomy.kind != "humanoid" or idle is None or not character.meshes:
+        raise CharacterError(
+            f"{character.name}: self-collision needs a person with a skin and a clip called idle"
+        )
+    skeleton, anatomy = character.skeleton, character.anatomy
+    body = CapsuleBody.of(skeleton, anatomy, character.meshes, idle.poses)
+    kind = PostureVectors.of(skeleton, anatomy, "upper")
+    clips = [clip.poses for clip in character.clips.values()]
+    return SafeRanges.of(clips, kind, body, idle.poses[:1])
+
+
+class SelfCollisionLayer:
+    """Damps the upper body before it reaches through itself; see `safe_ranges_of`."""
 
     def __init__(self, character: Character, seed: int = 0) -> None:
-        self._ranges: SafeRanges | None = None
-        if character.anatomy.kind == "humanoid" and "idle" in character.clips:
-            skeleton, anatomy = character.skeleton, character.anatomy
-            clear = character.clips["idle"].poses
-            body = CapsuleBody.of(skeleton, anatomy, character.meshes, clear)
-            kind = PostureVectors.of(skeleton, anatomy, "upper")
-            clips = [clip.poses for clip in character.clips.values()]
-            self._ranges = SafeRanges.of(clips, kind, body, clear[:1])
+        self._ranges = safe_ranges_of(character)
 
     def update(self, pose: Pose, context: FrameContext) -> Pose:
         """Return the pose with its upper body in its safe ranges."""
-        return pose if self._ranges is None else self._ranges.keep(pose)
+        return self._ranges.keep(pose)
 
 
 class DependentJointsLayer:
-    """Lets spine, shoulders and head join in the actions of a humanoid."""
+    """Lets spine, shoulders and head join in actions; see `dependent_joints_of`."""
 
     def __init__(self, character: Character, seed: int = 0) -> None:
-        self._filter: DependentJoints | None = None
-        if character.anatomy.kind == "humanoid" and character.clips:
-            kind = PostureVectors.of(character.skeleton, character.anatomy, "upper")
-            clips = [clip.poses for clip in character.clips.values()]
-            self._filter = DependentJoints.of(clips, kind)
+        self._filter = dependent_joints_of(character)
 
     def update(self, pose: Pose, context: FrameContext) -> Pose:
         """Return the pose with what the action moves along; as it was without an action."""
-        if self._filter is None or not context.frame.acting:
+        if not context.frame.acting:
             return pose
-        kind = self._filter.kind
-        own = kind.vectors(pose[None])[0]
-        share = float(np.clip(1.0 - context.rest, 0.0, 1.0))
-        return kind.poses(own + share * (self._filter.apply(own) - own), pose)
+        return self._filter.move(pose, float(np.clip(1.0 - context.rest, 0.0, 1.0)))

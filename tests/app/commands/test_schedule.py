@@ -4,6 +4,7 @@ import shutil
 from pathlib import Path
 
 import av
+import numpy as np
 import pytest
 
 from characters import Character, load_motion
@@ -43,6 +44,25 @@ def test_motions_are_found_beside_the_schedule(cubeling, tmp_path) -> None:
     code, out, _ = cubeling("schedule", "own/copy.xml", "-o", "second.bvh")
     assert code == 0
     assert "126 frames, 5.00 s" in out
+
+
+def test_a_gesture_moves_what_depends_on_it(cubeling, tmp_path) -> None:
+    plain = (EXAMPLES / "copy.xml").read_text().replace("idle", "wave")
+    own = '<blendableobject type="keyframebodyanimation">human#wave</blendableobject>'
+    for kind in ("dependentjoints", "selfcollision"):
+        modified = f'<blendableobject type="modifier"><modifier type="{kind}"/>{own}'
+        text = plain.replace(own, f"{modified}</blendableobject>")
+        (tmp_path / f"{kind}.xml").write_text(text)
+        assert cubeling("schedule", f"{kind}.xml", "-o", f"{kind}.glb")[0] == 0
+    (tmp_path / "plain.xml").write_text(plain)
+    cubeling("schedule", "plain.xml", "-o", "plain.glb")
+    clips = {n: Character.load(tmp_path / f"{n}.glb").clips[n].poses.rotations
+             for n in ("plain", "dependentjoints", "selfcollision")}  # fmt: skip
+    human = Character.load("human")
+    spine, leg = (human.anatomy.joints[part] for part in ("spine", "leftUpperLeg"))
+    assert not np.allclose(clips["plain"][:, spine], clips["dependentjoints"][:, spine], atol=1e-3)
+    assert np.allclose(clips["plain"][:, leg], clips["dependentjoints"][:, leg], atol=1e-6)
+    assert np.allclose(clips["plain"][:, leg], clips["selfcollision"][:, leg], atol=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -1,18 +1,19 @@
 """Capsules, safe ranges and dependent joints of upper bodies."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters import Animator, Character, Pose
+from characters import Animator, Character, CharacterError, Pose
 from characters.body.capsules import CapsuleBody, segment_distances
 from characters.body.dependent_joints import DependentJoints, fade
 from characters.body.self_collision import SafeRanges, damped
-from characters.control.layers import DEFAULT_LAYERS
-from characters.control.layers.upper_body import DependentJointsLayer, SelfCollisionLayer
+from characters.control.layers import BODY_LAYERS
+from characters.model.sidecar import BODY_LAYERS as KNOWN_TO_SIDECARS
 from characters.skeleton import rotations
 from characters.synthesis.idle.posture_space import PostureVectors
 from tests.bench.upper_body import wide_arms
@@ -135,16 +136,21 @@ def test_the_later_it_fades_the_nearer_is_the_gesture(human, kind) -> None:
     assert all(a > b for a, b in itertools.pairwise(found))
 
 
-@pytest.mark.parametrize("name", ["human", "vleo"])
-def test_they_are_layers_of_an_animator(name: str) -> None:
-    layers = (*DEFAULT_LAYERS, DependentJointsLayer, SelfCollisionLayer)
-    character = Character.load(name)
-    animator, plain = Animator(character, layers=layers), Animator(character)
-    action = "wave" if name == "human" else "nod"
+def test_a_file_beside_the_character_asks_for_the_layers(human: Character) -> None:
+    asking = replace(human, body_layers=tuple(BODY_LAYERS))
+    assert set(BODY_LAYERS) == set(KNOWN_TO_SIDECARS)
+    animator, plain = Animator(asking), Animator(human)
     for number in range(60):
-        asked = command(number / 30, action)
+        asked = command(number / 30, "wave")
         pose, own = animator.update(asked).pose, plain.update(asked).pose
         assert np.isfinite(pose.rotations).all()
-    hips = character.anatomy.joints["hips"]
-    assert np.array_equal(pose.rotations[hips], own.rotations[hips])
-    assert np.array_equal(pose.rotations, own.rotations) == (name == "vleo")
+    lower = [j for n, j in human.anatomy.joints.items() if n.endswith(("Leg", "Foot", "hips"))]
+    assert np.array_equal(pose.rotations[lower], own.rotations[lower])
+    assert not np.array_equal(pose.rotations, own.rotations)
+
+
+@pytest.mark.parametrize("name", BODY_LAYERS)
+def test_layers_for_people_are_refused_to_others(name: str) -> None:
+    asking = replace(Character.load("vleo"), body_layers=(name,))
+    with pytest.raises(CharacterError, match=r"vleo: .* a person with"):
+        Animator(asking)

@@ -9,7 +9,7 @@ import pytest
 from characters import Character, CharacterError
 from characters.formats import load_motion
 from characters.model.files import read_file
-from characters.model.sidecar import read_sidecar
+from characters.model.sidecar import Sidecar, read_sidecar
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="devices have no path there")
@@ -45,5 +45,6 @@ def test_a_file_above_the_size_limit_is_refused(tmp_path: Path) -> None:
 
 def test_a_sidecar_file_with_a_byte_order_mark_is_read(tmp_path: Path) -> None:
     path = tmp_path / "x.toml"
-    path.write_text('[joints]\nhead = "Kopf"\n', encoding="utf-8-sig")
-    assert read_sidecar(path, ()) == ({"head": "Kopf"}, None)
+    text = '[joints]\nhead = "Kopf"\n[body]\nself_collision = true\ndependent_joints = false\n'
+    path.write_text(text, encoding="utf-8-sig")
+    assert read_sidecar(path, ()) == Sidecar({"head": "Kopf"}, None, ("self_collision",))

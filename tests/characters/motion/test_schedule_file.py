@@ -54,7 +54,8 @@ def reader(human: Character) -> ScheduleReader:
         still = Pose(*(np.repeat(p[None], frames, 0) for p in (pose.translations, pose.rotations)))
         return Clip(name, RATE, still, loop=False)
 
-    return ScheduleReader(human.skeleton, human.anatomy, motion, lambda name: Nod(human))
+    filters = {"upright": lambda: lambda pose: leaning(human, 0.0)}
+    return ScheduleReader(human.skeleton, human.anatomy, motion, lambda name: Nod(human), filters)
 
 
 def example(reader: ScheduleReader, name: str) -> Schedule:
@@ -141,6 +142,17 @@ def test_envelopes_are_read(reader, kind) -> None:
     (action,) = reader.read(document(params=shape), "x").actions
     values = [action.weight_at(0.5 + time) for time in (0.0, 0.2, 1.0, 2.0)]
     assert values == pytest.approx([0.0, 1.0, 0.4, 0.0])
+
+
+def test_a_modifier_filters_poses(human, reader) -> None:
+    own = b'<blendableobject type="keyframebodyanimation">human#wave</blendableobject>'
+    filtered = b'<blendableobject type="modifier"><modifier type="upright"/>' + own
+    text = document().replace(own, filtered + b"</blendableobject>")
+    plain, upright = (reader.read(each, "x").sample(1.0) for each in (document(), text))
+    assert upright.rotations == pytest.approx(leaning(human, 0.0).rotations)
+    assert not np.allclose(plain.rotations, upright.rotations)
+    with pytest.raises(CharacterError, match='"flip" is not known here; there are stretch, window'):
+        reader.read(text.replace(b"upright", b"flip"), "x")
 
 
 @pytest.mark.parametrize(

@@ -284,6 +284,9 @@ def test_a_sidecar_declares_body_parts(human, tmp_path):
         ("[jonts]\nx = 1", r"\[jonts\] is not a known table"),
         ("[joints]\nbeak = 'head'", "not a body part"),
         ("[joints]\nhead = 3", "write part"),
+        ("[body]\ncollision = true", "body.collision: the table .* dependent_joints = true and"),
+        ("[body]\nself_collision = 1", "body.self_collision: the table"),
+        ("body = 1", "the table .body. may have"),
         ("\xff", "not TOML"),
     ],
 )
