@@ -1,5 +1,6 @@
 """`cubeling idle`."""
 
+from importlib import resources
 from pathlib import Path
 from typing import Annotated
 
@@ -9,8 +10,15 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from affect import Emotion
 from affect.regions import Region, region_of
-from app.commands.output import OverwriteOption, chosen_output
+from affect.words import WORD_PLACES
+from app.commands.output import (
+    PLOT_SUFFIXES,
+    OverwriteOption,
+    chosen_output,
+    needs_matplotlib,
+)
 from characters import Character
 from characters.control.controllers.recordings import read_motions
 from characters.retargeting.root import with_root_joint
@@ -76,13 +84,46 @@ def learn(
 
 @app.command()
 def show(
-    person: Annotated[Path, typer.Argument(help="A file of cubeling idle learn.")],
+    person: Annotated[
+        Path, typer.Argument(help="A file of cubeling idle learn, or a bundled character.")
+    ],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Plot to this .svg, .pdf or .png file.")
+    ] = None,
+    overwrite: OverwriteOption = False,
+    mood: Annotated[
+        str, typer.Option(help="What is shown of somebody who was recorded in several moods.")
+    ] = "neutral",
 ) -> None:
     """Show a person's idle motion: her rests, pauses and balance shifts.
 
-    Example: [cyan]cubeling idle show anna.idle[/]
+    The plot also shows her postures and small variations. It needs matplotlib:
+    [cyan]pip install matplotlib[/]
+
+    Example: [cyan]cubeling idle show anna.idle -o anna.png[/]
     """
-    describe(Console(), load_person(person))
+    if output is not None:
+        chosen_output(output, "", "plot", PLOT_SUFFIXES, overwrite)
+    region_of(mood)  # refuses what is no emotion
+    emotion = Emotion(*WORD_PLACES[mood], mood)
+    console = Console()
+    found = load_person(_file(person))
+    skeleton, anatomy, recordings = found
+    describe(console, found)
+    if output is None:
+        return
+    with needs_matplotlib():
+        from app.idle_plot import save_plot
+    database = IdleDatabase.of(recordings, PostureVectors.of(skeleton, anatomy)).suiting(emotion)
+    save_plot(output, database, f"How {person.stem} stands")
+    console.print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
+
+
+def _file(person: Path) -> Path:
+    """Return the file of a person; the one beside a bundled character of that name."""
+    if str(person) not in Character.bundled() or person.exists():
+        return person
+    return Path(str(resources.files("characters") / "assets" / f"{person}.idle"))
 
 
 def _felt(recording: str) -> tuple[str, Region | None]:

@@ -10,7 +10,12 @@ from rich.markup import escape
 from affect import LABEL_SETS, Personality
 from affect.labels import LabelSet
 from affect.personality_file import bundled, bundled_text
-from app.commands.output import OverwriteOption, chosen_output
+from app.commands.output import (
+    PLOT_SUFFIXES,
+    OverwriteOption,
+    chosen_output,
+    needs_matplotlib,
+)
 from app.errors import AppError
 from app.moods import read_history, read_robot_traces, replay_with, write_table
 
@@ -23,9 +28,6 @@ app = typer.Typer(
 
 MAX_PERSONALITIES = 4
 """Personalities that can be told apart in one plot."""
-
-PLOT_SUFFIXES = (".svg", ".pdf", ".png")
-"""Suffixes of the files that a plot can be written to."""
 
 Session = Annotated[Path, typer.Argument(help="A session recorded with --record.")]
 Salvage = Annotated[bool, typer.Option(help="Read the intact part of a session that was cut off.")]
@@ -59,12 +61,8 @@ def plot(
     if len(personalities) > MAX_PERSONALITIES:
         count = f"{len(personalities)} personalities are too many for one plot"
         raise AppError(f"{count}: name at most {MAX_PERSONALITIES}")
-    try:
+    with needs_matplotlib():
         from app.moods.plot import save_plot
-    except ImportError as error:
-        if (error.name or "").split(".")[0] != "matplotlib":
-            raise
-        raise AppError("a plot needs matplotlib: pip install matplotlib") from error
     history = read_history(session, salvage=salvage)
     others = [replay_with(history, each) for each in personalities]
     fitting = fitting_label_set(history.recorded.labels)

@@ -10,7 +10,12 @@ from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from rich.table import Table
 
-from app.commands.output import OverwriteOption, chosen_output
+from app.commands.output import (
+    PLOT_SUFFIXES,
+    OverwriteOption,
+    chosen_output,
+    needs_matplotlib,
+)
 from app.errors import AppError
 from app.motion_graphs.recordings import clip_names, gather
 from app.motion_graphs.tables import make_tables
@@ -34,9 +39,6 @@ app = typer.Typer(
     add_completion=False,
     rich_markup_mode="rich",
 )
-
-PLOT_SUFFIXES = (".svg", ".pdf", ".png")
-"""Suffixes of the files that a plot can be written to."""
 
 
 @app.command()
@@ -129,12 +131,8 @@ def show(
     describe(console, stored)
     if output is None:
         return
-    try:
+    with needs_matplotlib():
         from app.motion_graphs.plot import save_plot
-    except ImportError as error:
-        if (error.name or "").split(".")[0] != "matplotlib":
-            raise
-        raise AppError("a plot needs matplotlib: pip install matplotlib") from error
     save_plot(output, stored, graph.name)
     console.print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
 
@@ -168,12 +166,8 @@ def tables(
     Example: [cyan]cubeling motions tables walk.amc run.amc long.amc slow.amc -o tables.html[/]
     """
     target = chosen_output(output, "tables.html", "page", (".html",), overwrite)
-    try:
+    with needs_matplotlib():
         from app.motion_graphs.page import write_page
-    except ImportError as error:
-        if (error.name or "").split(".")[0] != "matplotlib":
-            raise
-        raise AppError("a plot needs matplotlib: pip install matplotlib") from error
     body = with_root_joint(Character.load(character))
     console = Console()
     with console.status("reading") as status:

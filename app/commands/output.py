@@ -1,15 +1,32 @@
 """The options of commands that write one file."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from app.errors import AppError
 from app.output_path import check_output
 
 OverwriteOption = Annotated[
     bool, typer.Option("--overwrite", help="Overwrite the file of --output if it exists.")
 ]
+
+PLOT_SUFFIXES = (".svg", ".pdf", ".png")
+"""Suffixes of the files that a plot can be written to."""
+
+
+@contextmanager
+def needs_matplotlib() -> Iterator[None]:
+    """Import what draws plots within; without matplotlib, an AppError says what to install."""
+    try:
+        yield
+    except ImportError as error:
+        if (error.name or "").split(".")[0] != "matplotlib":
+            raise
+        raise AppError("a plot needs matplotlib: pip install matplotlib") from error
 
 
 def chosen_output(

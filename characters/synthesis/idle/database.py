@@ -57,6 +57,9 @@ class RestingPosture:
     feeling: Region | None = None
     """The emotions that it shows; None if it suits any."""
 
+    frames: Array | None = None
+    """How she moved while she rested, posture vectors (frames, size); None if not recorded."""
+
 
 _Felt = TypeVar("_Felt", BalanceShift, RestingPosture)
 
@@ -80,9 +83,6 @@ class IdleDatabase:
     shifts: tuple[BalanceShift, ...]
     """How she shifts her balance."""
 
-    rests: tuple[Array, ...]
-    """Posture vectors of each rest, (frames, size): how she moves while she rests."""
-
     @staticmethod
     def of(recordings: Sequence[StandingRecording], kind: PostureVectors) -> "IdleDatabase":
         """Return the idle motion of the person in recordings of one rate.
@@ -98,24 +98,31 @@ class IdleDatabase:
         if any(abs(each.rate - rate) > 1e-6 for each in recordings):
             raise CharacterError("recordings of one person need the same frame rate")
         space = PostureSpace.of(np.concatenate([each.vectors for each in recordings]))
-        rests = [(each, rest) for each in recordings for rest in each.rests]
         postures = tuple(
             RestingPosture(
-                each.vectors[rest.first : rest.end].mean(0),
+                frames.mean(0),
                 rest.balance,
                 (rest.end - rest.first) / rate,
                 rest in (each.rests[0], each.rests[-1]),
                 each.feeling,
+                frames,
             )
-            for each, rest in rests
+            for each in recordings
+            for rest in each.rests
+            for frames in [each.vectors[rest.first : rest.end]]
         )
         shifts = tuple(
             BalanceShift(each.vectors[a.end - 1 : b.first + 1], a.balance, b.balance, each.feeling)
             for each in recordings
             for a, b in each.shifts
         )
-        calm = tuple(each.vectors[rest.first : rest.end] for each, rest in rests)
-        return IdleDatabase(kind, rate, space, postures, shifts, calm)
+        return IdleDatabase(kind, rate, space, postures, shifts)
+
+    @property
+    def rests(self) -> list[Array]:
+        """Posture vectors of each rest that was recorded, (frames, size)."""
+        found = [each.frames for each in self.postures if each.frames is not None]
+        return found or [np.repeat(self.postures[0].vector[None], 2, axis=0)]
 
     @cached_property
     def stretches(self) -> Stretches:
@@ -128,7 +135,7 @@ class IdleDatabase:
         return Variations.of([self.space.project(r, COMPONENTS) for r in self.rests], self.rate)
 
     def suiting(self, emotion: Emotion) -> "IdleDatabase":
-        """Return what suits an emotion (S11).
+        """Return what suits an emotion (S11), small variations too.
 
         These are the postures and shifts whose region it is in; if there is none, those that suit
         any emotion; if there is none of them either, all. The choice is made for postures and for

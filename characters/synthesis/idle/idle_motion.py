@@ -48,9 +48,9 @@ class IdleMotion:
         self._database = database
         self._suiting = database.suiting(NEUTRAL)
         self._variations = (
-            StretchStream(database.stretches, self._rng)
+            StretchStream(self._suiting.stretches, self._rng)
             if small == "recorded"
-            else VariationStream(database.variations, database.space, self._rng)
+            else VariationStream(self._suiting.variations, database.space, self._rng)
         )
         self._posture = self._drawn(self._suiting.postures)
         self._rested, self._chance = 0.0, self._rng.uniform()
@@ -76,7 +76,7 @@ class IdleMotion:
     @database.setter
     def database(self, database: IdleDatabase) -> None:
         self._database = database
-        self._suiting = database.suiting(self._emotion)
+        self._suit(database.suiting(self._emotion))
 
     def feel(self, emotion: Emotion | None) -> None:
         """Show an emotion from now on: by its postures and shifts, and in the length of pauses.
@@ -93,9 +93,17 @@ class IdleMotion:
         region = self._posture.feeling
         if region is not None and region.contains(emotion, MARGIN):
             return
-        self._suiting = suiting
+        self._suit(suiting)
         if self._posture not in suiting.postures:
             self._rested = max(self._rested, self.pause(self._posture, self._chance) - REACTION_S)
+
+    def _suit(self, suiting: IdleDatabase) -> None:
+        """Take postures, shifts and small variations of a part of the database from now on."""
+        self._suiting = suiting
+        if isinstance(self._variations, StretchStream):
+            self._variations.change(suiting.stretches)
+        else:
+            self._variations.change(suiting.variations)
 
     def shift_now(self) -> None:
         """Shift the balance as soon as the present shift, if any, has ended."""

@@ -23,8 +23,8 @@ MIN_REST_S = 3.0
 MIN_STRETCH_S, MAX_STRETCH_S = 2.0, 6.0
 """How long a stretch is played [s]."""
 
-CROSSFADE_S = 0.8
-"""How long a stretch goes over into the next one [s]."""
+JOIN_S = 1.5
+"""How long what is left of the stretch before takes to vanish [s]."""
 
 TEMPO, SIZE = 0.15, 0.2
 """How much faster or larger than recorded it is at most, as a logarithm."""
@@ -36,6 +36,7 @@ CANDIDATES = 20
 """Stretches of which the nearest is taken."""
 
 _VELOCITY_SHARE = 0.1  # [s²] of the squared distance of velocities in that of stretches
+_NOTHING = np.zeros(1), np.zeros(1)  # left of the stretch before
 
 
 @dataclass(frozen=True)
@@ -86,11 +87,10 @@ class Stretches:
 class _Played:
     """A stretch that is played."""
 
-    first: float
-    """Frame at which it begins."""
+    stretches: Stretches
 
-    last: float
-    """Frame at which it stays if it is played for longer."""
+    first: int
+    """Frame at which it begins."""
 
     begin: float
     """When [s]."""
@@ -101,17 +101,21 @@ class _Played:
     tempo: float
     size: float
 
-    def at(self, stretches: Stretches, time: float) -> Array:
+    left: tuple[Array, Array]
+    """What is left of the stretch before: offset, and its change in `JOIN_S`; (size,) each."""
+
+    def at(self, time: float) -> Array:
         """Return the posture's offset at a time [s], (size,)."""
-        at = self.first + (time - self.begin) * self.tempo * stretches.rate
-        frame = min(int(at), int(self.last) - 1)
-        u = min(at - frame, 1.0)
+        own = self.stretches
+        at = self.first + (time - self.begin) * self.tempo * own.rate
+        frame = min(int(at), int(own.last[self.first]) - 1)
         (a, b), slopes = (
-            stretches.offsets[frame : frame + 2],
-            stretches.velocities[frame : frame + 2] / stretches.rate,
+            own.offsets[frame : frame + 2],
+            own.velocities[frame : frame + 2] / own.rate,
         )
-        offset: Array = self.size * hermite(a, slopes[0], b, slopes[1], u)
-        return offset
+        offset: Array = self.size * hermite(a, slopes[0], b, slopes[1], min(at - frame, 1.0))
+        u = (time - self.begin) / JOIN_S
+        return offset if u >= 1.0 else offset + hermite(*self.left, *_NOTHING, u)
 
 
 class StretchStream:
@@ -126,41 +130,48 @@ class StretchStream:
         share = math.sqrt(1.0 - BACKWARD_SHARE**2)
         return share * self._forward.at(time) + BACKWARD_SHARE * self._backward.at(time)
 
+    def change(self, stretches: Stretches) -> None:
+        """Take other stretches from now on."""
+        self._forward.change(stretches)
+        self._backward.change(stretches.backward())
+
 
 class _Sequence:
     """One stretch after the other."""
 
     def __init__(self, stretches: Stretches, rng: np.random.Generator) -> None:
         self._stretches, self._rng = stretches, rng
-        self._now = self._before = self._next(0.0)
+        self._time = 0.0
+        self._now = self._next(0.0, None)
 
     def at(self, time: float) -> Array:
         """Return the offset of the posture, (size,), at a time [s] not before the last one."""
         while time >= self._now.end:
-            self._before, self._now = self._now, self._next(self._now.end)
-        value = self._now.at(self._stretches, time)
-        u = (time - self._now.begin) / CROSSFADE_S
-        if u >= 1.0 or self._before is self._now:
-            return value
-        eased = u * u * (3.0 - 2.0 * u)
-        return value * eased + self._before.at(self._stretches, time) * (1.0 - eased)
+            self._now = self._next(self._now.end, self._now)
+        self._time = time
+        return self._now.at(time)
 
-    def _next(self, time: float) -> _Played:
-        """Return the stretch that begins at a time [s]: the nearest of some to the present one."""
+    def change(self, stretches: Stretches) -> None:
+        """Go over to other stretches now."""
+        self._stretches = stretches
+        self._now = self._next(self._time, self._now)
+
+    def _next(self, time: float, before: _Played | None) -> _Played:
+        """Return the stretch that begins at a time [s]: the nearest of some to the one before."""
         own, rng = self._stretches, self._rng
         tempo = float(np.exp(rng.uniform(-TEMPO, TEMPO)))
         size = float(np.exp(rng.uniform(-SIZE, SIZE)))
         firsts = rng.integers(len(own.offsets) - 1, size=CANDIDATES)
-        needed = (MIN_STRETCH_S + CROSSFADE_S) * tempo * own.rate
-        long = firsts[own.last[firsts] - firsts >= needed]
+        long = firsts[own.last[firsts] - firsts >= MIN_STRETCH_S * tempo * own.rate]
         firsts = long if len(long) else firsts - (own.last[firsts] == firsts)
-        if time > 0.0:
-            here, soon = (self._now.at(own, t) for t in (time, time + 1.0 / own.rate))
-            apart = own.offsets[firsts] * size - here
-            faster = own.velocities[firsts] * (size * tempo) - (soon - here) * own.rate
+        first, left = int(firsts[0]), _NOTHING
+        if before is not None:
+            here, soon = (before.at(t) for t in (time, time + 1.0 / own.rate))
+            apart = here - own.offsets[firsts] * size
+            faster = (soon - here) * own.rate - own.velocities[firsts] * (size * tempo)
             far = (apart**2).sum(1) + _VELOCITY_SHARE * (faster**2).sum(1)
-            firsts = firsts[[int(far.argmin())]]
-        first, last = int(firsts[0]), int(own.last[firsts[0]])
-        longest = (last - first) / (tempo * own.rate) - CROSSFADE_S
+            nearest = int(far.argmin())
+            first, left = int(firsts[nearest]), (apart[nearest], faster[nearest] * JOIN_S)
+        longest = (own.last[first] - first - 1) / (tempo * own.rate)
         length = min(rng.uniform(MIN_STRETCH_S, MAX_STRETCH_S), max(longest, 1.0 / own.rate))
-        return _Played(float(first), float(last), time, time + float(length), tempo, size)
+        return _Played(own, first, time, time + float(length), tempo, size, left)

@@ -43,14 +43,15 @@ class Variations:
     """The small variations of a person."""
 
     components: tuple[ComponentVariations, ...]
-    """One for each component that varies; empty if no rest is long enough."""
+    """One for each component; all are still if no rest is long enough."""
 
     @staticmethod
     def of(segments: Sequence[Array], rate: float, seed: int = 0) -> "Variations":
         """Return the variations in rests: coordinates (frames, components) of a posture space."""
         long = [each - each.mean(0) for each in segments if len(each) >= MIN_SEGMENT_S * rate]
         if not long:
-            return Variations(())
+            count = min(segments[0].shape[1], COMPONENTS)
+            return Variations((_still(MIN_SEGMENT_S),) * count)
         rng = np.random.default_rng(seed)
         spreads = np.concatenate(long).std(0)[:COMPONENTS]
         return Variations(
@@ -133,10 +134,14 @@ class VariationStream:
         self, variations: Variations, space: PostureSpace, rng: np.random.Generator
     ) -> None:
         self._rng, self._axes = rng, space.components[:, : len(variations.components)]
-        self._components = variations.components
-        count = len(self._components)
-        self._clusters = [int(rng.integers(len(each.members))) for each in self._components]
+        count = len(variations.components)
         self._before, self._after = np.zeros((count, 2)), np.zeros((count, 2))  # time, value
+        self.change(variations)
+
+    def change(self, variations: Variations) -> None:
+        """Take other variations, of as many components, from the next extremum of each on."""
+        self._components = variations.components
+        self._clusters = [int(self._rng.integers(len(each.members))) for each in self._components]
 
     def at(self, time: float) -> Array:
         """Return the offset of the posture at a time [s], not earlier than the last one; (size,).

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
@@ -54,6 +55,17 @@ def test_shows_rests_pauses_and_shifts(cubeling, anna) -> None:
     assert "100%" in out  # after the left foot comes the right one
 
 
+@pytest.mark.parametrize("who", ["anna.idle", "vleo"])
+def test_plots_her_postures_shifts_and_variations(cubeling, anna, tmp_path, who) -> None:
+    code, out, _ = cubeling("idle", "show", who, "-o", "a.png", "--mood", "happy")
+    assert code == 0
+    assert "Plotted: a.png" in out
+    picture = cv2.imread(str(tmp_path / "a.png"))
+    assert picture is not None
+    assert picture.shape[1] > 1500
+    assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 2000  # portraits, not only lines
+
+
 def test_a_character_stands_as_the_person(anna: Path) -> None:
     human = Character.load("human")
     lively = Animator(standing_as(human, anna), scale=1.0)
@@ -85,6 +97,9 @@ def test_a_smaller_character_stands_so_too(anna: Path) -> None:
     ("arguments", "message"),
     [
         (("show", "no.idle"), "no.idle: No such file"),
+        (("show", "human", "-o", "a.gif"), "written as .svg"),
+        (("show", "human", "--mood", "blue"), "no emotion is called 'blue'"),
+        (("learn", "blue=x.bvh"), "no emotion is called 'blue'"),
         (("learn", "nobody.bvh"), "nobody.bvh"),
         (("learn", "human#Walk"), "both feet stand in only"),
         (("learn", "human#Walk", "-o", "walk.txt"), "written as .idle"),

@@ -39,15 +39,15 @@ def stander(kind: PostureVectors, pairs: list[tuple[str, str]], seed: int = 1) -
     def near(name: str) -> np.ndarray:
         return PLACES[name] * direction + 0.02 * rng.normal(size=kind.size)
 
-    postures = tuple(RestingPosture(near(n), n, 2.0 + k, cut=False)
+    sway = 0.02 * np.sin(np.arange(200) / 9.0)[:, None] * rng.normal(size=kind.size)
+    postures = tuple(RestingPosture(near(n), n, 2.0 + k, cut=False, frames=sway)
                      for n in BALANCES for k in range(2))  # fmt: skip
     shifts = tuple(
         BalanceShift(np.linspace(near(a), near(b), 21 + 5 * n), a, b)
         for n, (a, b) in enumerate(pairs)
     )
-    sway = 0.02 * np.sin(np.arange(200) / 9.0)[:, None] * rng.normal(size=kind.size)
     rows = np.concatenate([sway, *(shift.vectors for shift in shifts)])
-    return IdleDatabase(kind, RATE, PostureSpace.of(rows), postures, shifts, (sway,))
+    return IdleDatabase(kind, RATE, PostureSpace.of(rows), postures, shifts)
 
 
 def fewest_shifts(pairs: list[tuple[str, str]], start: str, end: str) -> int | None:

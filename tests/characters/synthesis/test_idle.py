@@ -304,6 +304,27 @@ def test_a_new_emotion_shows_soon_and_without_a_jump(moody: IdleDatabase) -> Non
     assert np.abs(np.diff(rows, axis=0)).max() < 0.2  # the way of 2 is spread over a shift
 
 
+def test_small_variations_are_those_of_the_emotion(database: IdleDatabase) -> None:
+    felt = [region_of("sad"), region_of("happy")]
+    sizes = (0.2, 5.0)
+    moods = tuple(
+        replace(each, feeling=region, frames=each.vector + size * (frames - each.vector))
+        for region, size in zip(felt, sizes, strict=True)
+        for each, frames in zip(database.postures, database.rests, strict=True)
+    )
+    motion = IdleMotion(replace(database, postures=moods, shifts=()), 2)
+    spreads: list[float] = []
+    for emotion in (Emotion(-0.6, -0.5), Emotion(0.5, 0.6)):
+        motion.feel(emotion)
+        first = len(spreads) * 40.0
+        rows = database.kind.vectors(
+            Pose.of_frames(motion.sample(first + n / RATE) for n in range(1000))
+        )
+        assert np.abs(np.diff(rows, axis=0)).max() < 0.1  # nothing jumps
+        spreads.append(rows[100:].std(0).mean())
+    assert spreads[1] > 5.0 * spreads[0]
+
+
 def test_small_changes_of_an_emotion_do_not_hurry_her(moody: IdleDatabase) -> None:
     motion = IdleMotion(moody, 4)
     edge = Emotion(NEUTRAL_RADIUS + 0.01, NEUTRAL_RADIUS + 0.01)
