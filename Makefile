@@ -51,6 +51,7 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.controllers
 	$(BIN)/python -m tests.bench.idle
 	$(BIN)/python -m tests.bench.idle_study
+	$(BIN)/python -m tests.bench.standing
 	$(BIN)/python -m tests.bench.postures
 	$(BIN)/python -m tests.bench.upper_body
 	$(BIN)/python -m tests.bench.picture

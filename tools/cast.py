@@ -1,11 +1,12 @@
 """Draws the bundled characters for the documentation: `python -m tools.cast`.
 
-Each is drawn from all sides, with its facial morphs, and its clips frame by frame. Two more
-pictures show all characters on one table, and in every mood.
+Each is drawn from all sides, with its facial morphs, and its clips frame by frame. Three more
+pictures show all characters on one table, in every mood, and how they stand in each.
 """
 
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 
 import moderngl
@@ -13,6 +14,7 @@ import numpy as np
 from rich.console import Console
 
 from affect import Emotion
+from affect.regions import SECTOR_WORDS
 from affect.words import WORD_PLACES, closest_word
 from app.ui.contact_sheets import ContactSheets, Image, save, stacked
 from characters import (
@@ -112,6 +114,31 @@ def _mood_pose(character: Character, label: str) -> Pose:
     return min(poses[first:], key=lambda pose: lids.closed(pose.morphs))
 
 
+STANDING_MOODS = ("neutral", *SECTOR_WORDS)
+"""The columns of the sheet of standing: the middle of the plane, and its sectors."""
+
+STANDING_S = 9.0
+"""Time after the start of a mood at which it is drawn: every character rests [s]."""
+
+
+def draw_standing(sheets: ContactSheets, cast: Iterable[Character]) -> Image:
+    """Return a sheet of how every character stands in nine moods, all with one face."""
+    rows = []
+    for character in cast:
+        poses = {word: _standing_pose(character, word) for word in STANDING_MOODS}
+        rows.append(sheets.postures(character, poses))
+    return stacked(*rows)
+
+
+def _standing_pose(character: Character, word: str) -> Pose:
+    """Return how a character stands in a mood, without the mood on its face."""
+    animator = Animator(character, place=RootDelta())
+    emotion = None if word == "neutral" else Emotion(*WORD_PLACES[word], word)
+    for number in range(round(STANDING_S * 30) + 1):
+        posed = animator.update(CharacterCommand(number / 30, emotion=emotion))
+    return replace(posed.pose, morphs=None)
+
+
 def _after(animator: Animator, action: str, seconds: float) -> PosedCharacter:
     """Return a character some time after an action began, looking at the camera."""
     gaze = np.array([0.0, 0.2, 1.0])
@@ -138,6 +165,8 @@ if __name__ == "__main__":
     sheets = ContactSheets(context)
     moods = draw_moods(sheets, map(Character.load, Character.bundled()))
     save(moods, FOLDER.parent / "moods-on-faces.jpg", MAX_BYTES)
+    standing = draw_standing(sheets, map(Character.load, Character.bundled()))
+    save(standing, FOLDER.parent / "moods-standing.jpg", MAX_BYTES)
     sheets.release()
     context.release()
     for path in draw_cast(map(Character.load, Character.bundled())):

@@ -1,5 +1,6 @@
 """Contact sheets of a character: from all sides, its clips frame by frame, its faces."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -72,6 +73,18 @@ class ContactSheets:
             face = self._faces.portrait(character, pose, azimuth=0.3, elevation=0.05, focus="face")
             columns.append(_captioned(stacked(whole, face), name))
         return _sheet(character.name, "its moods", [side_by_side(columns, len(columns))])
+
+    def postures(self, character: Character, poses: Mapping[str, Pose]) -> Image:
+        """Return a character in several postures, one column each, from ahead and from its left."""
+        columns, extent = [], list(poses.values())
+        for name, pose in poses.items():
+            views = [
+                self._small.portrait(character, pose, azimuth=azimuth, extent=extent)
+                for azimuth in (0.25, math.pi / 2)
+            ]
+            columns.append(_captioned(stacked(*views), name))
+        sheet = trimmed(side_by_side(columns, len(columns)))
+        return _sheet(character.name, "how it stands in nine moods, without its face", [sheet])
 
     def release(self) -> None:
         """Release the buffers; a second call does nothing."""

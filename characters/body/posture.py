@@ -100,7 +100,7 @@ def expressivity_of(valence: float, arousal: float) -> Expressivity:
     """
     erectness = min(max(0.75 * valence + 0.55 * arousal, -1.0), 1.0)
     tension = max(-valence, 0.0) * max(arousal, 0.0)
-    drop = -erectness if erectness < 0.0 else -0.3 * erectness
+    drop = -erectness if erectness < 0.0 else -0.5 * erectness
     return Expressivity(
         tempo=2.0 ** (TEMPO_OCTAVES * arousal),
         amplitude=2.0 ** (AMPLITUDE_OCTAVES * arousal),

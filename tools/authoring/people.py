@@ -42,23 +42,26 @@ def _vleo(character: Character) -> Iterable[tuple[str, Clip]]:
         vleo_clips.tail(anim, up, left, 1.5)
 
     for mood in MOODS:
-        tracks = standing_tracks("vleo", mood, vleo.NECK, tail, _stance(character))
+        tracks = standing_tracks("vleo", mood, vleo.NECK, tail, *_size(character))
         yield mood, loop_clip(mood, tracks, character.skeleton, vleo.FEET)
 
 
 def _robot(character: Character) -> Iterable[tuple[str, Clip]]:
     for mood in MOODS:
         tracks = standing_tracks(
-            "robot", mood, robot.NECK, robot_motion.tail, _stance(character), 0.009
+            "robot", mood, robot.NECK, robot_motion.tail, *_size(character), 0.009
         )
         yield mood, loop_clip(mood, tracks, character.skeleton, robot.FEET)
 
 
-def _stance(character: Character) -> float:
-    """Return the distance of the hind feet [m]."""
-    placed = character.skeleton.rest.globals(character.skeleton)[:, 0, 3]
-    feet = [character.anatomy.joints[side + "Foot"] for side in ("left", "right")]
-    return float(abs(placed[feet[0]] - placed[feet[1]]))
+def _size(character: Character) -> tuple[float, float]:
+    """Return the distance of the hind feet, and that of hips and chest along the body [m]."""
+    placed = character.skeleton.rest.globals(character.skeleton)[:, :3, 3]
+    left, right, hips, chest = (
+        placed[character.anatomy.joints[part]]
+        for part in ("leftFoot", "rightFoot", "hips", "chest")
+    )
+    return float(abs(left[0] - right[0])), float(abs(chest[2] - hips[2]))
 
 
 STANDING: dict[str, Callable[[Character], Iterable[tuple[str, Clip]]]] = {

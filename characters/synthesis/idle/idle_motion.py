@@ -18,8 +18,9 @@ from characters.synthesis.idle.database import IdleDatabase, RestingPosture
 from characters.synthesis.idle.stretches import StretchStream
 from characters.synthesis.idle.variations import VariationStream
 
-Small = Literal["recorded", "extrema"]
-"""How small variations are made: of recorded stretches, or of clustered extrema as published."""
+Small = Literal["recorded", "extrema", "none"]
+"""How small variations are made: of recorded stretches, or of clustered extrema as published; with
+"none", `layering.Varied` may add them to a blend."""
 
 REACTION_S = 0.7
 """After how long it leaves a posture that does not suit a new emotion [s]."""
@@ -47,11 +48,12 @@ class IdleMotion:
         self._emotion = NEUTRAL
         self._database = database
         self._suiting = database.suiting(NEUTRAL)
-        self._variations = (
-            StretchStream(self._suiting.stretches, self._rng)
-            if small == "recorded"
-            else VariationStream(self._suiting.variations, database.space, self._rng)
-        )
+        self._variations: StretchStream | VariationStream | None = None
+        if small == "recorded":
+            self._variations = StretchStream(self._suiting.stretches, self._rng)
+        elif small == "extrema":
+            variations = self._suiting.variations
+            self._variations = VariationStream(variations, database.space, self._rng)
         self._posture = self._drawn(self._suiting.postures)
         self._rested, self._chance = 0.0, self._rng.uniform()
         self._here = self._posture.vector  # the posture of the latest frame
@@ -102,7 +104,7 @@ class IdleMotion:
         self._suiting = suiting
         if isinstance(self._variations, StretchStream):
             self._variations.change(suiting.stretches)
-        else:
+        elif self._variations is not None:
             self._variations.change(suiting.variations)
 
     def shift_now(self) -> None:
@@ -158,8 +160,11 @@ class IdleMotion:
         frame = self._entered + int(at)
         while self._made < frame + 3:
             self._here = self.next_posture()
-            varied = self._variations.at(self._made / self.database.rate)
-            self._kept.append(self._here + self._liveliness() * varied)
+            shown = self._here
+            if self._variations is not None:
+                varied = self._variations.at(self._made / self.database.rate)
+                shown = shown + self._liveliness() * varied
+            self._kept.append(shown)
             self._made += 1
         first = frame - (self._made - len(self._kept))
         rows = [self._kept[max(first + n, 0)] for n in (-1, 0, 1, 2)]

@@ -67,7 +67,9 @@ class StandingPerson:
         paws: PlantedPaws | None = None,
     ) -> None:
         self._paws = paws
-        self._idle, self._acts = idle, {clip.name: clip for clip in acts}
+        self.idle = idle
+        """Her idle motion between acts."""
+        self._acts = {clip.name: clip for clip in acts}
         self._machine = StateMachine({"": idle, **self._acts}, "", TRANSITION_S)
         self._rng = np.random.default_rng([seed, 1])
         self._neutral = True
@@ -83,7 +85,7 @@ class StandingPerson:
     def feel(self, emotion: Emotion | None) -> None:
         """Show an emotion from now on, or none."""
         emotion = emotion or NEUTRAL
-        self._idle.feel(emotion)
+        self.idle.feel(emotion)
         self._neutral = region_of("neutral").contains(emotion)
 
     def sample(self, time: float) -> Pose:
@@ -103,20 +105,20 @@ class StandingPerson:
         lasts = self._rng.uniform(*PAUSE_S)
         if ended:
             self._machine.request("", self._clock)
-            self._idle.begin_at(self._vectors(self._acts[ended], -1 if self._neutral else 0))
+            self.idle.begin_at(self._vectors(self._acts[ended], -1 if self._neutral else 0))
         elif not self._neutral:
-            self._idle.go_on()
+            self.idle.go_on()
         elif ready:
             self._machine.request(ready, self._clock)
             lasts = self._acts[ready].duration - TRANSITION_S
         elif self._acts:
             self._next = [*self._acts][int(self._rng.integers(len(self._acts)))]
-            lasts = self._idle.lead_to(self._vectors(self._acts[self._next], 0))
+            lasts = self.idle.lead_to(self._vectors(self._acts[self._next], 0))
         self._change = self._clock + lasts
 
     def _vectors(self, act: Clip, frame: int) -> Array:
         """Return the posture vector of a frame of an act."""
-        vectors: Array = self._idle.database.kind.vectors(act.poses[frame][None])[0]
+        vectors: Array = self.idle.database.kind.vectors(act.poses[frame][None])[0]
         return vectors
 
     def travel(self, start: float, end: float) -> RootDelta:

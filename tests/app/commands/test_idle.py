@@ -55,15 +55,20 @@ def test_shows_rests_pauses_and_shifts(cubeling, anna) -> None:
     assert "100%" in out  # after the left foot comes the right one
 
 
-@pytest.mark.parametrize("who", ["anna.idle", "vleo"])
-def test_plots_her_postures_shifts_and_variations(cubeling, anna, tmp_path, who) -> None:
-    code, out, _ = cubeling("idle", "show", who, "-o", "a.png", "--mood", "happy")
+def test_plots_her_postures_shifts_and_variations(cubeling, anna, tmp_path) -> None:
+    code, out, _ = cubeling("idle", "show", "anna.idle", "-o", "a.png", "--mood", "happy")
     assert code == 0
     assert "Plotted: a.png" in out
     picture = cv2.imread(str(tmp_path / "a.png"))
     assert picture is not None
     assert picture.shape[1] > 1500
     assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 2000  # portraits, not only lines
+
+
+def test_shows_how_a_bundled_character_stands(cubeling) -> None:
+    code, out, _ = cubeling("idle", "show", "vleo")
+    assert code == 0
+    assert "with 44 balance shifts" in out
 
 
 def test_a_character_stands_as_the_person(anna: Path) -> None:

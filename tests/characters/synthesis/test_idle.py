@@ -11,12 +11,22 @@ from hypothesis import strategies as st
 
 from affect import NEUTRAL, Emotion
 from affect.regions import NEUTRAL_RADIUS, region_of
-from characters import Character, CharacterError, Clip, Pose
+from characters import (
+    Character,
+    CharacterError,
+    Clip,
+    MaskedLayer,
+    Pose,
+    RootDelta,
+    RootOffset,
+    mask_of,
+)
 from characters.control.controllers.recordings import read_motions
 from characters.skeleton import rotations
 from characters.synthesis.idle.database import IdleDatabase
 from characters.synthesis.idle.fitting import fit, nearest_clip
 from characters.synthesis.idle.idle_motion import REACTION_S, IdleMotion
+from characters.synthesis.idle.layering import Varied
 from characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
 from characters.synthesis.idle.recordings import (
     Rest,
@@ -323,6 +333,37 @@ def test_small_variations_are_those_of_the_emotion(database: IdleDatabase) -> No
         assert np.abs(np.diff(rows, axis=0)).max() < 0.1  # nothing jumps
         spreads.append(rows[100:].std(0).mean())
     assert spreads[1] > 5.0 * spreads[0]
+
+
+def test_a_gesture_is_not_dampened_and_the_rest_of_the_body_idles(
+    human: Character, database: IdleDatabase
+) -> None:
+    arm = mask_of(human.skeleton, {"RightShoulder": 1.0})
+    wave, still = human.clips["wave"], IdleMotion(database, 1, "none")
+    blended = MaskedLayer(still, wave, mask=arm)
+    varied = Varied(MaskedLayer(IdleMotion(database, 1, "none"), wave, mask=arm), database)
+    hips = human.anatomy.joints["hips"]
+    for time in np.arange(0.0, 2.0, 1 / 30).tolist():
+        pose, own = blended.sample(time), wave.sample(time)
+        masked = arm == 1.0
+        assert pose.rotations[masked] == pytest.approx(own.rotations[masked], abs=1e-14)
+        moved = varied.sample(time)
+        assert not np.array_equal(moved.rotations[hips], pose.rotations[hips])
+        apart = database.kind.vectors(Pose.of_frames([pose, moved]))
+        assert np.abs(apart[1] - apart[0]).max() < 0.2
+    assert varied.duration == still.duration
+
+
+def test_a_person_elsewhere_differs_by_her_root_only(
+    human: Character, database: IdleDatabase
+) -> None:
+    there = RootOffset(IdleMotion(database, 1), RootDelta(1.0, 2.0, 0.5))
+    here = IdleMotion(database, 1)
+    for time in (0.0, 1.0, 7.0):
+        one, other = here.sample(time), there.sample(time)
+        assert np.array_equal(one.rotations[1:], other.rotations[1:])
+        assert np.array_equal(one.translations[1:], other.translations[1:])
+        assert other.translations[0] == pytest.approx(one.translations[0] + [1.0, 0.0, 2.0])
 
 
 def test_small_changes_of_an_emotion_do_not_hurry_her(moody: IdleDatabase) -> None:

@@ -32,11 +32,15 @@ class Bearing:
     swing: float = 3.0
     spread: float = 0.0
     bend: float = 19.0
-    sway: float = 1.25
+    sway: float = 1.7
     """How far the weight shifts; 1 is a calm contrapposto."""
     hands: tuple[str, str] = ("", "")
     """What the left and the right hand hold; "" if it hangs."""
 
+
+LATE_S, LATE_DEG = 0.13, 6.0
+"""How much later than the hips the trunk goes to the side [s], and by how much it bends for that
+[degrees for the whole way of the weight]."""
 
 _HIP_M = np.array([0.262, 0.80, 0.03])
 _GRIPS = {
@@ -47,14 +51,14 @@ _GRIPS = {
 
 BEARINGS = {
     "neutral": Bearing(),
-    "pleased": Bearing(-2, 0, -1, 0, 7, hands=("strap", "strap"), sway=1.3),
-    "happy": Bearing(-1, 0, 2, shrug=3, swing=16, spread=16, bend=58, sway=1.35),
-    "alert": Bearing(-3, 0, 0, shrug=9, swing=24, spread=6, bend=95, sway=1.1),
-    "angry": Bearing(10, 0.014, 9, shrug=8, swing=-4, spread=22, bend=34, sway=1.1),
+    "pleased": Bearing(-2, 0, -1, 0, 7, hands=("strap", "strap"), sway=1.75),
+    "happy": Bearing(-4, 0, -6, shrug=3, swing=16, spread=16, bend=58, sway=1.8),
+    "alert": Bearing(-3, 0, 0, shrug=9, swing=24, spread=6, bend=95, sway=1.5),
+    "angry": Bearing(10, 0.014, 9, shrug=8, swing=-4, spread=22, bend=34, sway=1.5),
     "displeased": Bearing(-3, 0, 2, -16, -7, 3, 8, hands=("hip", "hip")),
-    "depressed": Bearing(13, 0.010, 26, shrug=-7, swing=11, bend=8, sway=1.1),
-    "sleepy": Bearing(2, 0.034, 8, 12, 26, 9, shrug=-6, swing=8, bend=6, sway=1.35),
-    "relaxed": Bearing(-5, 0.004, 0, 0, 6, -3, spread=2, bend=14, sway=1.7, hands=("hip", "")),
+    "depressed": Bearing(18, 0.014, 38, shrug=-9, swing=16, bend=7, sway=1.5),
+    "sleepy": Bearing(2, 0.034, 8, 12, 26, 9, shrug=-6, swing=8, bend=6, sway=1.8),
+    "relaxed": Bearing(-5, 0.004, 0, 0, 6, -3, spread=2, bend=14, sway=2.1, hands=("hip", "")),
 }
 
 
@@ -76,6 +80,7 @@ def _score(body: Bearing, stander: Stander, frames: int) -> ActingCurves:
         return np.append(curve, curve[0])
 
     weight = np.append(weights := stander.weight(), weights[0])
+    late = np.append(delayed := np.roll(weights, round(LATE_S * FRAME_RATE_HZ)), delayed[0])
     look = stander.glances(11.0)
     sides = zip(("Left", "Right"), body.hands, strict=True)
     return ActingCurves(
@@ -83,7 +88,7 @@ def _score(body: Bearing, stander: Stander, frames: int) -> ActingCurves:
         crouch=np.maximum(about(body.crouch, 0.001), 0.0),
         lean=about(body.lean, 0.7),
         twist=about(body.twist, 0.8) + 2.0 * weight,
-        side=about(body.side, 0.6),
+        side=about(body.side, 0.6) + LATE_DEG * body.sway * (weight - late),
         look=(np.append(look, look[0]) + body.aside, about(0.6 * body.nod, 1.2)),
         head=(about(0.0, 0.8), about(0.4 * body.nod, 0.6)),
         tilt=about(body.tilt, 1.2),

@@ -59,19 +59,23 @@ def standing_tracks(
     neck: Sequence[str],
     tail: Callable[[AnimationTracks, Array, Array], None],
     stance: float,
+    length: float,
     lowered: float = 0.0,
 ) -> AnimationTracks:
-    """Return how a character stands in a mood; `stance` is the distance of its hind feet [m].
+    """Return how a character stands in a mood.
 
-    All its moods are `lowered` [m], so that its legs reach the ground at both sides.
+    `stance` is the distance of its hind feet, `length` that of its hips and chest [m]. All its
+    moods are `lowered` [m], so that its legs reach the ground at both sides.
     """
     body = BEARINGS[mood]
     anim = AnimationTracks(round(DURATION_S * FRAME_RATE_HZ))
     stander = Stander.of(name, mood, WORD_PLACES[mood][1], anim.frames)
     shift = SHIFT * stance * body.sway * (stander.weight() + stander.sway(0.03))
     anim.move("hips", x=shift, y=-body.low - lowered + stander.sway(0.0006))
-    anim.turn("hips", up=body.pitch * DEGREE + stander.sway(0.004), tilt=-5 * shift, left=5 * shift)
-    anim.turn("chest", left=4 * shift, up=0.5 * body.pitch * DEGREE)
+    # The hips lead: the shoulders go half as far, and the neck keeps the head where it was.
+    yaw = -0.5 * shift / length
+    anim.turn("hips", up=body.pitch * DEGREE + stander.sway(0.004), tilt=-5 * shift, left=yaw)
+    anim.turn("chest", left=-yaw, up=0.5 * body.pitch * DEGREE)
     look = (stander.glances(10.0) + body.aside) * DEGREE
     turned = spring_follow(look, DURATION_S, 0.9, 0.7)
     lift = body.neck * DEGREE + stander.sway(0.02)
