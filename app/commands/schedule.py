@@ -22,6 +22,7 @@ from characters.model.bind_pose import with_bind_pose
 from characters.model.files import read_file
 from characters.motion.baking import bake
 from characters.motion.motion import Motion
+from characters.motion.schedule import Schedule
 from characters.motion.schedule_file import ScheduleReader
 from characters.rendering import create_context
 from characters.rendering.portrait import PortraitRenderer
@@ -31,6 +32,8 @@ from characters.synthesis.archive import skeleton_identity
 
 MAX_BYTES = 10_000_000
 """Larger schedules are not written by hand."""
+
+MAX_SECONDS = 3600.0
 
 VIDEO_SIZE = 480, 560
 
@@ -47,7 +50,8 @@ def schedule(
     ] = "human",
     rate: Annotated[float, typer.Option(help="Frames a second.", min=1.0, max=240.0)] = 25.0,
     seconds: Annotated[
-        float | None, typer.Option(help="How long, if an action has no end.", min=0.1, max=3600.0)
+        float | None,
+        typer.Option(help="How long, if an action has no end.", min=0.1, max=MAX_SECONDS),
     ] = None,
     seed: Annotated[int, typer.Option(help="Seed of idle motions.")] = 0,
 ) -> None:
@@ -73,16 +77,26 @@ def schedule(
         },
     )
     found = reader.read(read_file(file, MAX_BYTES), str(file))
-    ends = [action.end for action in found.actions if np.isfinite(action.end)]
-    length = seconds or max(ends, default=0.0)
-    if not length > 0.0:
-        raise AppError(f"{file}: no action has an end; say how long with --seconds")
+    length = seconds or _length(file, found)
     clip = bake(found, rate, length, file.stem)
     _writer(target)(clip, body, target)
     Console(highlight=False).print(
         f"[bold]{escape(str(target))}[/] is written: {len(clip)} frames, {length:.2f} s",
         soft_wrap=True,
     )
+
+
+def _length(file: Path, found: Schedule) -> float:
+    """Return when the last action of a schedule ends [s]."""
+    ends = [action.end for action in found.actions if np.isfinite(action.end)]
+    if not ends:
+        raise AppError(f"{file}: no action has an end; say how long with --seconds")
+    length = max(ends)
+    if not 0.0 < length <= MAX_SECONDS:
+        raise AppError(
+            f"{file}: its last action ends at {length:g} s; give 0 to {MAX_SECONDS:g} s"
+        )
+    return length
 
 
 def _beside(file: Path, name: str) -> str:

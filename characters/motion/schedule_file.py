@@ -41,6 +41,9 @@ _HANIM_PARTS = {
 }
 """Body parts by the joint names of the documents (H-Anim)."""
 
+MAX_DEPTH = 60
+"""Elements within elements that are read."""
+
 SCOPES: dict[str, tuple[str, ...]] = {
     "all": (),
     "torso": ("spine",),
@@ -123,7 +126,10 @@ class ScheduleReader:
         for part in root.children:
             if part.tag == "actionpool":
                 self._known(part, ("blendingaction",))
-                pool |= {self._name(each): self._action(each) for each in part.children}
+                for each in part.children:
+                    if self._name(each) in pool:
+                        raise self._error(each, f"a second action {self._name(each)!r}; rename one")
+                    pool[self._name(each)] = self._action(each)
         actions = [self._activated(e, pool) for e in root.children if e.tag == "activate"]
         if not actions:
             raise self._error(root, "no action is activated; add <activate>")
@@ -236,13 +242,13 @@ class ScheduleReader:
             raise self._error(element, "a fade in percent of a motion without an end")
 
         def part(name: str) -> float:
-            return self._number(element, name, 0.0) / 100.0 * duration
+            return self._percent(element, name, 0.0) * duration
 
         if ending == "fade":
             self._known(element, ("fadein", "fadeout"))
             return FadeCurve(part("fadein"), part("fadeout"), shape)
         self._known(element, ("attack", "decay", "sustain", "release"))
-        level = self._number(element, "sustain", 100.0) / 100.0
+        level = self._percent(element, "sustain", 100.0)
         return Adsr(part("attack"), part("decay"), level, part("release"), shape)
 
     def _joints(self, element: Element) -> _Parameters:
@@ -323,6 +329,13 @@ class ScheduleReader:
             raise self._error(element, f'{name}="{text.strip()[:40]}" is not a number')
         return number
 
+    def _percent(self, element: Element, name: str, default: float) -> float:
+        """Return a share that is written in percent."""
+        number = self._number(element, name, default)
+        if not 0.0 <= number <= 100.0:
+            raise self._error(element, f"{name} is {number:g} percent; give 0 to 100")
+        return number / 100.0
+
     def _error(self, element: Element, message: str) -> CharacterError:
         return CharacterError(f"{self._origin}:{element.line}: {message}")
 
@@ -339,6 +352,8 @@ def parse(text: bytes, origin: str) -> Element:
 
     def start(tag: str, attributes: dict[str, str]) -> None:
         element = Element(tag, attributes, parser.CurrentLineNumber)
+        if len(open_elements) >= MAX_DEPTH:
+            raise CharacterError(f"{origin}:{element.line}: more than {MAX_DEPTH} nested elements")
         (open_elements[-1].children if open_elements else roots).append(element)
         open_elements.append(element)
 

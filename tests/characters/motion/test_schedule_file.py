@@ -176,6 +176,12 @@ def test_a_modifier_filters_poses(human, reader) -> None:
         (document().replace(b"human#wave", b"gone.bvh"), "x:5: no motion 'gone.bvh'"),
         (document().replace(b"human#wave", b" "), "x:5: <blendableobject> names no file"),
         (document().replace(b"</actionpool>", b""), "x:11: not XML (mismatched tag)"),
+        (
+            document(params='<blendingparams type="fade"><fadein>-5</fadein></blendingparams>'),
+            "x:4: fadein is -5 percent; give 0 to 100",
+        ),
+        (document(action='</blendingaction><blendingaction id="a">'), "x:6: a second action 'a'"),
+        (b"<a>" * 100, "x:1: more than 60 nested elements"),
         (b"<blendingschedule/>", "x:1: no action is activated; add <activate>"),
         (b"<schedule/>", "x:1: <schedule> is not a <blendingschedule>"),
         (b"", "x:1: not XML (no element found)"),
