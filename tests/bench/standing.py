@@ -8,7 +8,7 @@ slide
 weight
     How far the hips go to both sides at most, 5 % of the time, between the middle and a foot (1).
 head
-    Speed of the head to the side ÷ that of the hips: below 1 it is calmer than they are.
+    How far the head goes to the side with the hips, ÷ them (regression): below 1 it is calmer.
 seeds
     Distance of two characters with different seeds at one time ÷ that of one of them at two times.
 mood
@@ -60,16 +60,16 @@ def played(character: Character, seed: int) -> tuple[Pose, Array]:
 
 
 def weight(character: Character, poses: Pose) -> tuple[tuple[float, float], float]:
-    """Return how far the hips go to both sides, and how fast the head goes, ÷ the hips."""
+    """Return how far the hips go to both sides, and how far the head goes with them, ÷ them."""
     joints = character.anatomy.joints
     across = poses.globals(character.skeleton)[:, :, 0, 3]
     left, right, hips, head = (
         across[:, joints[part]] for part in ("leftFoot", "rightFoot", "hips", "head")
     )
     balance = (hips - (left + right) / 2) / ((left - right).mean() / 2)
-    speeds = [np.abs(np.diff(each)).mean() for each in (head, hips)]
     low, high = np.quantile(balance, (0.05, 0.95)).tolist()
-    return (low, high), float(speeds[0] / speeds[1])
+    hips, head = np.diff(hips), np.diff(head)
+    return (low, high), float((hips @ head) / (hips @ hips))
 
 
 def apart(one: Array, other: Array) -> float:

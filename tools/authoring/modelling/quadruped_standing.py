@@ -75,7 +75,7 @@ def standing_tracks(
     # The hips lead: the shoulders go half as far, and the neck keeps the head where it was.
     yaw = -0.5 * shift / length
     anim.turn("hips", up=body.pitch * DEGREE + stander.sway(0.004), tilt=-5 * shift, left=yaw)
-    anim.turn("chest", left=-yaw, up=0.5 * body.pitch * DEGREE)
+    anim.turn("chest", left=-yaw, tilt=6 * shift, up=0.5 * body.pitch * DEGREE)
     look = (stander.glances(10.0) + body.aside) * DEGREE
     turned = spring_follow(look, DURATION_S, 0.9, 0.7)
     lift = body.neck * DEGREE + stander.sway(0.02)
