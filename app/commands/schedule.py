@@ -93,9 +93,7 @@ def _length(file: Path, found: Schedule) -> float:
         raise AppError(f"{file}: no action has an end; say how long with --seconds")
     length = max(ends)
     if not 0.0 < length <= MAX_SECONDS:
-        raise AppError(
-            f"{file}: its last action ends at {length:g} s; give 0 to {MAX_SECONDS:g} s"
-        )
+        raise AppError(f"{file}: its last action ends at {length:g} s; give 0 to {MAX_SECONDS:g} s")
     return length
 
 

@@ -9,6 +9,8 @@ weight
     How far the hips go to both sides at most, 5 % of the time, between the middle and a foot (1).
 head
     How far the head goes to the side with the hips, ÷ them (regression): below 1 it is calmer.
+jolt
+    Largest acceleration of hips, knees, feet or head [body heights/s²]; a knee that snaps has 30.
 seeds
     Distance of two characters with different seeds at one time ÷ that of one of them at two times.
 mood
@@ -36,6 +38,7 @@ from affect import NEUTRAL, Emotion
 from affect.regions import SECTOR_WORDS
 from affect.words import WORD_PLACES
 from characters import Animator, Character, CharacterCommand, Pose
+from characters.skeleton.anatomy import SIDES
 from characters.synthesis.idle.posture_space import PostureVectors
 from characters.synthesis.idle.standing import StandingPerson
 from tests.bench.feet import FRAME_RATE, measure, placed_take
@@ -70,6 +73,15 @@ def weight(character: Character, poses: Pose) -> tuple[tuple[float, float], floa
     low, high = np.quantile(balance, (0.05, 0.95)).tolist()
     hips, head = np.diff(hips), np.diff(head)
     return (low, high), float((hips @ head) / (hips @ hips))
+
+
+def jolt(character: Character, poses: Pose) -> float:
+    """Return the largest acceleration of a few joints [body heights/s²]."""
+    parts = ("hips", "head", *(s + p for s in SIDES for p in ("LowerLeg", "Foot")))
+    joints = [character.anatomy.joints[part] for part in parts]
+    placed = poses.globals(character.skeleton)[:, joints][..., :3, 3]
+    change = np.linalg.norm(np.diff(placed, 2, axis=0), axis=-1) * FRAME_RATE**2
+    return float(change.max()) / character.height
 
 
 def apart(one: Array, other: Array) -> float:
@@ -136,7 +148,7 @@ def main() -> int:
     """Print the table and return an exit code."""
     console = Console(width=100)
     table = Table(title="how the bundled characters stand")
-    for heading in ("who", "slide", "weight", "head", "seeds", "mood", "longest"):
+    for heading in ("who", "slide", "weight", "head", "jolt", "seeds", "mood", "longest"):
         table.add_column(heading, justify="left" if heading == "who" else "right")
     good = True
     for name in Character.bundled():
@@ -149,7 +161,8 @@ def main() -> int:
         unlike = apart(kind.vectors(poses), kind.vectors(other))
         middle, longest = reaction(character)
         good &= sliding < MAX_SLIDE_MM_S and longest <= 1.0
-        cells = f"{low:.2f} … {high:.2f}", f"{head:.2f}", f"{unlike:.2f}"
+        jolted = jolt(character, poses)
+        cells = f"{low:.2f} … {high:.2f}", f"{head:.2f}", f"{jolted:.1f}", f"{unlike:.2f}"
         table.add_row(name, f"{sliding:.2f}", *cells, f"{middle:.2f}", f"{longest:.2f}")
     console.print(table)
     frame_ms, slower, grown = together()

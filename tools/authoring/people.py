@@ -26,12 +26,13 @@ KEPT_FRAMES = 2
 def save_standing(character: Character, path: Path) -> None:
     """Write how a bundled character stands, as its .idle file."""
     recordings = tuple(
-        _recording(character, mood, clip) for mood, clip in STANDING[character.name](character)
+        recording_of(character, mood, clip) for mood, clip in STANDING[character.name](character)
     )
     save_person((character.skeleton, character.anatomy, recordings), path)
 
 
-def _recording(character: Character, mood: str, clip: Clip) -> StandingRecording:
+def recording_of(character: Character, mood: str, clip: Clip) -> StandingRecording:
+    """Return a clip of a mood as a recording of how a character stands."""
     fewer = replace(clip, rate=clip.rate / KEPT_FRAMES, poses=clip.poses[::KEPT_FRAMES])
     body = character.skeleton, character.anatomy
     return read_standing(fewer, *body, region_of(mood), alignment="none")

@@ -38,6 +38,9 @@ class Bearing:
     """What the left and the right hand hold; "" if it hangs."""
 
 
+CROUCH_M = 0.006
+"""How far the hips come down per way of the weight, so that no knee is ever straight [m]."""
+
 LATE_S, LATE_DEG = 0.13, 6.0
 """How much later than the hips the trunk goes to the side [s], and by how much it bends for that
 [degrees for the whole way of the weight]."""
@@ -85,7 +88,7 @@ def _score(body: Bearing, stander: Stander, frames: int) -> ActingCurves:
     sides = zip(("Left", "Right"), body.hands, strict=True)
     return ActingCurves(
         weight=body.sway * weight + about(0.0, 0.03),
-        crouch=np.maximum(about(body.crouch, 0.001), 0.0),
+        crouch=np.maximum(about(body.crouch, 0.001), 0.0) + CROUCH_M * np.abs(body.sway * weight),
         lean=about(body.lean, 0.7),
         twist=about(body.twist, 0.8) + 2.0 * weight,
         side=about(body.side, 0.6) + LATE_DEG * body.sway * (weight - late),

@@ -43,7 +43,7 @@ class Bearing:
 BEARINGS = {
     "neutral": Bearing(),
     "pleased": Bearing(4, 2, 0, 14, 14, 14, 1.0),
-    "happy": Bearing(8, 10, 0, 9, 34, 22, 1.8, 0.003, 4),
+    "happy": Bearing(8, 10, 0, 9, 34, 22, 1.8, 0.010, 4),
     "alert": Bearing(22, -12, 0, 0, 16, 2, 0.3, 0.001, -4, 0.9),
     "angry": Bearing(-20, 16, 0, 0, 22, 12, 2.2, 0.010, -7, 0.9),
     "displeased": Bearing(-2, 4, 26, -6, -4, 8, 0.7, 0.005),
