@@ -31,7 +31,7 @@ from characters.synthesis.idle.stretches import StretchStream
 SIZE_IN = (13.0, 9.2)
 """Width and height of the plot [in]."""
 
-POSTURES = 7
+MAX_POSTURES = 7
 """Postures of a balance that are drawn."""
 
 PORTRAIT_PX = (150, 230)
@@ -73,7 +73,7 @@ def draw(database: IdleDatabase, title: str) -> Figure:
     top, bottom = figure.subfigures(2, 1, squeeze=False, height_ratios=(2.6, 1.0))[:, 0]
     left, right = top.subfigures(1, 2, squeeze=False, width_ratios=(1.7, 1.0))[0]
     balances = [name for name in BALANCES if name in database.by_balance]
-    columns = min(POSTURES, max(len(own) for own in database.by_balance.values()))
+    columns = min(MAX_POSTURES, max(len(own) for own in database.by_balance.values()))
     for axes, name in zip(np.atleast_1d(left.subplots(len(balances), 1)), balances, strict=True):
         _draw_postures(axes, database, name, columns)
     graph, dwells = right.subplots(2, 1, height_ratios=(1.35, 1.0))

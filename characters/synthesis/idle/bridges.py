@@ -12,7 +12,7 @@ from characters.synthesis.idle.database import BalanceShift, IdleDatabase, Resti
 from characters.synthesis.idle.fitting import fit, nearest_clip
 from characters.synthesis.idle.variations import COMPONENTS
 
-NEAR = 0.4
+NEAR_RAD = 0.4
 """Postures nearer than this are joined without a shift [rad]; such a difference is "visible, but
 minor"."""
 
@@ -69,7 +69,7 @@ def bridge(
     """
     balance = nearest_balance(database, end)
     at = database.space.project(np.stack([start.vector, end]), COMPONENTS)
-    near = balance == start.balance and np.linalg.norm(at[1] - at[0]) < NEAR
+    near = balance == start.balance and np.linalg.norm(at[1] - at[0]) < NEAR_RAD
     way = [] if near else shortest_way(database, start.balance, balance, rng)
     if not way:
         u = np.linspace(0.0, 1.0, round(EASED_S * database.rate) + 1)[:, None]

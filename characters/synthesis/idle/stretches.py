@@ -32,7 +32,7 @@ TEMPO, SIZE = 0.15, 0.2
 BACKWARD_SHARE = 0.3
 """Amplitude of what is played backwards; with that of the others, the variance is as recorded."""
 
-CANDIDATES = 20
+CANDIDATE_STRETCHES = 20
 """Stretches of which the nearest is taken."""
 
 _VELOCITY_SHARE = 0.1  # [s²] of the squared distance of velocities in that of stretches
@@ -161,7 +161,7 @@ class _Sequence:
         own, rng = self._stretches, self._rng
         tempo = float(np.exp(rng.uniform(-TEMPO, TEMPO)))
         size = float(np.exp(rng.uniform(-SIZE, SIZE)))
-        firsts = rng.integers(len(own.offsets) - 1, size=CANDIDATES)
+        firsts = rng.integers(len(own.offsets) - 1, size=CANDIDATE_STRETCHES)
         long = firsts[own.last[firsts] - firsts >= MIN_STRETCH_S * tempo * own.rate]
         firsts = long if len(long) else firsts - (own.last[firsts] == firsts)
         first, left = int(firsts[0]), _NOTHING

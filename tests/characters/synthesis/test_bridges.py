@@ -10,7 +10,7 @@ from affect import Emotion
 from characters import Character
 from characters.synthesis.idle.bridges import (
     EASED_S,
-    NEAR,
+    NEAR_RAD,
     bridge,
     nearest_balance,
     shortest_way,
@@ -129,11 +129,11 @@ def test_it_begins_exactly_where_it_is_told(kind: PostureVectors) -> None:
 def test_near_postures_of_one_balance_need_no_shift(kind: PostureVectors) -> None:
     database = stander(kind, PAIRS)
     start = database.postures[0]
-    aside = start.vector + 0.5 * NEAR * database.space.components[:, 3]
+    aside = start.vector + 0.5 * NEAR_RAD * database.space.components[:, 3]
     assert nearest_balance(database, aside) == start.balance
     rng = np.random.default_rng(0)
     assert len(bridge(database, start, aside, rng)) == round(EASED_S * RATE) + 1
-    far = start.vector + 2.0 * NEAR * database.space.components[:, 3]
+    far = start.vector + 2.0 * NEAR_RAD * database.space.components[:, 3]
     assert len(bridge(database, start, far, rng)) > 40  # there and back again
 
 
