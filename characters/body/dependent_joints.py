@@ -64,7 +64,5 @@ class DependentJoints:
 
     def move(self, pose: Pose, share: float = 1.0) -> Pose:
         """Return a pose (…) with a share of the filter; legs and root stay."""
-        single = pose.rotations.ndim == 2
-        own = self.kind.vectors(pose[None] if single else pose)
-        moved = own + share * (self.apply(own) - own)
-        return self.kind.poses(moved[0] if single else moved, pose)
+        own = self.kind.vectors(pose)
+        return self.kind.poses(own + share * (self.apply(own) - own), pose)

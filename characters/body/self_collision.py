@@ -107,14 +107,12 @@ class SafeRanges:
 
     def keep(self, pose: Pose) -> Pose:
         """Return a pose (…) whose upper body stays within the ranges; nothing else changes."""
-        single = pose.rotations.ndim == 2
-        frames = pose[None] if single else pose
-        vectors = self.kind.vectors(frames)
+        vectors = self.kind.vectors(pose)
         at = self.space.project(vectors, len(self.high))
         kept = -damped(-damped(at, self.high), -self.low)
         if np.array_equal(kept, at):
             return pose
         moved = vectors + (kept - at) @ self.space.components[:, : len(self.high)].T
-        changed = self.kind.poses(moved, frames)
-        turns = np.where((kept != at).any(1)[:, None, None], changed.rotations, frames.rotations)
-        return replace(pose, rotations=turns[0] if single else turns)
+        turns = self.kind.poses(moved, pose).rotations
+        changed = (kept != at).any(-1)[..., None, None]
+        return replace(pose, rotations=np.where(changed, turns, pose.rotations))

@@ -109,7 +109,7 @@ def reaction(character: Character) -> tuple[float, float]:
         pause = max(p.duration for p in database.suiting(old).postures)
         motion.feel(new)
         for after in np.arange(0.0, 2.0 * pause, 0.1).tolist():
-            at = database.kind.vectors(motion.sample(begin + after)[None])[0]
+            at = database.kind.vectors(motion.sample(begin + after))
             far = [np.linalg.norm(at - mean) for mean in means]
             if far[1] < far[0]:
                 break

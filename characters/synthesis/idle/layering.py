@@ -4,7 +4,7 @@ Source: Egges, Molet and Magnenat-Thalmann 2004, section 7.2 (S10). A gesture is
 motion joint by joint, as in `MaskedLayer` and `Schedule`; small variations are added afterwards.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -43,8 +43,7 @@ class Varied:
         """Return the pose at a time [s] not before the last one."""
         pose, kind = self.motion.sample(time), self.database.kind
         offset = self.share * self._stream.at(time)
-        varied = kind.poses(kind.vectors(pose[None])[0] + offset, pose)
-        return replace(varied, morphs=pose.morphs)
+        return kind.poses(kind.vectors(pose) + offset, pose)
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root of the motion moves over the ground between two times [s]."""

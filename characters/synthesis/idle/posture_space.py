@@ -75,7 +75,13 @@ class PostureVectors:
         return 3 * len(self.joints) + (0 if self.hips is None else 3)
 
     def vectors(self, poses: Pose) -> Array:
-        """Return the vectors of a clip's poses, (frames, size), without jumps within the clip."""
+        """Return the vectors of a clip's poses, (frames, size), without jumps within the clip.
+
+        That of a single pose is (size,).
+        """
+        if poses.rotations.ndim == 2:
+            single: Array = self.vectors(poses[None])[0]
+            return single
         rest = self.skeleton.rest
         turns = rotations.multiply(
             rotations.conjugate(self._resting), poses.rotations[:, self._joints]
@@ -87,7 +93,7 @@ class PostureVectors:
         return np.concatenate([vectors, moved], axis=1)
 
     def poses(self, vectors: Array, others: Pose | None = None) -> Pose:
-        """Return the poses of vectors (…, size); `others` hold what the vectors leave out."""
+        """Return the poses of vectors (…, size); `others` hold all that they leave out."""
         rest, count = self.skeleton.rest, len(self.joints)
         base, shape = others or self.others or rest, vectors.shape[:-1]
         turns, moved = (
@@ -98,9 +104,11 @@ class PostureVectors:
         turns[..., self._joints, :] = rotations.multiply(self._resting, own)
         if self.hips is not None:
             moved[..., self.hips, :] = rest.translations[self.hips] + vectors[..., -3:]
-        if base.scales is None:
-            return Pose(moved, turns)
-        return Pose(moved, turns, np.broadcast_to(base.scales, moved.shape))
+        scales = None if base.scales is None else np.broadcast_to(base.scales, moved.shape)
+        face = None if others is None else others.morphs
+        if face is not None:
+            face = np.broadcast_to(face, (*shape, face.shape[-1]))
+        return Pose(moved, turns, scales, face)
 
 
 def continuous_rotation_vectors(turns: Array) -> Array:

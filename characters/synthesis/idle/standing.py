@@ -118,8 +118,7 @@ class StandingPerson:
 
     def _vectors(self, act: Clip, frame: int) -> Array:
         """Return the posture vector of a frame of an act."""
-        vectors: Array = self.idle.database.kind.vectors(act.poses[frame][None])[0]
-        return vectors
+        return self.idle.database.kind.vectors(act.poses[frame])
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return no movement: the feet stay."""

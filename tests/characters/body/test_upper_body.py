@@ -124,6 +124,15 @@ def test_a_gesture_of_one_arm_moves_the_others_too_but_not_the_legs(human, kind,
     assert np.array_equal(moved.rotations[:, legs], pose.rotations[:, legs])
 
 
+def test_who_smiles_still_smiles_when_the_body_is_changed(human, dependent, ranges) -> None:
+    waving = human.clips["wave"].poses
+    for change in (dependent.move, ranges.keep):
+        assert np.array_equal(change(waving).morphs, waving.morphs)
+        assert np.array_equal(change(waving[20]).morphs, waving.morphs[20])
+        one, same = change(waving[20]), change(waving)[20]
+        assert one.rotations == pytest.approx(same.rotations, abs=1e-9)
+
+
 def errors(human: Character, kind: PostureVectors, starts: list[float]) -> list[float]:
     rows = kind.vectors(human.clips["cheer"].poses)
     clips = [clip.poses for clip in human.clips.values()]
