@@ -13,12 +13,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
 from numpy.typing import NDArray
 
-from app.errors import AppError
 from app.moods.colors import CURVE_STYLES, GRID_COLOR, SECONDARY_COLOR, TEXT_COLOR
-from app.moods.plot import FILE_METADATA, PNG_DPI
+from app.moods.plot import write_figure
 from app.moods.plot_layout import MATPLOTLIB_STYLE, printable
-from app.output_path import whole_file
 from characters import Character
+from characters.model.standing import idle_clips
 from characters.model.stick_figure import stick_figure
 from characters.rendering import create_context
 from characters.rendering.portrait import PAPER_BGR, PortraitRenderer
@@ -55,15 +54,8 @@ def save_plot(path: Path, database: IdleDatabase, title: str) -> None:
     AppError
         The file cannot be written.
     """
-    suffix = path.suffix.lower()
     with matplotlib.rc_context(MATPLOTLIB_STYLE):
-        figure = draw(database, title)
-        metadata = {**FILE_METADATA[suffix], "Title": printable(title)}
-        try:
-            with whole_file(path) as partial:
-                figure.savefig(partial, dpi=PNG_DPI, metadata=metadata, format=suffix[1:])
-        except OSError as error:
-            raise AppError(f"cannot write '{path}' ({error.strerror}): check the folder") from None
+        write_figure(draw(database, title), path, title)
 
 
 def draw(database: IdleDatabase, title: str) -> Figure:
@@ -117,8 +109,7 @@ def _draw_postures(axes: Axes, database: IdleDatabase, name: str, columns: int) 
 def _pictures(database: IdleDatabase, postures: list[RestingPosture]) -> list[NDArray[np.uint8]]:
     """Return portraits of postures by one camera."""
     body = body_of(database.kind.skeleton)
-    idle = next((clip for name, clip in body.clips.items() if "idle" in name.lower()), None)
-    held = None if idle is None else idle.poses[0]
+    held = next((clip.poses[0] for clip in idle_clips(body.clips)), None)
     context = create_context()
     renderer = PortraitRenderer(context, PORTRAIT_PX)
     poses = [database.kind.poses(posture.vector, held) for posture in postures]

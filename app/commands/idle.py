@@ -16,6 +16,7 @@ from affect.words import WORD_PLACES
 from app.commands.output import (
     PLOT_SUFFIXES,
     OverwriteOption,
+    PlotOption,
     chosen_output,
     needs_matplotlib,
 )
@@ -87,9 +88,7 @@ def show(
     person: Annotated[
         Path, typer.Argument(help="A file of cubeling idle learn, or a bundled character.")
     ],
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Plot to this .svg, .pdf or .png file.")
-    ] = None,
+    output: PlotOption = None,
     overwrite: OverwriteOption = False,
     mood: Annotated[
         str, typer.Option(help="What is shown of somebody who was recorded in several moods.")

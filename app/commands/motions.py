@@ -13,6 +13,7 @@ from rich.table import Table
 from app.commands.output import (
     PLOT_SUFFIXES,
     OverwriteOption,
+    PlotOption,
     chosen_output,
     needs_matplotlib,
 )
@@ -112,9 +113,7 @@ def build(
 @app.command()
 def show(
     graph: Annotated[Path, typer.Argument(help="A file of cubeling motions build.")],
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Plot to this .svg, .pdf or .png file.")
-    ] = None,
+    output: PlotOption = None,
     overwrite: OverwriteOption = False,
 ) -> None:
     """Show a motion graph: its clips, its jumps, and what was pruned.

@@ -18,6 +18,11 @@ PLOT_SUFFIXES = (".svg", ".pdf", ".png")
 """Suffixes of the files that a plot can be written to."""
 
 
+PlotOption = Annotated[
+    Path | None, typer.Option("--output", "-o", help="Plot to this .svg, .pdf or .png file.")
+]
+
+
 @contextmanager
 def needs_matplotlib() -> Iterator[None]:
     """Import what draws plots within; without matplotlib, an AppError says what to install."""

@@ -74,17 +74,27 @@ def save_plot(
         The file cannot be written.
     """
     with matplotlib.rc_context(MATPLOTLIB_STYLE):
-        figure = draw(history, others, robot, labels)
-        metadata = {
-            **FILE_METADATA[path.suffix.lower()],
-            "Title": printable(f"Moods of {history.name}"),
-        }
-        try:
-            dpi = PNG_DPI if path.suffix.lower() == ".png" else 72.0
-            with whole_file(path) as partial:
-                figure.savefig(partial, dpi=dpi, metadata=metadata)
-        except OSError as error:
-            raise AppError(f"cannot write '{path}' ({error.strerror}): check the folder") from None
+        write_figure(draw(history, others, robot, labels), path, f"Moods of {history.name}", 72.0)
+
+
+def write_figure(figure: Figure, path: Path, title: str, vector_dpi: float = PNG_DPI) -> None:
+    """Write a figure to an .svg, .pdf or .png file; an existing file is replaced at the end only.
+
+    `vector_dpi` is the resolution of pictures in the first two.
+
+    Raises
+    ------
+    AppError
+        The file cannot be written.
+    """
+    suffix = path.suffix.lower()
+    metadata = {**FILE_METADATA[suffix], "Title": printable(title)}
+    try:
+        with whole_file(path) as partial:
+            dpi = PNG_DPI if suffix == ".png" else vector_dpi
+            figure.savefig(partial, dpi=dpi, metadata=metadata)
+    except OSError as error:
+        raise AppError(f"cannot write '{path}' ({error.strerror}): check the folder") from None
 
 
 def draw(

@@ -11,9 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
-from app.errors import AppError
 from app.moods.colors import BORDER_COLOR, CURVE_STYLES, SECONDARY_COLOR, TEXT_COLOR
-from app.moods.plot import FILE_METADATA, PNG_DPI
+from app.moods.plot import write_figure
 from app.moods.plot_layout import MATPLOTLIB_STYLE, printable
 from characters.synthesis.distances import DISTANCES, matrix
 from characters.synthesis.graphs.building import connectivity_curves, standard_graph
@@ -44,11 +43,7 @@ def save_plot(path: Path, stored: StoredGraph, title: str) -> None:
         _draw_distances(figure, left, stored, graph)
         _draw_connectivity(right, stored)
         figure.suptitle(printable(title), fontweight="bold", color=TEXT_COLOR)
-        metadata = FILE_METADATA[path.suffix.lower()]
-        try:
-            figure.savefig(path, dpi=PNG_DPI, metadata=metadata)
-        except OSError as error:
-            raise AppError(f"cannot write '{path}' ({error.strerror})") from None
+        write_figure(figure, path, title)
 
 
 def _draw_distances(figure: Figure, axes: Axes, stored: StoredGraph, graph: MotionGraph) -> None:

@@ -22,6 +22,11 @@ StandingFactory = Callable[[int], StandingMotion]
 """Makes the motion that a character stands with from a seed."""
 
 
+def idle_clips(clips: Mapping[str, Clip]) -> list[Clip]:
+    """Return the clips of idling: those whose name contains "idle"."""
+    return [clip for name, clip in clips.items() if "idle" in name.lower()]
+
+
 def standing_factory(
     skeleton: Skeleton,
     anatomy: Anatomy,
@@ -32,11 +37,10 @@ def standing_factory(
 ) -> StandingFactory:
     """Return what makes the idle motion of a person in recordings on a skeleton.
 
-    The first clip whose name contains "idle" shows how it holds what posture vectors leave out,
+    The first of its idle clips shows how it holds what posture vectors leave out,
     such as its fingers. All these clips are its acts, if it is `acting`.
     """
-    acts = [clip for name, clip in clips.items() if "idle" in name.lower()]
-
+    acts = idle_clips(clips)
     held = acts[0].poses[0] if acts else skeleton.rest
     paws = PlantedPaws.of(held, skeleton, anatomy)
 

@@ -8,6 +8,7 @@ from characters.body.self_collision import SafeRanges
 from characters.control.layers.layer import FrameContext
 from characters.errors import CharacterError
 from characters.model.character import Character
+from characters.model.standing import idle_clips
 from characters.skeleton.pose import Pose
 from characters.synthesis.idle.posture_space import PostureVectors
 
@@ -36,16 +37,16 @@ def safe_ranges_of(character: Character) -> SafeRanges:
     CharacterError
         If it is no humanoid, or has no clip of idling or no skin.
     """
-    idle = next((clip for name, clip in character.clips.items() if "idle" in name.lower()), None)
-    if character.anatomy.kind != "humanoid" or idle is None or not character.meshes:
+    idle = idle_clips(character.clips)
+    if character.anatomy.kind != "humanoid" or not idle or not character.meshes:
         raise CharacterError(
             f"{character.name}: self-collision needs a person with a skin and a clip called idle"
         )
     skeleton, anatomy = character.skeleton, character.anatomy
-    body = CapsuleBody.of(skeleton, anatomy, character.meshes, idle.poses)
+    body = CapsuleBody.of(skeleton, anatomy, character.meshes, idle[0].poses)
     kind = PostureVectors.of(skeleton, anatomy, "upper")
     clips = [clip.poses for clip in character.clips.values()]
-    return SafeRanges.of(clips, kind, body, idle.poses[:1])
+    return SafeRanges.of(clips, kind, body, idle[0].poses[:1])
 
 
 class SelfCollisionLayer:
