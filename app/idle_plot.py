@@ -122,7 +122,7 @@ def _pictures(database: IdleDatabase, postures: list[RestingPosture]) -> list[ND
 
 def _draw_transitions(axes: Axes, database: IdleDatabase) -> None:
     """Draw how often which balance follows which."""
-    axes.set_title("balance shifts: what follows, and how often", loc="left", fontweight="bold")
+    axes.set_title("balance shifts: what follows how often", loc="left", fontweight="bold")
     axes.set_xlim(0.0, 1.0)
     axes.set_ylim(0.0, 1.0)
     axes.set_axis_off()
