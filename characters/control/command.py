@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from affect import Emotion
 from characters.locomotion.gaits import IDLE_SPEED
 from characters.skeleton.pose import Pose
+from characters.speech.speech import Utterance
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,28 @@ class ActionIntent:
 
 
 @dataclass(frozen=True)
+class SpeechIntent:
+    """Something to say: the mouth, the face and the hands follow its sound."""
+
+    utterance: Utterance
+    """What is said, with the times of its phones and accents."""
+
+    start: float
+    """When its sound begins [s]; may lie in the past."""
+
+    gesture_emphasis: float = 0.0
+    """Added to the strength of accents for the hands, −1…1."""
+
+    face_emphasis: float = 0.0
+    """Added to the strength of accents for the mouth, −1…1."""
+
+    @property
+    def end(self) -> float:
+        """When its sound ends [s]."""
+        return self.start + self.utterance.duration
+
+
+@dataclass(frozen=True)
 class CharacterCommand:
     """What a scenario asks of a character in one frame: intents, each optional."""
 
@@ -59,6 +82,9 @@ class CharacterCommand:
 
     visible: bool = True
     """Whether the character is drawn."""
+
+    speech: SpeechIntent | None = None
+    """What the character says; None for nothing. It is given until it ends."""
 
     @property
     def activity(self) -> str:
