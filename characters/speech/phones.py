@@ -1,0 +1,61 @@
+"""Phones: classes of the International Phonetic Alphabet, and ARPAbet."""
+
+from typing import Literal
+
+from characters.speech.speech import SILENCE
+
+SoundClass = Literal["silence", "vowel", "glide", "nasal", "stop", "fricative", "affricate"]
+"""How a phone is made; glides are approximants, laterals, taps and trills."""
+
+SYLLABIC = "\N{COMBINING VERTICAL LINE BELOW}"
+"""Marks a consonant that is the nucleus of a syllable, such as in "bottle"."""
+
+_LETTERS: dict[SoundClass, str] = {
+    "vowel": "aɑɒɐæeɛəɘɜɞɤɪiɨɯoɔuʊʉʌyʏøœɶɚɝᵻ",
+    "glide": "wjɥɰɹɻrɾɽʀlɫɭʎʟʋ",
+    "nasal": "mɱnɳɲŋɴ",
+    "stop": "pbtdʈɖcɟkɡgqɢʔɓɗɠʛ",
+    "fricative": "fvθðszʃʒʂʐɕʑçʝxɣχʁħʕhɦɸβɬɮʍ",
+}
+_CLASSES = {letter: kind for kind, letters in _LETTERS.items() for letter in letters}
+
+_ARPABET = """
+AA:ɑ AE:æ AH:ʌ AO:ɔ AW:aʊ AX:ə AXR:ɚ AY:aɪ B:b CH:tʃ D:d DH:ð DX:ɾ EH:ɛ ER:ɜ EY:eɪ F:f G:ɡ HH:h
+IH:ɪ IX:ɪ IY:i JH:dʒ K:k L:l EL:l̩ M:m EM:m̩ N:n EN:n̩ NG:ŋ OW:oʊ OY:ɔɪ P:p R:ɹ S:s SH:ʃ T:t TH:θ
+UH:ʊ UW:u V:v W:w Y:j Z:z ZH:ʒ
+"""
+
+IPA_OF_ARPABET = dict(pair.split(":") for pair in _ARPABET.split())
+"""The IPA symbol of each phone of ARPAbet, the alphabet of American pronunciation dictionaries."""
+
+
+def ipa_of_arpabet(symbol: str) -> str:
+    """Return a phone of ARPAbet in IPA; `SILENCE` for pauses and noises.
+
+    >>> ipa_of_arpabet("ow1"), ipa_of_arpabet("SIL")
+    ('oʊ', '')
+    """
+    return IPA_OF_ARPABET.get(symbol.upper().rstrip("012"), SILENCE)
+
+
+def sound_class(symbol: str) -> SoundClass:
+    """Return how a phone is made, by the first letter that says so.
+
+    An unknown symbol is a vowel: the mouth opens, whatever it is.
+
+    >>> [sound_class(each) for each in ("", "aɪ", "tʃ", "ŋ", "ˈx", "?")]
+    ['silence', 'vowel', 'affricate', 'nasal', 'fricative', 'vowel']
+    """
+    if symbol == SILENCE:
+        return "silence"
+    if SYLLABIC in symbol:
+        return "vowel"
+    kinds = [_CLASSES[letter] for letter in symbol if letter in _CLASSES]
+    if kinds[:2] == ["stop", "fricative"]:
+        return "affricate"
+    return kinds[0] if kinds else "vowel"
+
+
+def is_vowel(symbol: str) -> bool:
+    """Return whether a phone can be the nucleus of a syllable."""
+    return sound_class(symbol) == "vowel"
