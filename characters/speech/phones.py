@@ -1,5 +1,6 @@
 """Phones: classes of the International Phonetic Alphabet, and ARPAbet."""
 
+from collections.abc import Sequence
 from typing import Literal
 
 from characters.speech.speech import SILENCE
@@ -30,12 +31,23 @@ IPA_OF_ARPABET = dict(pair.split(":") for pair in _ARPABET.split())
 
 
 def ipa_of_arpabet(symbol: str) -> str:
-    """Return a phone of ARPAbet in IPA; `SILENCE` for pauses and noises.
+    """Return a phone of ARPAbet in IPA; an unknown one as it is, without capitals.
 
-    >>> ipa_of_arpabet("ow1"), ipa_of_arpabet("SIL")
-    ('oʊ', '')
+    >>> ipa_of_arpabet("ow1"), ipa_of_arpabet("PT")
+    ('oʊ', 'pt')
     """
-    return IPA_OF_ARPABET.get(symbol.upper().rstrip("012"), SILENCE)
+    return IPA_OF_ARPABET.get(symbol.upper().rstrip("012"), symbol.lower())
+
+
+def is_arpabet(symbols: Sequence[str]) -> bool:
+    """Return whether phones are in ARPAbet rather than IPA, as far as they tell.
+
+    >>> is_arpabet(["hh", "ax", "l", "ow"]), is_arpabet(["h", "ə", "l", "o"])
+    (True, False)
+    """
+    known = [s for s in symbols if s.upper().rstrip("012") in IPA_OF_ARPABET]
+    telling = any(len(s) > 1 for s in known) and all(s.isascii() for s in symbols)
+    return telling and len(known) >= 0.8 * len(symbols)
 
 
 def sound_class(symbol: str) -> SoundClass:

@@ -94,7 +94,7 @@ class _Autocorrelation:
         self.length = 2 * half
         self._period = int(rate / settings.floor)
         self._fft = 1 << int(np.ceil(np.log2(1.5 * self.length)))
-        self._finer = max(1, 1 << int(np.ceil(np.log2(MIN_LAG_RATE / rate))))
+        self._finer = 1 << max(0, int(np.ceil(np.log2(MIN_LAG_RATE / rate))))
         self._lag_rate = rate * self._finer
         position = np.arange(1, self.length + 1) / (self.length + 1)
         self._window = (0.5 - 0.5 * np.cos(2 * np.pi * position)).astype(np.float32)
