@@ -1,11 +1,13 @@
-"""The face: blinks, and the expression of an emotion."""
+"""The face: blinks, the expression of an emotion, and the mouth of a speech."""
 
 import numpy as np
 
 from characters.control.layers.layer import FrameContext
 from characters.face.affect_display import AffectDisplay
 from characters.face.blink import BlinkTimer
+from characters.face.jaw import JawJoint
 from characters.face.lids import Lids, blink_shares
+from characters.face.speech_display import SpeechDisplay
 from characters.model.character import Character
 from characters.skeleton.pose import Pose
 
@@ -14,7 +16,7 @@ WIDE_EYES_MORPH = "surprised"
 
 
 class FaceLayer:
-    """Sets the morphs of lids and expressions."""
+    """Sets the morphs of lids, expressions and speech."""
 
     def __init__(self, character: Character, seed: int) -> None:
         morphs = character.morphs
@@ -22,6 +24,8 @@ class FaceLayer:
         self._lids = Lids.of(morphs)
         self._blinks = BlinkTimer(seed)
         self._display = AffectDisplay(morphs, blink_shares(morphs, character.meshes, self._lids))
+        self._speech = SpeechDisplay(morphs, seed)
+        self._jaw = JawJoint(character.skeleton, character.anatomy)
         self._wide = morphs.index(WIDE_EYES_MORPH) if WIDE_EYES_MORPH in morphs else None
 
     def update(self, pose: Pose, context: FrameContext) -> Pose:
@@ -31,7 +35,8 @@ class FaceLayer:
         closed = self._blinks.update(
             context.elapsed, context.gaze_shift, context.expressivity.tempo
         )
-        if not self._lids and not self._display.active:
+        self._update_speech(context)
+        if not self._lids and not self._display.active and not self._speech.active:
             return pose
         weights = np.zeros(self._count) if pose.morphs is None else pose.morphs.copy()
         if self._display.active:
@@ -45,4 +50,15 @@ class FaceLayer:
             self._lids.close(weights, closed)
         if self._wide is not None:
             weights[self._wide] *= 1.0 - closed  # morphs add up: wide eyes would not close
-        return Pose(pose.translations, pose.rotations, pose.scales, weights)
+        shown = Pose(pose.translations, pose.rotations, pose.scales, weights)
+        if not self._speech.active:
+            return shown
+        self._speech.apply(weights, pose.morphs, context.elapsed, closed)
+        return shown if self._speech.has_morphs else self._jaw.opened(shown, self._speech.opening)
+
+    def _update_speech(self, context: FrameContext) -> None:
+        """Bring the mouth to the time of the frame."""
+        speech = context.command.speech
+        said = None if speech is None else (speech.utterance, speech.start)
+        emphasis = 0.0 if speech is None else speech.face_emphasis
+        self._speech.update(context.elapsed, said, context.command.timestamp, emphasis)

@@ -1,0 +1,116 @@
+"""Speech display: the mouth, and the brows, of a character that speaks."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from characters.face.affect_display import RETURN_LAG_S, YIELD_LAG_S, room_beside_mouth
+from characters.face.brows import AccentBrows
+from characters.face.composition import SpeakingExpression
+from characters.face.expressions import ExpressionMorphs
+from characters.face.visemes.coarticulation import (
+    DEFAULT,
+    LEVELS,
+    PAUSE_BESIDE_S,
+    Coarticulation,
+    MouthTrack,
+)
+from characters.face.visemes.mouth_morphs import MouthMorphs, jaw_opening
+from characters.face.visemes.sets import SHAPES
+from characters.motion.curves import ease
+from characters.skeleton.pose import Array
+from characters.smoothing import low_pass
+from characters.speech.speech import Utterance
+
+SWITCH_S = 0.1
+"""How long the mouth takes from one speech to another that cuts in [s]."""
+
+CLOSING_S = 0.15
+"""How long the mouth takes to close after the end of a speech or a cut [s]."""
+
+ONSET_S = 0.12
+"""How long an expression takes to leave the mouth to a speech, and to take it back [s]."""
+
+_CLOSED = np.zeros((len(LEVELS), len(SHAPES)))
+
+
+class SpeechDisplay:
+    """The speaking face of one character.
+
+    An action that moves the mouth itself, such as a kiss, has priority over the speech.
+    """
+
+    def __init__(
+        self, morphs: Sequence[str], seed: int, settings: Coarticulation = DEFAULT
+    ) -> None:
+        self._settings = settings
+        self._mouth = MouthMorphs.of(morphs)
+        self._expression = SpeakingExpression(morphs)
+        self._brows = AccentBrows(morphs, seed)
+        self._clips = ExpressionMorphs.of(morphs).speech
+        self._said: tuple[Utterance, float] | None = None
+        self._track: MouthTrack | None = None
+        self._shapes = self._offset = _CLOSED
+        self._since, self._length = 0.0, CLOSING_S
+        self._presence, self._raised, self._room = 0.0, 0.0, 1.0
+
+    @property
+    def active(self) -> bool:
+        """Whether the face speaks, or still closes its mouth."""
+        return self._said is not None or self._presence > 0.0 or self._since < self._length
+
+    @property
+    def has_morphs(self) -> bool:
+        """Whether the face has morphs that speak."""
+        return bool(self._mouth)
+
+    @property
+    def opening(self) -> float:
+        """How far the jaw is open, 0…1."""
+        return self._room * jaw_opening(self._shapes)
+
+    def update(
+        self, elapsed: float, said: tuple[Utterance, float] | None, now: float, emphasis: float
+    ) -> None:
+        """Advance by a time [s] to `now` [s].
+
+        `said` is an utterance and when its sound begins [s], or None. `emphasis`, −1…1, is added to
+        the strength of its accents.
+        """
+        if said is not None and not -PAUSE_BESIDE_S <= now - said[1] < said[0].duration:
+            said = None
+        self._since += elapsed
+        if said != self._said:
+            self._begin(said)
+        step = elapsed / ONSET_S
+        self._presence = min(max(self._presence + (-step if said is None else step), 0.0), 1.0)
+        target, self._raised = _CLOSED, 0.0
+        if said is not None and self._track is not None:
+            time = now - said[1]
+            target, self._raised = self._track.at(time, emphasis), self._brows.raised(time)
+        left = 1.0 - ease(min(self._since / self._length, 1.0), "cubic")
+        self._shapes = target + left * self._offset
+
+    def _begin(self, said: tuple[Utterance, float] | None) -> None:
+        """Take another utterance; the mouth goes over to it from where it is."""
+        self._said = said
+        self._track = None if said is None else MouthTrack(said[0], self._settings)
+        self._brows.plan(() if said is None else said[0].accents)
+        self._offset = self._shapes
+        self._since, self._length = 0.0, CLOSING_S if said is None else SWITCH_S
+
+    def apply(self, weights: Array, clips: Array | None, elapsed: float, closed: float) -> None:
+        """Lay the speech over morph weights (morphs,) with an expression on them, in place.
+
+        `clips` are the weights that the clips have, `closed` is how far a blink closes the lids,
+        0…1, and `elapsed` the time since the last call [s].
+        """
+        room = 1.0 if clips is None else room_beside_mouth(clips[self._clips].tolist())
+        self._room = low_pass(
+            self._room, room, elapsed, YIELD_LAG_S if room < self._room else RETURN_LAG_S
+        )
+        presence = ease(self._presence, "cubic") * self._room
+        self._expression.apply(weights, presence)
+        weights[self._clips] *= 1.0 - presence
+        weights[self._mouth.numbers] += self._room * self._mouth.of_shapes(self._shapes)
+        self._brows.apply(weights, self._raised, closed)

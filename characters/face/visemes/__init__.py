@@ -1,0 +1,1 @@
+"""Visemes: the shapes of the mouth that speech sounds need, and how they run together."""
