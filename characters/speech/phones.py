@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Literal
 
-from characters.speech.speech import SILENCE
+from characters.speech.speech import SILENCE, Phone
 
 SoundClass = Literal["silence", "vowel", "glide", "nasal", "stop", "fricative", "affricate"]
 """How a phone is made; glides are approximants, laterals, taps and trills."""
@@ -30,6 +30,13 @@ IPA_OF_ARPABET = dict(pair.split(":") for pair in _ARPABET.split())
 """The IPA symbol of each phone of ARPAbet, the alphabet of American pronunciation dictionaries."""
 
 
+ARPABET_OF_IPA = {
+    **{ipa: symbol for symbol, ipa in reversed(IPA_OF_ARPABET.items())},
+    **dict(zip("ɐəᵻɒaeoɡgrɫxçyø", "AH AX IH AA AA EH OW G G R L K K UW ER".split(), strict=True)),
+}
+"""ARPAbet of IPA symbols, and what comes nearest to those that English lacks."""
+
+
 def ipa_of_arpabet(symbol: str) -> str:
     """Return a phone of ARPAbet in IPA; an unknown one as it is, without capitals.
 
@@ -37,6 +44,24 @@ def ipa_of_arpabet(symbol: str) -> str:
     ('oʊ', 'pt')
     """
     return IPA_OF_ARPABET.get(symbol.upper().rstrip("012"), symbol.lower())
+
+
+def arpabet_of_ipa(symbol: str) -> list[str]:
+    """Return a phone of IPA in ARPAbet, by the longest pieces that it has a phone for.
+
+    >>> arpabet_of_ipa("aɪə"), arpabet_of_ipa("ŋ"), arpabet_of_ipa("?")
+    (['AY', 'AX'], ['NG'], [])
+    """
+    pieces, at = [], 0
+    while at < len(symbol):
+        for length in (2, 1):
+            piece = ARPABET_OF_IPA.get(symbol[at : at + length])
+            if piece is not None:
+                pieces.append(piece)
+                at += length - 1
+                break
+        at += 1
+    return pieces
 
 
 def is_arpabet(symbols: Sequence[str]) -> bool:
@@ -71,3 +96,24 @@ def sound_class(symbol: str) -> SoundClass:
 def is_vowel(symbol: str) -> bool:
     """Return whether a phone can be the nucleus of a syllable."""
     return sound_class(symbol) == "vowel"
+
+
+def fill_pauses(phones: Sequence[Phone], duration: float) -> tuple[Phone, ...]:
+    """Return phones with pauses in between, without gaps, overlaps or empty phones.
+
+    >>> [(p.symbol, p.start) for p in fill_pauses([Phone("m", 0.1, 0.2), Phone("", 0.2, 0.3)], 1.0)]
+    [('', 0.0), ('m', 0.1), ('', 0.2)]
+    """
+    filled: list[Phone] = []
+    at = 0.0
+    for phone in [*phones, Phone(SILENCE, duration, duration)]:
+        start, end = min(max(phone.start, at), duration), min(phone.end, duration)
+        pieces = [Phone(SILENCE, at, start)] if start > at + 1e-6 else []
+        pieces += [Phone(phone.symbol, start if pieces else at, end)] if end > start else []
+        for piece in pieces:
+            if filled and piece.symbol == SILENCE == filled[-1].symbol:
+                filled[-1] = Phone(SILENCE, filled[-1].start, piece.end)
+            else:
+                filled.append(piece)
+            at = piece.end
+    return tuple(filled)

@@ -1,0 +1,127 @@
+"""Alignment of English recordings by PocketSphinx, the extra `[align]`.
+
+Two passes: the words first, then the phones of the pronunciations that were chosen. Words that its
+dictionary lacks are pronounced as the voice does.
+"""
+
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from characters.errors import CharacterError
+from characters.speech.audio import resampled
+from characters.speech.phones import arpabet_of_ipa, ipa_of_arpabet
+from characters.speech.speech import SILENCE, Phone, Speech, Word
+from characters.speech.voices import Voice
+
+RATE = 16_000
+"""Sample rate of its model [Hz]."""
+
+FRAME_S = 0.01
+"""Time from frame to frame of its model [s]."""
+
+DELAY_S = 0.0
+"""How much later a boundary is than the start of the frame that follows it [s]."""
+
+MAX_S = 300.0
+"""Longest recording that is aligned at once [s]."""
+
+_NOISES = ("<s>", "</s>", "<sil>", "[NOISE]", "(NULL)")
+_WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
+
+
+def align_with_sphinx(recording: Speech, text: str, voice: Voice) -> Speech:
+    """Return an English recording with the times of its words and phones.
+
+    Raises
+    ------
+    CharacterError
+        PocketSphinx is not installed, the text does not match, or the recording is too long.
+    """
+    if recording.duration > MAX_S:
+        raise CharacterError(f"PocketSphinx aligns up to {MAX_S:g} s at once: cut the recording")
+    written = list(_WORD.finditer(text))
+    if not written:
+        raise CharacterError("there are no words to align")
+    decoder = _decoder()
+    for word in {_key(match.group()) for match in written}:
+        if decoder.lookup_word(word) is None:
+            decoder.add_word(word, _pronounced(word, voice), True)
+    sound = resampled(recording.samples, recording.rate, RATE)
+    data = (sound.clip(-1.0, 1.0) * 32767).astype("<i2").tobytes()
+    try:
+        decoder.set_align_text(" ".join(_key(match.group()) for match in written))
+        _decode(decoder, data)
+        decoder.set_alignment()
+        _decode(decoder, data)
+    except RuntimeError as error:
+        raise CharacterError("PocketSphinx does not find this text in the recording") from error
+    entries = [
+        (each.name, each.start, each.duration, [(phone.name, phone.start) for phone in each])
+        for each in decoder.get_alignment() or ()  # what it yields dies with the next one
+    ]
+    spoken = [entry for entry in entries if entry[0] not in _NOISES]
+    if len(spoken) != len(written):
+        raise CharacterError("PocketSphinx does not find this text in the recording")
+    words = tuple(
+        Word(match.group(), _time(start), _time(start + length), match.start())
+        for match, (_, start, length, _) in zip(written, spoken, strict=True)
+    )
+    return replace(
+        recording,
+        text=text,
+        language="en",
+        words=words,
+        phones=_phones(entries, recording.duration),
+    )
+
+
+def _phones(
+    entries: list[tuple[str, int, int, list[tuple[str, int]]]], duration: float
+) -> tuple[Phone, ...]:
+    marks: list[tuple[float, str]] = [(0.0, SILENCE)]
+    for word, _, _, pieces in entries:
+        for symbol, start in pieces:
+            known = SILENCE if word in _NOISES else ipa_of_arpabet(symbol)
+            marks.append((_time(start), known))
+    phones: list[Phone] = []
+    for (start, symbol), (end, _) in zip(marks, [*marks[1:], (duration, SILENCE)], strict=True):
+        if end <= start:
+            continue
+        if phones and symbol == SILENCE == phones[-1].symbol:
+            phones[-1] = replace(phones[-1], end=end)
+        else:
+            phones.append(Phone(symbol, start, end))
+    return tuple(phones)
+
+
+def _time(frame: int) -> float:
+    return frame * FRAME_S + (DELAY_S if frame else 0.0)
+
+
+def _key(word: str) -> str:
+    return word.lower().replace("’", "'")
+
+
+def _pronounced(word: str, voice: Voice) -> str:
+    """Return how a voice pronounces a word, in ARPAbet."""
+    symbols = (phone.symbol for phone in voice.say(word, "en-us").phones)
+    return " ".join(each for symbol in symbols for each in arpabet_of_ipa(symbol)) or "SIL"
+
+
+def _decoder() -> Any:
+    try:
+        from pocketsphinx import Decoder
+    except ImportError as error:
+        raise CharacterError(
+            "PocketSphinx is not installed; install it with: pip install pocketsphinx"
+        ) from error
+    return Decoder(lm=None, loglevel="FATAL")
+
+
+def _decode(decoder: Any, data: bytes) -> None:
+    decoder.start_utt()
+    decoder.process_raw(data, full_utt=True)
+    decoder.end_utt()
