@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from characters.model.character import Character
+from tools.authoring.gestures import GESTURES
 from tools.authoring.human.character import build_human
 from tools.authoring.people import save_standing
 from tools.authoring.robot.character import build_robot
@@ -31,7 +32,11 @@ def main(arguments: list[str]) -> int:
         path = ASSETS / f"{name}.glb"
         character.save(path)
         save_standing(character, path.with_suffix(".idle"))
-        for written in (path, path.with_suffix(".idle")):
+        files = [path, path.with_suffix(".idle")]
+        if name in GESTURES:
+            files.append(path.with_suffix(".gestures"))
+            GESTURES[name](character).save(files[-1])
+        for written in files:
             sys.stdout.write(f"{written}: {written.stat().st_size / 1024:.0f} KiB\n")
     return 0
 

@@ -1,0 +1,203 @@
+"""The gestures that were chosen for a speech, and the motion that plays them."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from characters.speech.speech import Accent
+from characters.synthesis.gestures.alignment import Timings
+from characters.synthesis.gestures.graph import GestureGraph, GestureNode
+from characters.synthesis.gestures.library import PHASES
+from characters.synthesis.gestures.playing import (
+    Ends,
+    GestureMotion,
+    Segment,
+    bridge,
+    weight_curve,
+)
+
+
+@dataclass(frozen=True)
+class GestureCosts:
+    """What a gesture costs, before weights (4.4 to 4.9)."""
+
+    smooth: float
+    """Of the way to it: 0…1."""
+
+    strength: float
+    """"bodyspeech": how far its strength is from the accent's, 0…1; "thesis": 10 if its GSI is out
+    of the band."""
+
+    time: float
+    """Of its warp, or of the hold before it: 0…1."""
+
+    repetition: float
+    """Because it was played lately."""
+
+
+@dataclass(frozen=True)
+class PlannedGesture:
+    """A gesture with its times."""
+
+    accent: Accent
+    """What it stresses."""
+
+    emphasized: float
+    """The accent's strength with the slider, 0…1."""
+
+    node: GestureNode
+    """What is played."""
+
+    number: int
+    """Its number in the graph."""
+
+    knots: tuple[tuple[float, int], ...]
+    """Times [s], ascending, and the frames of the recording that are played then."""
+
+    apex: float
+    """When its apex is [s]."""
+
+    warp: float
+    """New length over recorded one, of what may be warped."""
+
+    hold: float
+    """How long hands are held before it, besides the blend [s]."""
+
+    by_rest: bool
+    """Whether it begins in rest."""
+
+    strength: float
+    """GSI as it is played."""
+
+    costs: GestureCosts
+    """What it costs."""
+
+    @property
+    def start(self) -> float:
+        """When it begins [s]."""
+        return self.knots[0][0]
+
+    @property
+    def end(self) -> float:
+        """When it ends [s]."""
+        return self.knots[-1][0]
+
+    @property
+    def lead(self) -> float:
+        """How long its apex is before the accent [s]: Δ."""
+        return self.accent.time - self.apex
+
+    def time_of(self, frame: int) -> float:
+        """Return when a frame of its recording is played [s]."""
+        times, frames = zip(*self.knots, strict=True)
+        return float(np.interp(frame, frames, times))
+
+    @cached_property
+    def phases(self) -> tuple[tuple[str, float, float], ...]:
+        """Name, start and end of its phases [s], without empty ones."""
+        found: list[tuple[str, float, float]] = []
+        first, last = self.node.frames
+        for name in PHASES:
+            begin, end = self.node.phrase.phase(name)
+            if max(begin, first) < min(end, last):
+                times = self.time_of(max(begin, first)), self.time_of(min(end, last))
+                found.append((name, *times))
+        return tuple(found)
+
+
+@dataclass(frozen=True, eq=False)
+class GesturePlan:
+    """The gestures of a speech."""
+
+    graph: GestureGraph
+    """What they are chosen from."""
+
+    gestures: tuple[PlannedGesture, ...]
+    """In order of time."""
+
+    skipped: tuple[Accent, ...]
+    """Accents for which no gesture came in time."""
+
+    duration: float
+    """Length of the speech [s]."""
+
+    cost: float
+    """Sum of all costs, weighted; of a skipped accent 5 to 15."""
+
+    def motion(self) -> GestureMotion:
+        """Return the motion of these gestures, from rest to rest."""
+        library, rest = self.graph.library, self.graph.rest
+        still = Ends.still(library.rest)
+        segments = [Segment(0.0, library.rest[None])]
+        spans: list[tuple[float, float, float]] = []
+        before: PlannedGesture | None = None
+
+        def to_rest(last: PlannedGesture) -> float:
+            """Add the way to rest after a gesture, and return when hands are there."""
+            length = float(self.graph.blends[last.number, rest])
+            segments.append(bridge(last.end, length, self._end(last), still, library.rate))
+            segments.append(Segment(last.end + length, library.rest[None]))
+            return last.end + length
+
+        left = stroke = 0.0
+        for gesture in self.gestures:
+            start = gesture.start
+            if before is None or gesture.by_rest:
+                if before is not None:
+                    spans.append((left, stroke, to_rest(before)))
+                left = start - float(self.graph.blends[rest, gesture.number])
+                stroke = gesture.time_of(gesture.node.phrase.stroke[0])
+                arriving = self._start(gesture)
+                segments.append(bridge(left, start - left, still, arriving, library.rate))
+            elif start - before.end > 1e-9:
+                length, ends = start - before.end, (self._end(before), self._start(gesture))
+                segments.append(bridge(before.end, length, *ends, library.rate))
+            segments += self._played(gesture)
+            before = gesture
+        if before is not None:
+            spans.append((left, stroke, to_rest(before)))
+        ended = max([self.duration, *(again for *_, again in spans[-1:])])
+        return GestureMotion(library, tuple(segments), ended, weight_curve(spans))
+
+    def _played(self, gesture: PlannedGesture) -> list[Segment]:
+        turns = self.graph.library.recordings[gesture.node.phrase.recording].turns
+        parts = []
+        for (start, first), (end, last) in zip(gesture.knots, gesture.knots[1:], strict=False):
+            if last > first:
+                parts.append(Segment(start, turns, float(first), (last - first) / (end - start)))
+        return parts
+
+    def _start(self, gesture: PlannedGesture) -> Ends:
+        return self._ends(gesture, leaving=False)
+
+    def _end(self, gesture: PlannedGesture) -> Ends:
+        return self._ends(gesture, leaving=True)
+
+    def _ends(self, gesture: PlannedGesture, leaving: bool) -> Ends:
+        library = self.graph.library
+        frame = gesture.node.frames[int(leaving)]
+        turns = library.recordings[gesture.node.phrase.recording].turns
+        return Ends.of(turns, frame, library.rate, gesture.warp, leaving)
+
+
+def knots_of(
+    node: GestureNode, timings: Timings, number: int, apex: float, warp: float, rate: float
+) -> tuple[tuple[float, int], ...]:
+    """Return the times [s] of the frames between which a gesture is played evenly.
+
+    `apex` is when its apex is [s]; `number` is that of the node.
+    """
+    first, last = node.frames
+    top = min(node.phrase.apex, last)
+    if timings.whole[number]:
+        frames = (first, last)
+        return tuple((apex + (frame - top) / rate * warp, frame) for frame in frames)
+    stroke, held = node.phrase.stroke[0], max(node.phrase.stroke[1], top)
+    begin, end = apex - (top - stroke) / rate, apex + (held - top) / rate
+    return (
+        (begin - (stroke - first) / rate * warp, first),
+        (begin, stroke),
+        (end, held),
+        (end + (last - held) / rate * warp, last),
+    )

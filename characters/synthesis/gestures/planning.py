@@ -1,0 +1,175 @@
+"""Choosing gestures for the accents of a speech, by greedy or beam search.
+
+Source: Fernández-Baena 2015, sections 4.4.4 and 4.5 (M7, M9), with errata 8 to 11.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from characters.skeleton.pose import Array
+from characters.speech.speech import Accent
+from characters.synthesis.gestures.alignment import INVALID_COST, CostModel, Timings
+from characters.synthesis.gestures.graph import GestureGraph
+from characters.synthesis.gestures.library import Database, GestureLibrary
+from characters.synthesis.gestures.plan import GestureCosts, GesturePlan, PlannedGesture, knots_of
+from characters.synthesis.gestures.rules import IntensityRule, SynchronyRule
+from characters.synthesis.gestures.search import BeamSearch, SearchWeights, Step
+
+EQUAL_COST = 1e-3
+"""Gestures whose costs differ by less are equals [of a cost]."""
+
+
+@dataclass(frozen=True)
+class GestureSettings:
+    """How gestures are chosen."""
+
+    model: CostModel = "bodyspeech"
+    """Costs and warps."""
+
+    database: Database = "full"
+    """Which phrases are used."""
+
+    threshold: float | None = None
+    """Similarity threshold of the graph; None for the smallest that keeps every phrase."""
+
+    beam: int = 20
+    """Width of the beam search; 1 is the greedy search."""
+
+    smooth_weight: float = 1.0
+    """Weight of the cost of transitions."""
+
+    strength_weight: float = 1.0
+    """Weight of the intensity rule, or of the emphasis; 0 switches it off."""
+
+    time_weight: float = 1.0
+    """Weight of the cost of warps and holds."""
+
+    variety: float = 0.5
+    """Cost of the same phrase again; less the longer ago it was."""
+
+    synchrony: SynchronyRule = field(default_factory=SynchronyRule)
+    """Window of the anticipation, which is drawn at random."""
+
+    intensity: IntensityRule = field(default_factory=IntensityRule)
+    """The intensity rule of the model "thesis"."""
+
+    longest_hold_s: float = 0.8
+    """How long hands may be held between two gestures [s]; 0 is the thesis to the letter."""
+
+    min_spacing_s: float = 0.6
+    """Of accents that are closer, the stronger carries a gesture [s]."""
+
+
+DEFAULT_SETTINGS = GestureSettings()
+
+
+class GesturePlanner:
+    """Plans gestures of a library for the accents of speeches."""
+
+    def __init__(
+        self, library: GestureLibrary, settings: GestureSettings = DEFAULT_SETTINGS
+    ) -> None:
+        self.settings = settings
+        """How gestures are chosen."""
+        self.graph = GestureGraph.of(library.database(settings.database), settings.threshold)
+        """What may follow what."""
+        self._timings = Timings.of(self.graph, settings.model)
+        strengths = self.graph.strengths
+        self._weakest, self._range = strengths.min(), max(float(np.ptp(strengths)), 1e-9)
+        self._weights = SearchWeights(
+            settings.smooth_weight, settings.time_weight, settings.variety, settings.longest_hold_s
+        )
+
+    def plan(
+        self, accents: Sequence[Accent], duration: float, emphasis: float = 0.0, seed: int = 0
+    ) -> GesturePlan:
+        """Return gestures for the accents of a speech.
+
+        Parameters
+        ----------
+        accents
+            The accents, in order.
+        duration
+            Length of the speech [s]; the gestures may end later.
+        emphasis
+            The gesture slider, −1…1: added to the strength of accents, which stay in 0…1.
+        seed
+            Of the anticipations, and of choices between equals.
+        """
+        carried = carrying(accents, self.settings.min_spacing_s)
+        rng, window = np.random.default_rng(seed), self.settings.synchrony
+        leads = rng.uniform(window.shortest, window.longest, len(carried))
+        favour = rng.uniform(0.0, EQUAL_COST, (len(carried), len(self.graph.nodes)))
+        apices = [each.time - lead for each, lead in zip(carried, leads.tolist(), strict=True)]
+        strengths = [min(max(each.strength + emphasis, 0.0), 1.0) for each in carried]
+        searches = []
+        for width in sorted({1, self.settings.beam}):
+            search = BeamSearch(self.graph, self._timings, self._weights, width)
+            for apex, strength, liked in zip(apices, strengths, favour, strict=True):
+                ways = search.ways(apex)
+                cost = self.settings.strength_weight * self._strength_cost(strength, ways.warp)
+                search.step(apex, ways, cost, INVALID_COST * (0.5 + strength), liked)
+            searches.append(search)
+        best = min(searches, key=lambda search: search.cost)
+        gestures, skipped = [], []
+        for accent, strength, apex, (step, state) in zip(
+            carried, strengths, apices, best.path(), strict=True
+        ):
+            if step.node[state] < 0:
+                skipped.append(accent)
+            else:
+                gestures.append(self._gesture(accent, strength, apex, step, state))
+        return GesturePlan(self.graph, tuple(gestures), tuple(skipped), duration, best.cost)
+
+    def in_band(self, gesture: PlannedGesture) -> bool:
+        """Return whether a gesture is in the band of the intensity rule."""
+        return bool(self.settings.intensity.holds(gesture.emphasized, gesture.strength))
+
+    def _strength_cost(self, strength: float, warps: Array) -> Array:
+        """Return what the strength of each gesture costs for an accent, (states, nodes)."""
+        played = self._timings.played_strength(self.graph.strengths, warps)
+        if self.settings.model == "thesis":
+            return np.where(self.settings.intensity.holds(strength, played), 0.0, INVALID_COST)
+        shares: Array = (played - self._weakest) / self._range
+        return np.abs(strength - shares)
+
+    def _gesture(
+        self, accent: Accent, strength: float, apex: float, step: Step, state: int
+    ) -> PlannedGesture:
+        number, ways = int(step.node[state]), step.ways
+        node, warp = self.graph.nodes[number], float(ways.warp[state])
+        weight = self.settings.strength_weight
+        return PlannedGesture(
+            accent,
+            strength,
+            node,
+            number,
+            knots_of(node, self._timings, number, apex, warp, self.graph.library.rate),
+            apex,
+            warp,
+            float(ways.hold[state]),
+            bool(ways.by_rest[state]),
+            float(self._timings.played_strength(self.graph.strengths, np.array(warp))[number]),
+            GestureCosts(
+                float(ways.smooth[state]),
+                float(step.strength[state]) / weight if weight else 0.0,
+                float(ways.time[state]),
+                float(step.repetition[state]),
+            ),
+        )
+
+
+def carrying(accents: Sequence[Accent], min_spacing_s: float) -> list[Accent]:
+    """Return the accents that carry a gesture: of those that are closer, the stronger ones.
+
+    >>> accents = [Accent(1.0, 0.5), Accent(1.3, 0.9), Accent(2.0, 0.4)]
+    >>> [each.time for each in carrying(accents, 0.5)]
+    [1.3, 2.0]
+    """
+    chosen: list[Accent] = []
+    for accent in sorted(accents, key=lambda each: -each.strength):
+        if all(abs(accent.time - other.time) >= min_spacing_s for other in chosen):
+            chosen.append(accent)
+    return sorted(chosen, key=lambda each: each.time)

@@ -1,0 +1,163 @@
+"""Gestures as a motion: parts of recordings, bridges between them, and rest."""
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from characters.motion.curves import Keyed
+from characters.motion.motion import RootDelta
+from characters.skeleton import rotations
+from characters.skeleton.masks import Mask
+from characters.skeleton.pose import Array, Pose
+from characters.synthesis.gestures.library import GestureLibrary
+
+RAMP_S = 0.3
+"""How long the weight takes from 0 in rest to 1, and back [s]."""
+
+_COAST_S = 0.08  # over which what leaves a gesture loses its speed
+_SNAP = 1e-6  # frames: rounding of times must not change a recorded frame
+
+
+@dataclass(frozen=True, eq=False)
+class Segment:
+    """A stretch of rotations that is played at an even pace."""
+
+    start: float
+    """When it begins [s]."""
+
+    turns: Array
+    """(frames, joints, 4), with continuous signs."""
+
+    first: float = 0.0
+    """The frame that it begins with."""
+
+    pace: float = 0.0
+    """Frames a second."""
+
+    def at(self, time: float) -> Array:
+        """Return the rotations at a time [s] not before its start, (joints, 4)."""
+        last = len(self.turns) - 1
+        frame = min(self.first + (time - self.start) * self.pace, float(last))
+        whole = round(frame)
+        if abs(frame - whole) < _SNAP:
+            recorded: Array = self.turns[whole]
+            return recorded
+        low = int(frame)
+        before = self.turns[low]
+        mixed: Array = before + (self.turns[low + 1] - before) * (frame - low)
+        mixed /= np.sqrt(np.einsum("ji,ji->j", mixed, mixed))[:, None]
+        return mixed
+
+
+@dataclass(frozen=True, eq=False)
+class Ends:
+    """How a gesture begins or ends: a posture, and how fast the joints turn in it."""
+
+    turns: Array
+    """(joints, 4)."""
+
+    spins: Array
+    """(joints, 3) [rad/s]."""
+
+    @staticmethod
+    def of(turns: Array, frame: int, rate: float, warp: float, leaving: bool) -> "Ends":
+        """Return the ends of frames (frames, joints, 4) that are played warped.
+
+        Before a frame that is `leaving`, or from another one on, the speed is taken.
+        """
+        one, other = (max(frame - 1, 0), frame) if leaving else (frame, frame + 1)
+        other = min(other, len(turns) - 1)
+        between = rotations.multiply(rotations.conjugate(turns[one]), turns[other])
+        return Ends(turns[frame], rotations.to_rotation_vector(between) * (rate / warp))
+
+    @staticmethod
+    def still(turns: Array) -> "Ends":
+        """Return the ends of who rests in a posture (joints, 4)."""
+        return Ends(turns, np.zeros((len(turns), 3)))
+
+
+def bridge(start: float, length: float, leaving: Ends, arriving: Ends, rate: float) -> Segment:
+    """Return the way from one posture to another, with the speeds that they have.
+
+    Both are carried on while their speed fades away, and cross-faded with a smoothstep (M7).
+    """
+    steps = max(round(length * rate), 2)
+    times = np.linspace(0.0, length, steps + 1)[:, None, None]
+    on, back = (_COAST_S * (1.0 - np.exp(-each / _COAST_S)) for each in (times, length - times))
+    gone = rotations.multiply(leaving.turns, rotations.from_rotation_vector(leaving.spins * on))
+    arrived = rotations.align(arriving.turns, leaving.turns)  # once: both move while they fade
+    coming = rotations.multiply(arrived, rotations.from_rotation_vector(-arriving.spins * back))
+    u = times / length
+    mixed = gone + (coming - gone) * (u * u * (3.0 - 2.0 * u))
+    return Segment(start, rotations.normalize(mixed), 0.0, steps / length)
+
+
+@dataclass(frozen=True, eq=False)
+class GestureMotion:
+    """Gestures from rest to rest; a `Motion` of the upper body.
+
+    What is not of `mask` is at rest in its poses. To lay it over a character's own motion, blend
+    the rotations of these joints towards its pose by `weight`.
+    """
+
+    library: GestureLibrary
+    """Whose gestures they are."""
+
+    segments: tuple[Segment, ...]
+    """What is played, in order; the last one is held."""
+
+    duration: float
+    """When hands are in rest again, and the speech has ended [s]."""
+
+    weights: Keyed
+    """How much of it shows over time."""
+
+    @property
+    def mask(self) -> Mask:
+        """1 for each joint that it moves, (joints of the skeleton,)."""
+        return self.library.mask
+
+    def weight(self, time: float) -> float:
+        """Return how much of it shows at a time [s]: 0 in rest, 1 in a gesture."""
+        return self.weights.at(time, self.duration)
+
+    def turns(self, time: float) -> Array:
+        """Return the rotations of the library's joints at a time [s], (joints, 4)."""
+        return self.segments[max(bisect_right(self._starts, time) - 1, 0)].at(time)
+
+    def sample(self, time: float) -> Pose:
+        """Return the pose at a time [s]."""
+        rest = self.library.skeleton.rest
+        turns = rest.rotations.copy()
+        turns[self._joints] = self.turns(time)
+        return Pose(rest.translations, turns)
+
+    def travel(self, start: float, end: float) -> RootDelta:
+        """Return no movement: the feet stay."""
+        return RootDelta()
+
+    @cached_property
+    def _starts(self) -> list[float]:
+        return [segment.start for segment in self.segments]
+
+    @cached_property
+    def _joints(self) -> list[int]:
+        return [*self.library.joints]
+
+
+def weight_curve(spans: Sequence[tuple[float, float, float]]) -> Keyed:
+    """Return 0 in rest and 1 in between, from spans of gestures.
+
+    Each has the time at which rest is left, that of its first stroke, and that at which hands are
+    in rest again [s].
+    """
+    times, values = [-RAMP_S], [0.0]
+    for left, stroke, again in spans:
+        up = min(left + RAMP_S, max(stroke, left + 0.1))
+        down = max(again - RAMP_S, up + 1e-3)
+        times += [left, up, down, max(again, down + 1e-3)]
+        values += [0.0, 1.0, 1.0, 0.0]
+    return Keyed(tuple(times), tuple(values), "cubic")
