@@ -22,6 +22,7 @@ from app.sound.loudspeaker import load_portaudio, open_stream
 from app.ui.display import has_display, is_software_renderer
 from characters import Character, CharacterError
 from characters.rendering import create_context
+from characters.speech.voices.espeak import installed, remedy
 from robot import serial_ports
 from tracking import FrameSource, LiveFrames, TrackingError, open_source
 
@@ -84,6 +85,7 @@ def examine(*, cameras: bool = True) -> list[Finding]:
         _recordings(),
         _display(),
         _sound(),
+        _voice(),
         _ports(),
         _broker(),
     ]
@@ -182,6 +184,12 @@ def _sound() -> Finding:
     latency = 1000 * float(stream.latency)
     stream.close()
     return Finding("sound", "good", f"a loudspeaker, {latency:.0f} ms")
+
+
+def _voice() -> Finding:
+    if installed():
+        return Finding("voice", "good", "eSpeak NG: characters speak")
+    return Finding("voice", "missing", "no eSpeak NG: characters are silent", remedy())
 
 
 def _ports() -> Finding:

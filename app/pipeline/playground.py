@@ -22,9 +22,11 @@ from app.pipeline.scenario import (
     ScenarioSettings,
 )
 from app.pipeline.scenario_errors import checked, scenario_errors
+from app.pipeline.spoken_line import SpokenLine
 from app.pipeline.step import Rect, ReplayInputs, Step
 from app.pipeline.subjects import character_region, cube_region
 from characters import Animator, Character, CharacterCommand, PosedCharacter, RootDelta
+from characters.control.command import SpeechIntent
 from characters.control.controllers import ControllerFactory, first_suitable
 from characters.rendering import Box, SceneCharacter, Stage, View
 from tracking import (
@@ -38,6 +40,9 @@ from tracking import (
     LensEstimate,
 )
 
+SUBTITLE_S = 1.2
+"""A line stays in the command for so long after its end [s], for those who read it."""
+
 STATE_NAMES = (
     "scenario",
     "_tracker",
@@ -47,6 +52,8 @@ STATE_NAMES = (
     "_attention",
     "_other_cube",
     "other_cube",
+    "_line",
+    "_speech",
 )
 """The attributes of a playground that change from frame to frame."""
 
@@ -135,6 +142,8 @@ class Playground:
         self._other_cube = OtherCube(cube, self.known_cubes)
         self.other_cube: CubeModel | None = None
         """Another cube than the one in play, if one is in view."""
+        self._line: SpokenLine | None = None
+        self._speech: SpeechIntent | None = None
 
     def cast(self, character: Character) -> None:
         """Let another character go on where the present one stands.
@@ -216,7 +225,9 @@ class Playground:
         self._lap("tracking")
         controls = replay.controls or self.gesture(state)
         self._lap("gestures")
-        outcome = self.attend(state, controls, self.decide(controls, inputs or Inputs()))
+        inputs = inputs or Inputs()
+        outcome = self.attend(state, controls, self.decide(controls, inputs))
+        outcome = self.speak(inputs, outcome)
         self.other_cube = self._other_cube.update(frame, state)
         if self.other_cube is not None:
             hint = advice(self.other_cube, self.scenario.name, self.cube.name, self.fixed)
@@ -231,7 +242,8 @@ class Playground:
         subjects = self._subjects(state, controls, posed)
         self._lap("drawing")
         name = self.scenario.name
-        return Step(frame, state, controls, outcome, posed, picture, subjects, name)
+        line = self._line if outcome.command.speech is not None else None
+        return Step(frame, state, controls, outcome, posed, picture, subjects, name, line)
 
     @property
     def lens(self) -> LensEstimate:
@@ -267,6 +279,19 @@ class Playground:
         gaze = self._attention.update(state, controls, outcome.command)
         command = replace(outcome.command, gaze=gaze, emotion=outcome.emotion.emotion)
         return replace(outcome, command=command)
+
+    def speak(self, inputs: Inputs, outcome: Outcome) -> Outcome:
+        """Add what the character says to the command: a new line takes the place of an old one.
+
+        A character that is hidden falls silent.
+        """
+        now = outcome.command.timestamp
+        if inputs.line is not None:
+            self._line, self._speech = inputs.line, SpeechIntent(inputs.line.utterance, now)
+        over = self._speech is not None and now > self._speech.end + SUBTITLE_S
+        if over or inputs.clear or not outcome.command.visible:
+            self._line = self._speech = None
+        return replace(outcome, command=replace(outcome.command, speech=self._speech))
 
     def animate(self, command: CharacterCommand) -> PosedCharacter:
         """Animate the character."""

@@ -5,6 +5,7 @@ from typing import Protocol, runtime_checkable
 
 from affect import Emotion, Personality
 from app.errors import AppError
+from app.pipeline.spoken_line import SpokenLine
 from characters import CharacterCommand, PosedCharacter, RootDelta
 from characters.rendering import FloorPath
 from tracking import CubeControls, CubeModel
@@ -28,6 +29,14 @@ class Inputs:
 
     body_length: float = 0.0
     """Length of the character on the table, from front to back [m]."""
+
+    line: SpokenLine | None = None
+    """What the character begins to say in this frame; None for nothing new."""
+
+    @property
+    def events(self) -> tuple[str, ...]:
+        """What happens besides gestures; personalities say what it means to the robot."""
+        return () if self.line is None else ("spoken",)
 
 
 @dataclass(frozen=True)
@@ -59,6 +68,9 @@ class Outcome:
 
     floor: tuple[FloorPath, ...] = field(default=())
     """Paths that are painted on the table."""
+
+    events: tuple[str, ...] = ()
+    """What has just happened, such as "reached": the character may say something about it."""
 
 
 SPEED_MAP_NAMES = ("corrected", "legacy")

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from affect import Emotion
 from app.pipeline.scenario import EmotionTarget, Outcome
+from app.pipeline.spoken_line import SpokenLine
 from characters import CharacterCommand, PosedCharacter
 from robot import Catalogue, Telemetry
 from tracking import CubeControls, CubeState, Frame
@@ -44,6 +45,9 @@ class Step:
     scenario: str = ""
     """Name of the scenario that decided."""
 
+    line: SpokenLine | None = None
+    """What the character says, also if it has begun before; None for nothing."""
+
     @property
     def command(self) -> CharacterCommand:
         """What the character is asked to do."""
@@ -53,6 +57,13 @@ class Step:
     def emotion(self) -> EmotionTarget:
         """The emotion that character and robot show."""
         return self.outcome.emotion
+
+    @property
+    def begun_line(self) -> SpokenLine | None:
+        """The line that begins in this frame, if one does."""
+        speech = self.command.speech
+        begins = speech is not None and speech.start == self.frame.timestamp
+        return self.line if begins else None
 
     def messages(self) -> dict[str, object]:
         """Return the messages between camera and picture, by their topic in a recording."""

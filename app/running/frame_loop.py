@@ -1,6 +1,7 @@
 """Processing the frames of a session: each is tracked, drawn, shown and recorded."""
 
 import time
+from dataclasses import replace
 
 from app.pipeline.scenario import Inputs
 from app.pipeline.step import ReplayInputs, Step
@@ -26,7 +27,8 @@ class FrameLoop:
         session, lap = self._session, self._session.monitor.times.lap
         began = time.perf_counter()
         self._read_recorded(frame)
-        inputs = Inputs(clear=True) if self._take_start_over() else self._inputs
+        asked = Inputs(clear=True) if self._take_start_over() else self._inputs
+        inputs = replace(asked, line=session.speaker.line(frame.timestamp))
         session.change_scenario(inputs.scenario)
         if session.recording is not None:
             frame = session.recording.encode(frame)
@@ -39,7 +41,8 @@ class FrameLoop:
         """Process one frame without drawing and showing it."""
         session = self._session
         self._read_recorded(frame)
-        inputs = Inputs(clear=self._take_start_over())
+        line = session.speaker.line(frame.timestamp)
+        inputs = Inputs(clear=self._take_start_over(), line=line)
         self._hidden = session.playground.step(frame, inputs, self._replay, drawn=False)
         if session.pace is None:  # else the robot lives in real time, and misses what is skipped
             session.robot.feel(self._hidden.emotion)
@@ -82,6 +85,7 @@ class FrameLoop:
         session.observe()
         session.monitor.update(step, view, session.playground)
         self._inputs = session.screen.show(step, view)
+        session.speaker.hear(step)
         lap("showing")
         if session.sound is not None:
             if not follows:

@@ -18,6 +18,7 @@ from app.running.wire_tap import WireTap
 from app.scenarios import Scenario, ScenarioSettings, find_scenario, make_scenario
 from app.session import SessionOptions
 from app.sound import SessionSound
+from app.speaking.speaker import Speaker
 from app.ui.panels import SessionMonitor
 from app.ui.playback.status import EndCard
 from app.ui.screen import Screen
@@ -49,6 +50,9 @@ class OpenedSession:
 
     sound: SessionSound | None
     """What is heard; None without pictures, and for a file without sound."""
+
+    speaker: Speaker
+    """What the character speaks with."""
 
     robot: RobotLine
     """The robot that shows the emotions, or a stand-in."""
@@ -190,6 +194,7 @@ class OpenedSession:
 
     def close(self) -> None:
         """Close what may have been exchanged."""
+        self.speaker.close()
         self.robot.close()
         self.end_recording()
         if self.source is not self.first_source:

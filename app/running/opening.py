@@ -23,6 +23,7 @@ from app.scenarios import scenario_cube
 from app.session import SessionOptions, check_codec, start_over_times
 from app.session.replay_inputs import read_replay_inputs
 from app.sound import Mixer, SessionSound, SoundBank
+from app.speaking.opening import open_speaker
 from app.ui.output_file import OUTPUT_SUFFIXES, OutputFile
 from app.ui.overlay import virtual_robot_side
 from app.ui.panels import SessionMonitor
@@ -144,6 +145,8 @@ def open_session(
             )
         pace = _pace(options, source, player)
         stepped = pace is None and not source.live
+        speaker = open_speaker(options, waits=stepped)
+        closing.callback(speaker.close)
         robot = closing.enter_context(
             RobotLine.open(options.robot, clock, wire, options.robot_settings, stepped=stepped)
         )
@@ -154,6 +157,7 @@ def open_session(
             playground=playground,
             screen=screen,
             sound=sound,
+            speaker=speaker,
             robot=robot,
             wire=wire,
             clock=clock,

@@ -71,7 +71,9 @@ def check_session(
 def _steps(session: OpenedSession, progress: Progress | None) -> Iterator[Step]:
     """Process every frame, whatever its time."""
     for frame in session.source:
-        step = session.playground.step(frame, Inputs(clear=frame.timestamp in session.start_overs))
+        line = session.speaker.line(frame.timestamp)
+        inputs = Inputs(clear=frame.timestamp in session.start_overs, line=line)
+        step = session.playground.step(frame, inputs)
         if progress is not None:
             progress(step)
         yield step

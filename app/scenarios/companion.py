@@ -70,7 +70,7 @@ class Companion:
         visible = self._presence.update(controls)
         # A hidden Vleo does not change the mood: a lost cube leaves it as it is (M11).
         action = self._action if visible else "idle"
-        emotion = self._mood.update(controls, action, self._weight)
+        emotion = self._mood.update(controls, action, self._weight, events=inputs.events)
         command = CharacterCommand(
             timestamp=controls.timestamp,
             locomotion=LocomotionIntent(

@@ -83,9 +83,11 @@ class Follow:
         # A hidden character does nothing that changes the mood.
         action, mood_speed = (shake_action or "idle", speed) if visible else ("idle", 0.0)
         events = self._pursuit.update(controls, character, clearance, mood_speed > IDLE_SPEED)
-        emotion = self._mood.update(controls, action, speed=mood_speed, events=events)
+        emotion = self._mood.update(
+            controls, action, speed=mood_speed, events=(*events, *inputs.events)
+        )
         icon = gait(speed, inputs.walks)
-        return Outcome(command, emotion, _hint(controls, icon), icon)
+        return Outcome(command, emotion, _hint(controls, icon), icon, events=events)
 
     def _react_to_shake(
         self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs

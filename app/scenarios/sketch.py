@@ -95,9 +95,12 @@ class Sketch:
         )
         events = ("finished",) if visible and self._finishes_lap(character) else ()
         mood_speed = speed if visible else 0.0
-        emotion = self._mood.update(controls, "idle", speed=mood_speed, events=events)
+        emotion = self._mood.update(
+            controls, "idle", speed=mood_speed, events=(*events, *inputs.events)
+        )
         icon = gait(speed, inputs.walks)
-        return Outcome(command, emotion, self._hint(controls, speed), icon, self._floor())
+        hint = self._hint(controls, speed)
+        return Outcome(command, emotion, hint, icon, self._floor(), events)
 
     def _draw(self, controls: CubeControls) -> None:
         point = controls.position

@@ -8,6 +8,7 @@ from app.session.reading import (
     events,
     messages,
     session_info,
+    spoken_lines,
     start_over_times,
 )
 from app.session.recorder import Recorder
@@ -23,5 +24,6 @@ __all__ = [
     "frame_encoder",
     "messages",
     "session_info",
+    "spoken_lines",
     "start_over_times",
 ]

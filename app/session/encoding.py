@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from app.pipeline.scenario import EmotionTarget
 from characters import CharacterCommand, Pose, PosedCharacter
+from characters.speech.speech import Samples
 from tracking import CubeControls, CubeState
 
 T = TypeVar("T")
@@ -20,6 +21,12 @@ CLOCK_RECORD, CLOCK_ZERO = "cubeling clock", "zero_utc"
 
 IMAGE_TOPIC = "/camera/image"
 """The channel of the camera's frames."""
+
+LINE_TOPIC = "/audio/line"
+"""The channel of what the character says: a message with the sound in the frame in which a line
+begins. The command of that frame holds the words."""
+
+_FULL_SCALE = 32767  # the largest sample of 16 bits
 
 MESSAGE_TYPES: dict[str, type[Any]] = {
     "/cube/state": CubeState,
@@ -46,6 +53,16 @@ def decode(kind: type[T], document: bytes) -> T:
     except (KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"not a {kind.__name__}: {error}") from error
     return typing.cast(T, value)
+
+
+def encode_sound(samples: Samples) -> bytes:
+    """Return sound, (n,), as samples of 16 bits."""
+    return np.round(np.clip(samples, -1.0, 1.0) * _FULL_SCALE).astype("<i2").tobytes()
+
+
+def decode_sound(data: bytes) -> Samples:
+    """Return the sound that `encode_sound` wrote."""
+    return np.frombuffer(data, "<i2").astype(np.float32) / np.float32(_FULL_SCALE)
 
 
 def upgraded(topic: str, document: bytes) -> bytes:
@@ -83,6 +100,8 @@ def _upgraded(kind: type[Any], content: Any) -> Any:
         return {"emotion": emotion, "timestamp": content["timestamp"]}
     if kind is CharacterCommand and isinstance(content.get("action"), str):
         return _upgraded_command(content)
+    if kind is CharacterCommand and "speech" not in content:  # before characters spoke
+        return {**content, "speech": None}
     return content
 
 

@@ -32,6 +32,13 @@ class SessionOptions:
     idle: Path | None = None
     """The .idle file of the person as whom the character stands; None for its own idle clip."""
 
+    language: str | None = None
+    """Code of the language in which the character speaks, or "none" for silence; None for that of
+    a recording, or English in a window."""
+
+    lines: Path | None = None
+    """The .toml file of what the character says; None for the scenario's own lines."""
+
     intrinsics: Path | None = None
     """The camera's calibration file; None to take the source's intrinsics or to guess them."""
 

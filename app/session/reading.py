@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from foxglove_schemas_protobuf.RawAudio_pb2 import RawAudio
 from mcap.exceptions import McapError
 from mcap.reader import NonSeekingReader, SeekingReader
 from mcap.records import Chunk, DataEnd, Metadata
@@ -15,8 +16,17 @@ from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
 from app.errors import AppError
-from app.session.encoding import CLOCK_RECORD, CLOCK_ZERO, IMAGE_TOPIC
+from app.pipeline.spoken_line import SpokenLine
+from app.session.encoding import (
+    CLOCK_RECORD,
+    CLOCK_ZERO,
+    IMAGE_TOPIC,
+    LINE_TOPIC,
+    decode,
+    decode_sound,
+)
 from app.session.options import SessionOptions
+from characters import CharacterCommand
 
 START_OVER_EVENT = "start over"
 """Event of a player who starts over. It is an input, so a replay repeats it."""
@@ -166,3 +176,22 @@ def start_over_times(path: Path) -> frozenset[float]:
 def events(path: Path) -> list[tuple[float, str]]:
     """Return the events of a session with their timestamps [s]."""
     return [(time, json.loads(data)["event"]) for _, time, data in messages(path, "/events")]
+
+
+def spoken_lines(path: Path) -> dict[float, SpokenLine]:
+    """Return what the character says in a session, by the frame in which it begins [s].
+
+    What was said is an input, so a replay needs no voice.
+    """
+    sounds = {time: data for _, time, data in messages(path, LINE_TOPIC)}
+    if not sounds:
+        return {}
+    lines: dict[float, SpokenLine] = {}
+    for _, time, document in messages(path, "/character/command"):
+        if time in sounds:
+            speech = decode(CharacterCommand, document).speech
+            audio = RawAudio.FromString(sounds[time])
+            if speech is not None:
+                sound = decode_sound(audio.data)
+                lines[time] = SpokenLine(speech.utterance, sound, audio.sample_rate)
+    return lines

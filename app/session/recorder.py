@@ -12,17 +12,21 @@ from typing import Any
 from foxglove_schemas_protobuf.CameraCalibration_pb2 import CameraCalibration
 from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
 from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
+from foxglove_schemas_protobuf.RawAudio_pb2 import RawAudio
 from mcap.writer import Writer
 from mcap_protobuf.schema import register_schema
 
 from app.errors import AppError
+from app.pipeline.spoken_line import SpokenLine
 from app.pipeline.step import Step
 from app.session.encoding import (
     CLOCK_RECORD,
     CLOCK_ZERO,
     IMAGE_TOPIC,
+    LINE_TOPIC,
     MESSAGE_TYPES,
     encode,
+    encode_sound,
     schema,
 )
 from robot.contract.closeable import Closeable
@@ -112,6 +116,8 @@ class Recorder(Closeable):
         """Record the camera's frame and every message after it."""
         self._steps += 1
         self._frame(step.frame)
+        if step.begun_line is not None:
+            self._line(step.begun_line, step.frame.timestamp)
         for topic, message in step.messages().items():
             self._json(topic, partial(encode, message), step.frame.timestamp)
 
@@ -172,6 +178,16 @@ class Recorder(Closeable):
         message = kind(frame_id="camera", data=frame.encoded, format=frame.encoding)
         message.timestamp.FromNanoseconds(nanoseconds_of(frame.timestamp))
         self._protobuf(IMAGE_TOPIC, message, frame.timestamp)
+
+    def _line(self, line: SpokenLine, timestamp: float) -> None:
+        message = RawAudio(
+            data=encode_sound(line.samples),
+            format="pcm-s16",
+            sample_rate=line.rate,
+            number_of_channels=1,
+        )
+        message.timestamp.FromNanoseconds(nanoseconds_of(timestamp))
+        self._protobuf(LINE_TOPIC, message, timestamp)
 
     def _protobuf(self, topic: str, message: Any, timestamp: float) -> None:
         schema_id = partial(register_schema, self._writer, type(message))

@@ -87,7 +87,7 @@ class SoundCues:
         if self._moods is not None:
             cues += self._moods.update(step)
         if step.posed.visible:
-            pan = _pan(step)
+            pan = pan_of(step)
             heard = [*self._actions.update(step.posed), *self._feet.update(step.posed)]
             cues += [replace(cue, pan=pan) for cue in heard]
         return [self._numbered(cue) for cue in cues]
@@ -161,6 +161,8 @@ class _MoodCues:
 
     def update(self, step: Step) -> list[Cue]:
         emotion, now = step.emotion.emotion, step.emotion.timestamp
+        if self._label is not None and step.command.speaks:
+            return []  # the robot listens, and answers afterwards
         if self._label is None:
             self._label = emotion.label
         if emotion.label == self._label or now - self._last < MIN_MOOD_S:
@@ -169,7 +171,7 @@ class _MoodCues:
         return [Cue(closest_word(MOOD_SOUNDS, emotion) or "neutral")]
 
 
-def _pan(step: Step) -> float:
+def pan_of(step: Step) -> float:
     """Return where the character is heard, by its direction from the camera."""
     if step.controls.camera_from_table is None:
         return 0.0

@@ -8,10 +8,13 @@ from numpy.typing import NDArray
 
 from app.sound.bank import SoundBank
 from app.sound.cues import Cue
-from app.sound.synthesis import Array
+from app.sound.synthesis import SAMPLE_RATE, Array
 
 MAX_SOUNDS = 24
 """Sounds that play at one time, and cues that wait; the oldest give way to newer ones."""
+
+FADE_OUT = SAMPLE_RATE // 50
+"""Samples over which a voice fades that is cut off."""
 
 KNEE, CEILING = 0.6, 0.95
 """Amplitudes up to the first are kept; greater ones are bent to stay below the second."""
@@ -47,15 +50,25 @@ class Mixer:
         self.volume = volume
         self._waiting: deque[Cue] = deque(maxlen=MAX_SOUNDS)
         self._playing: deque[_Playing] = deque(maxlen=MAX_SOUNDS)
+        self._speech: _Playing | None = None
+        self._next_speech: _Playing | None = None
 
     def start(self, cue: Cue) -> None:
         """Let a sound begin with the next block."""
         self._waiting.append(cue)
 
+    def say(self, samples: Array, pan: float = 0.0) -> None:
+        """Let a voice say something from the next block on, instead of what it says now.
+
+        `samples` are at `SAMPLE_RATE`, (n,); without any, it falls silent. What is cut off fades.
+        """
+        self._next_speech = _Playing(samples, _gains(pan))
+
     def render(self, count: int) -> NDArray[np.float32]:
         """Return the next samples, (count, 2)."""
         while self._waiting:
             self._begin(self._waiting.popleft())
+        self._change_speech()
         block = np.zeros((count, 2))
         for sound in self._playing:
             part, sound.samples = sound.samples[:count], sound.samples[count:]
@@ -71,9 +84,24 @@ class Mixer:
         if cue.rate != 1.0:
             wanted = np.arange(0.0, len(samples) - 1.0, cue.rate)
             samples = np.interp(wanted, np.arange(len(samples)), samples)
-        # Equal power: as loud at the side as in the middle.
-        angle = (cue.pan + 1.0) * np.pi / 4.0
-        self._playing.append(_Playing(samples, cue.gain * np.array([np.cos(angle), np.sin(angle)])))
+        self._playing.append(_Playing(samples, cue.gain * _gains(cue.pan)))
+
+    def _change_speech(self) -> None:
+        """Begin the next speech, if there is one, and let the present one fade out."""
+        following, self._next_speech = self._next_speech, None
+        if following is None:
+            return
+        if self._speech is not None:
+            fade = self._speech.samples[:FADE_OUT]
+            self._speech.samples = fade * np.linspace(1.0, 0.0, len(fade))
+        self._speech = following
+        self._playing.append(following)
+
+
+def _gains(pan: float) -> Array:
+    """Return the amplitudes on the left and right, (2,): as loud at the side as in the middle."""
+    angle = (pan + 1.0) * np.pi / 4.0
+    return np.array([np.cos(angle), np.sin(angle)])
 
 
 def limited(block: Array) -> Array:

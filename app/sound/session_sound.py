@@ -1,10 +1,18 @@
 """What is heard of a session, on a loudspeaker or in a video."""
 
+import numpy as np
+
+from app.pipeline.spoken_line import SpokenLine
 from app.pipeline.step import Step
-from app.sound.cues import SoundCues
+from app.sound.cues import SoundCues, pan_of
 from app.sound.loudspeaker import Loudspeaker
 from app.sound.mixer import Mixer
+from app.sound.synthesis import SAMPLE_RATE, Array
 from characters import Character
+from characters.speech.audio import resampled
+
+SPEECH_GAIN = 0.9
+"""Amplitude of speech beside the other sounds."""
 
 
 class SessionSound:
@@ -31,6 +39,7 @@ class SessionSound:
         self._loudspeaker: Loudspeaker | None = None
         self._character: Character | None = None
         self._cues: SoundCues | None = None
+        self._line: SpokenLine | None = None
         self.muted = muted
 
     @property
@@ -60,12 +69,31 @@ class SessionSound:
             return
         for cue in cues:
             self.mixer.start(cue)
+        self._speak(step)
+
+    def _speak(self, step: Step) -> None:
+        """Let the voice say the line of a step, from where it is; silence if there is none."""
+        line, speech = step.line, step.command.speech
+        if line is self._line:
+            return
+        self._line = line
+        if line is None or speech is None:
+            self.mixer.say(np.zeros(0))
+            return
+        late = round((step.frame.timestamp - speech.start) * SAMPLE_RATE)
+        self.mixer.say(SPEECH_GAIN * at_sample_rate(line)[late:], pan_of(step))
 
     def restart(self) -> None:
         """Forget the steps so far: the next one does not follow them, as after a seek."""
-        self._cues = None
+        self._cues, self._line = None, None
+        self.mixer.say(np.zeros(0))
 
     def close(self) -> None:
         """Fall silent; a second call does nothing."""
         if self._loudspeaker is not None:
             self._loudspeaker.close()
+
+
+def at_sample_rate(line: SpokenLine) -> Array:
+    """Return the sound of a line at `SAMPLE_RATE`, (n,)."""
+    return np.asarray(resampled(line.samples, line.rate, SAMPLE_RATE), float)

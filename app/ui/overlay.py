@@ -13,6 +13,7 @@ from app.ui.card_layout import CardLayout, Corner, card_place
 from app.ui.notice import Notice
 from app.ui.palette import ACTION_COLORS, ANGRY, INK, PAPER, QUIET, RULE, Color, between, mood_color
 from app.ui.robot_face import draw_face
+from app.ui.subtitles import draw_subtitle, subtitle
 from app.ui.virtual_robot import VirtualRobot
 from tracking.cube.icons import ICON_COLOURS
 
@@ -57,6 +58,9 @@ def overlay(
     scale = picture.shape[0] / PICTURE_HEIGHT
     width = picture.shape[1] / scale
     _hint(step.outcome.hint, width, scale).blend_over(picture)
+    said = subtitle(step.command.speech, step.frame.timestamp)
+    if said:
+        draw_subtitle(said, width, scale).blend_over(picture)
     if virtual_robot is None or robot.real:
         mood = _robot(robot, scale)
     else:

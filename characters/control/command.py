@@ -60,6 +60,10 @@ class SpeechIntent:
         """When its sound ends [s]."""
         return self.start + self.utterance.duration
 
+    def sounds_at(self, time: float) -> bool:
+        """Return whether it is heard at a time [s]."""
+        return self.start <= time < self.end
+
 
 @dataclass(frozen=True)
 class CharacterCommand:
@@ -84,7 +88,12 @@ class CharacterCommand:
     """Whether the character is drawn."""
 
     speech: SpeechIntent | None = None
-    """What the character says; None for nothing. It is given until it ends."""
+    """What the character says, or has just said; None for nothing."""
+
+    @property
+    def speaks(self) -> bool:
+        """Whether something is heard of what the character says."""
+        return self.speech is not None and self.speech.sounds_at(self.timestamp)
 
     @property
     def activity(self) -> str:

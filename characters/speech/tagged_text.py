@@ -54,7 +54,8 @@ class TaggedText:
         CharacterError
             If a tag lacks an attribute, begins twice, ends what has not begun, or never ends.
 
-        >>> found = TaggedText.read('<begin_gesture id="a" anim="wave"/>Hi<end_gesture id="a"/> you')
+        >>> marked = '<begin_gesture id="a" anim="wave"/>Hi<end_gesture id="a"/> you'
+        >>> found = TaggedText.read(marked)
         >>> found.text, found.spans
         ('Hi you', (TaggedSpan(name='wave', start=0, end=2),))
         """

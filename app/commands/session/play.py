@@ -79,6 +79,17 @@ IdleOption = Annotated[
     Path | None,
     typer.Option(help="Stand as a person does: a file of [cyan]cubeling idle learn[/]."),
 ]
+LanguageOption = Annotated[
+    str | None,
+    typer.Option(
+        help="The language in which the character speaks: en, es, that of your lines, or none. In "
+        "a window it speaks English unless you choose."
+    ),
+]
+LinesOption = Annotated[
+    Path | None,
+    typer.Option(help="What the character says: a .toml file; see docs/speaking.md."),
+]
 PersonalityOption = Annotated[
     str | None,
     typer.Option(help="A bundled personality, or your own .toml file."),
@@ -160,6 +171,8 @@ def play(
         float, typer.Option(help="For companion: full turns from least to greatest intensity.")
     ] = 2.0,
     personality: PersonalityOption = None,
+    language: LanguageOption = None,
+    lines: LinesOption = None,
     look: Annotated[
         str, typer.Option(help="Where the character looks: auto, cube, hand, camera or none.")
     ] = "auto",
@@ -190,6 +203,8 @@ def play(
         speed_map=speed_map,
         turns=turns,
         personality=personality,
+        language=language,
+        lines=lines,
         look=look,
         robot=robot,
         robot_settings=robot_settings,

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.sound import Cue, Mixer, SoundBank
-from app.sound.mixer import CEILING, KNEE, MAX_SOUNDS
+from app.sound.mixer import CEILING, FADE_OUT, KNEE, MAX_SOUNDS
 
 RAMP = np.linspace(0.1, 0.5, 1000)
 
@@ -83,3 +83,25 @@ def test_unknown_sounds_are_silent_and_their_number_is_bounded():
         mix.start(Cue("ramp"))
     mix.render(1)
     assert len(mix._playing) == MAX_SOUNDS
+
+
+def test_a_new_speech_takes_the_place_of_the_old_one_which_fades():
+    mix = mixer()
+    mix.say(np.full(5000, 0.4), pan=-1.0)
+    first = mix.render(1000)
+    assert np.abs(first[:, 0] - 0.4).max() < 1e-6
+    mix.say(np.full(500, 0.2), pan=1.0)
+    left, right = mix.render(3000).T
+    assert np.abs(right[:500] - 0.2).max() < 1e-6
+    assert not right[500:].any()
+    assert left[0] > 0.39
+    assert np.abs(np.diff(left)).max() < 0.001  # no click
+    assert not left[FADE_OUT:].any()
+
+
+def test_silence_ends_a_speech():
+    mix = mixer()
+    mix.say(np.full(5000, 0.4))
+    mix.render(100)
+    mix.say(np.zeros(0))
+    assert not mix.render(3000)[FADE_OUT:].any()

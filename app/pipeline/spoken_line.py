@@ -1,0 +1,19 @@
+"""A line that the character says: what enters the pipeline from a voice, a file or a recording."""
+
+from dataclasses import dataclass
+
+from characters.speech.speech import Samples, Utterance
+
+
+@dataclass(frozen=True, eq=False)
+class SpokenLine:
+    """What is said, and its sound."""
+
+    utterance: Utterance
+    """What is said, with the times of its phones and accents."""
+
+    samples: Samples
+    """The sound, (n,)."""
+
+    rate: int
+    """Sample rate of the sound [Hz]."""

@@ -1,0 +1,1 @@
+"""Speaking: what a character says while it plays, and performances of a text."""

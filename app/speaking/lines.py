@@ -1,0 +1,81 @@
+"""The lines of a scenario: what the character says when something happens, in several languages."""
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+
+from app.errors import AppError
+from characters.model.files import read_file
+
+MAX_BYTES = 1_000_000
+"""Larger files are not written by hand."""
+
+LONGEST_LINE = 300
+"""Characters of a line that is said in play: about twenty seconds."""
+
+
+@dataclass(frozen=True)
+class ScenarioLines:
+    """What is said in one language."""
+
+    language: str
+    """Code of the language, such as "en"."""
+
+    lines: Mapping[str, tuple[str, ...]]
+    """For each action, gait or event, what may be said, in turn; tags name gestures."""
+
+    @property
+    def moments(self) -> frozenset[str]:
+        """The actions, gaits and events that have lines."""
+        return frozenset(self.lines)
+
+
+def bundled_lines(scenario: str, language: str) -> ScenarioLines | None:
+    """Return the lines of a bundled scenario; None if it has none.
+
+    Raises AppError if it has lines, but not in this language.
+    """
+    file = resources.files("app") / "scenarios" / "lines" / f"{scenario}.toml"
+    if not file.is_file():
+        return None
+    return lines_of(file.read_text("utf-8"), language, f"the lines of {scenario}")
+
+
+def read_lines(path: Path, language: str) -> ScenarioLines:
+    """Read the lines of a .toml file.
+
+    Raises AppError or CharacterError if it cannot be read, has no lines in this language, or a line
+    is no text or too long.
+    """
+    try:
+        text = read_file(path, MAX_BYTES).decode()
+    except UnicodeDecodeError as error:
+        raise AppError(f"{path}: not a text file in UTF-8") from error
+    return lines_of(text, language, str(path))
+
+
+def lines_of(text: str, language: str, where: str) -> ScenarioLines:
+    """Return the lines of one language in the text of a file; `where` names it in messages."""
+    try:
+        voice = tomllib.loads(text).get("voice", {})
+    except tomllib.TOMLDecodeError as error:
+        raise AppError(f"{where}: {error}") from error
+    if not isinstance(voice, dict) or not isinstance(voice.get(language), dict):
+        found = ", ".join(voice) if isinstance(voice, dict) and voice else "none"
+        raise AppError(
+            f"{where}: no lines in '{language}', a table [voice.{language}]; has {found}"
+        )
+    lines = {moment: _said(said, f"{where}: {moment}") for moment, said in voice[language].items()}
+    return ScenarioLines(language, lines)
+
+
+def _said(said: object, where: str) -> tuple[str, ...]:
+    lines = [said] if isinstance(said, str) else said
+    if not isinstance(lines, list) or not all(isinstance(line, str) for line in lines):
+        raise AppError(f"{where} is a line or a list of lines, each a text")
+    for line in lines:
+        if not line.strip() or len(line) > LONGEST_LINE:
+            raise AppError(f"{where}: a line has 1 to {LONGEST_LINE} characters, not {len(line)}")
+    return tuple(lines)

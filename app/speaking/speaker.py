@@ -1,0 +1,143 @@
+"""Lines in a session: from a recording, or from a voice on a thread of its own."""
+
+import queue
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Protocol
+
+from app.pipeline.spoken_line import SpokenLine
+from app.pipeline.step import Step
+from app.speaking.lines import ScenarioLines
+from app.speaking.moments import LineRequest, Moments
+from characters import CharacterError
+from characters.speech.prosody import utterance_of
+from characters.speech.tagged_text import TaggedText
+from characters.speech.voices import Voice
+
+MAX_FAILURES = 3
+"""A voice that has failed so often in a row is not asked again."""
+
+ANSWER_S = 5.0
+"""How long a session that is not in real time waits for a line [s]."""
+
+
+class Speaker(Protocol):
+    """Says what the character says in a session. Whoever opens it closes it."""
+
+    problem: str
+    """Why it is silent; "" while all is well."""
+
+    def line(self, timestamp: float) -> SpokenLine | None:
+        """Return the line that begins with the frame of a timestamp [s], if one does."""
+        ...
+
+    def hear(self, step: Step) -> None:
+        """Take a step, to say something about it."""
+        ...
+
+    def close(self) -> None:
+        """End; a second call does nothing."""
+        ...
+
+
+class RecordedSpeaker:
+    """Says again what a recorded session has, by the frame in which it begins [s]."""
+
+    problem = ""
+
+    def __init__(self, lines: Mapping[float, SpokenLine]) -> None:
+        self._lines = lines
+
+    def line(self, timestamp: float) -> SpokenLine | None:
+        """Return the line that begins with the frame of a timestamp [s], if one does."""
+        return self._lines.get(timestamp)
+
+    def hear(self, step: Step) -> None:
+        """Do nothing."""
+
+    def close(self) -> None:
+        """Do nothing."""
+
+
+class LiveSpeaker:
+    """Speaks the lines of the scenarios with a voice, which no frame waits for.
+
+    Parameters
+    ----------
+    voice
+        The voice; `close` ends it.
+    lines_of
+        What is said in a scenario, by its name; None for nothing.
+    waits
+        Whether the session is not in real time, so that the next frame waits for its line.
+    """
+
+    def __init__(
+        self, voice: Voice, lines_of: Callable[[str], ScenarioLines | None], *, waits: bool
+    ) -> None:
+        self.problem = ""
+        self._voice, self._lines_of, self._waits = voice, lines_of, waits
+        self._scenario = ""
+        self._moments: Moments | None = None
+        self._requests: queue.Queue[LineRequest | None] = queue.Queue()
+        self._said: queue.Queue[SpokenLine | None] = queue.Queue()
+        self._asked = False
+        self._thread = threading.Thread(target=self._run, name="voice", daemon=True)
+        self._thread.start()
+
+    def line(self, timestamp: float) -> SpokenLine | None:
+        """Return the newest line that is ready, if there is one."""
+        newest = None
+        if self._waits and self._asked:
+            try:
+                newest = self._said.get(timeout=ANSWER_S)
+            except queue.Empty:
+                self.problem = "the voice is too slow"
+        self._asked = False
+        while not self._said.empty():
+            newest = self._said.get_nowait() or newest
+        return newest
+
+    def hear(self, step: Step) -> None:
+        """Let the voice speak what there is to say about a step."""
+        if step.scenario != self._scenario:
+            self._scenario = step.scenario
+            lines = self._lines_of(step.scenario)
+            self._moments = None if lines is None else Moments(lines)
+        request = None if self._moments is None else self._moments.update(step)
+        if request is not None and not self.problem:
+            self._asked = True
+            self._requests.put(request)
+
+    def close(self) -> None:
+        """End the voice; a second call does nothing."""
+        self._requests.put(None)
+        self._thread.join(timeout=1.0)
+        self._voice.close()
+
+    def _run(self) -> None:
+        failures = 0
+        while (request := self._requests.get()) is not None:
+            try:
+                self._said.put(spoken(self._voice, request))
+                failures = 0
+            except CharacterError as error:
+                self._said.put(None)
+                failures += 1
+                if failures == MAX_FAILURES:
+                    self.problem = str(error)
+
+
+def spoken(voice: Voice, request: LineRequest) -> SpokenLine:
+    """Return a line as a voice says it.
+
+    Raises
+    ------
+    CharacterError
+        The voice failed, or the tags of the line do not fit together.
+    """
+    tagged = TaggedText.read(request.text)
+    speech = voice.say(tagged.text, request.language, request.manner)
+    gestures = tagged.timed(speech.words, speech.duration)
+    return SpokenLine(replace(utterance_of(speech), gestures=gestures), speech.samples, speech.rate)

@@ -1,0 +1,61 @@
+"""The lines of scenarios: bundled ones and files of the user."""
+
+import tomllib
+from importlib import resources
+
+import pytest
+
+from app.errors import AppError
+from app.scenarios import SCENARIOS
+from app.speaking.lines import bundled_lines, read_lines
+from characters.speech.tagged_text import TaggedText
+
+
+@pytest.mark.parametrize("scenario", SCENARIOS)
+def test_bundled_lines_say_the_same_moments_in_both_languages(scenario):
+    english, spanish = (bundled_lines(scenario, language) for language in ("en", "es"))
+    assert english is not None
+    assert spanish is not None
+    assert english.moments == spanish.moments
+    for lines in (english, spanish):
+        for said in lines.lines.values():
+            assert said
+            assert all(TaggedText.read(line).text.strip() for line in said)
+
+
+def test_a_scenario_of_another_package_says_nothing():
+    assert bundled_lines("greet", "en") is None
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("[voice.de]\nkiss = 'Kuss'", r"no lines in 'en', a table \[voice.en\]; has de"),
+        ("voice = 3", "has none"),
+        ("kiss = 'x'", "has none"),
+        ("[voice.en]\nkiss = 3", "kiss is a line or a list of lines"),
+        ("[voice.en]\nkiss = ['a', 3]", "kiss is a line or a list of lines"),
+        ("[voice.en]\nkiss = ['']", "has 1 to 300 characters, not 0"),
+        (f"[voice.en]\nkiss = '{'a' * 301}'", "not 301"),
+        ("[voice.en", "Expected"),
+    ],
+)
+def test_what_is_no_file_of_lines_is_refused_in_one_line(tmp_path, text, problem):
+    path = tmp_path / "my.toml"
+    path.write_text(text)
+    with pytest.raises(AppError, match=problem) as error:
+        read_lines(path, "en")
+    assert "\n" not in str(error.value)
+
+
+def test_a_single_line_need_not_be_a_list(tmp_path):
+    path = tmp_path / "my.toml"
+    path.write_text("[voice.en]\nkiss = 'Hello'")
+    assert read_lines(path, "en").lines == {"kiss": ("Hello",)}
+
+
+def test_bundled_lines_are_in_the_package():
+    folder = resources.files("app") / "scenarios" / "lines"
+    for file in folder.iterdir():
+        tomllib.loads(file.read_text("utf-8"))
+        assert file.name.removesuffix(".toml") in SCENARIOS

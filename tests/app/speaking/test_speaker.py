@@ -1,0 +1,93 @@
+"""What the character says in a session: live, recorded, and without a voice."""
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.running.opening import open_session
+from app.running.replay_check import check_session
+from app.running.runner import run
+from app.session import SessionOptions, messages, spoken_lines
+from app.session.bundled import bundled
+from app.session.encoding import decode
+from app.speaking import opening
+from characters import CharacterCommand, CharacterError
+from characters.speech.voices import Voice, VoiceError
+
+BUZZ = """
+import json, math, struct, sys
+for line in sys.stdin.buffer:
+    text = json.loads(line)["text"]
+    out = sys.stdout.buffer
+    count = 800 * len(text)
+    events = [{"rate": 16000}]
+    events += [{"phone": "a" if n % 2 else "m", "at": 800 * n} for n in range(len(text))]
+    events += [{"word": 0, "length": len(text), "at": 0}, {"pcm": 2 * count}]
+    out.write(b"".join(json.dumps(event).encode() + b"\\n" for event in events))
+    wave = [round(9000 * math.sin(n / 16000 * 2 * math.pi * 150)) for n in range(count)]
+    out.write(struct.pack(f"<{count}h", *wave) + json.dumps({"end": count}).encode() + b"\\n")
+    out.flush()
+"""
+
+
+@pytest.fixture
+def buzz(monkeypatch):
+    """Let a voice be installed that buzzes."""
+    monkeypatch.setattr(opening, "espeak", lambda: Voice((sys.executable, "-S", "-c", BUZZ)))
+
+
+def recording_of(tmp_path: Path, **changes) -> Path:
+    path = tmp_path / "spoken.mcap"
+    options = SessionOptions(
+        scenario="companion", source=str(bundled("companion")), robot="none", pictures=False,
+        language="en", record=path, end_s=5.0,
+    )  # fmt: skip
+    with open_session(replace(options, **changes)) as session:
+        run(session)
+    return path
+
+
+def said_in(path: Path) -> list[str]:
+    commands = [decode(CharacterCommand, d) for _, _, d in messages(path, "/character/command")]
+    texts = [command.speech.utterance.text for command in commands if command.speech]
+    return list(dict.fromkeys(texts))
+
+
+def test_a_session_with_speech_replays_byte_for_byte_without_a_voice(tmp_path, buzz, monkeypatch):
+    path = recording_of(tmp_path)
+    assert said_in(path)
+    assert [line.utterance.text for line in spoken_lines(path).values()] == said_in(path)
+
+    def gone():
+        raise VoiceError("no voice")
+
+    monkeypatch.setattr(opening, "espeak", gone)
+    options = SessionOptions(scenario="companion", source=str(path))
+    assert check_session(path, options).identical
+
+
+def test_a_recorded_line_keeps_its_sound(tmp_path, buzz):
+    line = next(iter(spoken_lines(recording_of(tmp_path)).values()))
+    assert line.rate == 16000
+    assert len(line.samples) == 800 * len(line.utterance.text)
+    assert abs(line.samples).max() == pytest.approx(9000 / 2**15, rel=1e-3)
+
+
+def test_without_a_voice_a_character_is_silent_unless_it_was_asked_to_speak(tmp_path, monkeypatch):
+    def gone():
+        raise VoiceError("no voice is installed", "sudo apt-get install -y espeak-ng")
+
+    monkeypatch.setattr(opening, "espeak", gone)
+    windowed = SessionOptions(scenario="companion", source="camera:0")
+    speaker = opening.open_speaker(windowed, waits=False)
+    assert speaker.line(0.0) is None
+    with pytest.raises(CharacterError, match="apt-get install"):
+        opening.open_speaker(replace(windowed, language="en"), waits=False)
+
+
+def test_a_voice_that_always_dies_is_given_up_and_the_session_goes_on(tmp_path, monkeypatch):
+    dying = (sys.executable, "-S", "-c", "import sys; sys.stdin.readline()")
+    monkeypatch.setattr(opening, "espeak", lambda: Voice(dying))
+    assert said_in(recording_of(tmp_path)) == []
