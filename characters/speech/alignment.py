@@ -19,6 +19,7 @@ from characters.speech.phones import fill_pauses
 from characters.speech.speech import SILENCE, Phone, Speech, Word
 from characters.speech.voices import Voice, VoiceError
 from characters.speech.warping import warp
+from characters.speech.words import with_every_word
 
 MAX_S = 1200.0
 """Longest recording [s]; as long as what a voice says at once."""
@@ -75,7 +76,7 @@ def align(recording: Speech, text: str, voice: Voice, language: str = "en") -> S
 
 def _said(text: str, voice: Voice, language: str) -> list[Speech]:
     """Return the text as the variants of a voice say it, all with the same phones."""
-    said = [with_closures(voice.say(text, language))]
+    said = [with_every_word(with_closures(voice.say(text, language)))]
     if not any(phone.symbol != SILENCE for phone in said[0].phones):
         raise CharacterError(f"the voice finds nothing to say in the text, by '{language}'")
     if "+" in language or len(text) > MAX_VARIANTS_TEXT:

@@ -93,10 +93,9 @@ def _slope(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the slope of the regression line over `DELTA_FRAMES` on both sides."""
     n = DELTA_FRAMES
     padded = np.pad(values, ((n, n), (0, 0)), "edge")
-    shifts = range(-n, n + 1)
-    return np.sum([k * padded[n + k : n + k + len(values)] for k in shifts], 0) / sum(
-        k * k for k in shifts
-    )
+    shifts = np.arange(-n, n + 1)
+    moved = [k * padded[n + k : n + k + len(values)] for k in shifts.tolist()]
+    return np.asarray(np.sum(moved, 0) / (shifts**2).sum())
 
 
 def _normalised(values: NDArray[np.float64], loud: NDArray[np.bool_]) -> NDArray[np.float64]:

@@ -30,9 +30,11 @@ IPA_OF_ARPABET = dict(pair.split(":") for pair in _ARPABET.split())
 """The IPA symbol of each phone of ARPAbet, the alphabet of American pronunciation dictionaries."""
 
 
+_NEAREST = "ɐ:AH ə:AX ᵻ:IH ɒ:AA a:AA e:EH o:OW g:G r:R ɫ:L x:K ç:K y:UW ø:ER"
+
 ARPABET_OF_IPA = {
     **{ipa: symbol for symbol, ipa in reversed(IPA_OF_ARPABET.items())},
-    **dict(zip("ɐəᵻɒaeoɡgrɫxçyø", "AH AX IH AA AA EH OW G G R L K K UW ER".split(), strict=True)),
+    **dict(pair.split(":") for pair in _NEAREST.split()),
 }
 """ARPAbet of IPA symbols, and what comes nearest to those that English lacks."""
 

@@ -4,17 +4,15 @@ Two passes: the words first, then the phones of the pronunciations that were cho
 dictionary lacks are pronounced as the voice does.
 """
 
-import re
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from characters.errors import CharacterError
 from characters.speech.audio import resampled
-from characters.speech.phones import arpabet_of_ipa, ipa_of_arpabet
+from characters.speech.phones import arpabet_of_ipa, fill_pauses, ipa_of_arpabet
 from characters.speech.speech import SILENCE, Phone, Speech, Word
 from characters.speech.voices import Voice
+from characters.speech.words import written_words
 
 RATE = 16_000
 """Sample rate of its model [Hz]."""
@@ -29,7 +27,6 @@ MAX_S = 300.0
 """Longest recording that is aligned at once [s]."""
 
 _NOISES = ("<s>", "</s>", "<sil>", "[NOISE]", "(NULL)")
-_WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
 
 
 def align_with_sphinx(recording: Speech, text: str, voice: Voice) -> Speech:
@@ -42,17 +39,17 @@ def align_with_sphinx(recording: Speech, text: str, voice: Voice) -> Speech:
     """
     if recording.duration > MAX_S:
         raise CharacterError(f"PocketSphinx aligns up to {MAX_S:g} s at once: cut the recording")
-    written = list(_WORD.finditer(text))
+    written = written_words(text)
     if not written:
         raise CharacterError("there are no words to align")
     decoder = _decoder()
-    for word in {_key(match.group()) for match in written}:
+    for word in {_key(word) for word, _ in written}:
         if decoder.lookup_word(word) is None:
             decoder.add_word(word, _pronounced(word, voice), True)
     sound = resampled(recording.samples, recording.rate, RATE)
     data = (sound.clip(-1.0, 1.0) * 32767).astype("<i2").tobytes()
     try:
-        decoder.set_align_text(" ".join(_key(match.group()) for match in written))
+        decoder.set_align_text(" ".join(_key(word) for word, _ in written))
         _decode(decoder, data)
         decoder.set_alignment()
         _decode(decoder, data)
@@ -66,8 +63,8 @@ def align_with_sphinx(recording: Speech, text: str, voice: Voice) -> Speech:
     if len(spoken) != len(written):
         raise CharacterError("PocketSphinx does not find this text in the recording")
     words = tuple(
-        Word(match.group(), _time(start), _time(start + length), match.start())
-        for match, (_, start, length, _) in zip(written, spoken, strict=True)
+        Word(word, _time(start), _time(start + length), offset)
+        for (word, offset), (_, start, length, _) in zip(written, spoken, strict=True)
     )
     return replace(
         recording,
@@ -86,15 +83,9 @@ def _phones(
         for symbol, start in pieces:
             known = SILENCE if word in _NOISES else ipa_of_arpabet(symbol)
             marks.append((_time(start), known))
-    phones: list[Phone] = []
-    for (start, symbol), (end, _) in zip(marks, [*marks[1:], (duration, SILENCE)], strict=True):
-        if end <= start:
-            continue
-        if phones and symbol == SILENCE == phones[-1].symbol:
-            phones[-1] = replace(phones[-1], end=end)
-        else:
-            phones.append(Phone(symbol, start, end))
-    return tuple(phones)
+    ends = [*(start for start, _ in marks[1:]), duration]
+    timed = [Phone(symbol, start, end) for (start, symbol), end in zip(marks, ends, strict=True)]
+    return fill_pauses(timed, duration)
 
 
 def _time(frame: int) -> float:
