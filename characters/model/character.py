@@ -11,12 +11,14 @@ import numpy as np
 from characters.errors import CharacterError
 from characters.model.mesh import Mesh
 from characters.model.sidecar import read_sidecar
+from characters.model.speaking import gestures_beside
 from characters.model.standing import StandingFactory, recordings_beside, standing_factory
 from characters.motion.clip import Clip
 from characters.motion.motion import StandingMotion
 from characters.motion.trees.plan import Plan
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Skeleton
+from characters.synthesis.gestures.library import GestureLibrary
 
 CHARACTER_READERS: "dict[str, Callable[[Path], Character]]" = {}
 """Readers of a character by the suffix of the file; `characters.formats` registers its own."""
@@ -55,6 +57,9 @@ class Character:
 
     standing: StandingFactory | None = None
     """Makes the motion that it stands with from a seed; None for its idle clip."""
+
+    gestures: GestureLibrary | None = None
+    """With which its hands beat the rhythm of what it says; None for its head alone."""
 
     seed: int = 0
     """Characters with different seeds stand differently."""
@@ -148,7 +153,7 @@ def _known_suffixes() -> str:
 
 
 def _with_sidecar(character: Character, path: Path) -> Character:
-    """Return a character with what the files of the same name add: a .toml and an .idle file."""
+    """Return a character with what files of the same name add: a .toml, .idle, .gestures file."""
     sidecar_path = path.with_suffix(".toml")
     sidecar = read_sidecar(sidecar_path, character.clips)
     for part, joint in sidecar.joints.items():
@@ -162,6 +167,7 @@ def _with_sidecar(character: Character, path: Path) -> Character:
         semantics={**character.semantics, **sidecar.joints},
         plan=sidecar.plan,
         body_layers=sidecar.body_layers,
+        gestures=gestures_beside(path, character.skeleton),
     )
     recordings = recordings_beside(path, found.skeleton)
     if not recordings:

@@ -6,14 +6,21 @@ from characters.control.layers.foot_lock import FootLockLayer
 from characters.control.layers.gaze import GazeLayer
 from characters.control.layers.layer import FrameContext, LayerFactory
 from characters.control.layers.posture import PostureLayer
+from characters.control.layers.speech import SpeechLayer
 from characters.control.layers.upper_body import DependentJointsLayer, SelfCollisionLayer
 from characters.model.character import Character
 
 FOOT_LAYERS: tuple[LayerFactory, ...] = (FootLockLayer,)
 """What a character needs besides its clips."""
 
-LIVELINESS_LAYERS: tuple[LayerFactory, ...] = (PostureLayer, GazeLayer, FaceLayer, BreathLayer)
-"""What makes it look alive: it sways, looks, blinks, breathes and shows its emotion."""
+LIVELINESS_LAYERS: tuple[LayerFactory, ...] = (
+    SpeechLayer,
+    PostureLayer,
+    GazeLayer,
+    FaceLayer,
+    BreathLayer,
+)
+"""What makes it look alive: it speaks, sways, looks, blinks, breathes and shows its emotion."""
 
 DEFAULT_LAYERS: tuple[LayerFactory, ...] = (*FOOT_LAYERS, *LIVELINESS_LAYERS)
 """The layers of every character."""
@@ -43,5 +50,6 @@ __all__ = [
     "FootLockLayer",
     "FrameContext",
     "LayerFactory",
+    "SpeechLayer",
     "layers_of",
 ]

@@ -1,0 +1,204 @@
+"""The body of who speaks: gestures that beat the rhythm, those that a text asks for, and nods."""
+
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from characters.body.head_beats import HeadBeats
+from characters.body.head_joints import HeadJoints
+from characters.control.command import SpeechIntent
+from characters.control.layers.layer import FrameContext
+from characters.face.expressions import EXPRESSIONS
+from characters.model.character import Character
+from characters.motion.curves import Curve, FadeCurve, ease
+from characters.motion.modifiers import Stretch
+from characters.motion.motion import Motion
+from characters.skeleton import rotations
+from characters.skeleton.pose import Array, Pose
+from characters.speech.speech import GestureSpan
+from characters.synthesis.gestures.library import GestureLibrary, gesture_joints
+from characters.synthesis.gestures.planning import (
+    DEFAULT_SETTINGS,
+    GesturePlanner,
+    GestureSettings,
+)
+
+CUT_S = 0.3
+"""How long hands take to leave a speech that is cut off [s]."""
+
+FADE = FadeCurve(0.25, 0.3)
+"""How a gesture that a text asks for comes and goes."""
+
+HANDS_SHARE = 0.6
+"""Share of the head's beats that is left to a character whose hands beat too."""
+
+
+@dataclass(frozen=True, eq=False)
+class OverlaidMotion:
+    """A motion of some joints that lies over another one."""
+
+    motion: Motion
+    """The motion."""
+
+    start: float
+    """When it begins [s]."""
+
+    weight: Curve
+    """How much of it shows over time, 0…1."""
+
+    joints: tuple[int, ...]
+    """The joints that it moves."""
+
+    def over(self, pose: Pose, now: float, share: float) -> Pose:
+        """Return a pose with the motion laid over it."""
+        own = now - self.start
+        weight = share * self.weight.at(own, self.motion.duration)
+        if weight <= 0.0:
+            return pose
+        joints, turns = [*self.joints], pose.rotations.copy()
+        shown = self.motion.sample(own).rotations[joints]
+        before = turns[joints]
+        turns[joints] = rotations.normalize(
+            before + (rotations.align(shown, before) - before) * weight
+        )
+        return replace(pose, rotations=turns)
+
+
+class SpeechGestures:
+    """The gestures of one speech."""
+
+    def __init__(
+        self, character: Character, speech: SpeechIntent, settings: GestureSettings
+    ) -> None:
+        said = speech.utterance
+        seed = zlib.crc32(said.text.encode()) + character.seed
+        self.speech = speech
+        self._cut: float | None = None
+        self._overlays: list[OverlaidMotion] = []
+        self._expressions = expressions_of(character, said.gestures)
+        self.head = HeadBeats(said.accents, seed)
+        """The beats of its head."""
+        asked = clips_of(character, said.gestures)
+        if character.gestures is not None:
+            free = [
+                a for a in said.accents if not any(s.start <= a.time <= s.end for s, _ in asked)
+            ]
+            planner = planner_of(character.gestures, settings)
+            plan = planner.plan(free, said.duration, speech.gesture_emphasis, seed)
+            beats = plan.motion()
+            self._overlays.append(
+                OverlaidMotion(beats, speech.start, beats.weights, character.gestures.joints)
+            )
+        joints = gesture_joints(character.skeleton, character.anatomy)
+        for span, clip in asked:
+            stretched = Stretch(clip, span.end - span.start)
+            self._overlays.append(
+                OverlaidMotion(stretched, speech.start + span.start, FADE, joints)
+            )
+        ends = [
+            speech.start + said.duration,
+            *(o.start + o.motion.duration for o in self._overlays),
+        ]
+        self.end = max(ends)
+        """When hands are in rest again [s]."""
+
+    def cut(self, now: float) -> None:
+        """Let them fade from a time on [s], if they are not over."""
+        if self._cut is None and now < self.speech.end:
+            self._cut = now
+            self.end = min(self.end, now + CUT_S)
+
+    def share(self, now: float) -> float:
+        """Return how much of them is left at a time [s], 0…1."""
+        return 1.0 if self._cut is None else 1.0 - ease((now - self._cut) / CUT_S, "gonio")
+
+    def over(self, pose: Pose, now: float, hands: float) -> Pose:
+        """Return a pose with the gestures laid over it; `hands` is their share, 0…1."""
+        share = self.share(now)
+        for overlay in self._overlays:
+            pose = overlay.over(pose, now, hands * share)
+        if self._expressions and pose.morphs is not None:
+            pose = replace(pose, morphs=self._expressed(pose.morphs, now, share))
+        return pose
+
+    def _expressed(self, morphs: Array, now: float, share: float) -> Array:
+        shown = morphs.copy()
+        for span, number in self._expressions:
+            own, length = now - self.speech.start - span.start, span.end - span.start
+            if 0.0 < own < length:
+                shown[number] = max(shown[number], share * FADE.at(own, length))
+        return shown
+
+
+class SpeechLayer:
+    """Lays gestures over the body of a character that speaks; it comes before posture and gaze."""
+
+    def __init__(
+        self, character: Character, seed: int = 0, settings: GestureSettings = DEFAULT_SETTINGS
+    ) -> None:
+        self._character, self._settings = replace(character, seed=seed), settings
+        head = character.anatomy.joint("head")
+        self._head = None
+        if head is not None:
+            self._head = HeadJoints(character.skeleton, character.anatomy, head)
+        self._spoken: list[SpeechGestures] = []
+
+    def update(self, pose: Pose, context: FrameContext) -> Pose:
+        """Return the pose with gestures and nods."""
+        speech, now = context.command.speech, context.command.timestamp
+        if speech is None and not self._spoken:
+            return pose
+        self._follow(speech, now)
+        nod = np.zeros(3)
+        for spoken in self._spoken:
+            pose = spoken.over(pose, now, context.rest)
+            nod += spoken.share(now) * spoken.head.at(now - spoken.speech.start)
+        if self._head is None or not nod.any():
+            return pose
+        nod *= context.rest * (1.0 if self._character.gestures is None else HANDS_SHARE)
+        self._head.place(pose)
+        turns = pose.rotations.copy()
+        x, y, z = nod.tolist()
+        self._head.turn_head(turns, (x, y, z))
+        return replace(pose, rotations=turns)
+
+    def _follow(self, speech: SpeechIntent | None, now: float) -> None:
+        """Begin what is new, cut off what is interrupted, and forget what is over."""
+        current = self._spoken[-1].speech if self._spoken else None
+        if speech is not None and (current is None or speech.start != current.start):
+            for spoken in self._spoken:
+                spoken.cut(now)
+            self._spoken.append(SpeechGestures(self._character, speech, self._settings))
+        elif speech is None and self._spoken:
+            self._spoken[-1].cut(now)
+        self._spoken = [each for each in self._spoken if now < each.end or each.speech is speech]
+
+
+@lru_cache(maxsize=4)
+def planner_of(library: GestureLibrary, settings: GestureSettings) -> GesturePlanner:
+    """Return what plans gestures of a library; making it takes a while, so once."""
+    return GesturePlanner(library, settings)
+
+
+def clips_of(
+    character: Character, spans: Sequence[GestureSpan]
+) -> list[tuple[GestureSpan, Motion]]:
+    """Return the clips that a text asks for, with their spans."""
+    return [(span, character.clips[span.name]) for span in spans if span.name in character.clips]
+
+
+def expressions_of(
+    character: Character, spans: Sequence[GestureSpan]
+) -> list[tuple[GestureSpan, int]]:
+    """Return the numbers of the expressions that a text asks for, with their spans."""
+    morphs = character.morphs
+    return [(s, morphs.index(s.name)) for s in spans if s.name in morphs]
+
+
+def known_gestures(character: Character) -> tuple[str, ...]:
+    """Return the names that a text may ask a character for."""
+    expressions = [name for name in EXPRESSIONS if name in character.morphs]
+    return (*character.clips, *expressions)

@@ -1,0 +1,37 @@
+"""How a character beats the rhythm of what it says: the .gestures file beside it."""
+
+from pathlib import Path
+
+from characters.errors import CharacterError
+from characters.skeleton.pose import Skeleton
+from characters.synthesis.archive import skeleton_identity
+from characters.synthesis.gestures.library import GestureLibrary
+
+
+def gestures_beside(path: Path, skeleton: Skeleton) -> GestureLibrary | None:
+    """Return the gestures in the .gestures file beside the file of a character; None without one.
+
+    Raises
+    ------
+    CharacterError
+        If it cannot be read, or was made for another skeleton.
+    """
+    file = path.with_suffix(".gestures")
+    return gestures_for(file, skeleton, path.name) if file.exists() else None
+
+
+def gestures_for(file: Path, skeleton: Skeleton, name: str) -> GestureLibrary:
+    """Return the gestures of a file for the character of this name.
+
+    Raises
+    ------
+    CharacterError
+        If it cannot be read, or was made for another skeleton.
+    """
+    library = GestureLibrary.load(file)
+    if library.skeleton_identity != skeleton_identity(skeleton):
+        raise CharacterError(
+            f"{file}: made for another skeleton than that of {name}; make it again with "
+            f"cubeling gestures learn --character {name}"
+        )
+    return library
