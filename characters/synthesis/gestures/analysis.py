@@ -27,6 +27,9 @@ SPEED_CUTOFF_HZ = 6.0
 APEX_AFTER_S = 0.1
 """How long after the end of a stroke its apex may be [s]."""
 
+APEX_SHIFT_S = 0.05
+"""How much later the low-pass of the speed may show an apex [s]."""
+
 BIMANUAL_APEX_S, BIMANUAL_GSI = 0.1, 1.0
 """A stroke of both hands is coordinated if its apices and strengths differ by no more."""
 
@@ -138,7 +141,8 @@ def find_apex(path: Array, rate: float, stroke: tuple[int, int]) -> int:
     """Return the frame of the apex of a stroke.
 
     Of the minima of the hand's speed between the start of the stroke and 0.1 s after its end, it is
-    the one farthest from where the stroke starts; of equals, the latest.
+    the one farthest from where the stroke starts; of equals, the latest. As the low-pass moves
+    minima towards the slower side, it then is the farthest frame nearby.
     """
     first, last = stroke
     last = min(last + round(APEX_AFTER_S * rate), len(path) - 1)
@@ -148,4 +152,6 @@ def find_apex(path: Array, rate: float, stroke: tuple[int, int]) -> int:
     away = np.linalg.norm(path - path[first], axis=1)
     if not len(lowest):
         return first + int(np.argmax(away[first : last + 1]))
-    return int(lowest[len(lowest) - 1 - np.argmax(away[lowest][::-1])])
+    found = int(lowest[len(lowest) - 1 - np.argmax(away[lowest][::-1])])
+    begin = max(found - round(APEX_SHIFT_S * rate), first)
+    return begin + int(np.argmax(away[begin : found + 1]))

@@ -52,8 +52,8 @@ class GestureSettings:
     synchrony: SynchronyRule = field(default_factory=SynchronyRule)
     """Window of the anticipation, which is drawn at random."""
 
-    intensity: IntensityRule = field(default_factory=IntensityRule)
-    """The intensity rule of the model "thesis"."""
+    intensity: IntensityRule | None = None
+    """The intensity rule of the model "thesis"; None spreads it over the library."""
 
     longest_hold_s: float = 0.8
     """How long hands may be held between two gestures [s]; 0 is the thesis to the letter."""
@@ -77,6 +77,8 @@ class GesturePlanner:
         """What may follow what."""
         self._timings = Timings.of(self.graph, settings.model)
         strengths = self.graph.strengths
+        self.intensity = settings.intensity or IntensityRule.spread_over(strengths)
+        """The intensity rule."""
         self._weakest, self._range = strengths.min(), max(float(np.ptp(strengths)), 1e-9)
         self._weights = SearchWeights(
             settings.smooth_weight, settings.time_weight, settings.variety, settings.longest_hold_s
@@ -125,13 +127,13 @@ class GesturePlanner:
 
     def in_band(self, gesture: PlannedGesture) -> bool:
         """Return whether a gesture is in the band of the intensity rule."""
-        return bool(self.settings.intensity.holds(gesture.emphasized, gesture.strength))
+        return bool(self.intensity.holds(gesture.emphasized, gesture.strength))
 
     def _strength_cost(self, strength: float, warps: Array) -> Array:
         """Return what the strength of each gesture costs for an accent, (states, nodes)."""
         played = self._timings.played_strength(self.graph.strengths, warps)
         if self.settings.model == "thesis":
-            return np.where(self.settings.intensity.holds(strength, played), 0.0, INVALID_COST)
+            return np.where(self.intensity.holds(strength, played), 0.0, INVALID_COST)
         shares: Array = (played - self._weakest) / self._range
         return np.abs(strength - shares)
 

@@ -94,14 +94,14 @@ class IntensityRule:
         return IntensityRule(slope, intercept, spread)
 
     @staticmethod
-    def matched(psi: Array, strengths: Array, margin: float = 1.0) -> "IntensityRule":
-        """Return the rule that takes the spread of accents (n,) to that of gestures (m,).
+    def spread_over(strengths: Array, margin: float = 1.0) -> "IntensityRule":
+        """Return the rule for gestures (n,) that nobody spoke with.
 
-        For a library without speech: their order is the same, but none are pairs.
+        The constants of the thesis are those of its actor; here accents from a tenth of the
+        strongest to the strongest go with the strengths from the 10 % to the 90 % quantile.
         """
-        logs = np.log(np.maximum(psi, LEAST_PSI))
-        slope = float(strengths.std() / max(logs.std(), 1e-9))
-        return IntensityRule(slope, float(strengths.mean() - slope * logs.mean()), margin)
+        weak, strong = np.quantile(strengths, (0.1, 0.9)).tolist()
+        return IntensityRule((strong - weak) / math.log(10.0), strong, margin)
 
 
 def paired(apices: Array, strengths: Array, accents: Array, psi: Array) -> NDArray[np.intp]:

@@ -7,7 +7,7 @@ import numpy as np
 from characters.model.character import Character
 from characters.skeleton import rotations
 from characters.skeleton.pose import Pose, Skeleton
-from characters.synthesis.gestures.analysis import bimanual_strength, gesture_strength, masses
+from characters.synthesis.gestures.learning import stroke_strength
 from characters.synthesis.gestures.library import (
     GestureLibrary,
     GesturePhrase,
@@ -17,8 +17,6 @@ from characters.synthesis.gestures.library import (
 )
 from tools.authoring.gestures.timeline import (
     RATE_HZ,
-    SIDES,
-    BeatSpan,
     UnitBeat,
     UnitCurves,
     unit_curves,
@@ -56,54 +54,79 @@ def human_gestures(character: Character) -> GestureLibrary:
         turns = rotations.continuous(poses.rotations)
         recordings.append(GestureRecording(name, turns[:, list(joints)]))
         for span in curves.spans:
-            strength = _strength(turns, span, character)
+            stroke = turns[span.bounds[2] : span.bounds[3] + 1]
+            strength = stroke_strength(stroke, span.hand, anatomy)
             phrases.append(GesturePhrase(number, span.hand, span.bounds, span.apex, strength))
-    rest = recordings[0].turns[0]
+    rest = np.mean([each.turns[0] for each in recordings], axis=0)
+    rest /= np.linalg.norm(rest, axis=-1, keepdims=True)
     return GestureLibrary(
         skeleton, anatomy, joints, RATE_HZ, rest, tuple(recordings), tuple(phrases)
     )
 
 
 def units() -> Iterator[tuple[str, list[UnitBeat]]]:
-    """Yield name and beats of each unit: three beats of one strength, or rising to a strong one."""
-    hands: tuple[Hand, ...]
-    for family, shapes, hands in _FAMILIES:
-        for strength in ("weak", "neutral", "strong"):
-            beats = [
-                UnitBeat(shape, strength, hand) for shape, hand in zip(shapes, hands, strict=True)
-            ]
-            yield f"{family} {strength}", beats
+    """Yield name and beats of each unit."""
+    hands: dict[str, Hand] = {"L": "left", "R": "right", "B": "both"}
+    for strength, texts in UNITS.items():
+        for text in texts:
+            pairs = [each.strip().split(" ", 1) for each in text.split(",")]
+            beats = [UnitBeat(shape, strength, hands[hand]) for hand, shape in pairs]
+            yield f"{strength}: {', '.join(beat.shape for beat in beats)}", beats
 
 
-_FAMILIES: tuple[tuple[str, tuple[str, str, str], tuple[Hand, Hand, Hand]], ...] = (
-    ("chop", ("chop", "chop", "sweep"), ("right", "right", "right")),
-    ("open", ("palm up", "offer", "open"), ("both", "both", "both")),
-    ("precise", ("precision", "precision", "flick"), ("left", "left", "left")),
-    ("pound", ("fist", "press", "fist"), ("right", "both", "both")),
-    ("weigh", ("weigh", "weigh", "palm up"), ("left", "right", "both")),
-    ("self", ("self", "toss", "palm up"), ("right", "right", "right")),
-    ("circle", ("circle", "wag", "toss"), ("left", "left", "left")),
-)
-"""Shapes and hands of the beats of each family of units."""
+UNITS = {
+    "weak": (
+        "R chop, R precision, R flick",
+        "B palm up, L weigh, R weigh",
+        "L precision, L precision, L flick",
+        "B offer, B palm up, B open",
+        "L circle, L flick, L palm up",
+        "R self, R palm up, R flick",
+        "R wag, R wag, R toss",
+        "B press, B press, B sweep",
+    ),
+    "neutral": (
+        "L chop, L chop, L sweep",
+        "B palm up, B offer, B open",
+        "R precision, R precision, R flick",
+        "R fist, B press, B palm up",
+        "L weigh, R weigh, B palm up",
+        "R circle, R toss, R offer",
+        "L self, L toss, B open",
+        "L wag, R chop, B chop",
+    ),
+    "strong": (
+        "R chop, R chop, R sweep",
+        "B palm up, B offer, B open",
+        "L fist, L fist, L toss",
+        "R fist, B press, B fist",
+        "B chop, B chop, B sweep",
+        "R self, R toss, B open",
+        "R wag, R wag, R sweep",
+        "L weigh, R weigh, B press",
+    ),
+}
+"""Units by strength: for each beat the hand, left, right or both, and the shape."""
 
 
 def unit_poses(skeleton: Skeleton, curves: UnitCurves) -> Pose:
     """Return the poses of a unit, (frames, joints, …), on a body that stands still."""
     frames = len(curves.lean)
     rig = PosedRig(skeleton, frames)
-    for name, part in (("spine1", 0.3), ("spine2", 0.35), ("chest", 0.35)):
-        own = {"spine1": 0.0, "spine2": 1.0, "chest": 1.5}[name]
-        rig.turn(name, rotation_deg(own + part * curves.lean, part * curves.twist))
+    for name, upright, part in (("spine1", 0.0, 0.3), ("spine2", 1.0, 0.35), ("chest", 1.5, 0.35)):
+        rig.turn(name, rotation_deg(upright + part * curves.lean, part * curves.twist))
     gaze = rotation_deg(GAZE_PITCH_DEG + curves.nod, 0.15 * curves.twist)
     above = rotations.multiply(rotations.conjugate(rig.facing("chest")), gaze)
     rig.turn("neck", rotations.slerp(rotations.IDENTITY, above, 0.4))
     rig.face("head", gaze)
     still = np.zeros(frames)
-    for side, sign in ARMS:
+    for number, (side, sign) in enumerate(ARMS):
         share, rows = curves.share[side], curves.hands[side]
         rig.turn(f"{side}Shoulder", rotation_deg(still, 0, sign * (1.0 + curves.shrug[side])))
-        hang_arm(rig, side, sign, 3.0 + still, 24.0)
-        rig.turn(f"{side}ForeArm", elbow_rotation(rig, side, sign, 19.0 + still, 12.0 + still))
+        swing, bend = curves.hanging[number]
+        hang_arm(rig, side, sign, swing + 0.5 * curves.lean, 24.0)
+        flexed = bend + 1.5 * curves.lean  # a hand that rests moves along a little
+        rig.turn(f"{side}ForeArm", elbow_rotation(rig, side, sign, flexed, 12.0 + still))
         rig.turn(f"{side}Hand", rotation_deg(-4.0 + still, 0, -sign * 3.0))
         wrist, fingers, thumb, elbow = (rows[:, n : n + 3] for n in (0, 3, 6, 9))
         reach_target(rig, side, sign, HandTarget(wrist, fingers, thumb, elbow, share))
@@ -123,13 +146,3 @@ def _bend_fingers(rig: PosedRig, side: str, bends: Array, share: Array) -> None:
         turn = rotations.about(axis, np.radians(angle))
         rig.turn(f"{side}Hand{finger}1", turn)
         rig.turn(f"{side}Hand{finger}2", turn)
-
-
-def _strength(turns: Array, span: BeatSpan, character: Character) -> float:
-    """Return the GSI of a stroke."""
-    stroke = turns[span.bounds[2] : span.bounds[3] + 1]
-    found = [
-        gesture_strength(stroke, masses(character.anatomy, side.lower()), RATE_HZ)
-        for side in SIDES[span.hand]
-    ]
-    return found[0] if len(found) == 1 else bimanual_strength((found[0], found[1]), (0.0, 0.0))

@@ -12,7 +12,7 @@ from tools.authoring.modelling.shapes import Array
 
 RATE_HZ = 60.0
 
-STRENGTHS = {"weak": (0.5, 0.30), "neutral": (0.85, 0.23), "strong": (1.3, 0.17)}
+STRENGTHS = {"weak": (0.5, 0.30), "neutral": (0.9, 0.23), "strong": (1.45, 0.19)}
 """Size of a stroke, and its duration [s]."""
 
 EFFORTS = {"weak": 0.25, "neutral": 0.6, "strong": 1.2}
@@ -68,6 +68,9 @@ class UnitCurves:
 
     shrug: dict[str, Array]
     """Raise of each shoulder, (frames,), by side [degrees]."""
+
+    hanging: Array
+    """Swing and bend of the arms in rest, left and right, (2, 2) [degrees]."""
 
     lean: Array
     """Forward [degrees]."""
@@ -134,8 +137,9 @@ class UnitTimeline:
             .astype(int)
             .tolist()
         )
-        for late, side in enumerate(sides):
-            delay = 1.5 * late * float(self._rng.uniform(0.3, 1.0))
+        later = self._rng.choice(sides)  # hands are never quite together
+        for side in sides:
+            delay = float(self._rng.uniform(0.5, 2.5)) if side == later and len(sides) > 1 else 0.0
             if side not in self._held:
                 self._track.add(f"share {side}", start + 2 * delay, 0.0)
                 self._track.add(f"share {side}", prepared + delay, 1.0)
@@ -178,6 +182,7 @@ class UnitTimeline:
             {side: of(f"share {side}") for side in sides},
             {side: _followed(self._track.curve(f"hand {side}", frames)) for side in sides},
             {side: of(f"shrug {side}") for side in sides},
+            np.array([3.0, 19.0]) + self._rng.normal(0.0, [1.2, 2.5], (2, 2)),
             of("lean"),
             of("twist"),
             of("nod"),
@@ -217,9 +222,9 @@ class UnitTimeline:
         effort = EFFORTS[beat.strength] * self._about(1.0, 0.2)
         turn = {"left": -1.0, "right": 1.0, "both": 0.25}[beat.hand]
         for name, against, along, after in (
-            ("lean", -1.8, 4.5, 2.0),
+            ("lean", -2.0, 6.0, 2.5),
             ("twist", -2.5 * turn, 4.5 * turn, 2.0 * turn),
-            ("nod", -3.0, 8.0, 1.0),
+            ("nod", -4.0, 10.0, 1.5),
         ):
             self._track.add(name, stroke, against * effort)
             self._track.add(name, stroke_end + 1, along * effort)
