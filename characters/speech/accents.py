@@ -1,9 +1,10 @@
 """Pitch accents, found in the sound of a speech.
 
 A. Fernández-Baena (2015), "Animation and Interaction of Responsive, Expressive, and Tangible 3D
-Virtual Characters", section 8.2, with two additions: a voiced region that holds several syllables
-has a nucleus for each, and of accents that are too close the closest pair is thinned first, so that
-stricter settings never yield more accents.
+Virtual Characters", section 8.2, with three changes, for which `tests.bench.accents` has figures. A
+voiced region that holds several syllables has a nucleus for each. A nucleus is where pitch and
+loudness together are highest. Of accents that are too close the closest pair is thinned first, so
+that stricter settings never yield more accents.
 """
 
 import itertools
@@ -16,6 +17,11 @@ from numpy.typing import NDArray
 from characters.speech.contours import Prosody, ProsodySettings, measure_prosody
 from characters.speech.phones import is_vowel
 from characters.speech.speech import Accent, Phone, Samples
+from characters.speech.strength import scaled
+
+LOUDNESS_EXPONENT = 0.6
+"""Loudness grows with this power of the sound pressure (S. S. Stevens 1955, "The measurement of
+loudness", Journal of the Acoustical Society of America 27(5))."""
 
 SYLLABLE_DIP_DB = 2.0
 """Two syllables of a voiced region are parted by such a dip of intensity [dB] (de Jong and Wempe
@@ -44,7 +50,7 @@ class AccentSettings:
 
 @dataclass(frozen=True, eq=False)
 class Nuclei:
-    """The nuclei of syllables: where their energy is highest."""
+    """The nuclei of syllables: where pitch and loudness are highest."""
 
     times: NDArray[np.float64]
     """When, in order, (n,) [s]."""
@@ -84,21 +90,17 @@ def syllable_nuclei(
 ) -> Nuclei:
     """Return the nuclei of all syllables with their strengths."""
     spans = _vowel_spans(prosody, phones) if phones else _voiced_spans(prosody)
-    at = np.array([first + prosody.intensity[first:end].argmax() for first, end in spans], int)
-    if not len(at):
+    if not spans:
         return Nuclei(np.zeros(0), np.zeros(0))
     voiced = prosody.f0 > 0
     pitch = np.log2(np.where(voiced, prosody.f0, 1.0))
-    strengths = _scaled(pitch[at], pitch[voiced])
-    strengths = strengths + _scaled(prosody.intensity[at], prosody.intensity[voiced])
+    loudness = 10 ** (LOUDNESS_EXPONENT * prosody.intensity / 20)
+    prominence = scaled(loudness, loudness[voiced])
+    prominence[voiced] += scaled(pitch[voiced])
+    at = np.array([first + prominence[first:end].argmax() for first, end in spans])
+    strengths = prominence[at]
     strengths = strengths + pause_bonus * strengths.max() * _before_pause(prosody, at)
     return Nuclei(prosody.times[at], strengths / max(float(strengths.max()), 1e-9))
-
-
-def _scaled(values: NDArray[np.float64], corpus: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return values from 0 to 1 between the 1 % and 99 % quantiles of a corpus."""
-    low, high = np.quantile(corpus, (0.01, 0.99))
-    return np.asarray(((values - low) / max(high - low, 1e-9)).clip(0.0, 1.0))
 
 
 def _voiced_spans(prosody: Prosody) -> list[tuple[int, int]]:

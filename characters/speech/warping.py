@@ -60,7 +60,7 @@ def _path(
         square = squares[own] - 2 * (template[own] @ row) + row @ row
         cost = np.sqrt(np.maximum(square, 0.0) / dimensions)
         if index == 0:
-            total[2:4] = cost[:2]
+            total[2 : 2 + min(2, width)] = cost[:2]
             continue
         shifted = _shifted(total, low - int(lows[index - 1]))
         ways[0] = shifted[2:] + STEP_COST
