@@ -59,9 +59,12 @@ def parts(utterance: Utterance) -> tuple[tuple[float, str], ...]:
 
 
 @lru_cache(maxsize=8)
-def draw_subtitle(words: str, width: float, scale: float) -> Card:
-    """Return the card of a subtitle at the bottom of a picture of this width."""
-    room = max(width - 2 * SIDE_CARDS_WIDTH, MIN_WIDTH)
+def draw_subtitle(words: str, width: float, scale: float, beside: float = SIDE_CARDS_WIDTH) -> Card:
+    """Return the card of a subtitle at the bottom of a picture of this width.
+
+    So much room is left free on both sides, `beside`.
+    """
+    room = max(width - 2 * beside, MIN_WIDTH)
     lines = wrapped(words, room - 40)
     card_width = max(text_width(line, SIZE) for line in lines) + 40
     height = LINE_HEIGHT * len(lines) + 18

@@ -21,7 +21,11 @@ def bake(motion: Motion, rate: float, seconds: float, name: str) -> Clip:
     places = [RootDelta()]
     for before, after in pairwise(times):
         places.append(places[-1].then(motion.travel(before, after)))
-    frames = [motion.sample(time) for time in times]
+    return placed_clip(name, rate, stacked([motion.sample(time) for time in times]), places)
+
+
+def stacked(frames: Sequence[Pose]) -> Pose:
+    """Return single poses as the frames of one, with the scales and morphs that any of them has."""
     poses = Pose.of_frames(frames)
     if any(pose.scales is not None for pose in frames):
         poses = replace(poses, scales=np.stack([pose.scales_or_ones for pose in frames]))
@@ -30,7 +34,7 @@ def bake(motion: Motion, rate: float, seconds: float, name: str) -> Clip:
         none = np.zeros(morphs)
         shown = [none if pose.morphs is None else pose.morphs for pose in frames]
         poses = replace(poses, morphs=np.stack(shown))
-    return placed_clip(name, rate, poses, places)
+    return poses
 
 
 def placed_clip(

@@ -1,0 +1,163 @@
+"""Performing a speech: the poses of a character that says it, and a video of them with sound."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from affect import Emotion
+from app.pipeline.spoken_line import SpokenLine
+from app.sound import SAMPLE_RATE
+from app.sound.session_sound import at_sample_rate
+from app.ui.canvas import PICTURE_HEIGHT
+from app.ui.subtitles import draw_subtitle, subtitle
+from app.ui.video_file import VideoFile
+from characters import Animator, Character, CharacterCommand, Clip, Pose, RootDelta
+from characters.control.command import SpeechIntent
+from characters.control.layers import LayerFactory
+from characters.motion.baking import stacked
+from characters.rendering import create_context
+from characters.rendering.portrait import PortraitRenderer
+from characters.rendering.portrait_camera import CharacterExtent, joints_below
+
+LEAD_S, TAIL_S = 0.6, 1.2
+"""Time before and after the speech [s]: hands get ready, and come to rest."""
+
+SETTLE_S = 2.0
+"""Time before that [s], which is not shown: eyes find the viewer, and the body its posture."""
+
+VIEWER = np.array([0.1, 0.16, 0.7])
+"""Whom the speaker looks at, in the table frame [m]."""
+
+BODY_MARGIN, FACE_MARGIN = 0.52, 0.62
+"""Radius of what is seen, as a part of the character's size, and of that of its head."""
+
+CHEST, REACH = 0.7, 0.37
+"""For the hands of a person: height of the middle, and radius, as parts of the body's height."""
+
+AZIMUTH_RAD, ELEVATION_RAD = 0.22, 0.08
+"""Where the camera is: to the left of straight in front, and above."""
+
+NAME_LETTERS = 40
+"""Letters of a text that name its clip."""
+
+View = Literal["hands", "body", "face"]
+
+
+@dataclass(frozen=True)
+class Direction:
+    """How a speech is performed."""
+
+    emotion: Emotion | None = None
+    """What the speaker feels; None for nothing in particular."""
+
+    gesture_emphasis: float = 0.0
+    """Added to the strength of accents for the hands, −1…1."""
+
+    face_emphasis: float = 0.0
+    """Added to the strength of accents for the mouth, −1…1."""
+
+    seed: int = 0
+    """Of blinks, sway and the choice between gestures."""
+
+    layers: Sequence[LayerFactory] | None = None
+    """Layers of the animator; None for those of the character."""
+
+
+def performed(character: Character, line: SpokenLine, direction: Direction, rate: float) -> Clip:
+    """Return the motion of a character that says a line, `LEAD_S` after its start.
+
+    `rate` is the number of frames a second.
+    """
+    animator = Animator(character, place=RootDelta(), seed=direction.seed, layers=direction.layers)
+    speech = SpeechIntent(
+        line.utterance, LEAD_S, direction.gesture_emphasis, direction.face_emphasis
+    )
+    count = round((LEAD_S + line.utterance.duration + TAIL_S) * rate) + 1
+    settling = round(SETTLE_S * rate)
+    poses = [
+        animator.update(
+            CharacterCommand(number / rate, gaze=VIEWER, emotion=direction.emotion, speech=speech)
+        ).pose
+        for number in range(-settling, count)
+    ][settling:]
+    name = line.utterance.text[:NAME_LETTERS] or "speech"
+    return Clip(name, rate, stacked(poses), loop=False)
+
+
+def sound_track(line: SpokenLine) -> Callable[[int], NDArray[np.float32]]:
+    """Return what gives the stereo sound of a performance block by block, (count, 2)."""
+    lead = np.zeros(round(LEAD_S * SAMPLE_RATE))
+    samples = np.concatenate([lead, at_sample_rate(line)]).astype(np.float32)
+    at = 0
+
+    def following(count: int) -> NDArray[np.float32]:
+        nonlocal at
+        block = np.zeros((count, 2), np.float32)
+        part = samples[at : at + count]
+        block[: len(part)] = part[:, None]
+        at += count
+        return block
+
+    return following
+
+
+def write_video(
+    path: Path,
+    character: Character,
+    clip: Clip,
+    line: SpokenLine,
+    *,
+    size: tuple[int, int],
+    view: View,
+    subtitles: bool,
+) -> None:
+    """Write a performance as a video with sound.
+
+    Raises
+    ------
+    AppError
+        The file cannot be written.
+    """
+    context = create_context()
+    renderer = PortraitRenderer(context, size)
+    focus = framed(character, clip.poses[0], view)
+    speech = SpeechIntent(line.utterance, LEAD_S)
+    scale = size[1] / PICTURE_HEIGHT
+    try:
+        with VideoFile(path, size, clip.rate, sound_track(line)) as video:
+            for number in range(len(clip)):
+                now = number / clip.rate
+                picture = renderer.portrait(
+                    character,
+                    clip.poses[number],
+                    azimuth=AZIMUTH_RAD,
+                    elevation=ELEVATION_RAD,
+                    focus=focus,
+                )
+                said = subtitle(speech, now) if subtitles and now >= LEAD_S else ""
+                if said:
+                    draw_subtitle(said, size[0] / scale, scale, beside=0.0).blend_over(picture)
+                video.write(picture, now)
+    finally:
+        renderer.release()
+        context.release()
+
+
+def framed(character: Character, pose: Pose, view: View) -> tuple[NDArray[np.float64], float]:
+    """Return what is seen of a character: a centre (3,) and a radius in its frame [m]."""
+    extent = CharacterExtent(character)
+    if view == "face":
+        points = extent.points(pose, joints_below(character, "head"))
+        size, margin = float(np.ptp(points, axis=0).max()), FACE_MARGIN
+    else:
+        points = extent.points(pose)
+        size, margin = float(np.ptp(points, axis=0).max()), BODY_MARGIN
+    middle = (points.min(0) + points.max(0)) / 2
+    if view == "hands" and character.anatomy.kind == "humanoid":
+        middle[1] = CHEST * character.height
+        return middle, REACH * character.height
+    return middle, size * margin
