@@ -76,7 +76,8 @@ def track_pitch(samples: Samples, rate: int, settings: PitchSettings | None = No
     f0 = np.zeros((len(times), MAX_CANDIDATES))
     strength = np.zeros_like(f0)
     analysis = _Autocorrelation(rate, settings)
-    peak = float(np.abs(samples - samples.mean()).max()) if len(samples) else 0.0
+    mean = float(samples.mean(dtype=np.float64)) if len(samples) else 0.0
+    peak = max(float(samples.max()) - mean, mean - float(samples.min())) if len(samples) else 0.0
     for own, frames in frame_blocks(samples, rate, times, analysis.length):
         f0[own], strength[own] = analysis.candidates(frames, peak)
     chosen = _best_path(f0, strength, settings)[:, None]
