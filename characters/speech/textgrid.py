@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from characters.errors import CharacterError
-from characters.speech.phones import ipa_of_arpabet, is_arpabet
+from characters.speech.phones import fill_pauses, ipa_of_arpabet, is_arpabet
 from characters.speech.speech import SILENCE, Phone, Speech, Word
 
 MAX_BYTES = 100_000_000
@@ -148,18 +148,15 @@ def with_textgrid(speech: Speech, grid: TextGrid) -> Speech:
         )
     said = [each for each in words if each.label.lower() not in PAUSES]
     text = speech.text or " ".join(each.label for each in said)
-    filled = _filled(phones, speech.duration)
-    symbols = _symbols([each.label for each in filled])
+    symbols = _symbols([each.label for each in phones])
+    labelled = [
+        Phone(symbol, each.start, each.end) for each, symbol in zip(phones, symbols, strict=True)
+    ]
     return replace(
         speech,
         text=text,
         words=_words(said, text),
-        phones=tuple(
-            Phone(symbol, each.start, each.end)
-            for each, symbol in zip(filled, symbols, strict=True)
-        )
-        if phones
-        else (),
+        phones=fill_pauses(labelled, speech.duration) if phones else (),
     )
 
 
