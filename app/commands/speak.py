@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
@@ -13,6 +13,7 @@ from affect.words import WORD_PLACES
 from app.commands.output import OverwriteOption, chosen_output
 from app.commands.session.preference_options import size_of
 from app.errors import AppError
+from app.output_path import check_output
 from app.pipeline.spoken_line import SpokenLine
 from app.sound import write_wave
 from app.sound.session_sound import at_sample_rate
@@ -20,8 +21,11 @@ from app.speaking.performance import Direction, View, performed, write_video
 from app.ui.video_file import VIDEO_FORMATS
 from characters import Character
 from characters.control.layers.speech import known_gestures
+from characters.control.speech_profile import DATABASES, DEFAULT_PROFILE, SpeechProfile
+from characters.face.visemes.sets import viseme_sets
 from characters.formats.mocap.bvh_writing import save_bvh
 from characters.model.files import read_file
+from characters.model.speaking import gestures_for
 from characters.retargeting.root import with_root_joint
 from characters.speech.alignment import align
 from characters.speech.audio import read_speech
@@ -33,6 +37,25 @@ from characters.speech.voices.feeling import manner_of
 
 MAX_TEXT_BYTES = 100_000
 """Larger files are no speeches."""
+
+PROFILE_PANEL = "How the body speaks"
+
+
+def _profile_option(name: str, words: str) -> Any:
+    """Return an option that changes the profile."""
+    return typer.Option(name, help=words, rich_help_panel=PROFILE_PANEL, show_default=False)
+
+
+ProfileOption = Annotated[
+    Path | None,
+    _profile_option("--profile", "A profile of --save-profile; the options here change it."),
+]
+DatabaseOption = Annotated[
+    str | None, _profile_option("--database", f"Which gestures: {', '.join(DATABASES)}.")
+]
+VisemesOption = Annotated[
+    str | None, _profile_option("--visemes", f"The set of visemes: {', '.join(viseme_sets())}.")
+]
 
 SUFFIXES = (".wav", ".bvh", *VIDEO_FORMATS)
 
@@ -63,12 +86,32 @@ def speak(
     subtitles: Annotated[
         bool, typer.Option("--subtitles/--no-subtitles", help="Show what is being said.")
     ] = False,
+    profile: ProfileOption = None,
+    save_profile: Annotated[
+        Path | None, typer.Option(help="Write the profile with the options below to this file.")
+    ] = None,
+    gestures: Annotated[
+        Path | None, typer.Option(help="A file of [cyan]cubeling gestures learn[/].")
+    ] = None,
+    database: DatabaseOption = None,
+    threshold: Annotated[
+        float | None,
+        _profile_option("--threshold", "How alike gestures are that follow each other; 0: enough."),
+    ] = None,
     gesture_emphasis: Annotated[
-        float, typer.Option(help="Stronger or weaker gestures.", min=-1.0, max=1.0)
-    ] = 0.0,
+        float | None, _profile_option("--gesture-emphasis", "Stronger or weaker gestures, -1 to 1.")
+    ] = None,
     face_emphasis: Annotated[
-        float, typer.Option(help="A livelier or a calmer mouth.", min=-1.0, max=1.0)
-    ] = 0.0,
+        float | None, _profile_option("--face-emphasis", "A livelier or a calmer mouth, -1 to 1.")
+    ] = None,
+    visemes: VisemesOption = None,
+    accent_threshold: Annotated[
+        float | None,
+        _profile_option("--accent-threshold", "Least strength of an accent, of the strongest."),
+    ] = None,
+    accent_distance: Annotated[
+        float | None, _profile_option("--accent-distance", "Least time between accents [s].")
+    ] = None,
     size: Annotated[str, typer.Option(help="Size of the video.")] = "640x480",
     rate: Annotated[float, typer.Option(help="Frames a second.", min=1.0, max=120.0)] = 25.0,
     seed: Annotated[int, typer.Option(help="Of blinks, and choices between gestures.")] = 0,
@@ -78,23 +121,40 @@ def speak(
     Example: [cyan]cubeling speak "Hello! I am a paper cube." -o hello.mp4[/]
     """
     target = chosen_output(output, "speech.mp4", "speech", SUFFIXES, overwrite)
+    given = {
+        "database": database,
+        "threshold": threshold,
+        "gesture_emphasis": gesture_emphasis,
+        "face_emphasis": face_emphasis,
+        "visemes": visemes,
+        "accent_threshold": accent_threshold,
+        "accent_distance": accent_distance,
+    }
+    how = replace(
+        DEFAULT_PROFILE if profile is None else SpeechProfile.load(profile),
+        **{name: value for name, value in given.items() if value is not None},  # type: ignore[arg-type]
+    )
+    if save_profile is not None:
+        check_output(save_profile, "profile", (".toml",), overwrite=overwrite)
+        how.save(save_profile)
     marked = text if file is None else _read(file)
     if not marked.strip() and audio is None:
         raise AppError("there is nothing to say: give a text, --file or --audio")
     body = with_root_joint(Character.load(character))
+    if gestures is not None:
+        body = replace(body, gestures=gestures_for(gestures, body.skeleton, character))
     feels = _emotion(emotion)
     tagged = TaggedText.read(marked)
     _check_gestures(tagged, body)
     console = Console(highlight=False)
     with console.status("speaking"):
         speech = _spoken(tagged.text, lang, feels) if audio is None else _heard(audio, tagged, lang)
-        gestures = tagged.timed(speech.words, speech.duration)
-        utterance = replace(utterance_of(speech), gestures=gestures)
-        line = SpokenLine(utterance, speech.samples, speech.rate)
+        utterance = utterance_of(speech, tagged, how.accents)
+        line = SpokenLine(utterance, speech.samples, speech.rate, how)
         if target.suffix.lower() == ".wav":
             write_wave(target, at_sample_rate(line))
         else:
-            direction = Direction(feels, gesture_emphasis, face_emphasis, seed)
+            direction = Direction(feels, seed)
             clip = performed(body, line, direction, rate)
             if target.suffix.lower() == ".bvh":
                 save_bvh(clip, body.skeleton, body.anatomy, target)

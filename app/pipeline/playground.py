@@ -286,8 +286,9 @@ class Playground:
         A character that is hidden falls silent.
         """
         now = outcome.command.timestamp
-        if inputs.line is not None:
-            self._line, self._speech = inputs.line, SpeechIntent(inputs.line.utterance, now)
+        line = inputs.line
+        if line is not None:
+            self._line, self._speech = line, SpeechIntent(line.utterance, now, line.profile)
         over = self._speech is not None and now > self._speech.end + SUBTITLE_S
         if over or inputs.clear or not outcome.command.visible:
             self._line = self._speech = None

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
 from characters.speech.speech import Samples, Utterance
 
 
@@ -17,3 +18,6 @@ class SpokenLine:
 
     rate: int
     """Sample rate of the sound [Hz]."""
+
+    profile: SpeechProfile = DEFAULT_PROFILE
+    """How it is said with the body."""

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
 
+from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
+
 
 @dataclass(frozen=True, kw_only=True)
 class SessionOptions:
@@ -35,6 +37,9 @@ class SessionOptions:
     language: str | None = None
     """Code of the language in which the character speaks, or "none" for silence; None for that of
     a recording, or English in a window."""
+
+    profile: SpeechProfile = DEFAULT_PROFILE
+    """How the character says it with its body; a recording holds it with each line."""
 
     lines: Path | None = None
     """The .toml file of what the character says; None for the scenario's own lines."""

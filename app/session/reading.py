@@ -193,5 +193,5 @@ def spoken_lines(path: Path) -> dict[float, SpokenLine]:
             audio = RawAudio.FromString(sounds[time])
             if speech is not None:
                 sound = decode_sound(audio.data)
-                lines[time] = SpokenLine(speech.utterance, sound, audio.sample_rate)
+                lines[time] = SpokenLine(speech.utterance, sound, audio.sample_rate, speech.profile)
     return lines

@@ -51,7 +51,7 @@ def open_speaker(options: SessionOptions, *, waits: bool) -> Speaker:
         if asked:
             raise
         return RecordedSpeaker({})
-    return LiveSpeaker(voice, lines_of, waits=waits)
+    return LiveSpeaker(voice, lines_of, options.profile, waits=waits)
 
 
 def _lines_of(options: SessionOptions) -> LinesOf:

@@ -54,12 +54,6 @@ class Direction:
     emotion: Emotion | None = None
     """What the speaker feels; None for nothing in particular."""
 
-    gesture_emphasis: float = 0.0
-    """Added to the strength of accents for the hands, −1…1."""
-
-    face_emphasis: float = 0.0
-    """Added to the strength of accents for the mouth, −1…1."""
-
     seed: int = 0
     """Of blinks, sway and the choice between gestures."""
 
@@ -73,9 +67,7 @@ def performed(character: Character, line: SpokenLine, direction: Direction, rate
     `rate` is the number of frames a second.
     """
     animator = Animator(character, place=RootDelta(), seed=direction.seed, layers=direction.layers)
-    speech = SpeechIntent(
-        line.utterance, LEAD_S, direction.gesture_emphasis, direction.face_emphasis
-    )
+    speech = SpeechIntent(line.utterance, LEAD_S, line.profile)
     count = round((LEAD_S + line.utterance.duration + TAIL_S) * rate) + 1
     settling = round(SETTLE_S * rate)
     poses = [

@@ -3,7 +3,6 @@
 import queue
 import threading
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Protocol
 
 from app.pipeline.spoken_line import SpokenLine
@@ -11,6 +10,7 @@ from app.pipeline.step import Step
 from app.speaking.lines import ScenarioLines
 from app.speaking.moments import LineRequest, Moments
 from characters import CharacterError
+from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
 from characters.speech.prosody import utterance_of
 from characters.speech.tagged_text import TaggedText
 from characters.speech.voices import Voice
@@ -27,6 +27,9 @@ class Speaker(Protocol):
 
     problem: str
     """Why it is silent; "" while all is well."""
+
+    profile: SpeechProfile
+    """How the next lines are said with the body; may be changed at any time."""
 
     def line(self, timestamp: float) -> SpokenLine | None:
         """Return the line that begins with the frame of a timestamp [s], if one does."""
@@ -47,6 +50,7 @@ class RecordedSpeaker:
     problem = ""
 
     def __init__(self, lines: Mapping[float, SpokenLine]) -> None:
+        self.profile = DEFAULT_PROFILE
         self._lines = lines
 
     def line(self, timestamp: float) -> SpokenLine | None:
@@ -69,14 +73,22 @@ class LiveSpeaker:
         The voice; `close` ends it.
     lines_of
         What is said in a scenario, by its name; None for nothing.
+    profile
+        How it is said with the body.
     waits
         Whether the session is not in real time, so that the next frame waits for its line.
     """
 
     def __init__(
-        self, voice: Voice, lines_of: Callable[[str], ScenarioLines | None], *, waits: bool
+        self,
+        voice: Voice,
+        lines_of: Callable[[str], ScenarioLines | None],
+        profile: SpeechProfile,
+        *,
+        waits: bool,
     ) -> None:
         self.problem = ""
+        self.profile = profile
         self._voice, self._lines_of, self._waits = voice, lines_of, waits
         self._scenario = ""
         self._moments: Moments | None = None
@@ -120,7 +132,7 @@ class LiveSpeaker:
         failures = 0
         while (request := self._requests.get()) is not None:
             try:
-                self._said.put(spoken(self._voice, request))
+                self._said.put(spoken(self._voice, request, self.profile))
                 failures = 0
             except CharacterError as error:
                 self._said.put(None)
@@ -129,7 +141,7 @@ class LiveSpeaker:
                     self.problem = str(error)
 
 
-def spoken(voice: Voice, request: LineRequest) -> SpokenLine:
+def spoken(voice: Voice, request: LineRequest, profile: SpeechProfile) -> SpokenLine:
     """Return a line as a voice says it.
 
     Raises
@@ -139,5 +151,5 @@ def spoken(voice: Voice, request: LineRequest) -> SpokenLine:
     """
     tagged = TaggedText.read(request.text)
     speech = voice.say(tagged.text, request.language, request.manner)
-    gestures = tagged.timed(speech.words, speech.duration)
-    return SpokenLine(replace(utterance_of(speech), gestures=gestures), speech.samples, speech.rate)
+    utterance = utterance_of(speech, tagged, profile.accents)
+    return SpokenLine(utterance, speech.samples, speech.rate, profile)

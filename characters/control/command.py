@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from affect import Emotion
+from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
 from characters.locomotion.gaits import IDLE_SPEED
 from characters.skeleton.pose import Pose
 from characters.speech.speech import Utterance
@@ -49,11 +50,8 @@ class SpeechIntent:
     start: float
     """When its sound begins [s]; may lie in the past."""
 
-    gesture_emphasis: float = 0.0
-    """Added to the strength of accents for the hands, −1…1."""
-
-    face_emphasis: float = 0.0
-    """Added to the strength of accents for the mouth, −1…1."""
+    profile: SpeechProfile = DEFAULT_PROFILE
+    """How it is said with the body."""
 
     @property
     def end(self) -> float:

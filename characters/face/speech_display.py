@@ -1,6 +1,7 @@
 """Speech display: the mouth, and the brows, of a character that speaks."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -44,6 +45,8 @@ class SpeechDisplay:
         self, morphs: Sequence[str], seed: int, settings: Coarticulation = DEFAULT
     ) -> None:
         self._settings = settings
+        self.visemes = settings.visemes
+        """The set of visemes of the utterances that begin from now on."""
         self._mouth = MouthMorphs.of(morphs)
         self._expression = SpeakingExpression(morphs)
         self._brows = AccentBrows(morphs, seed)
@@ -94,7 +97,8 @@ class SpeechDisplay:
     def _begin(self, said: tuple[Utterance, float] | None) -> None:
         """Take another utterance; the mouth goes over to it from where it is."""
         self._said = said
-        self._track = None if said is None else MouthTrack(said[0], self._settings)
+        settings = replace(self._settings, visemes=self.visemes)
+        self._track = None if said is None else MouthTrack(said[0], settings)
         self._brows.plan(() if said is None else said[0].accents)
         self._offset = self._shapes
         self._since, self._length = 0.0, CLOSING_S if said is None else SWITCH_S

@@ -60,5 +60,7 @@ class FaceLayer:
         """Bring the mouth to the time of the frame."""
         speech = context.command.speech
         said = None if speech is None else (speech.utterance, speech.start)
-        emphasis = 0.0 if speech is None else speech.face_emphasis
+        if speech is not None:
+            self._speech.visemes = speech.profile.visemes
+        emphasis = 0.0 if speech is None else speech.profile.face_emphasis
         self._speech.update(context.elapsed, said, context.command.timestamp, emphasis)

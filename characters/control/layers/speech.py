@@ -3,7 +3,6 @@
 import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 
@@ -19,12 +18,7 @@ from characters.motion.motion import Motion
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
 from characters.speech.speech import GestureSpan
-from characters.synthesis.gestures.library import GestureLibrary, gesture_joints
-from characters.synthesis.gestures.planning import (
-    DEFAULT_SETTINGS,
-    GesturePlanner,
-    GestureSettings,
-)
+from characters.synthesis.gestures.library import gesture_joints
 
 CUT_S = 0.3
 """How long hands take to leave a speech that is cut off [s]."""
@@ -70,9 +64,7 @@ class OverlaidMotion:
 class SpeechGestures:
     """The gestures of one speech."""
 
-    def __init__(
-        self, character: Character, speech: SpeechIntent, settings: GestureSettings
-    ) -> None:
+    def __init__(self, character: Character, speech: SpeechIntent) -> None:
         said = speech.utterance
         seed = zlib.crc32(said.text.encode()) + character.seed
         self.speech = speech
@@ -86,8 +78,9 @@ class SpeechGestures:
             free = [
                 a for a in said.accents if not any(s.start <= a.time <= s.end for s, _ in asked)
             ]
-            planner = planner_of(character.gestures, settings)
-            plan = planner.plan(free, said.duration, speech.gesture_emphasis, seed)
+            profile = speech.profile
+            planner = profile.planner(character.gestures)
+            plan = planner.plan(free, said.duration, profile.gesture_emphasis, seed)
             beats = plan.motion()
             self._overlays.append(
                 OverlaidMotion(beats, speech.start, beats.weights, character.gestures.joints)
@@ -136,10 +129,8 @@ class SpeechGestures:
 class SpeechLayer:
     """Lays gestures over the body of a character that speaks; it comes before posture and gaze."""
 
-    def __init__(
-        self, character: Character, seed: int = 0, settings: GestureSettings = DEFAULT_SETTINGS
-    ) -> None:
-        self._character, self._settings = replace(character, seed=seed), settings
+    def __init__(self, character: Character, seed: int = 0) -> None:
+        self._character = replace(character, seed=seed)
         head = character.anatomy.joint("head")
         self._head = None
         if head is not None:
@@ -171,16 +162,10 @@ class SpeechLayer:
         if speech is not None and (current is None or speech.start != current.start):
             for spoken in self._spoken:
                 spoken.cut(now)
-            self._spoken.append(SpeechGestures(self._character, speech, self._settings))
+            self._spoken.append(SpeechGestures(self._character, speech))
         elif speech is None and self._spoken:
             self._spoken[-1].cut(now)
         self._spoken = [each for each in self._spoken if now < each.end or each.speech is speech]
-
-
-@lru_cache(maxsize=4)
-def planner_of(library: GestureLibrary, settings: GestureSettings) -> GesturePlanner:
-    """Return what plans gestures of a library; making it takes a while, so once."""
-    return GesturePlanner(library, settings)
 
 
 def clips_of(
