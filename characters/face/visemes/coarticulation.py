@@ -59,7 +59,7 @@ class Coarticulation:
     visemes: str = "oculus"
     """The name of the set."""
 
-    sharpness: float = 1.5
+    sharpness: float = 2.0
     """Exponent of the dominance: 1 is published, with which fast vowels are hardly seen."""
 
     contacts: bool = True

@@ -1,9 +1,9 @@
-"""The bundled explorer's expressions, each a set of parameters of its face.
+"""The bundled explorer's expressions and visemes, each a set of parameters of its face.
 
 They are exaggerated because on the table the whole face is only forty pixels high.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -60,8 +60,23 @@ class HumanExpression:
     teeth: float = 0.0
     """Visible height of the upper teeth below the lip."""
 
+    lower_teeth: float = 0.0
+    """Visible height of the lower teeth above the lip."""
+
     tongue: float = 0.4
     """Height of the tongue in the open mouth, 0…1."""
+
+    tongue_tip: float = 0.0
+    """Height of its tip above the rest of it, in openings of the mouth."""
+
+    tongue_out: float = -0.016
+    """How far its tip comes out before the lips."""
+
+    press: float = 0.0
+    """By how much pressed lips are less broad."""
+
+    tuck: float = 0.0
+    """How far the lower lip is drawn in, under the upper teeth."""
 
     jaw: float = 0.0
     """Lowering of the chin."""
@@ -72,7 +87,7 @@ class HumanExpression:
 
 NEUTRAL = HumanExpression()
 
-EXPRESSIONS = {
+_MOODS = {
     "blink": HumanExpression(shut=(1.0, 1.0)),
     "blinkLeft": HumanExpression(shut=(1.0, 0.0)),
     "blinkRight": HumanExpression(shut=(0.0, 1.0)),
@@ -87,7 +102,7 @@ EXPRESSIONS = {
     ),
     "sad": HumanExpression(
         upper=0.62, upper_tilt=0.36, lower=0.8, brow=-0.002, brow_inner=0.034, brow_arch=-0.01,
-        knit=0.008, width=0.052, smile=-0.040, drop=0.003, pout=0.006,
+        knit=0.008, width=0.052, smile=-0.033, drop=0.003, pout=0.006,
     ),
     "surprised": HumanExpression(
         upper=1.13, lower=1.08, brow=0.024, brow_inner=0.006, brow_arch=0.008,
@@ -107,7 +122,91 @@ EXPRESSIONS = {
     ),
     "oh": HumanExpression(width=0.042, smile=0.002, rise=0.024, drop=0.042, pout=0.014, jaw=0.020),
 }  # fmt: skip
-"""Expressions by VRM's names."""
+
+_VISEMES = {
+    "PP": HumanExpression(width=0.058, smile=0.015, rise=0.0, drop=0.0, press=0.0035, pout=0.001),
+    "FF": HumanExpression(
+        width=0.062, smile=0.012, rise=0.013, drop=-0.004, teeth=0.0115, tuck=0.010, press=0.001,
+        square=0.7,
+    ),
+    "TH": HumanExpression(
+        width=0.064, smile=0.012, rise=0.010, drop=0.015, teeth=0.009, tongue=0.5, tongue_tip=-0.02,
+        tongue_out=0.003, jaw=0.005, square=0.8,
+    ),
+    "DD": HumanExpression(
+        width=0.066, smile=0.015, rise=0.009, drop=0.017, teeth=0.009, lower_teeth=0.004,
+        tongue=0.5, tongue_tip=0.4, tongue_out=-0.012, jaw=0.005, square=0.7,
+    ),
+    "kk": HumanExpression(
+        width=0.062, smile=0.012, rise=0.009, drop=0.026, teeth=0.010, tongue=0.8, tongue_tip=-0.4,
+        tongue_out=-0.02, jaw=0.012,
+    ),
+    "CH": HumanExpression(
+        width=0.040, smile=0.004, rise=0.013, drop=0.015, teeth=0.014, lower_teeth=0.013,
+        pout=0.014, jaw=0.003, square=0.6,
+    ),
+    "SS": HumanExpression(
+        width=0.074, smile=0.022, rise=0.009, drop=0.011, teeth=0.010, lower_teeth=0.009,
+        square=0.5,
+    ),
+    "nn": HumanExpression(
+        width=0.064, smile=0.014, rise=0.009, drop=0.021, teeth=0.008, tongue=0.5, tongue_tip=0.35,
+        tongue_out=-0.012, jaw=0.007, square=0.8,
+    ),
+    "RR": HumanExpression(
+        width=0.042, smile=0.004, rise=0.011, drop=0.018, teeth=0.007, tongue=0.6, tongue_tip=0.1,
+        pout=0.011, jaw=0.006,
+    ),
+    "aa": HumanExpression(
+        width=0.062, smile=0.012, rise=0.012, drop=0.052, teeth=0.012, tongue=0.35, jaw=0.030,
+        square=0.9,
+    ),
+    "E": HumanExpression(
+        width=0.075, smile=0.021, rise=0.010, drop=0.034, teeth=0.013, tongue=0.5, jaw=0.014,
+        square=0.7,
+    ),
+    "I": HumanExpression(
+        width=0.084, smile=0.027, rise=0.009, drop=0.019, teeth=0.014, lower_teeth=0.004,
+        tongue=0.7, jaw=0.004, square=0.5,
+    ),
+    "O": HumanExpression(
+        width=0.037, smile=0.002, rise=0.020, drop=0.037, tongue=0.3, pout=0.016, jaw=0.020,
+    ),
+    "U": HumanExpression(
+        width=0.023, smile=0.0, rise=0.010, drop=0.012, tongue=0.3, pout=0.026, jaw=0.006,
+    ),
+}  # fmt: skip
+"""The shapes of the mouth in speech, by the names of the Oculus visemes."""
+
+_PARTS = {
+    "mouthSmile": HumanExpression(width=0.088, smile=0.052, cheeks=0.010),
+    "mouthFrown": HumanExpression(width=0.054, smile=-0.030),
+    "browInnerUp": HumanExpression(brow=0.010, brow_inner=0.020),
+    "browOuterUp": HumanExpression(brow=0.018, brow_inner=-0.010, brow_arch=0.010),
+    "browDown": HumanExpression(brow=-0.012, brow_inner=-0.016, knit=0.012),
+    "eyeWide": HumanExpression(upper=1.08, lower=1.06),
+}
+"""Movements of one part of the face, by ARKit's names."""
+
+
+def _mouth_of(face: HumanExpression) -> HumanExpression:
+    """Return the mouth of an expression, with eyes, brows and cheeks at rest."""
+    names = [field.name for field in fields(face)]
+    mouth = {name: getattr(face, name) for name in names[names.index("width") :]}
+    return replace(NEUTRAL, **mouth | {"cheeks": NEUTRAL.cheeks})
+
+
+EXPRESSIONS = (
+    _MOODS
+    | {f"viseme_{name}": shape for name, shape in _VISEMES.items()}
+    | {
+        f"{name}Mouth": _mouth_of(_MOODS[name])
+        for name in ("happy", "angry", "sad", "surprised", "relaxed")
+    }
+    | _PARTS
+)
+"""Every morph: expressions and vowels by VRM's names, visemes, the mouths of the expressions alone,
+and parts of the face. New ones come last, since clips refer to them by number."""
 
 MOUTH_CENTRE_M = np.array([0.0, 1.327])
 """x and y of the centre of the closed mouth [m]."""

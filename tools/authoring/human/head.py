@@ -8,10 +8,18 @@ import numpy as np
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
 from tools.authoring.human.eyes import eyelids
-from tools.authoring.human.face import EXPRESSIONS, NEUTRAL, HumanExpression, skin_displacement
+from tools.authoring.human.face import (
+    EXPRESSIONS,
+    MOUTH_CENTRE_M,
+    NEUTRAL,
+    HumanExpression,
+    skin_displacement,
+)
 from tools.authoring.human.hair import HAIR, cowlick, hair_parts
-from tools.authoring.human.mouth import mouth
+from tools.authoring.human.mouth import MOUTH_SKIN_EXTENT_M, mouth
 from tools.authoring.human.skull import SKIN, complexion, face_normals, head_shape, lining, on_face
+from tools.authoring.human.teeth import teeth_and_tongue
+from tools.authoring.modelling.curves import smoothstep
 from tools.authoring.modelling.meshes import averaged_normals, morphed
 from tools.authoring.modelling.sculpt import BodyPart, sculpt
 from tools.authoring.modelling.shapes import Array, RoundCone
@@ -19,6 +27,9 @@ from tools.authoring.modelling.tube import tube
 
 BROW_LINE_M = ((0.032, 1.541), (0.060, 1.550), (0.094, 1.547), (0.136, 1.524))
 """x and y of the left brow from its inner to its outer end [m]."""
+
+SKULL_DEPTH_M = 0.014
+"""How far the skull is drawn back behind the skin of the mouth, so that it never shows [m]."""
 
 BROW_RADII_M = (0.0105, 0.0145, 0.013, 0.006)
 
@@ -28,7 +39,8 @@ def head_pieces(skeleton: Skeleton) -> list[Mesh]:
     skull = sculpt(
         "", [BodyPart(head_shape(), 0.024, (*complexion(), *lining()), soft_skin=0.0)], skeleton
     )
-    rest = skull.positions.astype(float)
+    rest = _behind_the_mouth(skull.positions.astype(float))
+    skull = replace(skull, positions=rest.astype(np.float32))
 
     def moved(face: HumanExpression) -> Mesh:
         shifted = rest + skin_displacement(rest, face)
@@ -51,8 +63,18 @@ def head_pieces(skeleton: Skeleton) -> list[Mesh]:
         *cowlick(skeleton),
         *eyelids(skeleton),
         mouth(skeleton),
+        *teeth_and_tongue(skeleton),
         *brows,
     ]
+
+
+def _behind_the_mouth(points: Array) -> Array:
+    """Return points of the skull, drawn back where the skin of the mouth lies over them."""
+    off = points[:, :2] - MOUTH_CENTRE_M
+    wide, up, down = MOUTH_SKIN_EXTENT_M
+    off /= np.column_stack([np.full(len(off), wide), np.where(off[:, 1] > 0, up, down)])
+    covered = smoothstep((0.95 - np.linalg.norm(off, axis=1)) / 0.25) * (points[:, 2] > 0.05)
+    return np.asarray(points - SKULL_DEPTH_M * covered[:, None] * face_normals(points))
 
 
 def _brow(face: HumanExpression, sign: float, skeleton: Skeleton) -> Mesh:

@@ -1,7 +1,6 @@
-"""The bundled explorer's mouth: lips, teeth, tongue and cavity."""
+"""The bundled explorer's mouth: lips and cavity."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
@@ -20,14 +19,15 @@ from tools.authoring.modelling.shapes import Array, linear_rgb
 
 LIP = linear_rgb("#a8443c")
 LIP_LINE = linear_rgb("#64201f")
-TONGUE = linear_rgb("#d9636a")
-TEETH = linear_rgb("#fbf7ee")
 
 POINTS_PER_RING = 40
 """Points around the mouth."""
 
 MOUTH_SKIN_EXTENT_M = (0.112, 0.038, 0.054)
 """Half width, upward and downward extent of the skin around the mouth [m]."""
+
+CAVITY_RINGS = 5
+"""Rings of points behind the lips."""
 
 _LIP_WIDTH_M = 0.0085  # how broad they are [m]
 
@@ -43,27 +43,33 @@ def _mouth(face: HumanExpression, skeleton: Skeleton) -> Mesh:
     edge, lips, *skin = _skin_rings(angle, face)
     under = skin[-1] - [0.0, 0.0, 0.006]
     behind = np.tile([0.0, MOUTH_CENTRE_M[1], 0.05], (POINTS_PER_RING, 1))
-    rings = np.stack([behind, under, *skin[::-1], lips, lips, edge, *_cavity(edge, angle, face)])
-    mesh = loft(rings, _colors(rings, np.sin(angle) >= 0), "head", skeleton)
-    of_the_face = np.repeat([0, 0, 1.0, 0.9, 0.5, 0.15, *[0] * (len(rings) - 6)], POINTS_PER_RING)
-    return blend_normals(mesh, face_normals(mesh.positions.astype(float)), of_the_face)
+    rings = np.stack([behind, under, *skin[::-1], lips, lips, edge, *_cavity(edge, angle)])
+    mesh = loft(rings, _colors(rings), "head", skeleton)
+    normals = face_normals(mesh.positions.astype(float))
+    normals[-CAVITY_RINGS * POINTS_PER_RING :] = [0.0, 0.0, 1.0]  # no light glances off the inside
+    share = [0, 0, 1.0, 0.9, 0.5, 0.15, 0, 0, 0, *[0.6] * CAVITY_RINGS]
+    return blend_normals(mesh, normals, np.repeat(share, POINTS_PER_RING))
 
 
 def _skin_rings(angle: Array, face: HumanExpression) -> list[Array]:
     """Return the edge of the lips, their border, and the skin around out to the rim."""
     height = np.sin(angle)
-    line, edge = _lip_lines(angle, face)
+    line, edge = lip_lines(angle, face)
     reach = np.where(height >= 0, MOUTH_SKIN_EXTENT_M[1], MOUTH_SKIN_EXTENT_M[2])
     outer = MOUTH_CENTRE_M + np.stack(
         [MOUTH_SKIN_EXTENT_M[0] * np.cos(angle), reach * height], axis=-1
     )
     away = outer - edge
-    lips = edge + away / np.linalg.norm(away, axis=1, keepdims=True) * _LIP_WIDTH_M
+    away[:, 1] -= face.jaw * np.clip(-height, 0.0, 1.0)
+    lips = edge + away / np.linalg.norm(away, axis=1, keepdims=True) * (_LIP_WIDTH_M - face.press)
     full = np.abs(height) ** 0.5
     rings = [
         _on_skin(edge, line, 0.002 + 0.002 * full + face.pout, face, 0.0),
         _on_skin(lips, line, 0.0015 + 0.005 * full + face.pout, face, 0.0),
     ]
+    drawn_in = face.tuck * np.clip(-height, 0.0, 1.0) ** 0.5
+    for ring, share in zip(rings, (1.0, 0.6), strict=True):
+        ring[:, 2] -= share * drawn_in
     for s in (0.25, 0.5, 0.75, 1.0):  # the rim dips under the face, so that no step is visible
         flat, rest = lips + (outer - lips) * s, line + (outer - line) * s
         lift = (0.0015 if s < 1 else -0.0015) + face.pout * (1 - s) ** 2 + 0 * full
@@ -71,7 +77,7 @@ def _skin_rings(angle: Array, face: HumanExpression) -> list[Array]:
     return rings
 
 
-def _lip_lines(angle: Array, face: HumanExpression) -> tuple[Array, Array]:
+def lip_lines(angle: Array, face: HumanExpression) -> tuple[Array, Array]:
     """Return the line where closed lips meet, and their edges, (points, 2) each."""
     x, height = np.cos(angle), np.sin(angle)
     line = MOUTH_CENTRE_M[1] + face.smile * (x * x - 0.4)
@@ -92,33 +98,25 @@ def _on_skin(flat: Array, rest: Array, lift: Array, face: HumanExpression, share
     return points
 
 
-def _cavity(edge: Array, angle: Array, face: HumanExpression) -> list[Array]:
-    """Return the rings behind the lips: teeth or tongue, the throat, and the end."""
-    up = np.sin(angle) >= 0
-    bow = np.abs(np.sin(angle)) ** 0.8
+def _cavity(edge: Array, angle: Array) -> list[Array]:
+    """Return the rings behind the lips: gums, the throat, and the end."""
     middle = np.array([0.0, edge[:, 1].mean(), 0.0])
-    opening = face.rise + face.drop
-    teeth = np.minimum(face.teeth, 0.8 * opening) * bow
-    tongue = 0.5 * face.tongue * face.drop * bow
-    inner = (edge - middle) * [0.94, 1.0, 1.0] + middle - [0.0, 0.0, 0.011]
-    inner[:, 1] += np.where(up, -teeth, tongue)
-    throat = (edge - middle) * [0.75, 0.8, 1.0] + middle - [0.0, 0.0, 0.034]
+    deep = np.zeros_like(edge)  # shallow at the corners, where the skull is near
+    deep[:, 2] = 0.25 + 0.75 * np.abs(np.sin(angle)) ** 0.8
+    gum = edge - 0.005 * deep
+    inner = (edge - middle) * [0.94, 1.0, 1.0] + middle - 0.011 * deep
+    throat = (edge - middle) * [0.75, 0.8, 1.0] + middle - 0.034 * deep
     end = np.tile([0.0, edge[:, 1].mean(), edge[:, 2].max() - 0.046], (len(edge), 1))
-    gum = edge - [0.0, 0.0, 0.005]
-    return [gum, gum, inner, inner, throat, end]
+    return [gum, gum, inner, throat, end]
 
 
-def _colors(rings: Array, up: NDArray[np.bool_]) -> Array:
+def _colors(rings: Array) -> Array:
     """Return the colour of each point: skin, lips, the line between them, and the inside."""
     colors = np.tile(SKIN, (*rings.shape[:2], 1))
     coats = coated(rings.reshape(-1, 3), colors.reshape(-1, 3), complexion())
     colors = np.asarray(coats).reshape(colors.shape)
-    throat, tongue, teeth, gum, rim, edge, lip = range(-2, -9, -1)
-    above = up[:, None]
-    colors[throat:] = MAROON
-    colors[tongue] = np.where(above, MAROON, TONGUE)
-    colors[teeth] = np.where(above, TEETH, TONGUE)
-    colors[gum] = np.where(above, TEETH, MAROON)
+    inside, rim, edge, lip = range(-4, -8, -1)
+    colors[inside:] = MAROON
     colors[[rim, edge]] = LIP_LINE
     colors[lip] = LIP
     return np.asarray(colors)

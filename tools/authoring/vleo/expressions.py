@@ -1,9 +1,9 @@
-"""Vleo's expressions, each a set of parameters of its face.
+"""Vleo's expressions and visemes, each a set of parameters of its face.
 
 They are exaggerated because on the table the whole head is only sixty pixels high.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -54,6 +54,18 @@ class VleoExpression:
     pout: float = 0.0
     """Protrusion of the lips."""
 
+    tuck: float = 0.0
+    """How far the lower lip is drawn in, under the upper teeth."""
+
+    teeth: float = 0.0
+    """Visible height of the upper teeth below the lip."""
+
+    tongue_up: float = 0.0
+    """Raise of the tip of the tongue."""
+
+    tongue_out: float = 0.0
+    """How far the tip of the tongue comes forward."""
+
     jaw: float = 0.0
     """Opening of the jaw [rad]."""
 
@@ -63,7 +75,7 @@ class VleoExpression:
 
 NEUTRAL = VleoExpression()
 
-EXPRESSIONS = {
+_MOODS = {
     "blink": VleoExpression(shut=(1.0, 1.0)),
     "blinkLeft": VleoExpression(shut=(1.0, 0.0)),
     "blinkRight": VleoExpression(shut=(0.0, 1.0)),
@@ -96,7 +108,80 @@ EXPRESSIONS = {
         width=0.31, smile=0.0, rise=0.0085, drop=0.0085, lips=0.0036, pout=0.0065, jaw=0.26,
     ),
 }  # fmt: skip
-"""Expressions by VRM's names."""
+
+_VISEMES = {
+    "PP": VleoExpression(width=0.62, smile=0.0092, rise=0.0, drop=0.0, lips=0.0014),
+    "FF": VleoExpression(
+        width=0.60, smile=0.0085, rise=0.0052, drop=-0.0014, square=0.7, tuck=0.0034, teeth=0.0052,
+    ),
+    "TH": VleoExpression(
+        width=0.62, smile=0.0085, rise=0.0030, drop=0.0052, square=0.8, jaw=0.08, teeth=0.0026,
+        tongue_up=0.0052, tongue_out=0.0210,
+    ),
+    "DD": VleoExpression(
+        width=0.66, smile=0.0092, rise=0.0028, drop=0.0052, square=0.7, jaw=0.10, teeth=0.0026,
+        tongue_up=0.0068, tongue_out=0.0080,
+    ),
+    "kk": VleoExpression(width=0.64, smile=0.0090, rise=0.0022, drop=0.0060, jaw=0.18),
+    "CH": VleoExpression(
+        width=0.28, smile=0.0010, rise=0.0052, drop=0.0046, square=0.6, lips=0.0040, pout=0.0090,
+        jaw=0.03, teeth=0.0062,
+    ),
+    "SS": VleoExpression(
+        width=0.78, smile=0.0115, rise=0.0030, drop=0.0034, square=0.5, jaw=0.01, teeth=0.0044,
+    ),
+    "nn": VleoExpression(
+        width=0.64, smile=0.0090, rise=0.0024, drop=0.0056, square=0.8, jaw=0.14, tongue_up=0.0078,
+        tongue_out=0.0070,
+    ),
+    "RR": VleoExpression(
+        width=0.32, smile=0.0020, rise=0.0050, drop=0.0062, lips=0.0036, pout=0.0070, jaw=0.07,
+        tongue_up=0.0030,
+    ),
+    "aa": VleoExpression(width=0.72, smile=0.0085, rise=0.0030, drop=0.0060, square=0.7, jaw=0.52),
+    "E": VleoExpression(width=0.80, smile=0.0112, rise=0.0022, drop=0.0058, square=0.6, jaw=0.24),
+    "I": VleoExpression(
+        width=0.90, smile=0.0125, rise=0.0028, drop=0.0054, square=0.5, jaw=0.06, teeth=0.0030,
+        tongue_up=0.0020,
+    ),
+    "O": VleoExpression(
+        width=0.29, smile=0.0, rise=0.0082, drop=0.0085, lips=0.0038, pout=0.0078, jaw=0.24,
+    ),
+    "U": VleoExpression(
+        width=0.135, smile=-0.0003, rise=0.0050, drop=0.0056, lips=0.0070, pout=0.0170,
+    ),
+}  # fmt: skip
+"""The shapes of the mouth in speech, by the names of the Oculus visemes."""
+
+_PARTS = {
+    "mouthSmile": VleoExpression(width=0.86, smile=0.0165, rise=0.0004, drop=0.0042, cheeks=0.003),
+    "mouthFrown": VleoExpression(width=0.54, smile=-0.0066, rise=0.0004, drop=0.0042),
+    "browInnerUp": VleoExpression(brow=0.14, brow_inner=0.22),
+    "browOuterUp": VleoExpression(brow=0.24, brow_inner=-0.10),
+    "browDown": VleoExpression(brow=-0.12, brow_inner=-0.20),
+    "eyeWide": VleoExpression(upper=1.08, lower=1.02),
+}
+"""Movements of one part of the face, by ARKit's names."""
+
+
+def _mouth_of(face: VleoExpression) -> VleoExpression:
+    """Return the mouth of an expression, with eyes, brows and cheeks at rest."""
+    names = [field.name for field in fields(face)]
+    mouth = {name: getattr(face, name) for name in names[names.index("width") :]}
+    return replace(NEUTRAL, **mouth | {"cheeks": NEUTRAL.cheeks})
+
+
+EXPRESSIONS = (
+    _MOODS
+    | {f"viseme_{name}": shape for name, shape in _VISEMES.items()}
+    | {
+        f"{name}Mouth": _mouth_of(_MOODS[name])
+        for name in ("happy", "angry", "sad", "surprised", "relaxed")
+    }
+    | _PARTS
+)
+"""Every morph: expressions and vowels by VRM's names, visemes, the mouths of the expressions alone,
+and parts of the face. New ones come last, since clips refer to them by number."""
 
 JAW_HINGE_M = np.array([0.0, 0.2235, 0.124])
 """Axis of the jaw [m]."""

@@ -20,6 +20,7 @@ from tools.authoring.vleo.expressions import (
 from tools.authoring.vleo.head import HEAD_AXIS_Z_M, head_shape, lip_line
 from tools.authoring.vleo.skin import jaw_share, skin_colors
 
+TEETH = linear_rgb("#fbf7ee")
 LIP = linear_rgb("#ff7d8c")
 POINTS_PER_RING = 40
 """Points around the mouth."""
@@ -31,16 +32,17 @@ _ANGLE = np.linspace(0, 2 * np.pi, POINTS_PER_RING, endpoint=False)
 
 
 def mouth(bound: Skeleton) -> list[Mesh]:
-    """Return mouth and tongue with the morph targets of expressions and visemes."""
+    """Return mouth, teeth and tongue with the morph targets of expressions and visemes."""
     return [
         morphed(lambda face: _mouth(face, bound), NEUTRAL, EXPRESSIONS),
+        morphed(lambda face: _teeth(face, bound), NEUTRAL, EXPRESSIONS),
         morphed(lambda face: _tongue(face, bound), NEUTRAL, EXPRESSIONS),
     ]
 
 
 def _mouth(face: VleoExpression, bound: Skeleton) -> Mesh:
     """Return a closed surface from a pole in the head over skin and lips to the throat."""
-    line, edge = _lip_lines(face)
+    line, edge = _lip_lines(_ANGLE, face)
     outer = np.stack([MOUTH_SKIN_EXTENT[0] * np.cos(_ANGLE), _outer_height()], axis=-1)
     away = (outer - edge) * [0.060, 1.0]
     step = face.lips / np.linalg.norm(away, axis=1, keepdims=True) * (outer - edge)
@@ -53,6 +55,9 @@ def _mouth(face: VleoExpression, bound: Skeleton) -> Mesh:
         held.append(_lip_share() * (1 - s) + s * jaw_share(skin[-1]))
     crest = _on_skin(edge + 0.5 * step, line + 0.5 * step, 0.0008 + 0.95 * face.lips + face.pout)
     rim = _on_skin(edge, line, 0.3 * face.lips + face.pout + 0 * full)
+    drawn_in = face.tuck * np.clip(-np.sin(_ANGLE), 0.0, 1.0)[:, None] ** 0.5
+    rim -= drawn_in * _outward(rim)
+    crest -= 0.6 * drawn_in * _outward(crest)
     skin = [
         rotate_with_jaw(p + cheek_displacement(p, face), h, face)
         for p, h in zip(skin, held, strict=True)
@@ -72,9 +77,9 @@ def _mouth(face: VleoExpression, bound: Skeleton) -> Mesh:
     return blend_normals(mesh, fixed, np.repeat(np.array(far) ** 1.5, POINTS_PER_RING))
 
 
-def _lip_lines(face: VleoExpression) -> tuple[Array, Array]:
+def _lip_lines(angle: Array, face: VleoExpression) -> tuple[Array, Array]:
     """Return the line where closed lips meet, and their edges: azimuth [rad], height [m]."""
-    side, height = face.width * np.cos(_ANGLE), np.sin(_ANGLE)
+    side, height = face.width * np.cos(angle), np.sin(angle)
     line = lip_line(side, face.smile, face.width)
     bow = np.abs(height) ** face.square
     y = line + np.where(height >= 0, face.rise, -face.drop) * bow
@@ -88,9 +93,9 @@ def _outer_height() -> Array:
     return np.asarray(lip_line(MOUTH_SKIN_EXTENT[0] * np.cos(_ANGLE)) + reach * height)
 
 
-def _lip_share() -> Array:
+def _lip_share(angle: Array = _ANGLE) -> Array:
     """Return the share of the jaw's rotation that moves the lips, (points,), 0…1."""
-    return np.asarray(np.clip(0.5 - 0.6 * np.sin(_ANGLE), 0.0, 1.0))
+    return np.asarray(np.clip(0.5 - 0.6 * np.sin(angle), 0.0, 1.0))
 
 
 def _on_skin(flat: Array, rest: Array, lift: Array | float) -> Array:
@@ -132,6 +137,28 @@ def _cavity(edge: Array) -> tuple[list[Array], list[Array]]:
     return [gum, inner, throat, end], [lip, lip, 0.5 * lip, 0 * lip]
 
 
+def _teeth(face: VleoExpression, bound: Skeleton) -> Mesh:
+    """Return the upper teeth, a strip that hangs behind the lip and hides there."""
+    arc = np.sin(np.linspace(-0.5, 0.5, 13) * np.pi)
+    angle = np.arccos(0.8 * arc)
+    line, edge = _lip_lines(angle, face)
+    round_end = np.sqrt(1.0 - arc**2)
+    middle = edge[:, 1] + (0.0014 if face.teeth == 0 else 0.0)
+    tip = middle - face.teeth * round_end
+    root = middle + (0.0016 if face.teeth else 0.0005) * round_end
+    lip = on_snout(edge[:, 0], line[:, 1])
+    lip += (0.7 * face.pout - 0.0016 - 0.002 * arc[:, None] ** 2) * _outward(lip)
+    behind = lip - 0.0012 * round_end[:, None] * _outward(lip)
+    ways = [(lip, root), (lip, tip), (behind, tip), (behind, root)]
+    rings = np.stack([np.column_stack([p[:, 0], y, p[:, 2]]) for p, y in ways], axis=1)
+    share = np.repeat(_lip_share(angle), 4)
+    moved = rotate_with_jaw(rings.reshape(-1, 3), share, face).reshape(rings.shape)
+    mesh = loft(moved, np.tile(TEETH, (*rings.shape[:2], 1)), "head", bound)
+    # No light glances off the ends of the front.
+    ahead = np.tile([0.0, 0.0, 1.0], (len(mesh.positions), 1))
+    return blend_normals(mesh, ahead, np.tile([0.9, 0.9, 0.0, 0.0], len(arc)))
+
+
 def _tongue(face: VleoExpression, bound: Skeleton) -> Mesh:
     """Return the tongue, which lies on the jaw and has a groove."""
     turn = np.linspace(0, 2 * np.pi, 16, endpoint=False)
@@ -142,6 +169,8 @@ def _tongue(face: VleoExpression, bound: Skeleton) -> Mesh:
     groove = np.clip(ball[..., 1], 0, 1) * np.exp(-((points[..., 0] / 0.004) ** 2))
     points[..., 1] -= 0.0014 * groove
     flat = points.reshape(-1, 3)
+    tip = np.clip((flat[:, 2] - 0.148) / 0.026, 0.0, 1.0)[:, None] ** 1.5
+    flat = flat + tip * [0.0, face.tongue_up, face.tongue_out]
     moved = rotate_with_jaw(flat, 1.0 - 0.25 * np.clip((0.165 - flat[:, 2]) / 0.025, 0, 1), face)
     color = np.tile(ROSE, (*x.shape, 1))
     return loft(moved.reshape(points.shape), color, "jaw", bound)
