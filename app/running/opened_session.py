@@ -148,10 +148,22 @@ class OpenedSession:
             self.sound.mixer.volume, self.sound.muted = options.volume, options.muted
         self.observe()
 
+    def change_speech(self, setting: str, value: str | float) -> None:
+        """Say the next lines in another way, which is recorded with each."""
+        if setting == "language":
+            self.speaker.language = str(value)
+        else:
+            self.speaker.profile = self.speaker.profile.changed(setting, value)
+        self.observe()
+
     def observe(self) -> None:
         """Let the panels show the present options and robot."""
         self.monitor.options, self.monitor.fixed = self.options, self.keeps_scenario
         self.monitor.wire = self.wire.log
+        speaker = self.speaker
+        self.monitor.profile, self.monitor.speaks = speaker.profile, speaker.live
+        self.monitor.language, self.monitor.languages = speaker.language, speaker.languages
+        self.monitor.voice_problem = speaker.problem
         self.monitor.sound_problem = "" if self.sound is None else self.sound.problem
 
     @property

@@ -145,7 +145,7 @@ def open_session(
             )
         pace = _pace(options, source, player)
         stepped = pace is None and not source.live
-        speaker = open_speaker(options, waits=stepped)
+        speaker = open_speaker(options, character, waits=stepped)
         closing.callback(speaker.close)
         robot = closing.enter_context(
             RobotLine.open(options.robot, clock, wire, options.robot_settings, stepped=stepped)

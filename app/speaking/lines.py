@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 from app.errors import AppError
 from characters.model.files import read_file
@@ -37,10 +38,13 @@ def bundled_lines(scenario: str, language: str) -> ScenarioLines | None:
 
     Raises AppError if it has lines, but not in this language.
     """
-    file = resources.files("app") / "scenarios" / "lines" / f"{scenario}.toml"
-    if not file.is_file():
-        return None
-    return lines_of(file.read_text("utf-8"), language, f"the lines of {scenario}")
+    voice = _bundled(scenario)
+    return _lines(voice, language, f"the lines of {scenario}") if voice else None
+
+
+def bundled_languages(scenario: str) -> tuple[str, ...]:
+    """Return the languages of the lines of a bundled scenario; () if it has none."""
+    return tuple(_bundled(scenario))
 
 
 def read_lines(path: Path, language: str) -> ScenarioLines:
@@ -49,21 +53,38 @@ def read_lines(path: Path, language: str) -> ScenarioLines:
     Raises AppError or CharacterError if it cannot be read, has no lines in this language, or a line
     is no text or too long.
     """
+    return _lines(_read(path), language, str(path))
+
+
+def languages_in(path: Path) -> tuple[str, ...]:
+    """Return the languages of the lines in a .toml file; errors as those of `read_lines`."""
+    return tuple(_read(path))
+
+
+def _bundled(scenario: str) -> dict[str, Any]:
+    file = resources.files("app") / "scenarios" / "lines" / f"{scenario}.toml"
+    return _voice(file.read_text("utf-8"), scenario) if file.is_file() else {}
+
+
+def _read(path: Path) -> dict[str, Any]:
     try:
-        text = read_file(path, MAX_BYTES).decode()
+        return _voice(read_file(path, MAX_BYTES).decode(), str(path))
     except UnicodeDecodeError as error:
         raise AppError(f"{path}: not a text file in UTF-8") from error
-    return lines_of(text, language, str(path))
 
 
-def lines_of(text: str, language: str, where: str) -> ScenarioLines:
-    """Return the lines of one language in the text of a file; `where` names it in messages."""
+def _voice(text: str, where: str) -> dict[str, Any]:
+    """Return the table `[voice]` of a file, by language; `where` names it in messages."""
     try:
         voice = tomllib.loads(text).get("voice", {})
     except tomllib.TOMLDecodeError as error:
         raise AppError(f"{where}: {error}") from error
-    if not isinstance(voice, dict) or not isinstance(voice.get(language), dict):
-        found = ", ".join(voice) if isinstance(voice, dict) and voice else "none"
+    return voice if isinstance(voice, dict) else {}
+
+
+def _lines(voice: dict[str, Any], language: str, where: str) -> ScenarioLines:
+    if not isinstance(voice.get(language), dict):
+        found = ", ".join(voice) or "none"
         raise AppError(
             f"{where}: no lines in '{language}', a table [voice.{language}]; has {found}"
         )

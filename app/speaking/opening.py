@@ -1,25 +1,19 @@
 """Opening what the character of a session speaks with."""
 
-from collections.abc import Callable
-from functools import lru_cache, partial
+from functools import lru_cache
 from pathlib import Path
 
 from app.session import SessionOptions, spoken_lines
-from app.speaking.lines import ScenarioLines, bundled_lines, read_lines
-from app.speaking.speaker import LiveSpeaker, RecordedSpeaker, Speaker
+from app.speaking.lines import bundled_languages, bundled_lines, languages_in, read_lines
+from app.speaking.speaker import SILENT, LiveSpeaker, RecordedSpeaker, Speaker
+from characters import Character
 from characters.speech.voices import VoiceError, espeak
 
 DEFAULT_LANGUAGE = "en"
 """Language of what is said unless the user chooses one."""
 
-SILENT = "none"
-"""The language in which nothing is said."""
 
-LinesOf = Callable[[str], ScenarioLines | None]
-"""Returns the lines of a scenario by its name; None if it has none."""
-
-
-def open_speaker(options: SessionOptions, *, waits: bool) -> Speaker:
+def open_speaker(options: SessionOptions, character: Character, *, waits: bool) -> Speaker:
     """Return what speaks in a session; the caller closes it.
 
     A recording says what it has. Else a voice speaks if the user has chosen a language or lines, or
@@ -29,6 +23,8 @@ def open_speaker(options: SessionOptions, *, waits: bool) -> Speaker:
     ----------
     options
         What the user asks for.
+    character
+        Who speaks.
     waits
         Whether the session is not in real time.
 
@@ -42,22 +38,20 @@ def open_speaker(options: SessionOptions, *, waits: bool) -> Speaker:
         return RecordedSpeaker(spoken_lines(Path(options.source)))
     if options.language == SILENT or not (asked or options.windowed):
         return RecordedSpeaker({})
-    lines_of = _lines_of(options)
-    if options.language is not None:
-        lines_of(options.scenario)  # refuses a language that it lacks
+    first = options.language or DEFAULT_LANGUAGE
+    if options.lines is None:
+        lines_of, languages = lru_cache(bundled_lines), bundled_languages(options.scenario)
+    else:
+        path = options.lines
+        lines_of, languages = lru_cache(lambda _, code: read_lines(path, code)), languages_in(path)
+    lines_of(options.scenario, first)  # refuses a language that it lacks
     try:
         voice = espeak()
-    except VoiceError:
+    except VoiceError as error:
         if asked:
             raise
-        return RecordedSpeaker({})
-    return LiveSpeaker(voice, lines_of, options.profile, waits=waits)
-
-
-def _lines_of(options: SessionOptions) -> LinesOf:
-    """Return what finds the lines of a scenario."""
-    language = options.language or DEFAULT_LANGUAGE
-    if options.lines is not None:
-        own = read_lines(options.lines, language)
-        return lambda scenario: own
-    return lru_cache(partial(bundled_lines, language=language))
+        return RecordedSpeaker({}, str(error))
+    choices = tuple(dict.fromkeys((first, *languages, SILENT)))
+    return LiveSpeaker(
+        voice, lines_of, choices, options.profile, gestures=character.gestures, waits=waits
+    )

@@ -14,12 +14,20 @@ from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
 from characters.speech.prosody import utterance_of
 from characters.speech.tagged_text import TaggedText
 from characters.speech.voices import Voice
+from characters.synthesis.gestures.library import GestureLibrary
 
 MAX_FAILURES = 3
 """A voice that has failed so often in a row is not asked again."""
 
 ANSWER_S = 5.0
 """How long a session that is not in real time waits for a line [s]."""
+
+
+SILENT = "none"
+"""The language in which nothing is said."""
+
+LinesOf = Callable[[str, str], ScenarioLines | None]
+"""Returns the lines of a scenario by its name and a language; None if it has none."""
 
 
 class Speaker(Protocol):
@@ -30,6 +38,15 @@ class Speaker(Protocol):
 
     profile: SpeechProfile
     """How the next lines are said with the body; may be changed at any time."""
+
+    language: str
+    """Code of the language; may be changed to another one of `languages`, or to `SILENT`."""
+
+    languages: tuple[str, ...]
+    """The languages that can be chosen."""
+
+    live: bool
+    """Whether profile and language change what is said next."""
 
     def line(self, timestamp: float) -> SpokenLine | None:
         """Return the line that begins with the frame of a timestamp [s], if one does."""
@@ -47,9 +64,11 @@ class Speaker(Protocol):
 class RecordedSpeaker:
     """Says again what a recorded session has, by the frame in which it begins [s]."""
 
-    problem = ""
+    live = False
+    languages: tuple[str, ...] = ()
 
-    def __init__(self, lines: Mapping[float, SpokenLine]) -> None:
+    def __init__(self, lines: Mapping[float, SpokenLine], problem: str = "") -> None:
+        self.problem, self.language = problem, ""
         self.profile = DEFAULT_PROFILE
         self._lines = lines
 
@@ -67,35 +86,47 @@ class RecordedSpeaker:
 class LiveSpeaker:
     """Speaks the lines of the scenarios with a voice, which no frame waits for.
 
+    The lines of another scenario or language are taken when it is played or chosen.
+
     Parameters
     ----------
     voice
         The voice; `close` ends it.
     lines_of
-        What is said in a scenario, by its name; None for nothing.
+        What is said in a scenario, by its name, in a language; None for nothing.
+    languages
+        The languages that can be chosen; the first one is spoken.
     profile
         How it is said with the body.
+    gestures
+        Those of the character, to be made ready; None for none.
     waits
         Whether the session is not in real time, so that the next frame waits for its line.
     """
 
+    live = True
+
     def __init__(
         self,
         voice: Voice,
-        lines_of: Callable[[str], ScenarioLines | None],
+        lines_of: LinesOf,
+        languages: tuple[str, ...],
         profile: SpeechProfile,
         *,
-        waits: bool,
+        gestures: GestureLibrary | None = None,
+        waits: bool = False,
     ) -> None:
         self.problem = ""
-        self.profile = profile
+        self.profile, self.languages, self.language = profile, languages, languages[0]
         self._voice, self._lines_of, self._waits = voice, lines_of, waits
-        self._scenario = ""
+        self._played = "", ""
         self._moments: Moments | None = None
         self._requests: queue.Queue[LineRequest | None] = queue.Queue()
         self._said: queue.Queue[SpokenLine | None] = queue.Queue()
         self._asked = False
-        self._thread = threading.Thread(target=self._run, name="voice", daemon=True)
+        self._thread = threading.Thread(
+            target=self._run, args=(gestures,), name="voice", daemon=True
+        )
         self._thread.start()
 
     def line(self, timestamp: float) -> SpokenLine | None:
@@ -113,9 +144,10 @@ class LiveSpeaker:
 
     def hear(self, step: Step) -> None:
         """Let the voice speak what there is to say about a step."""
-        if step.scenario != self._scenario:
-            self._scenario = step.scenario
-            lines = self._lines_of(step.scenario)
+        played = step.scenario, self.language
+        if played != self._played:
+            self._played = played
+            lines = None if self.language == SILENT else self._lines_of(*played)
             self._moments = None if lines is None else Moments(lines)
         request = None if self._moments is None else self._moments.update(step)
         if request is not None and not self.problem:
@@ -128,7 +160,9 @@ class LiveSpeaker:
         self._thread.join(timeout=1.0)
         self._voice.close()
 
-    def _run(self) -> None:
+    def _run(self, gestures: GestureLibrary | None) -> None:
+        if gestures is not None:
+            self.profile.planner(gestures)  # takes longer than a frame
         failures = 0
         while (request := self._requests.get()) is not None:
             try:

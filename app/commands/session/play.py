@@ -17,6 +17,7 @@ from app.scenarios.roles import check_cubes
 from app.session import SessionOptions
 from app.ui.display import has_display
 from characters import CONTROLLER_CHOICES
+from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
 
 DEFAULT_CAMERA = "camera:0"
 
@@ -89,6 +90,10 @@ LanguageOption = Annotated[
 LinesOption = Annotated[
     Path | None,
     typer.Option(help="What the character says: a .toml file; see docs/speaking.md."),
+]
+ProfileOption = Annotated[
+    Path | None,
+    typer.Option(help="How it says it with its body: a profile of [cyan]cubeling speak[/]."),
 ]
 PersonalityOption = Annotated[
     str | None,
@@ -173,6 +178,7 @@ def play(
     personality: PersonalityOption = None,
     language: LanguageOption = None,
     lines: LinesOption = None,
+    profile: ProfileOption = None,
     look: Annotated[
         str, typer.Option(help="Where the character looks: auto, cube, hand, camera or none.")
     ] = "auto",
@@ -205,6 +211,7 @@ def play(
         personality=personality,
         language=language,
         lines=lines,
+        profile=DEFAULT_PROFILE if profile is None else SpeechProfile.load(profile),
         look=look,
         robot=robot,
         robot_settings=robot_settings,

@@ -13,6 +13,7 @@ from app.running.playback.transport import Transport
 from app.ui.playback.requests import (
     ChangeSetting,
     ChangeSound,
+    ChangeSpeech,
     Choose,
     ListChoices,
     MarkMoment,
@@ -131,6 +132,9 @@ HANDLERS: dict[type[SessionRequest], Callable[[PlayerControls, Any], None]] = {
     MarkMoment: PlayerControls._mark,
     ChangeSetting: PlayerControls._change_setting,
     ChangeSound: lambda controls, request: controls._session.change_sound(
+        request.setting, request.value
+    ),
+    ChangeSpeech: lambda controls, request: controls._session.change_speech(
         request.setting, request.value
     ),
     ListChoices: lambda controls, _: controls._choices.look(),

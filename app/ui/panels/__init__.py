@@ -10,10 +10,11 @@ from app.ui.panels.monitor import SessionMonitor
 from app.ui.panels.scenario import SCENARIO
 from app.ui.panels.serial import SERIAL
 from app.ui.panels.sound import SOUND
+from app.ui.panels.speech import SPEECH
 from app.ui.panels.tracking import TRACKING
 
 PANELS: dict[str, Panel] = {
-    panel.name: panel for panel in (TRACKING, SCENARIO, EMOTION, SERIAL, FRAME_TIME, SOUND)
+    panel.name: panel for panel in (TRACKING, SCENARIO, EMOTION, SERIAL, FRAME_TIME, SOUND, SPEECH)
 }
 """The panels by name, in the order in which the window lists them."""
 

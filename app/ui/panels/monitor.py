@@ -8,10 +8,21 @@ from app.pipeline.step import RobotView, Step
 from app.session import SessionOptions
 from app.ui.panels.trace import Trace
 from app.ui.panels.wire_log import WireLog
+from characters.control.speech_profile import DEFAULT_PROFILE
+from characters.synthesis.gestures.graph import GestureGraph
 from tracking import Intrinsics, LensEstimate
 
 EMOTION_SPAN_S, EMOTION_INTERVAL_S = 60.0, 0.1
 """How long emotions are kept, and the least time between two of them."""
+
+SPEECH_SPAN_S = 6.0
+"""How long loudness and accents are kept."""
+
+ACCENT_SHOWN_S = 0.05
+"""An accent is shown for so long before and after its time."""
+
+FULL_LOUDNESS = 0.25
+"""Root mean square of samples that fills the plot."""
 
 TRACKING_SPAN_S = 10.0
 """How long the tracker's results are kept."""
@@ -43,6 +54,20 @@ class SessionMonitor:
         """Valence and arousal of the character and of the robot; NaN while the robot has none."""
         self.tracking = Trace(2, TRACKING_SPAN_S)
         """Of each frame: whether the cube was visible, 0 or 1, and its reprojection error [px]."""
+        self.speech = Trace(2, SPEECH_SPAN_S)
+        """Of each frame: how loud speech is, and the strength of the accent in it, both 0…1."""
+        self.gesture_graph: GestureGraph | None = None
+        """What the gestures of the last speech were chosen from; None without gestures."""
+        self.profile = DEFAULT_PROFILE
+        """How the next line is said with the body."""
+        self.speaks = False
+        """Whether a voice speaks, so that the profile can be changed."""
+        self.language = ""
+        """The language of the voice."""
+        self.languages: tuple[str, ...] = ()
+        """The languages that can be chosen."""
+        self.voice_problem = ""
+        """Why nothing is said, "" if nothing is wrong."""
         self.step: Step | None = None
         """The last step."""
         self.robot = RobotView("none", 0.0, "neutral")
@@ -62,3 +87,22 @@ class SessionMonitor:
         self.emotions.add(now, feels.valence, feels.arousal, *theirs)
         error = state.reprojection_error if state.visible else np.nan
         self.tracking.add(now, float(state.visible), error)
+        self._listen(step, playground)
+
+    def _listen(self, step: Step, playground: Playground) -> None:
+        """Take what is said in a frame."""
+        now, line, speech = step.frame.timestamp, step.line, step.command.speech
+        if line is None or speech is None:
+            self.speech.add(now, 0.0, 0.0)
+            return
+        at = round((now - speech.start) * line.rate)
+        heard = line.samples[at : at + line.rate // 30]
+        loudness = float(np.sqrt(np.mean(heard * heard))) if len(heard) else 0.0
+        accents = [
+            each.strength
+            for each in line.utterance.accents
+            if abs(speech.start + each.time - now) < ACCENT_SHOWN_S
+        ]
+        self.speech.add(now, min(loudness / FULL_LOUDNESS, 1.0), max(accents, default=0.0))
+        gestures = playground.character.gestures
+        self.gesture_graph = None if gestures is None else speech.profile.planner(gestures).graph

@@ -110,6 +110,17 @@ class ChangeSound:
     """0…1, or whether nothing sounds."""
 
 
+@dataclass(frozen=True)
+class ChangeSpeech:
+    """Change how the next line is said."""
+
+    setting: str
+    """"language", or a field of `SpeechProfile`."""
+
+    value: str | float
+    """Its new value."""
+
+
 PlayerInput = StartOver | PlayScenario
 """What the scenario is told."""
 
@@ -124,6 +135,7 @@ SessionRequest = (
     | Choose
     | ChangeSetting
     | ChangeSound
+    | ChangeSpeech
 )
 """What the session carries out."""
 

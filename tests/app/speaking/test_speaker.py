@@ -13,7 +13,7 @@ from app.session import SessionOptions, messages, spoken_lines
 from app.session.bundled import bundled
 from app.session.encoding import decode
 from app.speaking import opening
-from characters import CharacterCommand, CharacterError
+from characters import Character, CharacterCommand, CharacterError
 from characters.speech.voices import Voice, VoiceError
 
 BUZZ = """
@@ -81,10 +81,10 @@ def test_without_a_voice_a_character_is_silent_unless_it_was_asked_to_speak(tmp_
 
     monkeypatch.setattr(opening, "espeak", gone)
     windowed = SessionOptions(scenario="companion", source="camera:0")
-    speaker = opening.open_speaker(windowed, waits=False)
+    speaker = opening.open_speaker(windowed, Character.load("vleo"), waits=False)
     assert speaker.line(0.0) is None
     with pytest.raises(CharacterError, match="apt-get install"):
-        opening.open_speaker(replace(windowed, language="en"), waits=False)
+        opening.open_speaker(replace(windowed, language="en"), Character.load("vleo"), waits=False)
 
 
 def test_a_voice_that_always_dies_is_given_up_and_the_session_goes_on(tmp_path, monkeypatch):

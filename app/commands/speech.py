@@ -1,0 +1,170 @@
+"""`cubeling speech`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from app.commands.output import (
+    PLOT_SUFFIXES,
+    OverwriteOption,
+    PlotOption,
+    chosen_output,
+    needs_matplotlib,
+)
+from app.errors import AppError
+from characters.speech.accents import AccentSettings, accents_of
+from characters.speech.alignment import align as align_by_warping
+from characters.speech.audio import read_speech
+from characters.speech.contours import measure_prosody
+from characters.speech.speech import Accent, Speech
+from characters.speech.sphinx import align_with_sphinx
+from characters.speech.textgrid import read_textgrid, textgrid_of, with_textgrid, write_textgrid
+from characters.speech.voices import espeak
+
+MAX_PLOT_S = 120.0
+"""Longest speech that is plotted [s]."""
+
+app = typer.Typer(
+    help="Look at recorded speech: its pitch, accents, words and phones.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="rich",
+)
+
+FileArgument = Annotated[Path, typer.Argument(help="A recording: WAV, MP3, Ogg, a video, …")]
+LanguageOption = Annotated[str, typer.Option("--lang", help="Language of the text: en, ca, …")]
+
+
+@app.command()
+def show(
+    file: FileArgument,
+    text: Annotated[str | None, typer.Option(help="What is said, for words and phones.")] = None,
+    lang: LanguageOption = "en",
+    textgrid: Annotated[
+        Path | None, typer.Option(help="A TextGrid with words or phones, instead of --text.")
+    ] = None,
+    threshold: Annotated[
+        float, typer.Option(min=0.0, max=1.0, help="Least strength of an accent.")
+    ] = AccentSettings.threshold,
+    output: PlotOption = None,
+    overwrite: OverwriteOption = False,
+) -> None:
+    """Show a recording: duration, speech rate, pitch and pitch accents.
+
+    The plot also shows waveform, intensity and voicing, and words and phones if the text is known.
+    It needs matplotlib: [cyan]pip install matplotlib[/]
+
+    Example: [cyan]cubeling speech show talk.wav --text "Hello there" -o talk.png[/]
+    """
+    if output is not None:
+        chosen_output(output, "", "plot", PLOT_SUFFIXES, overwrite)
+    if text is not None and textgrid is not None:
+        raise AppError("give --text or --textgrid, not both")
+    console = Console()
+    speech = read_speech(file)
+    if textgrid is not None:
+        speech = with_textgrid(speech, read_textgrid(textgrid))
+    elif text is not None:
+        speech = aligned(speech, text, lang, console)
+    settings = AccentSettings(threshold)
+    describe(console, speech, settings)
+    if output is None:
+        return
+    if speech.duration > MAX_PLOT_S:
+        raise AppError(f"a plot shows up to {MAX_PLOT_S:g} s, and this is longer: cut it in parts")
+    with needs_matplotlib():
+        from app.speech_plot import save_plot
+    save_plot(output, speech, f"{file.name}", settings=settings)
+    console.print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
+
+
+@app.command()
+def align(
+    file: FileArgument,
+    text: Annotated[str, typer.Option(help="What is said; @FILE reads it from a file.")],
+    lang: LanguageOption = "en",
+    sphinx: Annotated[
+        bool, typer.Option(help="Align by PocketSphinx, more exact; English only.")
+    ] = False,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="The .TextGrid file; see Praat.")
+    ] = None,
+    overwrite: OverwriteOption = False,
+) -> None:
+    """Write when each word and phone of a recording is said, as a TextGrid.
+
+    Example: [cyan]cubeling speech align talk.wav --text "Bon dia" --lang ca[/]
+    """
+    target = chosen_output(output, f"{file.stem}.TextGrid", "TextGrid", (".textgrid",), overwrite)
+    console = Console()
+    said = said_text(text)
+    speech = aligned(read_speech(file), said, lang, console, sphinx=sphinx)
+    write_textgrid(target, textgrid_of(speech))
+    console.print(
+        f"[bold]{escape(str(target))}[/] is written: {len(speech.words)} words,"
+        f" {sum(bool(phone.symbol) for phone in speech.phones)} phones",
+        soft_wrap=True,
+        highlight=False,
+    )
+
+
+def said_text(text: str) -> str:
+    """Return a text, or what is in the file that it names after an @."""
+    if not text.startswith("@"):
+        return text
+    try:
+        return Path(text[1:]).read_text("utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise AppError(f"cannot read the text '{text[1:]}': {error}") from error
+
+
+def aligned(
+    speech: Speech, text: str, language: str, console: Console, *, sphinx: bool = False
+) -> Speech:
+    """Return a recording with the times of its words and phones."""
+    if sphinx and language.split("-")[0] != "en":
+        raise AppError(f"PocketSphinx knows English only, not '{language}': leave out --sphinx")
+    with console.status("aligning"), espeak() as voice:
+        if sphinx:
+            return align_with_sphinx(speech, text, voice)
+        return align_by_warping(speech, text, voice, language)
+
+
+def describe(console: Console, speech: Speech, settings: AccentSettings) -> None:
+    """Print what a recording is like, and its accents."""
+    prosody = measure_prosody(speech.samples, speech.rate, settings.prosody)
+    accents = accents_of(prosody, speech.phones, settings)
+    voiced = prosody.f0[prosody.f0 > 0]
+    spoken = speech.duration - float((prosody.pauses[:, 1] - prosody.pauses[:, 0]).sum())
+    facts = [f"{speech.duration:.2f} s, {speech.rate} Hz", f"{spoken:.2f} s without pauses"]
+    if speech.words:
+        facts.append(f"{len(speech.words) / max(spoken, 1e-3):.1f} words a second")
+    if len(voiced):
+        low, middle, high = np.quantile(voiced, (0.05, 0.5, 0.95))
+        facts.append(f"pitch {middle:.0f} Hz ({low:.0f} to {high:.0f})")
+    else:
+        facts.append("no voice is heard")
+    console.print(", ".join(facts), highlight=False, soft_wrap=True)
+    if not accents:
+        console.print("no pitch accents")
+        return
+    table = Table(box=SIMPLE_HEAD, title="pitch accents", title_justify="left")
+    for heading in ("time", "strength", "pitch") + (("word",) if speech.words else ()):
+        table.add_column(heading, justify="left" if heading == "word" else "right")
+    pitches = np.interp([a.time for a in accents], prosody.times, prosody.f0)
+    for accent, pitch in zip(accents, pitches, strict=True):
+        row = [f"{accent.time:.2f} s", f"{accent.strength:.2f}", f"{pitch:.0f} Hz"]
+        table.add_row(*row, *([escape(_word_at(speech, accent))] if speech.words else []))
+    console.print(table)
+
+
+def _word_at(speech: Speech, accent: Accent) -> str:
+    """Return the word of an accent."""
+    words = (word.text for word in speech.words if word.start <= accent.time <= word.end)
+    return next(words, "")
