@@ -30,8 +30,11 @@ counts as a spine."""
 VELOCITY_INFLUENCE = 0.01
 """How much squared velocities [rad²/s²] count beside squared half angles [rad²]."""
 
+BRANCHING_SHARE = 0.5
+"""Share of the phrases that may follow a phrase, on average, at the threshold that is chosen."""
+
 THRESHOLDS = tuple(round(0.1 * step, 1) for step in range(1, 41))
-"""Similarity thresholds that are tried for the smallest that keeps every phrase (Table 4.2)."""
+"""Similarity thresholds of which the smallest that will do is chosen (Table 4.2)."""
 
 BLEND_S = tuple(round(0.1 + 0.05 * step, 2) for step in range(11))
 """Lengths of a blend that are considered [s] (M9)."""
@@ -108,7 +111,8 @@ class GestureGraph:
         Parameters
         ----------
         threshold
-            Similarity threshold; None takes the smallest of `THRESHOLDS` that keeps every phrase.
+            Similarity threshold; None takes the smallest of `THRESHOLDS` that keeps every phrase
+            and has branches enough.
         weights
             Weight of each body part in the distance.
         strokes_alone
@@ -122,8 +126,14 @@ class GestureGraph:
         distances, following = measured.distances[:count, :count], _following(library)
         if threshold is None:
             rows = (connectivity(distances, following, each) for each in THRESHOLDS)
-            keeping = (row.threshold for row in rows if row.component == count)
-            threshold = next(keeping, THRESHOLDS[-1])
+            threshold = next(
+                (
+                    row.threshold
+                    for row in rows
+                    if row.component == count and row.branching >= BRANCHING_SHARE * count
+                ),
+                THRESHOLDS[-1],
+            )
         joined = (distances < threshold) | following
         inside = largest_component([np.flatnonzero(row).tolist() for row in joined])
         kept = np.flatnonzero(inside[[node.number for node in nodes]])

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from characters.speech.speech import Accent
-from characters.synthesis.gestures.alignment import Timings
+from characters.synthesis.gestures.alignment import INVALID_COST, Timings
 from characters.synthesis.gestures.graph import GestureGraph, GestureNode
 from characters.synthesis.gestures.library import PHASES
 from characters.synthesis.gestures.playing import (
@@ -33,7 +33,7 @@ class GestureCosts:
     """Of its warp, or of the hold before it: 0…1."""
 
     repetition: float
-    """Because it was played lately."""
+    """Because it, or the same hands, were played lately."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +72,11 @@ class PlannedGesture:
 
     costs: GestureCosts
     """What it costs."""
+
+    @property
+    def relaxed(self) -> bool:
+        """Whether its strength is out of the band of the intensity rule ("thesis")."""
+        return self.costs.strength >= INVALID_COST
 
     @property
     def start(self) -> float:

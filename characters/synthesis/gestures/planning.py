@@ -47,19 +47,28 @@ class GestureSettings:
     """Weight of the cost of warps and holds."""
 
     variety: float = 0.5
-    """Cost of the same phrase again; less the longer ago it was."""
+    """Cost of the same phrase again, less the longer ago it was, and of the same hands for long."""
 
     synchrony: SynchronyRule = field(default_factory=SynchronyRule)
     """Window of the anticipation, which is drawn at random."""
 
+    anticipations: int = 3
+    """How many are drawn for each accent; one that fits is taken. 1 is the thesis."""
+
     intensity: IntensityRule | None = None
     """The intensity rule of the model "thesis"; None spreads it over the library."""
+
+    accent_floor: float = 0.4
+    """Strength of an accent that counts as 0: detectors report no weak ones. 0 is the thesis."""
 
     longest_hold_s: float = 0.8
     """How long hands may be held between two gestures [s]; 0 is the thesis to the letter."""
 
     min_spacing_s: float = 0.6
     """Of accents that are closer, the stronger carries a gesture [s]."""
+
+    first_s: float = 0.35
+    """Earlier accents carry none: hands need time to rise [s]."""
 
 
 DEFAULT_SETTINGS = GestureSettings()
@@ -71,9 +80,20 @@ class GesturePlanner:
     def __init__(
         self, library: GestureLibrary, settings: GestureSettings = DEFAULT_SETTINGS
     ) -> None:
+        chosen = library.database(settings.database)
+        self._prepare(GestureGraph.of(chosen, settings.threshold), settings)
+
+    @staticmethod
+    def of(graph: GestureGraph, settings: GestureSettings) -> "GesturePlanner":
+        """Return a planner for a graph that is there already."""
+        planner = GesturePlanner.__new__(GesturePlanner)
+        planner._prepare(graph, settings)
+        return planner
+
+    def _prepare(self, graph: GestureGraph, settings: GestureSettings) -> None:
         self.settings = settings
         """How gestures are chosen."""
-        self.graph = GestureGraph.of(library.database(settings.database), settings.threshold)
+        self.graph = graph
         """What may follow what."""
         self._timings = Timings.of(self.graph, settings.model)
         strengths = self.graph.strengths
@@ -100,47 +120,52 @@ class GesturePlanner:
         seed
             Of the anticipations, and of choices between equals.
         """
-        carried = carrying(accents, self.settings.min_spacing_s)
+        late = [each for each in accents if each.time >= self.settings.first_s]
+        carried = carrying(late, self.settings.min_spacing_s)
         rng, window = np.random.default_rng(seed), self.settings.synchrony
-        leads = rng.uniform(window.shortest, window.longest, len(carried))
-        favour = rng.uniform(0.0, EQUAL_COST, (len(carried), len(self.graph.nodes)))
-        apices = [each.time - lead for each, lead in zip(carried, leads.tolist(), strict=True)]
-        strengths = [min(max(each.strength + emphasis, 0.0), 1.0) for each in carried]
+        shape = len(carried), self.settings.anticipations
+        leads = rng.uniform(window.shortest, window.longest, shape)
+        favour = rng.uniform(0.0, EQUAL_COST, (*shape, len(self.graph.nodes)))
+        apices = np.array([each.time for each in carried])[:, None] - leads
+        strengths = [self._emphasized(each.strength, emphasis) for each in carried]
+        skip_costs = [INVALID_COST * (0.5 + strength) for strength in strengths]
         searches = []
         for width in sorted({1, self.settings.beam}):
             search = BeamSearch(self.graph, self._timings, self._weights, width)
-            for apex, strength, liked in zip(apices, strengths, favour, strict=True):
-                ways = search.ways(apex)
+            for number, (times, strength) in enumerate(zip(apices, strengths, strict=True)):
+                ways = search.ways(times)
                 cost = self.settings.strength_weight * self._strength_cost(strength, ways.warp)
-                search.step(apex, ways, cost, INVALID_COST * (0.5 + strength), liked)
+                ahead = None
+                if width > 1 and number + 1 < len(carried):
+                    ahead = float(apices[number + 1].max()), skip_costs[number + 1]
+                search.step(times, ways, cost, skip_costs[number], favour[number], ahead)
             searches.append(search)
         best = min(searches, key=lambda search: search.cost)
         gestures, skipped = [], []
-        for accent, strength, apex, (step, state) in zip(
-            carried, strengths, apices, best.path(), strict=True
-        ):
+        for accent, strength, (step, state) in zip(carried, strengths, best.path(), strict=True):
             if step.node[state] < 0:
                 skipped.append(accent)
             else:
-                gestures.append(self._gesture(accent, strength, apex, step, state))
+                gestures.append(self._gesture(accent, strength, step, state))
         return GesturePlan(self.graph, tuple(gestures), tuple(skipped), duration, best.cost)
 
-    def in_band(self, gesture: PlannedGesture) -> bool:
-        """Return whether a gesture is in the band of the intensity rule."""
-        return bool(self.intensity.holds(gesture.emphasized, gesture.strength))
+    def _emphasized(self, strength: float, emphasis: float) -> float:
+        """Return the strength of an accent above the floor, with the slider, 0…1 (erratum 11)."""
+        floor = self.settings.accent_floor
+        return min(max((strength - floor) / (1.0 - floor) + emphasis, 0.0), 1.0)
 
     def _strength_cost(self, strength: float, warps: Array) -> Array:
-        """Return what the strength of each gesture costs for an accent, (states, nodes)."""
+        """Return what the strength of gestures costs for an accent, like their warps (…, nodes)."""
         played = self._timings.played_strength(self.graph.strengths, warps)
         if self.settings.model == "thesis":
-            return np.where(self.intensity.holds(strength, played), 0.0, INVALID_COST)
+            weakest, strongest = self._weakest, self._weakest + self._range
+            centre = np.clip(self.intensity.centre(strength), weakest, strongest)
+            return np.where(np.abs(played - centre) < self.intensity.margin, 0.0, INVALID_COST)
         shares: Array = (played - self._weakest) / self._range
         return np.abs(strength - shares)
 
-    def _gesture(
-        self, accent: Accent, strength: float, apex: float, step: Step, state: int
-    ) -> PlannedGesture:
-        number, ways = int(step.node[state]), step.ways
+    def _gesture(self, accent: Accent, strength: float, step: Step, state: int) -> PlannedGesture:
+        number, ways, apex = int(step.node[state]), step.ways, float(step.apex[state])
         node, warp = self.graph.nodes[number], float(ways.warp[state])
         weight = self.settings.strength_weight
         return PlannedGesture(

@@ -5,6 +5,7 @@ once, and the cheapest go on (M7, with erratum 9).
 """
 
 from dataclasses import dataclass
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,12 +13,17 @@ from numpy.typing import NDArray
 from characters.skeleton.pose import Array
 from characters.synthesis.gestures.alignment import Timings, warp_cost
 from characters.synthesis.gestures.graph import GestureGraph
+from characters.synthesis.gestures.library import Hand
 
 MIN_REST_S = 0.25
 """Shortest stay in rest between two gestures [s]."""
 
-REMEMBERED = 4
+REMEMBERED = 12
 """Number of gestures whose repetition costs something."""
+
+SAME_HAND = 3
+"""So many gestures in a row by the same hands cost nothing; each further one a fifth of a
+repetition more."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +37,7 @@ class SearchWeights:
     """Of warps and holds."""
 
     variety: float
-    """Of the phrase before once more."""
+    """Of the phrase before once more; and of the same hands many times."""
 
     longest_hold: float
     """How long hands may be held between gestures [s]."""
@@ -39,7 +45,7 @@ class SearchWeights:
 
 @dataclass(frozen=True, eq=False)
 class Ways:
-    """How gestures follow states; arrays (states, nodes), or of some of them (n,)."""
+    """How gestures follow states; arrays (states, apices, nodes), or of some of them (n,)."""
 
     warp: Array
     """New length over recorded one."""
@@ -56,8 +62,8 @@ class Ways:
     time: Array
     """Cost of warp or hold, 0…1; infinite if there is none in time."""
 
-    def at(self, rows: tuple[NDArray[np.intp], NDArray[np.intp]]) -> "Ways":
-        """Return some of them, by state and node."""
+    def at(self, rows: tuple[NDArray[np.intp], ...]) -> "Ways":
+        """Return some of them, by state, apex and node."""
         warp, hold, smooth, time = (
             part[rows] for part in (self.warp, self.hold, self.smooth, self.time)
         )
@@ -73,6 +79,9 @@ class Step:
 
     node: NDArray[np.intp]
     """The gesture; −1 if the accent is skipped."""
+
+    apex: Array
+    """When its apex is [s]."""
 
     ways: Ways
     """How it follows."""
@@ -100,9 +109,15 @@ class BeamSearch:
     ) -> None:
         self._graph, self._timings, self._weights, self._width = graph, timings, weights, width
         self._phrases = np.array([node.number for node in graph.nodes])
+        before = graph.blends[:, :-1] + timings.before_fixed + timings.low * timings.before
+        possible = np.isfinite(graph.costs[:, :-1])
+        self._least = np.where(possible, before, np.inf).min(1)  # from an end to the next apex [s]
         self._node = np.array([graph.rest])
         self._end, self._cost = np.zeros(1), np.zeros(1)
         self._used = np.full((1, len(graph.library.phrases)), -np.inf)  # when, by phrase
+        hands = [get_args(Hand).index(node.phrase.hand) for node in graph.nodes]
+        self._hands, self._hand = np.array(hands), np.array([-1])
+        self._row = np.zeros(1, np.intp)  # gestures in a row by the same hands
         self._steps: list[Step] = []
 
     @property
@@ -110,13 +125,13 @@ class BeamSearch:
         """Cost of the cheapest state."""
         return float(self._cost.min())
 
-    def ways(self, apex: float) -> Ways:
-        """Return how all gestures may follow all states with their apex at a time [s]."""
+    def ways(self, apices: Array) -> Ways:
+        """Return how gestures may follow states, by possible times of their apices (n,) [s]."""
         graph, timings, node = self._graph, self._timings, self._node
         rest, longest = graph.rest, self._weights.longest_hold
-        resting = (node == rest)[:, None]
-        ends = self._end[:, None]
-        edges, blends = graph.costs[node, :-1], graph.blends[node, :-1]
+        apex = apices[:, None]
+        resting, ends = (node == rest)[:, None, None], self._end[:, None, None]
+        edges, blends = (table[node, None, :-1] for table in (graph.costs, graph.blends))
         available = apex - ends - blends
         warp = timings.warp(available)
         stretch = warp_cost(warp, timings.low, timings.high)
@@ -126,56 +141,93 @@ class BeamSearch:
         held = waiting < stretch
         time = np.where(held, waiting, stretch)
         left = apex - timings.natural - graph.blends[rest, :-1]
-        in_time = ~resting & (left >= ends + graph.blends[node, rest][:, None] + MIN_REST_S)
-        detour = (graph.costs[node, rest][:, None] + graph.costs[rest, :-1]) / 2.0
+        in_time = ~resting & (left >= ends + graph.blends[node, rest, None, None] + MIN_REST_S)
+        detour = (graph.costs[node, rest, None, None] + graph.costs[rest, :-1]) / 2.0
         by_rest = in_time & (self._weights.smooth * detour < self._total(edges, time))
         return Ways(
             np.where(held | by_rest, 1.0, warp),
             np.where(held & ~by_rest & ~resting, hold, 0.0),
             by_rest | resting,
-            np.where(by_rest, detour, edges),
+            np.where(by_rest, detour, np.broadcast_to(edges, time.shape)),
             np.where(by_rest, 0.0, time),
         )
 
     def step(
-        self, apex: float, ways: Ways, strength: Array, skip_cost: float, favour: Array
+        self,
+        apices: Array,
+        ways: Ways,
+        strength: Array,
+        skip_cost: float,
+        favour: Array,
+        following: tuple[float, float] | None = None,
     ) -> None:
         """Go on to an accent.
 
         Parameters
         ----------
-        apex
-            When the apex is to be [s].
+        apices
+            When the apex may be, (n,) [s].
         ways
-            Those of `ways` at this time.
+            Those of `ways` at these times.
         strength
-            Weighted cost of the strength of each gesture, (states, nodes).
+            Weighted cost of the strength of each gesture, (states, apices, nodes).
         skip_cost
             Cost of no gesture.
         favour
-            Added to the cost of each node, (nodes,): decides between equals.
+            Added to costs, (apices, nodes): decides between equals.
+        following
+            The latest apex of the next accent [s], and the cost of skipping it; a state that is
+            too late for it is worth that much less. None looks no further.
         """
         number = len(self._steps)
         ago = number - self._used[:, self._phrases]
-        repetition = np.where(ago <= REMEMBERED, self._weights.variety / ago, 0.0)
-        added = self._total(ways.smooth, ways.time) + strength + repetition + favour
-        skipped = np.full((len(added), 1), skip_cost)
-        totals = self._cost[:, None] + np.concatenate([added, skipped], axis=1)
-        count = min(self._width, totals.size)
-        kept = np.argpartition(totals, count - 1, axis=None)[:count]
-        kept = kept[np.isfinite(totals.flat[kept])]
-        parent, node = np.divmod(kept, totals.shape[1])
-        chosen = node < totals.shape[1] - 1
-        rows = parent, np.where(chosen, node, 0)
-        taken = ways.at(rows)
+        repetition = np.maximum(1.0 - (ago - 1.0) / REMEMBERED, 0.0)
+        more = np.maximum(self._row - SAME_HAND + 1, 0)[:, None] / 5.0
+        repetition += np.where(self._hands == self._hand[:, None], more, 0.0)
+        repetition = self._weights.variety * repetition[:, None]
+        costs = self._total(ways.smooth, ways.time) + strength + repetition + favour
+        costs += self._cost[:, None, None]
+        ends = apices[:, None] + self._timings.after_apex(ways.warp)
+        late, late_skipped = self._late(ends, following)
+        nodes = costs.shape[2]
+        ranks = (costs + late).reshape(-1, nodes)
+        best = ranks.argmin(0)  # of each node one state goes on, so that they differ
+        skipped = self._cost + skip_cost
+        rank = np.concatenate([ranks[best, np.arange(nodes)], skipped + late_skipped])
+        kept = np.argpartition(rank, min(self._width, len(rank)) - 1)[: self._width]
+        kept = kept[np.isfinite(rank[kept])]
+        chosen = kept < nodes
+        node = np.where(chosen, kept, 0)
+        parent, pick = np.divmod(best[node], len(apices))
+        parent = np.where(chosen, parent, kept - nodes)
+        rows = parent, pick, node
         self._steps.append(
-            Step(parent, np.where(chosen, node, -1), taken, strength[rows], repetition[rows])
+            Step(
+                parent,
+                np.where(chosen, node, -1),
+                apices[pick],
+                ways.at(rows),
+                strength[rows],
+                repetition[parent, 0, node],
+            )
         )
-        ends = apex + self._timings.after_apex(ways.warp)[rows]
-        self._end = np.where(chosen, ends, self._end[parent])
+        self._end = np.where(chosen, ends[rows], self._end[parent])
         self._node = np.where(chosen, node, self._node[parent])
-        self._cost, self._used = totals.flat[kept], self._used[parent]
+        self._cost = np.where(chosen, costs[rows], skipped[parent])
+        self._used = self._used[parent]
         self._used[chosen, self._phrases[node[chosen]]] = number
+        same = self._hands[node] == self._hand[parent]
+        row = np.where(same, self._row[parent] + 1, 1)
+        self._row = np.where(chosen, row, self._row[parent])
+        self._hand = np.where(chosen, self._hands[node], self._hand[parent])
+
+    def _late(self, ends: Array, following: tuple[float, float] | None) -> tuple[Array, Array]:
+        """Return what it costs that gestures (…, nodes), and states, end too late for the next."""
+        if following is None:
+            return np.zeros(1), np.zeros(1)
+        apex, cost = following
+        own = self._end + self._least[self._node]
+        return np.where(ends + self._least[:-1] > apex, cost, 0.0), np.where(own > apex, cost, 0.0)
 
     def path(self) -> list[tuple[Step, int]]:
         """Return the steps of the cheapest way, and its state in each."""

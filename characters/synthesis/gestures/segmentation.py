@@ -48,7 +48,7 @@ MIN_HOLD_S = 0.2
 """Shortest hold that parts a stroke from the next preparation [s]."""
 
 RECOIL = 0.35
-"""A move right after a longer one is its recoil, a part of the hold, if it is shorter than this share
+"""A move right after a longer one is its recoil, a part of the hold, if shorter than this share
 of it."""
 
 MINOR_STROKE = 0.4

@@ -12,7 +12,7 @@ from tools.authoring.modelling.shapes import Array
 
 RATE_HZ = 60.0
 
-STRENGTHS = {"weak": (0.5, 0.30), "neutral": (0.9, 0.23), "strong": (1.45, 0.19)}
+STRENGTHS = {"weak": (0.6, 0.31), "neutral": (1.1, 0.24), "strong": (1.65, 0.2)}
 """Size of a stroke, and its duration [s]."""
 
 EFFORTS = {"weak": 0.25, "neutral": 0.6, "strong": 1.2}
