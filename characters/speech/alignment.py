@@ -27,8 +27,11 @@ MAX_S = 1200.0
 VARIANTS = ("", "+f2", "+f3", "+m3")
 """Speakers of eSpeak NG that say a text; another voice has one."""
 
+DIALECTS = {"en": ("en", "en-us"), "es": ("es", "es-419"), "pt": ("pt", "pt-br")}
+"""Accents of a language that are tried."""
+
 MAX_VARIANTS_TEXT = 2000
-"""Longest text that every variant says [characters]; the path through a long one is as certain."""
+"""Longest text that is tried in every variant and accent [characters]."""
 
 MIN_PAUSE_S = 0.15
 """Shortest pause that is cut out [s]: longer than the closure of a stop."""
@@ -39,6 +42,8 @@ TEMPO = (0.25, 4.0)
 
 def align(recording: Speech, text: str, voice: Voice, language: str = "en") -> Speech:
     """Return a recording with the times of its words and phones.
+
+    Of a language with several accents, such as English, the one that suits the recording is taken.
 
     Raises
     ------
@@ -55,23 +60,38 @@ def align(recording: Speech, text: str, voice: Voice, language: str = "en") -> S
     frames = _sounding(spoken.level)
     if not len(frames):
         raise CharacterError("the recording is silent: there is nothing to align")
-    said = _said(text, voice, language)
-    phones = [phone for phone in said[0].phones if phone.symbol != SILENCE]
-    duration = sum(phone.end - phone.start for phone in phones)
-    tempo = duration / (len(frames) * HOP_S)
-    if not TEMPO[0] <= tempo <= TEMPO[1]:
-        raise CharacterError(
-            f"the text takes {duration:.1f} s, and the recording has {len(frames) * HOP_S:.1f} s of"
-            " speech: they do not belong together"
-        )
-    template, marks = _template(said, tempo)
-    path = warp(spoken.features[frames], template)
-    begins = np.searchsorted(path, marks).clip(0, len(frames) - 1)
-    bounds = _snapped(begins, frames)
-    timed = _timed(phones, bounds, frames)
-    words = _words(said[0], phones, timed)
+    features = spoken.features[frames]
+    dialects = (
+        DIALECTS.get(language, (language,)) if len(text) <= MAX_VARIANTS_TEXT else (language,)
+    )
+    fits = [_Fit(_said(text, voice, dialect), features) for dialect in dialects]
+    best = min(fits, key=lambda fit: fit.distance)
+    bounds = _snapped(best.begins.clip(0, len(frames) - 1), frames)
+    timed = _timed(best.phones, bounds, frames)
+    words = _words(best.said, best.phones, timed)
     filled = fill_pauses(timed, recording.duration)
     return replace(recording, text=text, language=language, words=words, phones=filled)
+
+
+class _Fit:
+    """What a voice has said, warped onto the features of a recording without its pauses."""
+
+    def __init__(self, variants: Sequence[Speech], features: NDArray[np.float32]) -> None:
+        self.said = variants[0]
+        self.phones = [phone for phone in self.said.phones if phone.symbol != SILENCE]
+        duration = sum(phone.end - phone.start for phone in self.phones)
+        tempo = duration / (len(features) * HOP_S)
+        if not TEMPO[0] <= tempo <= TEMPO[1]:
+            raise CharacterError(
+                f"the text takes {duration:.1f} s, and the recording has"
+                f" {len(features) * HOP_S:.1f} s of speech: they do not belong together"
+            )
+        template, marks = _template(variants, tempo)
+        path = warp(features, template)
+        self.begins = np.searchsorted(path, marks)
+        """Which frame each phone begins with."""
+        self.distance = float(np.abs(features - template[path]).mean())
+        """How unlike they are."""
 
 
 def _said(text: str, voice: Voice, language: str) -> list[Speech]:

@@ -30,13 +30,14 @@ IPA_OF_ARPABET = dict(pair.split(":") for pair in _ARPABET.split())
 """The IPA symbol of each phone of ARPAbet, the alphabet of American pronunciation dictionaries."""
 
 
-_NEAREST = "ɐ:AH ə:AX ᵻ:IH ɒ:AA a:AA e:EH o:OW g:G r:R ɫ:L x:K ç:K y:UW ø:ER"
+_DICTIONARY_LACKS = ("AX", "AXR", "DX", "EL", "EM", "EN", "IX")
+_NEAREST = "ɐ:AH ə:AH ɚ:ER ᵻ:IH ɾ:D ɒ:AA a:AA e:EH o:OW g:G r:R ɫ:L x:K ç:K y:UW ø:ER"
 
 ARPABET_OF_IPA = {
-    **{ipa: symbol for symbol, ipa in reversed(IPA_OF_ARPABET.items())},
+    **{ipa: name for name, ipa in IPA_OF_ARPABET.items() if name not in _DICTIONARY_LACKS},
     **dict(pair.split(":") for pair in _NEAREST.split()),
 }
-"""ARPAbet of IPA symbols, and what comes nearest to those that English lacks."""
+"""The 39 phones of the CMU dictionary by IPA symbols, and what comes nearest to other ones."""
 
 
 def ipa_of_arpabet(symbol: str) -> str:
@@ -49,10 +50,10 @@ def ipa_of_arpabet(symbol: str) -> str:
 
 
 def arpabet_of_ipa(symbol: str) -> list[str]:
-    """Return a phone of IPA in ARPAbet, by the longest pieces that it has a phone for.
+    """Return a phone of IPA in ARPAbet, piece by piece, the longest first.
 
     >>> arpabet_of_ipa("aɪə"), arpabet_of_ipa("ŋ"), arpabet_of_ipa("?")
-    (['AY', 'AX'], ['NG'], [])
+    (['AY', 'AH'], ['NG'], [])
     """
     pieces, at = [], 0
     while at < len(symbol):
