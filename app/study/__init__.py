@@ -1,0 +1,1 @@
+"""Studies with people: how their answers are counted."""
