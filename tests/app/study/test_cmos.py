@@ -53,9 +53,10 @@ def test_the_order_is_original_intensity_time_random():
 
 
 def test_the_printed_significance_holds():
-    assert all(
-        own.wilcoxon_p() < (0.01 if "time" in pair else 0.001) for pair, own in THESIS.items()
-    )
+    # The thesis has p < 0.01 for one pair and p < 0.001 for the others, by t-tests.
+    for pair, own in THESIS.items():
+        low, high = own.interval(0.99 if pair == ("time", "random") else 0.999)
+        assert low > 0 or high < 0
 
 
 @given(votes)
