@@ -116,7 +116,7 @@ class MouthTrack:
         if not self._settings.contacts:
             return active, shares
         held = [phone.contact(time) if phone.sounding.contact else 0.0 for phone in phones]
-        total = max(sum(held), 1.0)  # above 1 only where two contacts hardly have time
+        total = max(sum(held), 1.0)
         left = 1.0 - sum(held) / total
         return active, [
             left * share + hold / total for share, hold in zip(shares, held, strict=True)
@@ -153,6 +153,9 @@ class _TimedViseme:
     accent: float | None = None
     """Strength of the accent on it, 0…1; None without one."""
 
+    room: float = math.inf
+    """How long a contact may hold before and after its middle [s]."""
+
     closing: float = CLOSING_S
     """How long a contact forms before it holds [s]."""
 
@@ -172,7 +175,8 @@ class _TimedViseme:
     @cached_property
     def reach(self) -> float:
         """How far from its centre it counts [s]."""
-        return self.flat + 0.5 * self.width
+        touching = self.hold + max(self.closing, self.parting) if self.sounding.contact else 0.0
+        return max(self.flat + 0.5 * self.width, touching)
 
     @cached_property
     def flat(self) -> float:
@@ -182,7 +186,7 @@ class _TimedViseme:
     @cached_property
     def hold(self) -> float:
         """Half the time for which a contact holds [s]."""
-        return 0.5 * max(CONTACT_SHARE * (self.end - self.start), MIN_CONTACT_S)
+        return min(0.5 * max(CONTACT_SHARE * (self.end - self.start), MIN_CONTACT_S), self.room)
 
     def dominance(self, time: float) -> float:
         """Return its dominance at a time [s]."""
@@ -199,13 +203,17 @@ class _TimedViseme:
 
 
 def _with_contacts(phones: list[_TimedViseme]) -> list[_TimedViseme]:
-    """Return phones whose contacts follow each other: two divide the time between them."""
+    """Return phones whose contacts leave time for each other, and for a vowel between them."""
     numbers = [number for number, phone in enumerate(phones) if phone.sounding.contact]
     for a, b in pairwise(numbers):
-        between = phones[b].centre - phones[b].hold - phones[a].centre - phones[a].hold
-        room = max(0.5 * between, MIN_PHONE_S)
-        phones[a] = replace(phones[a], parting=min(room, PARTING_S))
-        phones[b] = replace(phones[b], closing=min(room, CLOSING_S))
+        apart = phones[b].centre - phones[a].centre
+        first = replace(phones[a], room=min(phones[a].room, 0.25 * apart))
+        second = replace(phones[b], room=0.25 * apart)
+        between = apart - first.hold - second.hold
+        if b > a + 1:  # else one contact goes over into the other
+            between *= 0.5
+        phones[a] = replace(first, parting=min(between, PARTING_S))
+        phones[b] = replace(second, closing=min(between, CLOSING_S))
     return phones
 
 

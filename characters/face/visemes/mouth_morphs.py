@@ -24,6 +24,7 @@ LEVEL_GAINS: Mapping[str, tuple[float, float, float]] = {
     "jaw": (0.45, 0.75, 1.0),
     "lips": (0.65, 0.85, 1.0),
     "whole": (0.55, 0.80, 1.0),
+    "rounded": (0.70, 0.92, 1.0),
 }
 """How much of a vowel's shape its low, neutral and high versions have, by what a morph moves."""
 
@@ -112,7 +113,10 @@ def _weights(family: Mapping[str, Any], parts: Mapping[str, Sequence[int]], coun
     weights = np.zeros((3, len(SHAPES), count))
     for shape, mix in family["shapes"].items():
         for part, weight in mix.items():
-            moves = "whole" if not family.get("sided") else "jaw" if part == "jawOpen" else "lips"
+            if family.get("sided"):
+                moves = "jaw" if part == "jawOpen" else "lips"
+            else:
+                moves = "rounded" if shape in ("O", "U") else "whole"
             for number in parts[part]:
                 weights[:, SHAPES.index(shape), number] = weight * np.array(
                     _level_gains(shape, moves)
