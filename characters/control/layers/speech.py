@@ -17,6 +17,7 @@ from characters.motion.modifiers import Stretch
 from characters.motion.motion import Motion
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
+from characters.smoothing import low_pass
 from characters.speech.speech import GestureSpan
 from characters.synthesis.gestures.library import gesture_joints
 
@@ -25,6 +26,12 @@ CUT_S = 0.3
 
 FADE = FadeCurve(0.25, 0.3)
 """How a gesture that a text asks for comes and goes."""
+
+HANDS_FREE = {"idle": 1.0, "walk": 0.8, "run": 0.3}
+"""Share of gestures that is shown while a character does something; none in its actions."""
+
+FREE_LAG_S = 0.2
+"""Lag with which hands become free, and are taken [s]."""
 
 HANDS_SHARE = 0.6
 """Share of the head's beats that is left to a character whose hands beat too."""
@@ -70,6 +77,7 @@ class SpeechGestures:
         self.speech = speech
         self._cut: float | None = None
         self._overlays: list[OverlaidMotion] = []
+        self._morphs = len(character.morphs)
         self._expressions = expressions_of(character, said.gestures)
         self.head = HeadBeats(said.accents, seed)
         """The beats of its head."""
@@ -113,12 +121,12 @@ class SpeechGestures:
         share = self.share(now)
         for overlay in self._overlays:
             pose = overlay.over(pose, now, hands * share)
-        if self._expressions and pose.morphs is not None:
+        if self._expressions:
             pose = replace(pose, morphs=self._expressed(pose.morphs, now, share))
         return pose
 
-    def _expressed(self, morphs: Array, now: float, share: float) -> Array:
-        shown = morphs.copy()
+    def _expressed(self, morphs: Array | None, now: float, share: float) -> Array:
+        shown = np.zeros(self._morphs) if morphs is None else morphs.copy()
         for span, number in self._expressions:
             own, length = now - self.speech.start - span.start, span.end - span.start
             if 0.0 < own < length:
@@ -136,20 +144,23 @@ class SpeechLayer:
         if head is not None:
             self._head = HeadJoints(character.skeleton, character.anatomy, head)
         self._spoken: list[SpeechGestures] = []
+        self._free = 1.0
 
     def update(self, pose: Pose, context: FrameContext) -> Pose:
         """Return the pose with gestures and nods."""
         speech, now = context.command.speech, context.command.timestamp
+        free = HANDS_FREE.get(context.frame.state, 0.0)
+        self._free = low_pass(self._free, free, context.elapsed, FREE_LAG_S)
         if speech is None and not self._spoken:
             return pose
         self._follow(speech, now)
         nod = np.zeros(3)
         for spoken in self._spoken:
-            pose = spoken.over(pose, now, context.rest)
+            pose = spoken.over(pose, now, self._free)
             nod += spoken.share(now) * spoken.head.at(now - spoken.speech.start)
         if self._head is None or not nod.any():
             return pose
-        nod *= context.rest * (1.0 if self._character.gestures is None else HANDS_SHARE)
+        nod *= self._free * (1.0 if self._character.gestures is None else HANDS_SHARE)
         self._head.place(pose)
         turns = pose.rotations.copy()
         x, y, z = nod.tolist()

@@ -1,0 +1,49 @@
+"""Profiles of BodySpeech: their values, and their files."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from characters.control.speech_profile import DATABASES, RANGES, SpeechProfile
+from characters.errors import CharacterError
+from characters.face.visemes.sets import viseme_sets
+
+PROFILES = st.builds(
+    SpeechProfile,
+    database=st.sampled_from(DATABASES),
+    visemes=st.sampled_from(list(viseme_sets())),
+    **{name: st.floats(low, high) for name, (low, high) in RANGES.items()},
+)
+
+
+@given(PROFILES)
+def test_a_profile_comes_back_from_its_file(tmp_path_factory, profile):
+    path = tmp_path_factory.mktemp("profiles") / "my.toml"
+    profile.save(path)
+    assert SpeechProfile.load(path) == profile
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("database = 'loud'", "choose one of aggressive, neutral, full"),
+        ("visemes = 'none'", "choose one of"),
+        ("gesture_emphasis = 2", "give -1 to 1"),
+        ("face_emphasis = 'much'", "give a number"),
+        ("accent_threshold = true", "give a number"),
+        ("volume = 3", "no setting is called volume"),
+        ("database", "my.toml"),
+    ],
+)
+def test_what_is_no_profile_is_one_line(tmp_path, text, problem):
+    path = tmp_path / "my.toml"
+    path.write_text(text)
+    with pytest.raises(CharacterError, match=problem) as error:
+        SpeechProfile.load(path)
+    assert "\n" not in str(error.value)
+
+
+def test_what_a_file_leaves_out_is_usual(tmp_path):
+    path = tmp_path / "my.toml"
+    path.write_text("database = 'aggressive'\n")
+    assert SpeechProfile.load(path) == SpeechProfile(database="aggressive")
