@@ -10,7 +10,6 @@ import numpy as np
 
 from characters.face.lids import numbers_by_name
 from characters.motion.curves import ease
-from characters.skeleton.pose import Array
 from characters.speech.speech import Accent
 
 RISING_S, FALLING_S = 0.16, 0.32
@@ -44,7 +43,6 @@ class AccentBrows:
         ]
         self._rng = np.random.default_rng(seed)
         self._raises: list[tuple[float, float]] = []
-        self._last = 0.0
 
     def plan(self, accents: Sequence[Accent]) -> None:
         """Choose the accents of an utterance that the brows go with, and how high."""
@@ -59,11 +57,11 @@ class AccentBrows:
         """Return how far the brows are raised at a time of the utterance [s], 0…1."""
         return max((height * _bump(time - apex) for apex, height in self._raises), default=0.0)
 
-    def apply(self, weights: Array, raised: float, closed: float) -> None:
-        """Raise the brows in morph weights (morphs,), in place; lids that close do not widen."""
+    def apply(self, weights: list[float], raised: float, closed: float) -> None:
+        """Raise the brows in the weights of all morphs, in place; lids that close do not widen."""
         for number, weight in self._morphs:
             share = 1.0 - closed if weight == LID_SHARE else 1.0
-            weights[number] = min(float(weights[number]) + weight * share * raised, 1.0)
+            weights[number] = min(weights[number] + weight * share * raised, 1.0)
 
 
 def _bump(time: float) -> float:

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 
 from characters.face.expressions import EXPRESSIONS, ExpressionMorphs
 from characters.face.lids import numbers_by_name
-from characters.skeleton.pose import Array
 
 MOUTH_SHARE = 0.3
 """Share of an expression that stays on the mouth of a face that speaks."""
@@ -47,11 +46,12 @@ class SpeakingExpression:
             elif not name.startswith(_UPPER_FACE):
                 self._weakened.append(number)
 
-    def apply(self, weights: Array, presence: float) -> None:
-        """Change morph weights (morphs,) in place for a face that speaks so much, 0…1."""
+    def apply(self, weights: list[float], presence: float) -> None:
+        """Change the weights of all morphs in place for a face that speaks so much, 0…1."""
         for number, mouth, corners, share in self._divided:
-            shown = presence * float(weights[number])
+            shown = presence * weights[number]
             weights[mouth] -= shown
             if corners is not None:
                 weights[corners] += share * shown
-        weights[self._weakened] *= 1.0 - (1.0 - MOUTH_SHARE) * presence
+        for number in self._weakened:
+            weights[number] *= 1.0 - (1.0 - MOUTH_SHARE) * presence

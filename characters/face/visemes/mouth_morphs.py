@@ -9,7 +9,7 @@ jaw hang less than he lets the lips rest.
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from importlib.resources import files
 from typing import Any
 
@@ -70,9 +70,13 @@ class MouthMorphs:
     def __bool__(self) -> bool:
         return self.numbers.size > 0
 
+    @cached_property
+    def _flat(self) -> Array:
+        return np.ascontiguousarray(self.weights.reshape(-1, self.numbers.size))
+
     def of_shapes(self, shapes: Array) -> Array:
         """Return the weights of the morphs, (n,), for those of the shapes, (levels, shapes)."""
-        return np.asarray(shapes.ravel() @ self.weights.reshape(shapes.size, -1))
+        return np.asarray(shapes.ravel() @ self._flat)
 
 
 def jaw_opening(shapes: Array) -> float:

@@ -65,7 +65,7 @@ def _tongue(face: HumanExpression, skeleton: Skeleton) -> Mesh:
     """Return the tongue, from its root to its tip."""
     line, edges = lip_lines(np.array([-0.5, 0.5]) * np.pi, face)
     floor, opening = edges[0, 1], float(edges[1, 1] - edges[0, 1])
-    lips = float(on_face(0.0, line[0, 1])[2]) + 0.003 + face.pout
+    lips = float(on_face(np.zeros(()), line[0, 1])[2]) + 0.003 + face.pout
     along = np.array([0.0, 0.3, 0.6, 0.85, 1.0])
     depth = lips - 0.045 + (0.045 + face.tongue_out) * along
     height = floor - 0.006 + face.tongue * opening * np.array([0.8, 1.0, 0.9, 0.75, 0.7])
