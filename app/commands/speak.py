@@ -17,7 +17,9 @@ from app.output_path import check_output
 from app.pipeline.spoken_line import SpokenLine
 from app.sound import write_wave
 from app.sound.session_sound import at_sample_rate
+from app.speaking.live import speak_live
 from app.speaking.performance import Direction, View, performed, write_video
+from app.ui.display import has_display
 from app.ui.video_file import VIDEO_FORMATS
 from characters import Character
 from characters.control.layers.speech import known_gestures
@@ -29,6 +31,7 @@ from characters.model.speaking import gestures_for
 from characters.retargeting.root import with_root_joint
 from characters.speech.alignment import align
 from characters.speech.audio import read_speech
+from characters.speech.mouth import phones_from_sound
 from characters.speech.prosody import utterance_of
 from characters.speech.speech import Speech
 from characters.speech.tagged_text import TaggedText
@@ -73,6 +76,9 @@ def speak(
     audio: Annotated[
         Path | None, typer.Option(help="A recording of the speech, instead of the voice.")
     ] = None,
+    live: Annotated[
+        bool, typer.Option("--live", help="Move with your microphone, in a window, at once.")
+    ] = False,
     character: Annotated[
         str, typer.Option(help="Who says it: bundled, or a .glb, .gltf or .vrm file.")
     ] = "human",
@@ -120,7 +126,6 @@ def speak(
 
     Example: [cyan]cubeling speak "Hello! I am a paper cube." -o hello.mp4[/]
     """
-    target = chosen_output(output, "speech.mp4", "speech", SUFFIXES, overwrite)
     given = {
         "database": database,
         "threshold": threshold,
@@ -137,13 +142,19 @@ def speak(
     if save_profile is not None:
         check_output(save_profile, "profile", (".toml",), overwrite=overwrite)
         how.save(save_profile)
-    marked = text if file is None else _read(file)
-    if not marked.strip() and audio is None:
-        raise AppError("there is nothing to say: give a text, --file or --audio")
     body = with_root_joint(Character.load(character))
     if gestures is not None:
         body = replace(body, gestures=gestures_for(gestures, body.skeleton, character))
     feels = _emotion(emotion)
+    if live:
+        if not has_display():
+            raise AppError("there is no display here: --live needs a window")
+        speak_live(body, size=size_of(size), view=view, emotion=feels, profile=how)
+        return
+    target = chosen_output(output, "speech.mp4", "speech", SUFFIXES, overwrite)
+    marked = text if file is None else _read(file)
+    if not marked.strip() and audio is None:
+        raise AppError("there is nothing to say: give a text, --file, --audio or --live")
     tagged = TaggedText.read(marked)
     _check_gestures(tagged, body)
     console = Console(highlight=False)
@@ -187,7 +198,8 @@ def _heard(audio: Path, tagged: TaggedText, language: str) -> Speech:
     """Return a recording, with the times of its words where the text is known."""
     recording = read_speech(audio)
     if not tagged.text.strip():
-        return recording
+        phones = phones_from_sound(recording.samples, recording.rate)
+        return replace(recording, phones=phones)
     with espeak() as voice:
         return align(recording, tagged.text, voice, language)
 

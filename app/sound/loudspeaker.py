@@ -29,6 +29,11 @@ class NoSoundError(AppError):
         super().__init__(message)
         self.remedy = remedy
 
+    @property
+    def advice(self) -> str:
+        """What is wrong and how to mend it, in one line."""
+        return f"{self}: {self.remedy}" if self.remedy else str(self)
+
 
 def load_portaudio() -> Any:
     """Return the module `sounddevice`; raise NoSoundError if it or its library is missing."""
@@ -97,7 +102,7 @@ class Loudspeaker:
             self._mixer.bank.prepare()
             stream = open_stream(sounddevice, self._fill)
         except NoSoundError as error:
-            self.problem = f"{error}: {error.remedy}" if error.remedy else str(error)
+            self.problem = error.advice
             return
         try:
             stream.start()

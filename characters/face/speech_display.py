@@ -85,6 +85,8 @@ class SpeechDisplay:
         `said` is an utterance and when its sound begins [s], or None. `emphasis`, −1…1, is added to
         the strength of its accents.
         """
+        if said is not None and not said[0].phones:
+            said = None  # the mouth is moved by somebody else, or nobody
         if said is not None and not -PAUSE_BESIDE_S <= now - said[1] < said[0].duration:
             said = None
         self._since += elapsed

@@ -1,0 +1,105 @@
+"""A character that moves mouth and hands as somebody speaks into a microphone."""
+
+import time
+from collections.abc import Callable
+
+from affect import Emotion
+from app.errors import AppError
+from app.sound import NoSoundError
+from app.speaking.microphone import RATE, SILENT_S, Microphone
+from app.speaking.performance import (
+    AZIMUTH_RAD,
+    ELEVATION_RAD,
+    VIEWER,
+    View,
+    framed,
+)
+from characters import Animator, Character, CharacterCommand, PosedCharacter, RootDelta
+from characters.control.command import SpeechIntent
+from characters.control.layers import layers_of
+from characters.control.layers.live_mouth import LiveMouthLayer
+from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
+from characters.rendering.portrait import PortraitRenderer
+from characters.speech.mouth import MouthTracker
+from characters.speech.onsets import OnsetDetector
+from characters.speech.speech import Accent, Samples, Utterance
+
+BEAT_S = 0.4
+"""From a stressed syllable to the apex of its beat [s]: hands cannot be faster, nor foresee it."""
+
+HELD_S = 0.5
+"""How long a beat is held after it [s]."""
+
+
+class LivePerformer:
+    """Animates a character by sound that comes in blocks, at `rate` [Hz]."""
+
+    def __init__(
+        self,
+        character: Character,
+        rate: int = RATE,
+        emotion: Emotion | None = None,
+        profile: SpeechProfile = DEFAULT_PROFILE,
+    ) -> None:
+        self._mouth = LiveMouthLayer(character)
+        layers = [*layers_of(character), lambda _character, _seed: self._mouth]
+        self._animator = Animator(character, place=RootDelta(), layers=layers)
+        self._tracker, self._onsets = MouthTracker(rate), OnsetDetector(rate)
+        self._emotion, self._profile = emotion, profile
+        self._speech: SpeechIntent | None = None
+
+    def update(self, sound: Samples, now: float) -> PosedCharacter:
+        """Take the sound up to a time [s], (n,), and return the character at that time."""
+        self._mouth.mouth = self._tracker.update(sound)
+        strength = self._onsets.update(sound)
+        if strength is not None:
+            said = Utterance("", "", BEAT_S + HELD_S, accents=(Accent(BEAT_S, strength),))
+            self._speech = SpeechIntent(said, now, self._profile)
+        command = CharacterCommand(now, gaze=VIEWER, emotion=self._emotion, speech=self._speech)
+        return self._animator.update(command)
+
+
+def speak_live(
+    character: Character,
+    *,
+    size: tuple[int, int],
+    view: View,
+    emotion: Emotion | None,
+    profile: SpeechProfile,
+    clock: Callable[[], float] = time.monotonic,
+) -> None:
+    """Show a character in a window that moves with the microphone, until the window is closed.
+
+    Raises
+    ------
+    AppError
+        There is no microphone or display, or the microphone was lost.
+    """
+    from app.ui.window.picture_window import PictureWindow  # needs a display's libraries
+
+    performer = LivePerformer(character, RATE, emotion, profile)
+    try:
+        microphone = Microphone()
+    except NoSoundError as error:
+        raise AppError(error.advice) from error
+    window = PictureWindow(size, "Cubeling: speak")
+    renderer = PortraitRenderer(window.context, size)
+    begin = last = clock()
+    focus = framed(character, performer.update(microphone.heard(), 0.0).pose, view)
+    try:
+        while not window.closed:
+            sound, now = microphone.heard(), clock()
+            last = now if len(sound) else last
+            if now - last > SILENT_S:
+                raise AppError("the microphone was lost")
+            pose = performer.update(sound, now - begin).pose
+            window.show_picture(
+                renderer.portrait(
+                    character, pose, azimuth=AZIMUTH_RAD, elevation=ELEVATION_RAD, focus=focus
+                )
+            )
+            window.poll()
+    finally:
+        renderer.release()
+        microphone.close()
+        window.close()
