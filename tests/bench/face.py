@@ -4,8 +4,8 @@ Gaps are those of the meshes' lips, in frames of 30 Hz.
 
 closed lips, teeth on lip
     Of every p, b, m and f, v, the frame with the smallest gap; the worst of them, in parts of the
-    gap of an open mouth, in syllables of all contacts and five vowels; with a happy face ("smiling"),
-    and by dominance alone ("plain").
+    gap of an open mouth, in syllables of all contacts and five vowels; also with a happy face
+    ("smiling"), and by dominance alone ("plain").
 offset
     Lag of the mouth behind the loudness of a voice at which they correlate most, negative if the
     mouth is ahead; and after a speech has cut in on another.

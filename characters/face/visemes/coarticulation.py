@@ -27,6 +27,8 @@ from characters.speech.speech import SILENCE, Phone, Utterance
 LEVELS = ("low", "neutral", "high")
 """The versions of the shape of a vowel."""
 
+NEUTRAL_LEVEL = LEVELS.index("neutral")
+
 PAUSE_BESIDE_S = 0.4
 """The pause before and after a speech, in which the mouth opens and closes [s]."""
 
@@ -99,6 +101,7 @@ class MouthTrack:
         self._settings = settings
         shapes = [phone.sounding.viseme.shape for phone in self._phones]
         self._shapes = np.array([[mix.get(name, 0.0) for name in SHAPES] for mix in shapes])
+        self._accents = [phone.accent for phone in self._phones]
         # Ascending bounds of the time in which phones are active, so that a search finds them.
         firsts = [phone.centre - phone.reach for phone in self._phones]
         self._first = list(accumulate(reversed(firsts), min))[::-1]
@@ -111,16 +114,12 @@ class MouthTrack:
         phones = self._phones[active]
         sharpness = self._settings.sharpness
         weights = [phone.dominance(time) ** sharpness for phone in phones]
-        total = sum(weights)
-        shares = [weight / total for weight in weights]
-        if not self._settings.contacts:
-            return active, shares
-        held = [phone.contact(time) if phone.sounding.contact else 0.0 for phone in phones]
-        total = max(sum(held), 1.0)
-        left = 1.0 - sum(held) / total
-        return active, [
-            left * share + hold / total for share, hold in zip(shares, held, strict=True)
-        ]
+        held = [0.0] * len(phones)
+        if self._settings.contacts:
+            held = [phone.contact(time) if phone.touches else 0.0 for phone in phones]
+        most = max(sum(held), 1.0)
+        left = (1.0 - sum(held) / most) / sum(weights)
+        return active, [left * w + hold / most for w, hold in zip(weights, held, strict=True)]
 
     def at(self, time: float, emphasis: float = 0.0) -> Array:
         """Return the weights of the shapes at a time [s], (levels, shapes).
@@ -128,11 +127,16 @@ class MouthTrack:
         `emphasis`, −1…1, is added to the strength of accents, which stays within 0…1.
         """
         active, shares = self.shares(time)
+        shapes = np.zeros((len(LEVELS), len(SHAPES)))
+        accents = self._accents[active]
+        if accents.count(None) == len(accents):  # most of the time, and several times as fast
+            np.dot(shares, self._shapes[active], out=shapes[NEUTRAL_LEVEL])
+            return shapes
         rows = []
-        for phone, share in zip(self._phones[active], shares, strict=True):
+        for accent, share in zip(accents, shares, strict=True):
             strength = NEUTRAL_STRENGTH
-            if phone.accent is not None:
-                strength = min(max(phone.accent + emphasis, 0.0), 1.0)
+            if accent is not None:
+                strength = min(max(accent + emphasis, 0.0), 1.0)
             rows.append([share * level for level in level_weights(strength)])
         return np.asarray(np.array(rows).T @ self._shapes[active])
 
@@ -188,6 +192,11 @@ class _TimedViseme:
         """Half the time for which a contact holds [s]."""
         return min(0.5 * max(CONTACT_SHARE * (self.end - self.start), MIN_CONTACT_S), self.room)
 
+    @cached_property
+    def touches(self) -> bool:
+        """Whether lips or teeth touch."""
+        return self.sounding.contact
+
     def dominance(self, time: float) -> float:
         """Return its dominance at a time [s]."""
         off = max(abs(time - self.centre) - self.flat, 0.0)
@@ -196,10 +205,12 @@ class _TimedViseme:
 
     def contact(self, time: float) -> float:
         """Return how far lips or teeth have come to touch at a time [s], 0…1."""
-        early, late = self.centre - self.hold - time, time - self.centre - self.hold
-        return ease(
-            min(max(1.0 - max(early / self.closing, late / self.parting), 0.0), 1.0), "cubic"
-        )
+        off = time - self.centre
+        away = abs(off) - self.hold
+        if away <= 0.0:
+            return 1.0
+        away /= self.closing if off < 0.0 else self.parting
+        return ease(1.0 - away, "cubic") if away < 1.0 else 0.0
 
 
 def _with_contacts(phones: list[_TimedViseme]) -> list[_TimedViseme]:

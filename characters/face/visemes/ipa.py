@@ -44,7 +44,7 @@ _VOWELS = {
     6: ("", "a", "ɑ", "ɶ", "", "ɒ"),
 }
 
-_MANNER_COST, _BACKNESS_COST, _ROUNDING_COST = 3.0, 0.5, 6.0
+_MANNER_COST, _BACKNESS_COST, _ROUNDING_COST = 4.0, 0.5, 6.0
 _FIRST_OF_TWO_VOWELS = 0.6
 """Share of a diphthong's time that its first vowel has."""
 

@@ -84,6 +84,14 @@ def jaw_opening(shapes: Array) -> float:
     return float(np.sum(shapes * _JAW_OPENING))
 
 
+def arkit_parts() -> Mapping[str, Mapping[str, float]]:
+    """Return what each shape is made of, in weights of ARKit's morphs of the mouth, 0…1."""
+    found: Mapping[str, Mapping[str, float]] = next(
+        family["shapes"] for family in _families() if family["name"] == "arkit"
+    )
+    return found
+
+
 def _level_gains(shape: str, moves: str) -> tuple[float, float, float]:
     return LEVEL_GAINS[moves] if shape in VOWEL_SHAPES else (1.0, 1.0, 1.0)
 
