@@ -147,8 +147,9 @@ def find_apex(path: Array, rate: float, stroke: tuple[int, int]) -> int:
     first, last = stroke
     last = min(last + round(APEX_AFTER_S * rate), len(path) - 1)
     speed = hand_speed(path, rate)
+    speed = np.round(speed / max(float(speed.max()), 1e-9), 4)  # a hand that is held is as slow
     inner = np.arange(max(first, 1), min(last, len(path) - 2) + 1)
-    lowest = inner[(speed[inner] <= speed[inner - 1]) & (speed[inner] < speed[inner + 1])]
+    lowest = inner[(speed[inner] < speed[inner - 1]) & (speed[inner] <= speed[inner + 1])]
     away = np.linalg.norm(path - path[first], axis=1)
     if not len(lowest):
         return first + int(np.argmax(away[first : last + 1]))

@@ -39,6 +39,10 @@ THRESHOLDS = tuple(round(0.1 * step, 1) for step in range(1, 41))
 BLEND_S = tuple(round(0.1 + 0.05 * step, 2) for step in range(11))
 """Lengths of a blend that are considered [s] (M9)."""
 
+FROM_REST_RAD_S, TO_REST_RAD_S, LONGEST_TO_REST_S = 2.8, 2.0, 0.9
+"""Weighted speed of arms that are raised from rest, and let down [rad/s]; how long that takes at
+most [s]."""
+
 NEAR_S = 0.25
 """Over how long the speed of a gesture beside a blend is taken [s]."""
 
@@ -248,15 +252,16 @@ class _Measured:
     def blends(self) -> Array:
         """Return the length of the blend of each pair, (nodes + 1, nodes + 1) [s].
 
-        It is the one at which the joints are about as fast in the blend as beside it.
+        It is the one at which the joints are about as fast in the blend as beside it. Beside rest
+        they are as fast as people raise and let down their arms.
         """
         ends, starts = self.speeds
-        beside = (ends[:, None] + starts[None]) / 2.0
-        beside[-1, :], beside[:, -1] = starts, ends  # who rests does not tell
-        wanted = self.angles / np.maximum(beside, 1e-6)
+        beside = np.maximum((ends[:, None] + starts[None]) / 2.0, 1e-6)
         low, step = BLEND_S[0], BLEND_S[1] - BLEND_S[0]
-        nearest = np.clip(np.rint((wanted - low) / step), 0, len(BLEND_S) - 1)
+        nearest = np.clip(np.rint((self.angles / beside - low) / step), 0, len(BLEND_S) - 1)
         lengths: Array = np.array(BLEND_S)[nearest.astype(int)]
+        lengths[-1, :] = np.clip(self.angles[-1, :] / FROM_REST_RAD_S, low, LONGEST_TO_REST_S)
+        lengths[:, -1] = np.clip(self.angles[:, -1] / TO_REST_RAD_S, low, LONGEST_TO_REST_S)
         return lengths
 
 

@@ -78,9 +78,11 @@ def learned(clips: Sequence[Clip], skeleton: Skeleton, anatomy: Anatomy) -> Gest
     Raises
     ------
     CharacterError
-        If no clip has a gesture.
+        If no clip has a gesture, or the body has no spine or head.
     """
     joints = [*gesture_joints(skeleton, anatomy)]
+    if not joints:
+        raise CharacterError("gestures need a spine and a head; name them in the character's file")
     recordings: list[GestureRecording] = []
     phrases: list[GesturePhrase] = []
     resting: list[Array] = []

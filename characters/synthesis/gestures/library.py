@@ -196,16 +196,12 @@ class GestureLibrary:
 def gesture_joints(skeleton: Skeleton, anatomy: Anatomy) -> tuple[int, ...]:
     """Return the joints that gestures move, parents first: spine, head, arms and fingers.
 
-    On four legs they are those of trunk, neck, head, jaw, tail and front legs.
-
-    Raises
-    ------
-    CharacterError
-        If the body has no spine and head.
+    On four legs they are those of trunk, neck, head, tail and front legs. A body without spine or
+    head has none.
     """
     spine, head = anatomy.joint("spine"), anatomy.joint("head")
     if spine is None or head is None:
-        raise CharacterError("gestures need a spine and a head; name them in the character's file")
+        return ()
     upper = set(subtree(skeleton, spine))
     hands = [anatomy.joints[f"{side}Hand"] for side in SIDES if f"{side}Hand" in anatomy.joints]
     ends = [head, *hands]

@@ -12,6 +12,7 @@ from characters.synthesis.gestures.library import PHASES
 from characters.synthesis.gestures.playing import (
     Ends,
     GestureMotion,
+    GestureSpan,
     Segment,
     bridge,
     weight_curve,
@@ -135,22 +136,23 @@ class GesturePlan:
         library, rest = self.graph.library, self.graph.rest
         still = Ends.still(library.rest)
         segments = [Segment(0.0, library.rest[None])]
-        spans: list[tuple[float, float, float]] = []
+        spans: list[GestureSpan] = []
         before: PlannedGesture | None = None
 
-        def to_rest(last: PlannedGesture) -> float:
-            """Add the way to rest after a gesture, and return when hands are there."""
+        def to_rest(last: PlannedGesture) -> None:
+            """Add the way to rest after a gesture."""
             length = float(self.graph.blends[last.number, rest])
+            again, stroke_end = last.end + length, last.time_of(last.node.phrase.stroke[1])
             segments.append(bridge(last.end, length, self._end(last), still, library.rate))
-            segments.append(Segment(last.end + length, library.rest[None]))
-            return last.end + length
+            segments.append(Segment(again, library.rest[None]))
+            spans.append(GestureSpan(left, stroke, stroke_end, again))
 
         left = stroke = 0.0
         for gesture in self.gestures:
             start = gesture.start
             if before is None or gesture.by_rest:
                 if before is not None:
-                    spans.append((left, stroke, to_rest(before)))
+                    to_rest(before)
                 left = start - float(self.graph.blends[rest, gesture.number])
                 stroke = gesture.time_of(gesture.node.phrase.stroke[0])
                 arriving = self._start(gesture)
@@ -161,8 +163,8 @@ class GesturePlan:
             segments += self._played(gesture)
             before = gesture
         if before is not None:
-            spans.append((left, stroke, to_rest(before)))
-        ended = max([self.duration, *(again for *_, again in spans[-1:])])
+            to_rest(before)
+        ended = max([self.duration, *(span.again for span in spans[-1:])])
         return GestureMotion(library, tuple(segments), ended, weight_curve(spans))
 
     def _played(self, gesture: PlannedGesture) -> list[Segment]:

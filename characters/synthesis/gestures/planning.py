@@ -67,7 +67,7 @@ class GestureSettings:
     min_spacing_s: float = 0.6
     """Of accents that are closer, the stronger carries a gesture [s]."""
 
-    first_s: float = 0.35
+    first_s: float = 0.65
     """Earlier accents carry none: hands need time to rise [s]."""
 
 
@@ -75,25 +75,29 @@ DEFAULT_SETTINGS = GestureSettings()
 
 
 class GesturePlanner:
-    """Plans gestures of a library for the accents of speeches."""
+    """Plans gestures of a library for the accents of speeches.
+
+    Parameters
+    ----------
+    library
+        The gestures.
+    settings
+        How they are chosen.
+    graph
+        What may follow what; None makes the graph that the settings ask for.
+    """
 
     def __init__(
-        self, library: GestureLibrary, settings: GestureSettings = DEFAULT_SETTINGS
+        self,
+        library: GestureLibrary,
+        settings: GestureSettings = DEFAULT_SETTINGS,
+        graph: GestureGraph | None = None,
     ) -> None:
-        chosen = library.database(settings.database)
-        self._prepare(GestureGraph.of(chosen, settings.threshold), settings)
-
-    @staticmethod
-    def of(graph: GestureGraph, settings: GestureSettings) -> "GesturePlanner":
-        """Return a planner for a graph that is there already."""
-        planner = GesturePlanner.__new__(GesturePlanner)
-        planner._prepare(graph, settings)
-        return planner
-
-    def _prepare(self, graph: GestureGraph, settings: GestureSettings) -> None:
         self.settings = settings
         """How gestures are chosen."""
-        self.graph = graph
+        self.graph = graph or GestureGraph.of(
+            library.database(settings.database), settings.threshold
+        )
         """What may follow what."""
         self._timings = Timings.of(self.graph, settings.model)
         strengths = self.graph.strengths
@@ -103,6 +107,11 @@ class GesturePlanner:
         self._weights = SearchWeights(
             settings.smooth_weight, settings.time_weight, settings.variety, settings.longest_hold_s
         )
+
+    @staticmethod
+    def of(graph: GestureGraph, settings: GestureSettings = DEFAULT_SETTINGS) -> "GesturePlanner":
+        """Return a planner for a graph that is there already."""
+        return GesturePlanner(graph.library, settings, graph)
 
     def plan(
         self, accents: Sequence[Accent], duration: float, emphasis: float = 0.0, seed: int = 0

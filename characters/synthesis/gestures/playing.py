@@ -148,16 +148,30 @@ class GestureMotion:
         return [*self.library.joints]
 
 
-def weight_curve(spans: Sequence[tuple[float, float, float]]) -> Keyed:
-    """Return 0 in rest and 1 in between, from spans of gestures.
+@dataclass(frozen=True)
+class GestureSpan:
+    """Gestures from rest to rest; times in seconds."""
 
-    Each has the time at which rest is left, that of its first stroke, and that at which hands are
-    in rest again [s].
-    """
+    left: float
+    """When rest is left."""
+
+    first: float
+    """When the first stroke begins."""
+
+    last: float
+    """When the last stroke ends."""
+
+    again: float
+    """When hands are in rest again."""
+
+
+def weight_curve(spans: Sequence[GestureSpan]) -> Keyed:
+    """Return 0 in rest and 1 from the first to the last stroke of a span."""
     times, values = [-RAMP_S], [0.0]
-    for left, stroke, again in spans:
-        up = min(left + RAMP_S, max(stroke, left + 0.1))
-        down = max(again - RAMP_S, up + 1e-3)
+    for span in spans:
+        left, again = span.left, span.again
+        up = min(left + RAMP_S, max(span.first, left + 1e-2))
+        down = max(again - RAMP_S, span.last, up + 1e-3)
         times += [left, up, down, max(again, down + 1e-3)]
         values += [0.0, 1.0, 1.0, 0.0]
     return Keyed(tuple(times), tuple(values), "cubic")

@@ -24,6 +24,9 @@ REST_S = 0.1
 SETTLE_S = 0.15
 """How long hands that come down swing until they hang still [s]."""
 
+HANDS_APART_M = 0.125
+"""Least distance of a hand from the middle while both make a stroke [m]."""
+
 SIDES: dict[Hand, tuple[str, ...]] = {
     "left": ("Left",),
     "right": ("Right",),
@@ -143,9 +146,8 @@ class UnitTimeline:
             if side not in self._held:
                 self._track.add(f"share {side}", start + 2 * delay, 0.0)
                 self._track.add(f"share {side}", prepared + delay, 1.0)
-            self._move(
-                side, beat, [each + delay for each in (start, prepared, stroke, stroke_end, end)]
-            )
+            times = [each + delay for each in (start, prepared, stroke, stroke_end, end)]
+            self._move(side, beat, times, HANDS_APART_M if len(sides) > 1 else -1.0)
         self._involve(unit_beat, start, stroke, stroke_end, end)
         apex = (stroke + stroke_end) // 2 if beat.round_trip else stroke_end
         self._spans.append(
@@ -189,11 +191,11 @@ class UnitTimeline:
             tuple(self._spans),
         )
 
-    def _move(self, side: str, beat: Beat, times: Sequence[float]) -> None:
+    def _move(self, side: str, beat: Beat, times: Sequence[float], least_m: float) -> None:
         """Set the keys of a hand: up to the top, hold, stroke, recoil, and hold with a drift."""
         start, prepared, stroke, stroke_end, end = times
         name, track = f"hand {side}", self._track
-        top, apex = (self._varied(shape.values()) for shape in (beat.top, beat.apex))
+        top, apex = (self._varied(shape.values(), least_m) for shape in (beat.top, beat.apex))
         if side in self._held:
             track.add(name, start, self._held[side])
         else:
@@ -235,9 +237,11 @@ class UnitTimeline:
             self._track.add(name, stroke_end, 1.5 - 1.5 * effort)
             self._track.add(name, min(stroke_end + 9, end - 1), 2.0)
 
-    def _varied(self, row: Array) -> Array:
+    def _varied(self, row: Array, least_m: float) -> Array:
+        """Return the row of a hand with small changes, so far from the middle [m] or farther."""
         varied: Array = row.copy()
         varied[:3] += self._rng.normal(0.0, [0.012, 0.012, 0.008])
+        varied[0] = max(varied[0], least_m)
         varied[_DIRECTIONS] += self._rng.normal(0.0, 0.06, 6)
         varied[_BENDS] *= self._rng.uniform(0.85, 1.15, 4)
         return varied

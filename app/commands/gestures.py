@@ -1,0 +1,182 @@
+"""`cubeling gestures`."""
+
+from collections import Counter
+from contextlib import ExitStack
+from importlib import resources
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from app.commands.output import OverwriteOption, chosen_output
+from characters import Character
+from characters.control.controllers.recordings import read_motions
+from characters.model.stick_figure import stick_figure
+from characters.retargeting.root import with_root_joint
+from characters.synthesis.archive import skeleton_identity
+from characters.synthesis.gestures.graph import GestureGraph, sweep
+from characters.synthesis.gestures.learning import learned
+from characters.synthesis.gestures.library import GestureLibrary
+
+SHEET_SUFFIXES = (".png", ".jpg")
+
+CELL_PX = 140, 150
+"""Size of a picture on the sheet [px]."""
+
+UPPER_BODY = 0.62, 0.36
+"""Height of the middle of the upper body, and its radius, over the height of the body."""
+
+SWEPT = (0.01, 0.03, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0)
+"""Similarity thresholds in the table of connectivity."""
+
+app = typer.Typer(
+    help="Learn how a person's hands beat the rhythm of speech, from recordings.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="rich",
+)
+
+
+@app.command()
+def learn(
+    recordings: Annotated[
+        list[str],
+        typer.Argument(help="Recordings of somebody who talks: .bvh, .amc, .glb#CLIP, folders."),
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="The .gestures file; default: my.gestures."),
+    ] = None,
+    overwrite: OverwriteOption = False,
+    character: Annotated[
+        str, typer.Option(help="Whose skeleton they get: bundled, or a .glb file.")
+    ] = "human",
+) -> None:
+    """Learn beat gestures: their phases, their apices and how strong they are.
+
+    Gestures are found without marks: what hands do between two rests. Recordings without any are
+    left out.
+
+    Example: [cyan]cubeling gestures learn talk.bvh -o anna.gestures[/]
+    """
+    target = chosen_output(output, "my.gestures", "gesture library", (".gestures",), overwrite)
+    body = with_root_joint(Character.load(character))
+    console = Console()
+    with console.status("reading"):
+        clips = read_motions(recordings, body)
+        library = learned(clips, body.skeleton, body.anatomy)
+    counts = Counter(library.recordings[each.recording].name for each in library.phrases)
+    rows = _table("Recordings", "recording", "length", "phrases")
+    for clip in clips:
+        rows.add_row(escape(clip.name), f"{clip.duration:.1f} s", f"{counts[clip.name]}")
+    console.print(rows)
+    describe(console, library)
+    library.save(target)
+    console.print(f"[bold]{escape(str(target))}[/] is written", soft_wrap=True, highlight=False)
+
+
+@app.command()
+def show(
+    library: Annotated[
+        Path, typer.Argument(help="A file of cubeling gestures learn, or a bundled character.")
+    ] = Path("human"),
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Draw strokes and apices to this .png or .jpg file."),
+    ] = None,
+    overwrite: OverwriteOption = False,
+) -> None:
+    """Show a library of gestures: phrases by hand and strength, and how well they are connected.
+
+    Example: [cyan]cubeling gestures show human -o gestures.png[/]
+    """
+    if output is not None:
+        chosen_output(output, "", "picture", SHEET_SUFFIXES, overwrite)
+    console = Console()
+    found = GestureLibrary.load(_file(library))
+    describe(console, found)
+    if output is not None:
+        draw(output, found)
+        console.print(f"Drawn: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
+
+
+def describe(console: Console, library: GestureLibrary) -> None:
+    """Print what is in a library, and Table 4.2 of its graph (M7)."""
+    seconds = sum(len(each.turns) for each in library.recordings) / library.rate
+    console.print(
+        f"{len(library.phrases)} gesture phrases in {seconds:.0f} s of motion", highlight=False
+    )
+    rows = _table("Strength", "hand", "phrases", "weakest", "25 %", "median", "75 %", "strongest")
+    for hand in ("left", "right", "both", "all"):
+        own = [e.strength for e in library.phrases if hand in (e.hand, "all")]
+        if own:
+            quartiles = np.quantile(own, (0.0, 0.25, 0.5, 0.75, 1.0)).tolist()
+            rows.add_row(hand, f"{len(own)}", *(f"{each:.1f}" for each in quartiles))
+    console.print(rows)
+    rows = _table("Graph", "threshold", "branches", "connected", "branches of these")
+    for row in sweep(library, SWEPT):
+        rows.add_row(
+            f"{row.threshold:g}",
+            f"{row.branching:.2f}",
+            f"{row.component}",
+            f"{row.component_branching:.2f}",
+        )
+    console.print(rows)
+    graph = GestureGraph.of(library)
+    console.print(
+        f"Threshold {graph.threshold:g}: {len(graph.nodes) + 1} nodes with strokes alone and rest, "
+        f"{graph.branching:.1f} branches each",
+        highlight=False,
+    )
+
+
+def draw(path: Path, library: GestureLibrary) -> None:
+    """Draw where each stroke of a library starts, and its apex."""
+    from app.ui.contact_sheets import frame_sheet, save
+    from characters.rendering import create_context
+    from characters.rendering.portrait import PortraitRenderer, side_by_side
+
+    body = _body(library)
+    centre = np.array([0.0, UPPER_BODY[0] * body.height, 0.0])
+    focus = centre, UPPER_BODY[1] * body.height
+    with ExitStack() as closing:
+        context = create_context()
+        closing.callback(context.release)
+        renderer = PortraitRenderer(context, CELL_PX)
+        closing.callback(renderer.release)
+        cells = []
+        for number, phrase in enumerate(library.phrases, 1):
+            turns = library.recordings[phrase.recording].turns
+            shown = [library.poses(turns[frame]) for frame in (phrase.stroke[0], phrase.apex)]
+            pair = [renderer.portrait(body, each, azimuth=0.5, focus=focus) for each in shown]
+            text = f"{number}: {phrase.hand}, {phrase.strength:.1f}"
+            cells.append((text, side_by_side(pair)))
+        save(frame_sheet("Strokes and their apices", cells), path)
+
+
+def _body(library: GestureLibrary) -> Character:
+    """Return the bundled character of the library's skeleton, or a stick figure."""
+    for name in Character.bundled():
+        character = Character.load(name)
+        if skeleton_identity(character.skeleton) == library.skeleton_identity:
+            return character
+    return stick_figure("gestures", library.skeleton)
+
+
+def _file(library: Path) -> Path:
+    """Return the file of a library; the one beside a bundled character of that name."""
+    if str(library) not in Character.bundled() or library.exists():
+        return library
+    return Path(str(resources.files("characters") / "assets" / f"{library}.gestures"))
+
+
+def _table(title: str, *headings: str) -> Table:
+    rows = Table(title=title, title_justify="left", title_style="bold", box=SIMPLE_HEAD)
+    for number, heading in enumerate(headings):
+        rows.add_column(heading, justify="right" if number else "left")
+    return rows

@@ -1,0 +1,82 @@
+"""`cubeling gestures`."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from app.cli import COMMANDS
+from characters import Character, Clip
+from characters.synthesis.gestures.library import GestureLibrary
+
+pytestmark = pytest.mark.skipif("gestures" not in COMMANDS, reason="the command is not listed")
+
+
+@pytest.fixture(scope="module")
+def talk() -> Character:
+    """The explorer with three clips: two units of gestures, and one that stands still."""
+    human = Character.load("human")
+    library = human.gestures
+    assert library is not None
+    clips = {}
+    for name, number in (("one", 9), ("two", 17)):
+        turns = library.recordings[number].turns
+        rests = [np.repeat(turns[[end]], 30, axis=0) for end in (0, -1)]
+        poses = library.poses(np.concatenate([rests[0], turns, rests[1]]))
+        clips[name] = Clip(name, library.rate, poses, loop=False)
+    still = library.poses(np.repeat(library.rest[None], 90, axis=0))
+    clips["still"] = Clip("still", library.rate, still, loop=False)
+    return Character("talk", human.skeleton, clips, human.meshes, morphs=human.morphs)
+
+
+@pytest.fixture
+def talking(talk, tmp_path) -> Path:
+    talk.save(tmp_path / "talk.glb")
+    return tmp_path / "talk.glb"
+
+
+def test_learns_the_gestures_of_recordings(cubeling, talking, tmp_path):
+    code, out, _ = cubeling(
+        "gestures", "learn", f"{talking}#one", f"{talking}#two", "-o", "a.gestures"
+    )
+    assert code == 0
+    assert "6 gesture phrases" in out
+    library = GestureLibrary.load(tmp_path / "a.gestures")
+    assert len(library.phrases) == 6
+    assert library.skeleton_identity == GestureLibrary.load(bundled()).skeleton_identity
+
+
+def test_recordings_without_gestures_are_refused_in_one_line(cubeling, talking, tmp_path):
+    code, _, err = cubeling("gestures", "learn", f"{talking}#still", "-o", "b.gestures")
+    assert code == 2
+    assert "no gesture found" in err
+    assert err.count("\n") == 1
+    assert not (tmp_path / "b.gestures").exists()
+
+
+def test_shows_the_bundled_library_with_its_graph(cubeling):
+    code, out, _ = cubeling("gestures", "show")
+    assert code == 0
+    assert "72 gesture phrases" in out
+    assert "connected" in out
+
+
+def test_draws_strokes_and_apices(cubeling, talking, tmp_path):
+    cubeling("gestures", "learn", f"{talking}#one", "-o", "c.gestures")
+    code, _, _ = cubeling("gestures", "show", "c.gestures", "-o", "c.png")
+    assert code == 0
+    picture = cv2.imread(str(tmp_path / "c.png"))
+    assert picture.shape[1] > 700
+    assert (picture < 128).any()
+
+
+@pytest.mark.parametrize("name", ["nobody.gestures", "human.glb"])
+def test_what_is_no_library_is_refused_in_one_line(cubeling, name):
+    code, _, err = cubeling("gestures", "show", name)
+    assert code == 2
+    assert err.count("\n") == 1
+
+
+def bundled() -> Path:
+    return Path(__file__).parents[3] / "characters" / "assets" / "human.gestures"

@@ -1,0 +1,104 @@
+"""Gestures are found in recordings without marks."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from characters import Clip
+from characters.control.controllers.recordings import read_motions
+from characters.errors import CharacterError
+from characters.synthesis.gestures.learning import RATE_HZ, analyse, learned
+from characters.synthesis.gestures.segmentation import (
+    HOLD,
+    PREPARATION,
+    REST,
+    RETRACTION,
+    STROKE,
+    both_labels,
+    phrase_bounds,
+)
+
+SHARED_DATA = Path(__file__).parents[5] / "shared" / "data"
+
+BEATS = [
+    *((0, 0), (0.6, 0), (0.95, 95), (1.05, 95), (1.25, 50), (1.7, 50)),  # up, hold, down, hold
+    *((1.95, 90), (2.15, 45), (2.6, 45), (3.1, 0), (3.7, 0)),  # up, down, hold, back
+]
+
+
+def test_phases_of_two_beats_are_found_where_they_are(human, beating):
+    first, second = analyse(beating(BEATS), human.skeleton, human.anatomy).phrases
+    assert (first.hand, second.hand) == ("right", "right")
+    true = [(0.6, 0.95, 1.05, 1.25, 1.7, 1.7), (1.7, 1.95, 1.95, 2.15, 2.6, 3.1)]
+    for phrase, times in zip((first, second), true, strict=True):
+        assert np.abs(np.array(phrase.bounds) / RATE_HZ - times).max() < 0.1
+    assert abs(first.apex - 1.25 * RATE_HZ) <= 2
+    assert abs(second.apex - 2.15 * RATE_HZ) <= 2
+    assert first.bounds[5] == second.bounds[0]  # one follows the other
+
+
+def test_authored_strokes_are_found_again(library):
+    """Nine units; `tests.bench.gestures` goes through all."""
+    found = total = 0
+    for number in range(2, len(library.recordings), 3):
+        recording = library.recordings[number]
+        rests = [np.repeat(recording.turns[[end]], 30, axis=0) for end in (0, -1)]
+        turns = np.concatenate([rests[0], recording.turns, rests[1]])
+        clip = Clip("unit", RATE_HZ, library.poses(turns), loop=False)
+        phrases = analyse(clip, library.skeleton, library.anatomy).phrases
+        for truth in (each for each in library.phrases if each.recording == number):
+            total += 1
+            found += any(
+                abs(each.apex - 30 - truth.apex) <= 2 and each.hand == truth.hand
+                for each in phrases
+            )
+    assert total >= 24
+    assert found / total > 0.85
+
+
+def test_of_two_hands_the_stroke_counts_and_a_minor_one_does_not():
+    left = np.array([REST, PREPARATION, STROKE, STROKE, HOLD, HOLD, RETRACTION], np.int8)
+    right = np.array([REST, HOLD, PREPARATION, STROKE, STROKE, HOLD, REST], np.int8)
+    even = {"left": np.ones(7), "right": np.ones(7)}
+    together = [REST, PREPARATION, STROKE, STROKE, STROKE, HOLD, RETRACTION]
+    assert both_labels({"left": left, "right": right}, even).tolist() == together
+    minor = {"left": np.ones(7), "right": np.full(7, 0.3)}
+    alone = [REST, PREPARATION, STROKE, STROKE, HOLD, HOLD, RETRACTION]
+    assert both_labels({"left": left, "right": right}, minor).tolist() == alone
+
+
+def test_a_phrase_ends_where_the_next_one_begins():
+    labels = np.repeat(
+        [REST, PREPARATION, HOLD, STROKE, HOLD, PREPARATION, STROKE, RETRACTION, REST], 5
+    ).astype(np.int8)
+    assert phrase_bounds(labels) == [(5, 10, 15, 19, 25, 25), (25, 30, 30, 34, 35, 40)]
+
+
+def test_recordings_become_units_from_rest_to_rest(human, beating):
+    library = learned([beating(BEATS), beating(BEATS, "left")], human.skeleton, human.anatomy)
+    assert [each.hand for each in library.phrases] == ["right", "right", "left", "left"]
+    assert library.consecutive == (False, True, False, True)
+    for phrase in library.phrases:
+        assert (
+            0
+            <= phrase.bounds[0]
+            < phrase.bounds[5]
+            < len(library.recordings[phrase.recording].turns)
+        )
+
+
+@pytest.mark.parametrize("knots", [[(0, 0), (3, 0)], [(0, 0), (0.4, 30), (0.8, 0), (1.2, 30)]])
+def test_who_never_leaves_rest_or_never_rests_is_refused_in_one_line(human, beating, knots):
+    with pytest.raises(CharacterError, match="no gesture found") as caught:
+        learned([beating(knots)], human.skeleton, human.anatomy)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.skipif(not (SHARED_DATA / "bvh").is_dir(), reason="no shared data")
+def test_people_who_gesture_are_learned_and_walkers_are_not(human):
+    (clip,) = read_motions([str(SHARED_DATA / "bvh" / "131_03.bvh")], human)
+    assert len(learned([clip], human.skeleton, human.anatomy).phrases) >= 4
+    (walk,) = read_motions([str(SHARED_DATA / "cmu-mocap" / "02" / "02_01.amc")], human)
+    with pytest.raises(CharacterError, match="no gesture found"):
+        learned([walk], human.skeleton, human.anatomy)
