@@ -137,6 +137,8 @@ EXPORT_TABLES = (
             field("activity", "", "The action, or move or idle"),
             field("weight", "", "Intensity of the action, −1 to 1"),
             field("speed", "", "AvatAR's Speed that is asked for, 0 to 5"),
+            Column("said", "", "What the character says in this frame; empty for nothing",
+                   lambda command: command.speech.utterance.text if command.speaks else None),
             *vector(
                 ("target_x_m", "target_z_m"),
                 "m",

@@ -88,7 +88,10 @@ class SoundCues:
             cues += self._moods.update(step)
         if step.posed.visible:
             pan = pan_of(step)
-            heard = [*self._actions.update(step.posed), *self._feet.update(step.posed)]
+            actions = self._actions.update(step.posed)
+            if step.command.speaks:
+                actions = []  # the character has one mouth
+            heard = [*actions, *self._feet.update(step.posed)]
             cues += [replace(cue, pan=pan) for cue in heard]
         return [self._numbered(cue) for cue in cues]
 
