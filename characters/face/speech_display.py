@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from characters.face.affect_display import RETURN_LAG_S, YIELD_LAG_S, room_beside_mouth
-from characters.face.brows import AccentBrows
+from characters.face.brows import FALLING_S, AccentBrows
 from characters.face.composition import SpeakingExpression
 from characters.face.expressions import ExpressionMorphs
 from characters.face.visemes.coarticulation import (
@@ -58,14 +58,15 @@ class SpeechDisplay:
         self._clips: list[int] = ExpressionMorphs.of(morphs).speech.tolist()
         self._said: tuple[Utterance, float] | None = None
         self._track: MouthTrack | None = None
-        self._shapes = self._offset = _CLOSED
+        self._shapes = self._before = _CLOSED
         self._since, self._length = 0.0, CLOSING_S
         self._presence, self._raised, self._room = 0.0, 0.0, 1.0
 
     @property
     def active(self) -> bool:
         """Whether the face speaks, or still closes its mouth."""
-        return self._said is not None or self._presence > 0.0 or self._since < self._length
+        moving = self._presence > 0.0 or self._raised > 0.0 or self._since < self._length
+        return self._said is not None or moving
 
     @property
     def has_morphs(self) -> bool:
@@ -94,20 +95,21 @@ class SpeechDisplay:
             self._begin(said)
         step = elapsed / ONSET_S
         self._presence = min(max(self._presence + (-step if said is None else step), 0.0), 1.0)
-        target, self._raised = _CLOSED, 0.0
+        target, raised = _CLOSED, 0.0
         if said is not None and self._track is not None:
             time = now - said[1] + LEAD_S
-            target, self._raised = self._track.at(time, emphasis), self._brows.raised(time)
+            target, raised = self._track.at(time, emphasis), self._brows.raised(time)
+        self._raised = max(raised, self._raised - elapsed / FALLING_S)  # also after a cut
         left = 1.0 - ease(min(self._since / self._length, 1.0), "cubic")
-        self._shapes = target + left * self._offset
+        self._shapes = target + left * (self._before - target)
 
     def _begin(self, said: tuple[Utterance, float] | None) -> None:
-        """Take another utterance; the mouth goes over to it from where it is."""
+        """Take another utterance, or silence; the mouth goes over to it from where it is."""
         self._said = said
         settings = replace(self._settings, visemes=self.visemes)
         self._track = None if said is None else MouthTrack(said[0], settings)
         self._brows.plan(() if said is None else said[0].accents)
-        self._offset = self._shapes
+        self._before = self._shapes
         self._since, self._length = 0.0, CLOSING_S if said is None else SWITCH_S
 
     def apply(self, weights: Array, clips: Array | None, elapsed: float, closed: float) -> None:
