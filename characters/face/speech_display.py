@@ -59,7 +59,7 @@ class SpeechDisplay:
         self._said: tuple[Utterance, float] | None = None
         self._track: MouthTrack | None = None
         self._shapes = self._before = _CLOSED
-        self._since, self._length = 0.0, CLOSING_S
+        self._since = self._length = CLOSING_S
         self._presence, self._raised, self._room = 0.0, 0.0, 1.0
 
     @property

@@ -1,6 +1,7 @@
 """A character that speaks: its lips, who owns the mouth, cuts, and nothing without speech."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -86,6 +87,18 @@ def test_without_speech_a_face_is_as_it_was(speaker):
     future = [replace(c, speech=SpeechIntent(never, 100.0)) for c in commands(None, 2.0, HAPPY)]
     assert np.array_equal(silent, shown(speaker, future))
     assert not silent[:, len(speaker.morphs) - 25 :].any()  # the morphs of speech
+
+
+def test_a_face_that_never_speaks_or_feels_is_left_alone(speaker):
+    bare = replace(speaker, morphs=(), standing=None)
+    pose, layer = bare.skeleton.rest, FaceLayer(bare, 0)
+    frame = SimpleNamespace(shows_emotion=False, acting=0.0)
+    for command in commands(None, 0.5):
+        context = SimpleNamespace(
+            frame=frame, elapsed=1 / RATE, command=command, emotion=None, gaze_shift=0.0,
+            expressivity=SimpleNamespace(tempo=1.0),
+        )  # fmt: skip
+        assert layer.update(pose, context) is pose
 
 
 def test_the_mouth_belongs_to_the_speech_and_the_brows_to_the_expression(speaker, mouth):
