@@ -36,6 +36,9 @@ MAX_VARIANTS_TEXT = 2000
 MIN_PAUSE_S = 0.15
 """Shortest pause that is cut out [s]: longer than the closure of a stop."""
 
+SILENT = 1e-3
+"""Peak below which a recording is silent."""
+
 TEMPO = (0.25, 4.0)
 """How fast the speaker may be beside the voice."""
 
@@ -56,10 +59,10 @@ def align(recording: Speech, text: str, voice: Voice, language: str = "en") -> S
             f"the recording is {recording.duration / 60:.0f} minutes long: cut it in parts of up to"
             f" {MAX_S / 60:.0f} minutes, each with its text"
         )
+    if float(np.abs(recording.samples).max(initial=0.0)) < SILENT:
+        raise CharacterError("the recording is silent: there is nothing to align")
     spoken = cepstra(recording.samples, recording.rate)
     frames = _sounding(spoken.level)
-    if not len(frames):
-        raise CharacterError("the recording is silent: there is nothing to align")
     features = spoken.features[frames]
     dialects = (
         DIALECTS.get(language, (language,)) if len(text) <= MAX_VARIANTS_TEXT else (language,)
@@ -142,12 +145,8 @@ def _template(
 
 
 def _sounding(level: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Return the frames that are in no pause; of a silent recording none."""
-    if not len(level):
-        return np.zeros(0, np.intp)
+    """Return the frames that are in no pause."""
     floor, loud = np.quantile(level, (0.05, 0.95))
-    if loud - level.min() < 6.0:
-        return np.zeros(0, np.intp)
     quiet = level < np.clip(floor + 8.0, loud - 45.0, loud - 20.0)
     kept = np.ones(len(level), bool)
     for start, end in runs(quiet):

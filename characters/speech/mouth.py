@@ -86,7 +86,7 @@ class MouthTracker:
                 self._weights = _eased(self._weights, target)
             sound = sound[self._step * count :]
         self._waiting = sound
-        return MouthWeights(*self._weights.tolist())
+        return MouthWeights(*(self._weights / max(1.0, self._weights.sum())).tolist())
 
 
 def phones_from_sound(samples: Samples, rate: int) -> tuple[Phone, ...]:
