@@ -37,6 +37,8 @@ COMMANDS = {
     "character": "Inspect characters and motions, and make clips to walk with.",
     "motions": "Make motion graphs of your own recordings: where one clip can follow another.",
     "idle": "Learn how a person stands, from recordings, and let a character stand so.",
+    "gestures": "Learn how a person's hands beat the rhythm of speech, from recordings.",
+    "speech": "Look at recorded speech: its pitch, accents, words and phones.",
     "speak": "Let a character say something, with its mouth, face and hands.",
     "schedule": "Render a blending schedule in XML to a motion file or a video.",
     "robot": "Simulate, try out and test robots, and list the serial ports.",

@@ -11,6 +11,7 @@ from rich.markup import escape
 from affect import Emotion
 from affect.words import WORD_PLACES
 from app.commands.output import OverwriteOption, chosen_output
+from app.commands.session.play import VoiceOption
 from app.commands.session.preference_options import size_of
 from app.errors import AppError
 from app.output_path import check_output
@@ -19,6 +20,7 @@ from app.sound import write_wave
 from app.sound.session_sound import at_sample_rate
 from app.speaking.live import speak_live
 from app.speaking.performance import Direction, View, performed, write_video
+from app.speaking.voices import open_voice
 from app.ui.display import has_display
 from app.ui.video_file import VIDEO_FORMATS
 from characters import Character
@@ -35,7 +37,6 @@ from characters.speech.mouth import phones_from_sound
 from characters.speech.prosody import utterance_of
 from characters.speech.speech import Speech
 from characters.speech.tagged_text import TaggedText
-from characters.speech.voices import espeak
 from characters.speech.voices.feeling import manner_of
 
 MAX_TEXT_BYTES = 100_000
@@ -82,6 +83,7 @@ def speak(
     character: Annotated[
         str, typer.Option(help="Who says it: bundled, or a .glb, .gltf or .vrm file.")
     ] = "human",
+    voice: VoiceOption = None,
     lang: Annotated[
         str, typer.Option(help="Its language, as [cyan]espeak-ng --voices[/] lists them.")
     ] = "en",
@@ -159,7 +161,10 @@ def speak(
     _check_gestures(tagged, body)
     console = Console(highlight=False)
     with console.status("speaking"):
-        speech = _spoken(tagged.text, lang, feels) if audio is None else _heard(audio, tagged, lang)
+        if audio is None:
+            speech = _spoken(tagged.text, lang, feels, voice)
+        else:
+            speech = _heard(audio, tagged, lang, voice)
         utterance = utterance_of(speech, tagged, how.accents)
         line = SpokenLine(utterance, speech.samples, speech.rate, how)
         if target.suffix.lower() == ".wav":
@@ -188,19 +193,19 @@ def _read(file: Path) -> str:
         raise AppError(f"{file}: not a text file in UTF-8") from error
 
 
-def _spoken(text: str, language: str, emotion: Emotion | None) -> Speech:
+def _spoken(text: str, language: str, emotion: Emotion | None, command: str | None) -> Speech:
     """Return a text as the voice speaks it."""
-    with espeak() as voice:
+    with open_voice(command) as voice:
         return voice.say(text, language, manner_of(emotion))
 
 
-def _heard(audio: Path, tagged: TaggedText, language: str) -> Speech:
+def _heard(audio: Path, tagged: TaggedText, language: str, command: str | None) -> Speech:
     """Return a recording, with the times of its words where the text is known."""
     recording = read_speech(audio)
     if not tagged.text.strip():
         phones = phones_from_sound(recording.samples, recording.rate)
         return replace(recording, phones=phones)
-    with espeak() as voice:
+    with open_voice(command) as voice:
         return align(recording, tagged.text, voice, language)
 
 

@@ -38,6 +38,9 @@ class SessionOptions:
     """Code of the language in which the character speaks, or "none" for silence; None for that of
     a recording, or English in a window."""
 
+    voice: str | None = None
+    """The command of the voice; None for eSpeak NG."""
+
     profile: SpeechProfile = DEFAULT_PROFILE
     """How the character says it with its body; a recording holds it with each line."""
 

@@ -24,11 +24,12 @@ from characters.speech.mouth import MouthTracker
 from characters.speech.onsets import OnsetDetector
 from characters.speech.speech import Accent, Samples, Utterance
 
-BEAT_S = 0.4
-"""From a stressed syllable to the apex of its beat [s]: hands cannot be faster, nor foresee it."""
+PREPARED_S = 0.4
+"""So much of the preparation of a beat is left out [s]: hands cannot foresee a stressed syllable,
+and join in late."""
 
-HELD_S = 0.5
-"""How long a beat is held after it [s]."""
+BEAT_S, WHOLE_S = 0.8, 1.3
+"""Time from the beginning of a beat to what it stresses, and to its end [s]."""
 
 
 class LivePerformer:
@@ -53,8 +54,8 @@ class LivePerformer:
         self._mouth.mouth = self._tracker.update(sound)
         strength = self._onsets.update(sound)
         if strength is not None:
-            said = Utterance("", "", BEAT_S + HELD_S, accents=(Accent(BEAT_S, strength),))
-            self._speech = SpeechIntent(said, now, self._profile)
+            said = Utterance("", "", WHOLE_S, accents=(Accent(BEAT_S, strength),))
+            self._speech = SpeechIntent(said, now - PREPARED_S, self._profile)
         command = CharacterCommand(now, gaze=VIEWER, emotion=self._emotion, speech=self._speech)
         return self._animator.update(command)
 

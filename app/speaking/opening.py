@@ -6,8 +6,9 @@ from pathlib import Path
 from app.session import SessionOptions, spoken_lines
 from app.speaking.lines import bundled_languages, bundled_lines, languages_in, read_lines
 from app.speaking.speaker import SILENT, LiveSpeaker, RecordedSpeaker, Speaker
+from app.speaking.voices import open_voice
 from characters import Character
-from characters.speech.voices import VoiceError, espeak
+from characters.speech.voices import VoiceError
 
 DEFAULT_LANGUAGE = "en"
 """Language of what is said unless the user chooses one."""
@@ -46,7 +47,7 @@ def open_speaker(options: SessionOptions, character: Character, *, waits: bool) 
         lines_of, languages = lru_cache(lambda _, code: read_lines(path, code)), languages_in(path)
     lines_of(options.scenario, first)  # refuses a language that it lacks
     try:
-        voice = espeak()
+        voice = open_voice(options.voice)
     except VoiceError as error:
         if asked:
             raise

@@ -15,6 +15,7 @@ from app.running.network import DEFAULT_SITE
 from app.scenarios import find_scenario, scenario_names
 from app.scenarios.roles import check_cubes
 from app.session import SessionOptions
+from app.speaking.voices import VOICE_VARIABLE
 from app.ui.display import has_display
 from characters import CONTROLLER_CHOICES
 from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
@@ -94,6 +95,13 @@ LinesOption = Annotated[
 ProfileOption = Annotated[
     Path | None,
     typer.Option(help="How it says it with its body: a profile of [cyan]cubeling speak[/]."),
+]
+VoiceOption = Annotated[
+    str | None,
+    typer.Option(
+        help="A program that speaks, instead of eSpeak NG; see docs/speaking.md.",
+        envvar=VOICE_VARIABLE,
+    ),
 ]
 PersonalityOption = Annotated[
     str | None,
@@ -179,6 +187,7 @@ def play(
     language: LanguageOption = None,
     lines: LinesOption = None,
     profile: ProfileOption = None,
+    voice: VoiceOption = None,
     look: Annotated[
         str, typer.Option(help="Where the character looks: auto, cube, hand, camera or none.")
     ] = "auto",
@@ -211,6 +220,7 @@ def play(
         personality=personality,
         language=language,
         lines=lines,
+        voice=voice,
         profile=DEFAULT_PROFILE if profile is None else SpeechProfile.load(profile),
         look=look,
         robot=robot,

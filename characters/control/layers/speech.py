@@ -24,6 +24,9 @@ from characters.synthesis.gestures.library import gesture_joints
 CUT_S = 0.3
 """How long hands take to leave a speech that is cut off [s]."""
 
+JOIN_S = 0.15
+"""How long hands take to join in a speech that has begun before [s]."""
+
 FADE = FadeCurve(0.25, 0.3)
 """How a gesture that a text asks for comes and goes."""
 
@@ -71,10 +74,11 @@ class OverlaidMotion:
 class SpeechGestures:
     """The gestures of one speech."""
 
-    def __init__(self, character: Character, speech: SpeechIntent) -> None:
+    def __init__(self, character: Character, speech: SpeechIntent, now: float) -> None:
         said = speech.utterance
         seed = zlib.crc32(said.text.encode()) + character.seed
         self.speech = speech
+        self._joined = now
         self._cut: float | None = None
         self._overlays: list[OverlaidMotion] = []
         self._morphs = len(character.morphs)
@@ -114,7 +118,8 @@ class SpeechGestures:
 
     def share(self, now: float) -> float:
         """Return how much of them is left at a time [s], 0…1."""
-        return 1.0 if self._cut is None else 1.0 - ease((now - self._cut) / CUT_S, "gonio")
+        share = 1.0 if self._cut is None else 1.0 - ease((now - self._cut) / CUT_S, "gonio")
+        return share * ease((now - self._joined) / JOIN_S, "gonio")
 
     def over(self, pose: Pose, now: float, hands: float) -> Pose:
         """Return a pose with the gestures laid over it; `hands` is their share, 0…1."""
@@ -173,7 +178,7 @@ class SpeechLayer:
         if speech is not None and (current is None or speech.start != current.start):
             for spoken in self._spoken:
                 spoken.cut(now)
-            self._spoken.append(SpeechGestures(self._character, speech))
+            self._spoken.append(SpeechGestures(self._character, speech, now))
         elif speech is None and self._spoken:
             self._spoken[-1].cut(now)
         self._spoken = [each for each in self._spoken if now < each.end or each.speech is speech]

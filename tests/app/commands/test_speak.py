@@ -6,8 +6,8 @@ import av
 import numpy as np
 import pytest
 
-from app.commands import speak
 from app.sound import write_wave
+from app.speaking import voices
 from characters import load_motion
 from characters.control.speech_profile import SpeechProfile
 from characters.speech.voices import VoiceError
@@ -45,7 +45,7 @@ def test_a_recording_without_a_text_needs_no_voice(cubeling, tmp_path, monkeypat
     def gone():
         raise VoiceError("no voice")
 
-    monkeypatch.setattr(speak, "espeak", gone)
+    monkeypatch.setattr(voices, "espeak", gone)
     time = np.arange(24_000) / 48_000
     write_wave(tmp_path / "a.wav", 0.3 * np.sin(2 * np.pi * 150 * time))
     out = tmp_path / "a.bvh"
@@ -94,7 +94,7 @@ def test_without_a_voice_the_package_is_named(cubeling, monkeypatch):
     def gone():
         raise VoiceError("no voice is installed, such as eSpeak NG", "apt-get install -y espeak-ng")
 
-    monkeypatch.setattr(speak, "espeak", gone)
+    monkeypatch.setattr(voices, "espeak", gone)
     code, _, error = cubeling("speak", "Hi", "-o", "a.wav")
     assert code == 2
     assert "apt-get install -y espeak-ng" in error

@@ -12,7 +12,7 @@ from app.running.runner import run
 from app.session import SessionOptions, messages, spoken_lines
 from app.session.bundled import bundled
 from app.session.encoding import decode
-from app.speaking import opening
+from app.speaking import opening, voices
 from characters import Character, CharacterCommand, CharacterError
 from characters.speech.voices import Voice, VoiceError
 
@@ -35,7 +35,7 @@ for line in sys.stdin.buffer:
 @pytest.fixture
 def buzz(monkeypatch):
     """Let a voice be installed that buzzes."""
-    monkeypatch.setattr(opening, "espeak", lambda: Voice((sys.executable, "-S", "-c", BUZZ)))
+    monkeypatch.setattr(voices, "espeak", lambda: Voice((sys.executable, "-S", "-c", BUZZ)))
 
 
 def recording_of(tmp_path: Path, **changes) -> Path:
@@ -63,7 +63,7 @@ def test_a_session_with_speech_replays_byte_for_byte_without_a_voice(tmp_path, b
     def gone():
         raise VoiceError("no voice")
 
-    monkeypatch.setattr(opening, "espeak", gone)
+    monkeypatch.setattr(voices, "espeak", gone)
     options = SessionOptions(scenario="companion", source=str(path))
     assert check_session(path, options).identical
 
@@ -79,7 +79,7 @@ def test_without_a_voice_a_character_is_silent_unless_it_was_asked_to_speak(tmp_
     def gone():
         raise VoiceError("no voice is installed", "sudo apt-get install -y espeak-ng")
 
-    monkeypatch.setattr(opening, "espeak", gone)
+    monkeypatch.setattr(voices, "espeak", gone)
     windowed = SessionOptions(scenario="companion", source="camera:0")
     speaker = opening.open_speaker(windowed, Character.load("vleo"), waits=False)
     assert speaker.line(0.0) is None
@@ -89,5 +89,5 @@ def test_without_a_voice_a_character_is_silent_unless_it_was_asked_to_speak(tmp_
 
 def test_a_voice_that_always_dies_is_given_up_and_the_session_goes_on(tmp_path, monkeypatch):
     dying = (sys.executable, "-S", "-c", "import sys; sys.stdin.readline()")
-    monkeypatch.setattr(opening, "espeak", lambda: Voice(dying))
+    monkeypatch.setattr(voices, "espeak", lambda: Voice(dying))
     assert said_in(recording_of(tmp_path)) == []
