@@ -2,6 +2,7 @@
 
 from collections import Counter
 from contextlib import ExitStack
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 from typing import Annotated
@@ -153,6 +154,7 @@ def draw(path: Path, library: GestureLibrary) -> None:
         for number, phrase in enumerate(library.phrases, 1):
             turns = library.recordings[phrase.recording].turns
             shown = [library.poses(turns[frame]) for frame in (phrase.stroke[0], phrase.apex)]
+            shown = [replace(each, scales=body.skeleton.rest.scales) for each in shown]
             pair = [renderer.portrait(body, each, azimuth=0.5, focus=focus) for each in shown]
             text = f"{number}: {phrase.hand}, {phrase.strength:.1f}"
             cells.append((text, side_by_side(pair)))

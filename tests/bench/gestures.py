@@ -84,10 +84,10 @@ class Measured:
     jump: float
 
 
-def bundled() -> GestureLibrary:
-    """Return the library of the explorer."""
+def bundled(name: str = "human") -> GestureLibrary:
+    """Return the library of a bundled character."""
     return GestureLibrary.load(
-        Path(str(resources.files("characters") / "assets" / "human.gestures"))
+        Path(str(resources.files("characters") / "assets" / f"{name}.gestures"))
     )
 
 
@@ -286,6 +286,9 @@ def main() -> int:
             if given:
                 fine, more = planned(planner, given, table, source)
                 good, plans = good and fine, plans + more
+    four_legs = GesturePlanner(bundled("vleo"), STRICT)
+    fine, _ = planned(four_legs, sources["random, mean gap 0.5 s"], table, "as above, Vleo")
+    good &= fine
     console.print(table)
     on, off = (
         strengths_follow(GesturePlanner(library, settings))

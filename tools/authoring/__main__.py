@@ -5,10 +5,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from characters.model.character import Character
-from tools.authoring.gestures import GESTURES
 from tools.authoring.human.character import build_human
 from tools.authoring.people import save_standing
 from tools.authoring.robot.character import build_robot
+from tools.authoring.speakers import GESTURES
 from tools.authoring.vleo.character import build_vleo
 
 BUILDERS: dict[str, Callable[[], Character]] = {

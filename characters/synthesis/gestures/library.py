@@ -196,21 +196,18 @@ class GestureLibrary:
 def gesture_joints(skeleton: Skeleton, anatomy: Anatomy) -> tuple[int, ...]:
     """Return the joints that gestures move, parents first: spine, head, arms and fingers.
 
-    On four legs they are those of trunk, neck, head, tail and front legs. A body without spine or
-    head has none.
+    On four legs they are those of neck, head and tail: the trunk carries legs that stand. A body
+    without spine or head has none.
     """
-    spine, head = anatomy.joint("spine"), anatomy.joint("head")
-    if spine is None or head is None:
+    four_legs = anatomy.kind == "quadruped"
+    base, head = anatomy.joint("neck" if four_legs else "spine"), anatomy.joint("head")
+    if base is None or head is None:
         return ()
-    upper = set(subtree(skeleton, spine))
     hands = [anatomy.joints[f"{side}Hand"] for side in SIDES if f"{side}Hand" in anatomy.joints]
-    ends = [head, *hands]
-    if anatomy.kind == "quadruped":
-        ends += [j for part, j in anatomy.joints.items() if part.endswith("FrontFoot")]
-    moved = set(skeleton.with_ancestors(ends)) & upper
+    moved = set(skeleton.with_ancestors([head, *hands])) & set(subtree(skeleton, base))
     moved.update(joint for hand in hands for joint in subtree(skeleton, hand))
-    if anatomy.kind == "quadruped":
-        moved.update(j for part, j in anatomy.joints.items() if part.startswith("tail"))
+    if four_legs:
+        moved.update(joint for part, joint in anatomy.joints.items() if part.startswith("tail"))
     return tuple(sorted(moved))
 
 

@@ -22,8 +22,8 @@ REMEMBERED = 12
 """Number of gestures whose repetition costs something."""
 
 SAME_HAND = 3
-"""So many gestures in a row by the same hands cost nothing; each further one a fifth of a
-repetition more."""
+"""So many gestures in a row by the same hands cost nothing; each further one costs a fifth of a
+repetition more, up to a whole one."""
 
 
 @dataclass(frozen=True)
@@ -182,7 +182,7 @@ class BeamSearch:
         number = len(self._steps)
         ago = number - self._used[:, self._phrases]
         repetition = np.maximum(1.0 - (ago - 1.0) / REMEMBERED, 0.0)
-        more = np.maximum(self._row - SAME_HAND + 1, 0)[:, None] / 5.0
+        more = np.clip((self._row - SAME_HAND + 1) / 5.0, 0.0, 1.0)[:, None]
         repetition += np.where(self._hands == self._hand[:, None], more, 0.0)
         repetition = self._weights.variety * repetition[:, None]
         costs = self._total(ways.smooth, ways.time) + strength + repetition + favour
