@@ -41,7 +41,7 @@ MIN_PHONE_S = 1e-3
 MIN_CONTACT_S = 0.042
 """Least time for which lips or teeth touch: a frame at 24 Hz falls into it [s]."""
 
-CONTACT_SHARE = 0.6
+CONTACT_SHARE = 0.8
 """Share of a phone for which lips or teeth touch."""
 
 CLOSING_S, PARTING_S = 0.075, 0.06
