@@ -68,6 +68,8 @@ def show(
         raise AppError("give --text or --textgrid, not both")
     console = Console()
     speech = read_speech(file)
+    if output is not None and speech.duration > MAX_PLOT_S:
+        raise AppError(f"a plot shows up to {MAX_PLOT_S:g} s, and '{file}' is longer: cut it")
     if textgrid is not None:
         speech = with_textgrid(speech, read_textgrid(textgrid))
     elif text is not None:
@@ -76,11 +78,9 @@ def show(
     describe(console, speech, settings)
     if output is None:
         return
-    if speech.duration > MAX_PLOT_S:
-        raise AppError(f"a plot shows up to {MAX_PLOT_S:g} s, and this is longer: cut it in parts")
     with needs_matplotlib():
         from app.speech_plot import save_plot
-    save_plot(output, speech, f"{file.name}", settings=settings)
+    save_plot(output, speech, file.name, settings=settings)
     console.print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
 
 

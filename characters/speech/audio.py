@@ -43,9 +43,10 @@ def read_speech(path: Path) -> Speech:
         raise CharacterError(f"cannot read '{path}': {error.strerror or error}") from error
     if not len(samples):
         raise CharacterError(f"'{path}' has no sound: its audio is empty or broken")
-    if not np.isfinite(samples).all():
+    low, high = float(samples.min()), float(samples.max())
+    if not np.isfinite(low + high):
         raise CharacterError(f"'{path}' has samples that are not numbers; write it again")
-    peak = float(np.abs(samples).max())
+    peak = max(high, -low)
     if peak > 1.0:  # a float file may be louder than full scale
         samples /= np.float32(peak)
     return Speech(samples, rate)

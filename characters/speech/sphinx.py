@@ -20,9 +20,6 @@ RATE = 16_000
 FRAME_S = 0.01
 """Time from frame to frame of its model [s]."""
 
-DELAY_S = 0.0
-"""How much later a boundary is than the start of the frame that follows it [s]."""
-
 MAX_S = 300.0
 """Longest recording that is aligned at once [s]."""
 
@@ -89,7 +86,7 @@ def _phones(
 
 
 def _time(frame: int) -> float:
-    return frame * FRAME_S + (DELAY_S if frame else 0.0)
+    return frame * FRAME_S
 
 
 def _key(word: str) -> str:

@@ -83,7 +83,7 @@ def test_gestures_that_overlap_have_lanes_of_their_own(speech):
     lanes = figure.axes[names.index("gestures")]
     assert lanes.get_ylim() == (0.0, 2.0)
     assert {text.get_text() for text in lanes.texts} == {"left", "right", "both"}
-    apexes = [line.get_xdata()[0] for line in lanes.lines if line.get_marker() == "D"]
+    apexes = [np.asarray(line.get_xdata())[0] for line in lanes.lines if line.get_marker() == "D"]
     assert apexes == [0.5, 1.5, 0.8]
 
 

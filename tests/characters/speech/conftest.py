@@ -1,6 +1,6 @@
 """Sounds with known truth: buzzing syllables, and what eSpeak NG says."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from characters.speech.voices.espeak import installed
 
 
 @pytest.fixture(scope="session")
-def spoken_voice() -> Voice:
+def spoken_voice() -> Iterator[Voice]:
     if not installed():
         pytest.skip("eSpeak NG is not installed")
     with espeak() as voice:

@@ -44,12 +44,12 @@ def test_the_last_syllable_before_a_pause_is_strengthened(sentence):
 def random_prosody(seed: int) -> Prosody:
     """Return the prosody of a made-up speech."""
     random = np.random.default_rng(seed)
-    times = 0.005 + 0.01 * np.arange(600)
+    times = np.linspace(0.005, 5.995, 600)
     smooth = np.convolve(random.normal(0, 1, 620), np.hanning(21), "same")[10:-10]
     f0 = 150 * 2 ** (np.convolve(random.normal(0, 1, 620), np.hanning(31), "same")[10:-10] / 12)
     f0[smooth < -2] = 0.0
     changes = np.flatnonzero(np.diff(np.concatenate([[False], f0 > 0, [False]]).astype(int)))
-    voiced = 0.01 * changes.reshape(-1, 2)
+    voiced = np.asarray(0.01 * changes.reshape(-1, 2), float)
     return Prosody(times, f0, 4 * smooth - 20, voiced, np.zeros((0, 2)), 6.0)
 
 
@@ -123,7 +123,7 @@ def test_loud_flat_accents_rank_higher_by_psi_than_by_ev2():
 
 
 def test_a_falling_accent_has_no_pitch_range():
-    times = 0.005 + 0.01 * np.arange(40)
+    times = np.linspace(0.005, 0.395, 40)
     rise = 100 * 2 ** (np.linspace(0, 6, 20) / 12)
     f0 = np.concatenate([rise, rise[::-1]])
     prosody = Prosody(times, f0, np.full(40, -20.0), np.array([[0.0, 0.4]]), np.zeros((0, 2)), 0.4)

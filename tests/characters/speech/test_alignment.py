@@ -142,7 +142,7 @@ def test_a_warped_path_never_falls_and_ends_at_the_end(seed, count):
 
 def test_the_banded_path_of_a_long_sequence_is_that_of_the_whole(monkeypatch):
     random = np.random.default_rng(1)
-    template = np.cumsum(random.normal(0, 1, (3000, 6)), 0).astype(np.float32) / 5
+    template = (np.cumsum(random.normal(0, 1, (3000, 6)), 0) / 5).astype(np.float32)
     at = np.interp(np.linspace(0, 1, 3000), [0, 0.4, 1], [0, 0.5, 1]) * 2999
     features = template[at.astype(int)]
     whole = warp(features, template)
