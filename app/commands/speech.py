@@ -20,10 +20,10 @@ from app.commands.output import (
 from app.errors import AppError
 from characters.speech.accents import AccentSettings, accents_of
 from characters.speech.alignment import align as align_by_warping
+from characters.speech.alignment import align_with_sphinx
 from characters.speech.audio import read_speech
 from characters.speech.contours import measure_prosody
 from characters.speech.speech import Accent, Speech
-from characters.speech.sphinx import align_with_sphinx
 from characters.speech.textgrid import read_textgrid, textgrid_of, with_textgrid, write_textgrid
 from characters.speech.voices import espeak
 

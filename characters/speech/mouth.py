@@ -82,7 +82,7 @@ class MouthTracker:
         if count > 0:
             starts = self._step * np.arange(1, count + 1)
             frames = sound[starts[:, None] + np.arange(self._analysis.length)]
-            for target in self._analysis.weights(frames):
+            for target in self._analysis.shapes(frames)[0]:
                 self._weights = _eased(self._weights, target)
             sound = sound[self._step * count :]
         self._waiting = sound
@@ -98,10 +98,10 @@ def phones_from_sound(samples: Samples, rate: int) -> tuple[Phone, ...]:
     times = np.arange(STEP_S / 2, len(samples) / rate, STEP_S)
     shapes = np.full(len(times), len(PHONES))
     for own, frames in frame_blocks(samples, rate, times, analysis.length):
-        weights = np.array(list(analysis.weights(frames)))
+        weights, silent = analysis.shapes(frames)
         closed = 1.0 - weights.sum(1, keepdims=True)
-        shapes[own] = np.hstack([weights, closed]).argmax(1)
-        shapes[own][analysis.silent] = len(PHONES)
+        nearest = np.hstack([weights, closed]).argmax(1)
+        shapes[own] = np.where(silent, len(PHONES), nearest)
     return fill_pauses(list(_phones(shapes)), len(samples) / rate)
 
 
@@ -110,8 +110,6 @@ class _MouthAnalysis:
 
     def __init__(self, rate: int) -> None:
         self.length = round(WINDOW_S * rate)
-        self.silent = np.zeros(0, np.bool_)
-        """Which of the last frames were silent."""
         self._window = np.hanning(self.length + 2)[1:-1].astype(np.float32)
         self._scale = 2.0 / float((self._window**2).sum()) / self.length
         frequency = np.fft.rfftfreq(self.length, 1 / rate)
@@ -120,8 +118,8 @@ class _MouthAnalysis:
         self._bands = [(frequency >= low) & (frequency < high) for low, high in edges]
         self._loudest = QUIETEST_DB + 25.0
 
-    def weights(self, frames: NDArray[np.float32]) -> Iterator[NDArray[np.float64]]:
-        """Yield open, spread, rounded and hiss of each frame."""
+    def shapes(self, frames: NDArray[np.float32]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """Return open, spread, rounded and hiss of each frame, (n, 4), and which are silent."""
         spectrum = np.fft.rfft(frames * self._window)
         power = (spectrum.real**2 + spectrum.imag**2) * self._scale
         energy = np.stack([power[:, band].sum(1) for band in self._bands], 1)
@@ -129,16 +127,17 @@ class _MouthAnalysis:
         low, middle, _, high, hiss = energy_db
         level = 10 * np.log10(energy.sum(1) + 1e-10)
         loudest = self._remembered(level)
-        self.silent = level < np.maximum(loudest - 30.0, QUIETEST_DB)
+        silent = level < np.maximum(loudest - 30.0, QUIETEST_DB)
         voiced = _between(level - loudest, -18.0, -8.0)
-        voiced[self.silent] = 0.0
+        voiced[silent] = 0.0
         hissing = _between(hiss - energy_db[:4].max(0), -4.0, 4.0)
         hissing *= _between(level - loudest, -34.0, -26.0)
         spread = _between(high - middle, -5.0, 3.0)
         wide = _between(middle - low + (high - low) / 2, -22.0, -12.0)
         vowel = voiced * (1.0 - hissing)
         opened = vowel * (1.0 - spread)
-        yield from np.stack([opened * wide, vowel * spread, opened * (1.0 - wide), hissing], 1)
+        shapes = (opened * wide, vowel * spread, opened * (1.0 - wide), hissing)
+        return np.stack(shapes, 1), silent
 
     def _remembered(self, level: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the loudest level so far, slowly forgotten."""

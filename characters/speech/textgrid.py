@@ -5,6 +5,7 @@ the same strings, numbers and flags; all else in a file is decoration.
 """
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -92,32 +93,35 @@ def read_textgrid(path: Path) -> TextGrid:
 def write_textgrid(path: Path, grid: TextGrid, *, short: bool = False) -> None:
     """Write a TextGrid in UTF-8, in the long or the short text form."""
     lines = ['File type = "ooTextFile"', 'Object class = "TextGrid"', ""]
-    named: list[tuple[str, str]] = [("xmin = ", "0"), ("xmax = ", f"{grid.duration:.9g}")]
-    named += [("tiers? ", "<exists>"), ("size = ", str(len(grid.tiers)))]
-    for number, tier in enumerate(grid.tiers, 1):
-        kind = "TextTier" if tier.points else "IntervalTier"
-        rows = tier.intervals
-        named += [
-            (f"item [{number}]:\n    class = ", _quoted(kind)),
-            ("    name = ", _quoted(tier.name)),
-        ]
-        named += [("    xmin = ", "0"), ("    xmax = ", f"{grid.duration:.9g}")]
-        named += [(f"    {'points' if tier.points else 'intervals'}: size = ", str(len(rows)))]
-        for index, each in enumerate(rows, 1):
-            if tier.points:
-                named += [(f"    points [{index}]:\n        number = ", f"{each.start:.9g}")]
-                named += [("        mark = ", _quoted(each.label))]
-                continue
-            named += [(f"    intervals [{index}]:\n        xmin = ", f"{each.start:.9g}")]
-            named += [
-                ("        xmax = ", f"{each.end:.9g}"),
-                ("        text = ", _quoted(each.label)),
-            ]
-    lines += [value if short else name + value for name, value in named]
+    lines += [value if short else name + value for name, value in _named_values(grid)]
     try:
         path.write_text("\n".join(lines) + "\n", "utf-8", newline="\n")
     except OSError as error:
         raise CharacterError(f"cannot write '{path}': {error.strerror}") from error
+
+
+def _named_values(grid: TextGrid) -> Iterator[tuple[str, str]]:
+    """Yield each value of a file, and what the long form writes before it."""
+    yield from _span(0.0, grid.duration)
+    yield from (("tiers? ", "<exists>"), ("size = ", str(len(grid.tiers))))
+    for number, tier in enumerate(grid.tiers, 1):
+        kind, rows = ("TextTier", "points") if tier.points else ("IntervalTier", "intervals")
+        yield f"item [{number}]:\n    class = ", _quoted(kind)
+        yield "    name = ", _quoted(tier.name)
+        yield from _span(0.0, grid.duration, "    ")
+        yield f"    {rows}: size = ", str(len(tier.intervals))
+        for index, each in enumerate(tier.intervals, 1):
+            head = f"    {rows} [{index}]:\n        "
+            if tier.points:
+                yield f"{head}number = ", f"{each.start:.9g}"
+            else:
+                yield from _span(each.start, each.end, "        ", head)
+            yield f"        {'mark' if tier.points else 'text'} = ", _quoted(each.label)
+
+
+def _span(start: float, end: float, indent: str = "", head: str = "") -> Iterator[tuple[str, str]]:
+    yield f"{head or indent}xmin = ", f"{start:.9g}"
+    yield f"{indent}xmax = ", f"{end:.9g}"
 
 
 def textgrid_of(speech: Speech) -> TextGrid:

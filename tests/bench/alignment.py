@@ -22,11 +22,10 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters.speech.alignment import align
+from characters.speech.alignment import align, align_with_sphinx
 from characters.speech.audio import read_speech
 from characters.speech.phones import fill_pauses, ipa_of_arpabet, sound_class
 from characters.speech.speech import SILENCE, Phone, Speech, Word
-from characters.speech.sphinx import align_with_sphinx
 from characters.speech.textgrid import read_textgrid, with_textgrid
 from characters.speech.voices import Voice, espeak
 
