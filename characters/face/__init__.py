@@ -1,1 +1,1 @@
-"""Faces: expressions, lids, blinks, and the display of emotion."""
+"""Faces: expressions, lids, blinks, the display of emotion, and speech."""

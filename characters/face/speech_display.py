@@ -126,7 +126,7 @@ class SpeechDisplay:
             lag = YIELD_LAG_S if room < self._room else RETURN_LAG_S
             self._room = low_pass(self._room, room, elapsed, lag)
         values = weights.tolist()  # plain numbers are quicker than arrays
-        if self._presence > 0.0:
+        if self._presence > 0.0 and self._mouth:
             presence = ease(self._presence, "cubic") * self._room
             self._expression.apply(values, presence)
             for number in self._clips:

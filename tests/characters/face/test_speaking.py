@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -94,7 +95,7 @@ def test_a_face_that_never_speaks_or_feels_is_left_alone(speaker):
     pose, layer = bare.skeleton.rest, FaceLayer(bare, 0)
     frame = SimpleNamespace(shows_emotion=False, acting=0.0)
     for command in commands(None, 0.5):
-        context = SimpleNamespace(
+        context: Any = SimpleNamespace(
             frame=frame, elapsed=1 / RATE, command=command, emotion=None, gaze_shift=0.0,
             expressivity=SimpleNamespace(tempo=1.0),
         )  # fmt: skip
