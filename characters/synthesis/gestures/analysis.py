@@ -18,6 +18,9 @@ from characters.smoothing import gaussian_smoothed
 ARM_MASSES = {"LowerArm": 2.0, "UpperArm": 3.0, "Shoulder": 3.0}
 """Mass that each joint of an arm moves (M4)."""
 
+HEAD_MASSES = {"neck": 3.0, "head": 2.0}
+"""The same of a body without arms."""
+
 Variant = Literal["mean", "total"]
 """Kinetic energy as the mean over time, or summed over time."""
 
@@ -39,10 +42,9 @@ def masses(anatomy: Anatomy, side: str) -> dict[int, float]:
 
     Without arms, as on four legs, they are those of neck and head.
     """
-    found = {anatomy.joint(side + part): mass for part, mass in ARM_MASSES.items()}
-    if set(found) == {None}:
-        found = {anatomy.joint("neck"): 3.0, anatomy.joint("head"): 2.0}
-    return {joint: mass for joint, mass in found.items() if joint is not None}
+    own = anatomy.joints
+    arm = {own[side + part]: mass for part, mass in ARM_MASSES.items() if side + part in own}
+    return arm or {own[part]: mass for part, mass in HEAD_MASSES.items() if part in own}
 
 
 def kinetic_energies(turns: Array, masses: Array, rate: float, variant: Variant = "mean") -> Array:

@@ -251,7 +251,9 @@ def _phrase(row: list[Any], lengths: list[int]) -> GesturePhrase:
     recording, hand, bounds, apex, strength = row
     a, b, c, d, e, f = map(int, bounds)
     found = next(each for each in get_args(Hand) if each == hand)
-    ordered = 0 <= a <= b <= c < d <= e <= f < lengths[recording] and c <= apex <= f
+    ordered = (
+        recording >= 0 and 0 <= a <= b <= c < d <= e <= f < lengths[recording] and c <= apex <= f
+    )
     if not ordered or not np.isfinite(strength):
         raise ValueError("a phrase is not in its recording")
     return GesturePhrase(int(recording), found, (a, b, c, d, e, f), int(apex), float(strength))

@@ -1,14 +1,17 @@
 """The gestures that were chosen for a speech, and the motion that plays them."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
 from characters.speech.speech import Accent
 from characters.synthesis.gestures.alignment import INVALID_COST, Timings
-from characters.synthesis.gestures.graph import GestureGraph, GestureNode
+from characters.synthesis.gestures.graph import GestureGraph
 from characters.synthesis.gestures.library import PHASES
+from characters.synthesis.gestures.nodes import GestureNode
 from characters.synthesis.gestures.playing import (
     Ends,
     GestureMotion,
@@ -17,6 +20,9 @@ from characters.synthesis.gestures.playing import (
     bridge,
     weight_curve,
 )
+
+SHORTEST_BRIDGE_S = 1e-6
+"""What follows sooner follows at once [s]."""
 
 
 @dataclass(frozen=True)
@@ -133,53 +139,47 @@ class GesturePlan:
 
     def motion(self) -> GestureMotion:
         """Return the motion of these gestures, from rest to rest."""
-        library, rest = self.graph.library, self.graph.rest
-        still = Ends.still(library.rest)
-        segments = [Segment(0.0, library.rest[None])]
-        spans: list[GestureSpan] = []
-        before: PlannedGesture | None = None
-
-        def to_rest(last: PlannedGesture) -> None:
-            """Add the way to rest after a gesture."""
-            length = float(self.graph.blends[last.number, rest])
-            again, stroke_end = last.end + length, last.time_of(last.node.phrase.stroke[1])
-            segments.append(bridge(last.end, length, self._end(last), still, library.rate))
-            segments.append(Segment(again, library.rest[None]))
-            spans.append(GestureSpan(left, stroke, stroke_end, again))
-
-        left = stroke = 0.0
-        for gesture in self.gestures:
-            start = gesture.start
-            if before is None or gesture.by_rest:
-                if before is not None:
-                    to_rest(before)
-                left = start - float(self.graph.blends[rest, gesture.number])
-                stroke = gesture.time_of(gesture.node.phrase.stroke[0])
-                arriving = self._start(gesture)
-                segments.append(bridge(left, start - left, still, arriving, library.rate))
-            elif start - before.end > 1e-9:
-                length, ends = start - before.end, (self._end(before), self._start(gesture))
-                segments.append(bridge(before.end, length, *ends, library.rate))
-            segments += self._played(gesture)
-            before = gesture
-        if before is not None:
-            to_rest(before)
+        library, blends, rest = self.graph.library, self.graph.blends, self.graph.rest
+        still, rate = Ends.still(library.rest), library.rate
+        segments, spans = [Segment(0.0, library.rest[None])], []
+        for group in self._groups():
+            first, last = group[0], group[-1]
+            up, down = float(blends[rest, first.number]), float(blends[last.number, rest])
+            left, again = first.start - up, last.end + down
+            segments += [
+                bridge(left, up, still, self._ends(first, leaving=False), rate),
+                *self._joined(group),
+                bridge(last.end, down, self._ends(last, leaving=True), still, rate),
+                Segment(again, library.rest[None]),
+            ]
+            begin = first.time_of(first.node.phrase.stroke[0])
+            end = last.time_of(last.node.phrase.stroke[1])
+            spans.append(GestureSpan(left, begin, end, again))
         ended = max([self.duration, *(span.again for span in spans[-1:])])
         return GestureMotion(library, tuple(segments), ended, weight_curve(spans))
 
-    def _played(self, gesture: PlannedGesture) -> list[Segment]:
-        turns = self.graph.library.recordings[gesture.node.phrase.recording].turns
-        parts = []
-        for (start, first), (end, last) in zip(gesture.knots, gesture.knots[1:], strict=False):
-            if last > first:
-                parts.append(Segment(start, turns, float(first), (last - first) / (end - start)))
-        return parts
+    def _groups(self) -> list[list[PlannedGesture]]:
+        """Return the gestures from rest to rest."""
+        groups: list[list[PlannedGesture]] = []
+        for gesture in self.gestures:
+            if gesture.by_rest or not groups:
+                groups.append([])
+            groups[-1].append(gesture)
+        return groups
 
-    def _start(self, gesture: PlannedGesture) -> Ends:
-        return self._ends(gesture, leaving=False)
-
-    def _end(self, gesture: PlannedGesture) -> Ends:
-        return self._ends(gesture, leaving=True)
+    def _joined(self, group: Sequence[PlannedGesture]) -> Iterator[Segment]:
+        """Yield what is played of gestures, with bridges between them."""
+        library = self.graph.library
+        for number, gesture in enumerate(group):
+            turns = library.recordings[gesture.node.phrase.recording].turns
+            for (start, first), (end, last) in pairwise(gesture.knots):
+                if last > first:
+                    yield Segment(start, turns, float(first), (last - first) / (end - start))
+            if number + 1 < len(group):
+                after = group[number + 1]
+                if after.start - gesture.end > SHORTEST_BRIDGE_S:
+                    ends = self._ends(gesture, leaving=True), self._ends(after, leaving=False)
+                    yield bridge(gesture.end, after.start - gesture.end, *ends, library.rate)
 
     def _ends(self, gesture: PlannedGesture, leaving: bool) -> Ends:
         library = self.graph.library

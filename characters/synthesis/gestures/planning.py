@@ -3,6 +3,7 @@
 Source: Fernández-Baena 2015, sections 4.4.4 and 4.5 (M7, M9), with errata 8 to 11.
 """
 
+from bisect import bisect
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -104,9 +105,8 @@ class GesturePlanner:
         self.intensity = settings.intensity or IntensityRule.spread_over(strengths)
         """The intensity rule."""
         self._weakest, self._range = strengths.min(), max(float(np.ptp(strengths)), 1e-9)
-        self._weights = SearchWeights(
-            settings.smooth_weight, settings.time_weight, settings.variety, settings.longest_hold_s
-        )
+        smooth, time = (max(w, EQUAL_COST) for w in (settings.smooth_weight, settings.time_weight))
+        self._weights = SearchWeights(smooth, time, settings.variety, settings.longest_hold_s)
 
     @staticmethod
     def of(graph: GestureGraph, settings: GestureSettings = DEFAULT_SETTINGS) -> "GesturePlanner":
@@ -137,18 +137,8 @@ class GesturePlanner:
         favour = rng.uniform(0.0, EQUAL_COST, (*shape, len(self.graph.nodes)))
         apices = np.array([each.time for each in carried])[:, None] - leads
         strengths = [self._emphasized(each.strength, emphasis) for each in carried]
-        skip_costs = [INVALID_COST * (0.5 + strength) for strength in strengths]
-        searches = []
-        for width in sorted({1, self.settings.beam}):
-            search = BeamSearch(self.graph, self._timings, self._weights, width)
-            for number, (times, strength) in enumerate(zip(apices, strengths, strict=True)):
-                ways = search.ways(times)
-                cost = self.settings.strength_weight * self._strength_cost(strength, ways.warp)
-                ahead = None
-                if width > 1 and number + 1 < len(carried):
-                    ahead = float(apices[number + 1].max()), skip_costs[number + 1]
-                search.step(times, ways, cost, skip_costs[number], favour[number], ahead)
-            searches.append(search)
+        widths = sorted({1, self.settings.beam})
+        searches = [self._searched(width, apices, strengths, favour) for width in widths]
         best = min(searches, key=lambda search: search.cost)
         gestures, skipped = [], []
         for accent, strength, (step, state) in zip(carried, strengths, best.path(), strict=True):
@@ -157,6 +147,20 @@ class GesturePlanner:
             else:
                 gestures.append(self._gesture(accent, strength, step, state))
         return GesturePlan(self.graph, tuple(gestures), tuple(skipped), duration, best.cost)
+
+    def _searched(
+        self, width: int, apices: Array, strengths: list[float], favour: Array
+    ) -> BeamSearch:
+        """Return a finished search of a width; the greedy one, of width 1, looks no further."""
+        search = BeamSearch(self.graph, self._timings, self._weights, width)
+        skips = [INVALID_COST * (0.5 + strength) for strength in strengths]
+        for number, strength in enumerate(strengths):
+            ways, ahead = search.ways(apices[number]), None
+            cost = self.settings.strength_weight * self._strength_cost(strength, ways.warp)
+            if width > 1 and number + 1 < len(strengths):
+                ahead = float(apices[number + 1].max()), skips[number + 1]
+            search.step(apices[number], ways, cost, skips[number], favour[number], ahead)
+        return search
 
     def _emphasized(self, strength: float, emphasis: float) -> float:
         """Return the strength of an accent above the floor, with the slider, 0…1 (erratum 11)."""
@@ -204,8 +208,12 @@ def carrying(accents: Sequence[Accent], min_spacing_s: float) -> list[Accent]:
     >>> [each.time for each in carrying(accents, 0.5)]
     [1.3, 2.0]
     """
+    times: list[float] = []  # of those that were chosen, in order
     chosen: list[Accent] = []
     for accent in sorted(accents, key=lambda each: -each.strength):
-        if all(abs(accent.time - other.time) >= min_spacing_s for other in chosen):
+        place = bisect(times, accent.time)
+        beside = times[max(place - 1, 0) : place + 1]
+        if all(abs(accent.time - time) >= min_spacing_s for time in beside):
+            times.insert(place, accent.time)
             chosen.append(accent)
     return sorted(chosen, key=lambda each: each.time)

@@ -31,10 +31,10 @@ class SearchWeights:
     """What counts how much, and how long hands may be held."""
 
     smooth: float
-    """Of transitions."""
+    """Of transitions; more than 0."""
 
     time: float
-    """Of warps and holds."""
+    """Of warps and holds; more than 0."""
 
     variety: float
     """Of the phrase before once more; and of the same hands many times."""
@@ -179,13 +179,8 @@ class BeamSearch:
             The latest apex of the next accent [s], and the cost of skipping it; a state that is
             too late for it is worth that much less. None looks no further.
         """
-        number = len(self._steps)
-        ago = number - self._used[:, self._phrases]
-        repetition = np.maximum(1.0 - (ago - 1.0) / REMEMBERED, 0.0)
-        more = np.clip((self._row - SAME_HAND + 1) / 5.0, 0.0, 1.0)[:, None]
-        repetition += np.where(self._hands == self._hand[:, None], more, 0.0)
-        repetition = self._weights.variety * repetition[:, None]
-        costs = self._total(ways.smooth, ways.time) + strength + repetition + favour
+        repetition = self._repetition()
+        costs = self._total(ways.smooth, ways.time) + strength + repetition[:, None] + favour
         costs += self._cost[:, None, None]
         ends = apices[:, None] + self._timings.after_apex(ways.warp)
         late, late_skipped = self._late(ends, following)
@@ -208,14 +203,28 @@ class BeamSearch:
                 apices[pick],
                 ways.at(rows),
                 strength[rows],
-                repetition[parent, 0, node],
+                repetition[parent, node],
             )
         )
         self._end = np.where(chosen, ends[rows], self._end[parent])
         self._node = np.where(chosen, node, self._node[parent])
         self._cost = np.where(chosen, costs[rows], skipped[parent])
+        self._remember(parent, node, chosen)
+
+    def _repetition(self) -> Array:
+        """Return what it costs that gestures repeat what was played lately, (states, nodes)."""
+        ago = len(self._steps) - self._used[:, self._phrases]
+        again = np.maximum(1.0 - (ago - 1.0) / REMEMBERED, 0.0)
+        more = np.clip((self._row - SAME_HAND + 1) / 5.0, 0.0, 1.0)[:, None]
+        again += np.where(self._hands == self._hand[:, None], more, 0.0)
+        return self._weights.variety * again
+
+    def _remember(
+        self, parent: NDArray[np.intp], node: NDArray[np.intp], chosen: NDArray[np.bool_]
+    ) -> None:
+        """Keep which phrases and hands the states, (states,) each, have used."""
         self._used = self._used[parent]
-        self._used[chosen, self._phrases[node[chosen]]] = number
+        self._used[chosen, self._phrases[node[chosen]]] = len(self._steps) - 1
         same = self._hands[node] == self._hand[parent]
         row = np.where(same, self._row[parent] + 1, 1)
         self._row = np.where(chosen, row, self._row[parent])

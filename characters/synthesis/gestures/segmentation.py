@@ -60,7 +60,10 @@ class Move:
     """A hand goes from one place to another."""
 
     first: int
+    """Frame at which it begins."""
+
     last: int
+    """Frame at which it ends."""
 
     length: float
     """Distance between both places [arm lengths]."""

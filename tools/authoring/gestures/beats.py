@@ -52,7 +52,10 @@ class Beat:
     """A stroke from its top to its apex."""
 
     top: HandShape
+    """Where the stroke begins."""
+
     apex: HandShape
+    """Where it is farthest."""
 
     round_trip: bool = False
     """Whether it goes around: the apex is in the middle of the stroke."""

@@ -48,6 +48,7 @@ class UnitBeat:
     """Name in `STRENGTHS`."""
 
     hand: Hand
+    """Which hands make it."""
 
 
 @dataclass(frozen=True)
@@ -55,8 +56,13 @@ class BeatSpan:
     """When the phases of a beat begin, in frames."""
 
     hand: Hand
+    """Which hands make the stroke."""
+
     bounds: tuple[int, int, int, int, int, int]
+    """Of the five phases, and the last frame."""
+
     apex: int
+    """Of the greatest extension."""
 
 
 @dataclass(frozen=True)
