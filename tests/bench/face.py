@@ -22,6 +22,7 @@ Exits with 1 if a bar of issue 16 is missed: 2 %, one frame, 0.05 ms.
 
 import sys
 import time
+import unicodedata
 from collections.abc import Sequence
 from typing import ClassVar
 
@@ -275,7 +276,12 @@ def report_phones(console: Console, voice: Voice) -> bool:
         f"{' '.join(without) or 'none'}",
         markup=False,
     )
-    return all(symbol.startswith("(") or not symbol.isalpha() for symbol in without)
+    return all(symbol.startswith("(") or _is_mark(symbol) for symbol in without)
+
+
+def _is_mark(symbol: str) -> bool:
+    """Return whether a symbol is a mark that belongs to the letter before it."""
+    return all(unicodedata.category(letter) in ("Lm", "Mn", "Sk", "Po") for letter in symbol)
 
 
 def main() -> int:
