@@ -3,6 +3,7 @@
 Needs matplotlib, the extra `[plots]`; only `cubeling speech show` and `cubeling speak` import it.
 """
 
+import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -84,7 +85,8 @@ def save_plot(
     AppError
         The file cannot be written.
     """
-    with matplotlib.rc_context(MATPLOTLIB_STYLE):
+    with matplotlib.rc_context(MATPLOTLIB_STYLE), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing")  # the font lacks some scripts: boxes
         write_figure(draw(speech, title, gestures, settings), path, title)
 
 

@@ -1,6 +1,7 @@
 """`cubeling speech`: a table, a plot, a TextGrid, and one line for what does not work."""
 
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ from typer.testing import CliRunner
 
 from app.commands.speech import app
 from app.errors import AppError
-from app.speech_plot import GestureMark, draw
+from app.speech_plot import GestureMark, draw, save_plot
 from characters import CharacterError
 from characters.speech.speech import Phone, Speech, Word
 from characters.speech.textgrid import read_textgrid, textgrid_of, write_textgrid
@@ -73,6 +74,12 @@ def test_a_silent_recording_is_plotted():
     silent = Speech(np.zeros(8000, np.float32), RATE)
     labels = [axes.get_ylabel() for axes in draw(silent, "silence").axes]
     assert labels == ["sound", "pitch [Hz]\nand voicing", "intensity\n[dB]", "accents"]
+
+
+def test_a_script_that_the_font_lacks_is_plotted(tmp_path, speech):
+    words = (Word("你好", 0.3, 1.0), Word("😀$x$", 1.0, 2.0))
+    save_plot(tmp_path / "plot.png", replace(speech, words=words), "你好 😀.wav")
+    assert (tmp_path / "plot.png").stat().st_size > 5000
 
 
 def test_gestures_that_overlap_have_lanes_of_their_own(speech):
