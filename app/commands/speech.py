@@ -18,7 +18,7 @@ from app.commands.output import (
     needs_matplotlib,
 )
 from app.errors import AppError
-from characters.speech.accents import AccentSettings, accents_of
+from characters.speech.accents import AccentSettings, accents_of, syllable_nuclei
 from characters.speech.alignment import align as align_by_warping
 from characters.speech.alignment import align_with_sphinx
 from characters.speech.audio import read_speech
@@ -143,8 +143,8 @@ def describe(console: Console, speech: Speech, settings: AccentSettings) -> None
     voiced = prosody.f0[prosody.f0 > 0]
     spoken = speech.duration - float((prosody.pauses[:, 1] - prosody.pauses[:, 0]).sum())
     facts = [f"{speech.duration:.2f} s, {speech.rate} Hz", f"{spoken:.2f} s without pauses"]
-    if speech.words:
-        facts.append(f"{len(speech.words) / max(spoken, 1e-3):.1f} words a second")
+    syllables = len(syllable_nuclei(prosody, speech.phones).times)
+    facts.append(f"{syllables / max(spoken, 1e-3):.1f} syllables a second")
     if len(voiced):
         low, middle, high = np.quantile(voiced, (0.05, 0.5, 0.95))
         facts.append(f"pitch {middle:.0f} Hz ({low:.0f} to {high:.0f})")

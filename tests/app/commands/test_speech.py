@@ -52,7 +52,7 @@ def run(*arguments):
 def test_the_table_names_the_word_of_an_accent(recording):
     output = run("show", recording, "--textgrid", recording.with_suffix(".TextGrid"))
     assert "2.00 s, 16000 Hz" in output
-    assert "words a second" in output
+    assert "1.2 syllables a second" in output
     (row,) = [
         line for line in output.splitlines() if "1.00" in line and " s " in line and "Hz" in line
     ]
