@@ -96,7 +96,8 @@ class NodeMeasures:
         """Measure nodes of a library, and rest."""
         clips = [_turns(library, node) for node in nodes]
         clips.append(np.repeat(library.rest[None], 2, axis=0))
-        starts = np.concatenate([[0], np.cumsum([len(clip) for clip in clips])])
+        ends = np.concatenate([clip[[0, 1, -2, -1]] for clip in clips])  # with their velocities
+        starts = np.arange(0, len(ends) + 1, 4)
         motions = MotionLibrary(
             library.skeleton,
             library.anatomy,
@@ -104,14 +105,14 @@ class NodeMeasures:
             tuple(map(str, range(len(clips)))),
             starts,
             np.zeros(len(clips), bool),
-            library.poses(np.concatenate(clips)),
-            np.zeros((starts[-1], 3)),
-            np.zeros((starts[-1], 0), bool),
+            library.poses(ends),
+            np.zeros((len(ends), 3)),
+            np.zeros((len(ends), 0), bool),
         )
         joints = joint_weights(library, weights)
-        ends = starts[1:] - 1, starts[:-1]
+        pairs = starts[1:] - 1, starts[:-1]
         distances, halves = (
-            JointAngles(motions, joints, velocity, height=0.0).block(*ends).astype(float)
+            JointAngles(motions, joints, velocity, height=0.0).block(*pairs).astype(float)
             for velocity in (VELOCITY_INFLUENCE, 0.0)
         )
         columns = [library.joints.index(joint) for joint in joints]

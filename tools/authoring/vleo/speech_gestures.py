@@ -62,13 +62,13 @@ class HeadPosture:
 
 
 BEATS = {
-    "nod": (HeadPosture(8, 0, 10, tail=-4), HeadPosture(-15, 0, -13, tail=9)),
-    "toss": (HeadPosture(-12, 0, -10, tail=6), HeadPosture(13, 0, 16, tail=-3)),
+    "nod": (HeadPosture(6, 0, 6, tail=-4), HeadPosture(-13, 0, -8, tail=9)),
+    "toss": (HeadPosture(-13, 0, -5, tail=6), HeadPosture(9, 0, 6, tail=-3)),
     "thrust": (HeadPosture(14, 0, -4, tail=-4), HeadPosture(-24, 0, 18, tail=12)),
-    "swing": (HeadPosture(4, -9, 4, -7, 5, wag=8), HeadPosture(-7, 17, -7, 13, -8, wag=-16)),
+    "swing": (HeadPosture(4, -9, 2, -7, 5, wag=8), HeadPosture(-7, 17, -4, 13, -8, wag=-16)),
     "tilt": (HeadPosture(6, -3, 5, 0, -6, wag=4), HeadPosture(-8, 4, -6, 4, 18, wag=-8)),
 }
-"""Postures at the top of the stroke and at its apex, by name."""
+"""Postures at the top of the stroke and at its apex, by name; the face stays in view."""
 
 UNITS = (
     ("nod", "tilt", "nod"),

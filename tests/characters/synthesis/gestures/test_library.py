@@ -1,11 +1,17 @@
 """The .gestures file, and the bundled library."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from characters import Character
 from characters.errors import CharacterError
+from characters.speech.speech import Accent
 from characters.synthesis.archive import skeleton_identity
 from characters.synthesis.gestures.library import STEP_RAD, GestureLibrary, gesture_joints
+from characters.synthesis.gestures.planning import GesturePlanner
+from tools.authoring.speakers import GESTURES
 
 
 def test_a_library_comes_back_from_its_file(library, tmp_path):
@@ -66,6 +72,37 @@ def test_databases_are_the_stronger_and_the_weaker_phrases(library):
     assert library.database("full") is library
     with pytest.raises(CharacterError, match="there are aggressive, neutral, full"):
         library.database("loud")
+
+
+@pytest.mark.parametrize("name", ["human", "vleo"])
+def test_a_bundled_library_is_what_the_authoring_makes(name):
+    character = Character.load(name)
+    shipped, made = character.gestures, GESTURES[name](character)
+    assert shipped is not None
+    assert [each.bounds for each in shipped.phrases] == [each.bounds for each in made.phrases]
+    assert shipped.strengths == pytest.approx(made.strengths, abs=1e-3)
+    for one, other in zip(shipped.recordings, made.recordings, strict=True):
+        assert np.abs(one.turns - other.turns).max() < 2 * STEP_RAD
+
+
+def test_vleo_speaks_with_neck_head_and_tail_while_his_trunk_carries_standing_legs():
+    vleo = Character.load("vleo")
+    library = vleo.gestures
+    assert library is not None
+    moved = {vleo.skeleton.names[joint] for joint in library.joints}
+    assert moved == {"neck1", "neck2", "neck3", "head", *(f"tail{n}" for n in range(1, 6))}
+    plan = GesturePlanner(library).plan([Accent(1.0, 0.9), Accent(2.0, 0.7)], 3.0)
+    assert len(plan.gestures) == 2
+
+
+@pytest.mark.parametrize(
+    "bounds", [(-1, 0, 1, 2, 3, 4), (0, 0, 5, 5, 6, 7), (0, 1, 2, 3, 4, 10**6)]
+)
+def test_a_phrase_that_is_not_in_its_recording_is_refused(library, tmp_path, bounds):
+    wrong = replace(library.phrases[0], bounds=bounds)
+    replace(library, phrases=(wrong,)).save(tmp_path / "c.gestures")
+    with pytest.raises(CharacterError, match="not in its recording"):
+        GestureLibrary.load(tmp_path / "c.gestures")
 
 
 def test_only_the_upper_body_moves(human, library):
