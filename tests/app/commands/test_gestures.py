@@ -6,11 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from app.cli import COMMANDS
 from characters import Character, Clip
 from characters.synthesis.gestures.library import GestureLibrary
-
-pytestmark = pytest.mark.skipif("gestures" not in COMMANDS, reason="the command is not listed")
 
 
 @pytest.fixture(scope="module")
