@@ -35,6 +35,7 @@ from characters.speech.alignment import align
 from characters.speech.audio import read_speech
 from characters.speech.mouth import phones_from_sound
 from characters.speech.prosody import utterance_of
+from characters.speech.saying import say
 from characters.speech.speech import Speech
 from characters.speech.tagged_text import TaggedText
 from characters.speech.voices.feeling import manner_of
@@ -196,7 +197,7 @@ def _read(file: Path) -> str:
 def _spoken(text: str, language: str, emotion: Emotion | None, command: str | None) -> Speech:
     """Return a text as the voice speaks it."""
     with open_voice(command) as voice:
-        return voice.say(text, language, manner_of(emotion))
+        return say(voice, text, language, manner_of(emotion))
 
 
 def _heard(audio: Path, tagged: TaggedText, language: str, command: str | None) -> Speech:

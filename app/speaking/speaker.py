@@ -12,6 +12,7 @@ from app.speaking.moments import LineRequest, Moments
 from characters import CharacterError
 from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
 from characters.speech.prosody import utterance_of
+from characters.speech.saying import say
 from characters.speech.tagged_text import TaggedText
 from characters.speech.voices import Voice
 from characters.synthesis.gestures.library import GestureLibrary
@@ -184,6 +185,6 @@ def spoken(voice: Voice, request: LineRequest, profile: SpeechProfile) -> Spoken
         The voice failed, or the tags of the line do not fit together.
     """
     tagged = TaggedText.read(request.text)
-    speech = voice.say(tagged.text, request.language, request.manner)
+    speech = say(voice, tagged.text, request.language, request.manner)
     utterance = utterance_of(speech, tagged, profile.accents)
     return SpokenLine(utterance, speech.samples, speech.rate, profile)

@@ -183,14 +183,11 @@ class AffectDisplay:
 
     def _room_beside(self, values: list[float], acting: float) -> float:
         """Return the room that the clips leave for an emotion, 0…1."""
-        room = room_beside_mouth([values[number] for number in self._speech])
+        speaking = 0.0
+        if self._speech:
+            loudest = max([values[number] for number in self._speech])
+            speaking = (loudest - SPEECH_START) / (SPEECH_FULL - SPEECH_START)
         if acting > 0.0:
             strongest = max(values[number] for number, _ in self._parts)
-            room = min(room, max(1.0 - acting * strongest / FULL_EXPRESSION, 0.0))
-        return room
-
-
-def room_beside_mouth(weights: Sequence[float]) -> float:
-    """Return the room, 0…1, that clips with these weights of mouth morphs leave for others."""
-    loudest = max(weights, default=0.0)
-    return 1.0 - min(max((loudest - SPEECH_START) / (SPEECH_FULL - SPEECH_START), 0.0), 1.0)
+            speaking = max(speaking, acting * strongest / FULL_EXPRESSION)
+        return 1.0 - min(max(speaking, 0.0), 1.0)

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from characters.face.affect_display import RETURN_LAG_S, YIELD_LAG_S, room_beside_mouth
 from characters.face.brows import FALLING_S, AccentBrows
 from characters.face.composition import SpeakingExpression
 from characters.face.expressions import ExpressionMorphs
@@ -20,7 +19,6 @@ from characters.face.visemes.mouth_morphs import MouthMorphs, jaw_opening
 from characters.face.visemes.sets import SHAPES
 from characters.motion.curves import ease
 from characters.skeleton.pose import Array
-from characters.smoothing import low_pass
 from characters.speech.speech import Utterance
 
 LEAD_S = 0.02
@@ -42,7 +40,8 @@ _CLOSED = np.zeros((len(LEVELS), len(SHAPES)))
 class SpeechDisplay:
     """The speaking face of one character.
 
-    An action that moves the mouth itself, such as a kiss, has priority over the speech.
+    The mouth belongs to the speech, also in an action that would move it, such as a kiss: it is
+    the voice that is heard.
     """
 
     def __init__(
@@ -60,7 +59,7 @@ class SpeechDisplay:
         self._track: MouthTrack | None = None
         self._shapes = self._before = _CLOSED
         self._since = self._length = CLOSING_S
-        self._presence, self._raised, self._room = 0.0, 0.0, 1.0
+        self._presence, self._raised = 0.0, 0.0
 
     @property
     def active(self) -> bool:
@@ -76,7 +75,7 @@ class SpeechDisplay:
     @property
     def opening(self) -> float:
         """How far the jaw is open, 0…1."""
-        return self._room * jaw_opening(self._shapes)
+        return jaw_opening(self._shapes)
 
     def update(
         self, elapsed: float, said: tuple[Utterance, float] | None, now: float, emphasis: float
@@ -112,29 +111,21 @@ class SpeechDisplay:
         self._before = self._shapes
         self._since, self._length = 0.0, CLOSING_S if said is None else SWITCH_S
 
-    def apply(self, weights: Array, clips: Array | None, elapsed: float, closed: float) -> None:
+    def apply(self, weights: Array, closed: float) -> None:
         """Lay the speech over morph weights (morphs,) with an expression on them, in place.
 
-        `clips` are the weights that the clips have, `closed` is how far a blink closes the lids,
-        0…1, and `elapsed` the time since the last call [s].
+        `closed` is how far a blink closes the lids, 0…1.
         """
-        room = 1.0
-        if clips is not None:
-            shown = clips.tolist()
-            room = room_beside_mouth([shown[number] for number in self._clips])
-        if room != self._room:
-            lag = YIELD_LAG_S if room < self._room else RETURN_LAG_S
-            self._room = low_pass(self._room, room, elapsed, lag)
         values = weights.tolist()  # plain numbers are quicker than arrays
         if self._presence > 0.0 and self._mouth:
-            presence = ease(self._presence, "cubic") * self._room
+            presence = ease(self._presence, "cubic")
             self._expression.apply(values, presence)
             for number in self._clips:
                 values[number] *= 1.0 - presence
         if self._mouth:
             spoken = self._mouth.of_shapes(self._shapes).tolist()
             for number, weight in zip(self._numbers, spoken, strict=True):
-                values[number] += self._room * weight
+                values[number] += weight
         if self._raised > 0.0:
             self._brows.apply(values, self._raised, closed)
         weights[:] = values

@@ -107,7 +107,7 @@ def plain_weights(character: Character, said: Utterance, times: Array) -> Array:
     for now in times.tolist():
         display.update(1 / FRAME_RATE, (said, 0.0), now, 0.0)
         row = np.zeros(len(character.morphs))
-        display.apply(row, None, 1 / FRAME_RATE, 0.0)
+        display.apply(row, 0.0)
         rows.append(row)
     return np.array(rows)
 

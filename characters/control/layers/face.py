@@ -53,7 +53,7 @@ class FaceLayer:
         shown = Pose(pose.translations, pose.rotations, pose.scales, weights)
         if not self._speech.active:
             return shown
-        self._speech.apply(weights, pose.morphs, context.elapsed, closed)
+        self._speech.apply(weights, closed)
         return shown if self._speech.has_morphs else self._jaw.opened(shown, self._speech.opening)
 
     def _update_speech(self, context: FrameContext) -> None:

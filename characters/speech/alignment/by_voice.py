@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
-from characters.speech.alignment.closures import with_closures
 from characters.speech.alignment.mfcc import HOP_S, cepstra
 from characters.speech.alignment.warping import warp
+from characters.speech.closures import with_closures
 from characters.speech.frames import runs
 from characters.speech.phones import fill_pauses
 from characters.speech.speech import SILENCE, Phone, Speech, Word

@@ -148,15 +148,17 @@ def test_a_speech_that_a_replay_makes_anew_is_the_same_speech(speaker):
     assert np.array_equal(shown(speaker, anew), shown(speaker, commands(SYLLABLES, 2.0)))
 
 
-def test_a_kiss_keeps_its_mouth(speaker):
+def test_the_mouth_of_a_kiss_gives_way_to_a_speech_and_returns(speaker):
     if speaker.name != "vleo":
         pytest.skip("only Vleo kisses")
     plain = shown(speaker, commands(None, 2.6, action="kiss"))
-    spoke = shown(speaker, commands(spoken(*[("ɑ", 0.2)] * 10), 2.6, action="kiss"))
-    pout = speaker.morphs.index("ou")
+    said = spoken(*[("ɑ", 0.2)] * 10)
+    spoke = shown(speaker, commands(said, 2.6, action="kiss"))
+    pout, opened = (speaker.morphs.index(name) for name in ("ou", "viseme_aa"))
     kissing = plain[:, pout] > 0.9
     assert kissing.any()
-    assert spoke[kissing, pout] == pytest.approx(plain[kissing, pout], abs=0.3)
+    assert spoke[kissing, pout].max() < 0.01
+    assert spoke[kissing, opened].min() > 0.5
 
 
 def test_brows_rise_with_most_accents_and_not_always_alike(speaker):

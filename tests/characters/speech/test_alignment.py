@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from characters.errors import CharacterError
 from characters.speech.alignment import align, align_with_sphinx
-from characters.speech.alignment.closures import with_closures
 from characters.speech.alignment.warping import warp
 from characters.speech.audio import resampled
+from characters.speech.closures import with_closures
 from characters.speech.speech import SILENCE, Phone, Speech, Word
 from characters.speech.voices import Manner
 from characters.speech.words import with_every_word
