@@ -235,7 +235,9 @@ class Playground:
         if replay.command is not None:
             outcome = replace(outcome, command=replay.command)
         self._lap("scenario")
-        posed = replay.posed or self.animate(outcome.command)
+        posed = (
+            self.animate(outcome.command) if replay.posed is None else self._fitted(replay.posed)
+        )
         self._posed = posed
         self._lap("animation")
         picture = self.draw(frame, state, controls, outcome, posed) if drawn else None
@@ -327,6 +329,14 @@ class Playground:
         """Return a step with its picture, which `step` left out."""
         picture = self.draw(step.frame, step.state, step.controls, step.outcome, step.posed)
         return replace(step, picture=picture)
+
+    def _fitted(self, posed: PosedCharacter) -> PosedCharacter:
+        """Return a recorded pose for today's character, which may have got more morphs."""
+        morphs, count = posed.pose.morphs, len(self.character.morphs)
+        if morphs is None or len(morphs) >= count:
+            return posed
+        padded = np.concatenate([morphs, np.zeros(count - len(morphs))])
+        return replace(posed, pose=replace(posed.pose, morphs=padded))
 
     def _subjects(
         self, state: CubeState, controls: CubeControls, posed: PosedCharacter

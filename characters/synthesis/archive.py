@@ -6,6 +6,7 @@ skeleton with its identity.
 
 import hashlib
 import json
+import tokenize
 import zipfile
 import zlib
 from collections.abc import Callable, Mapping
@@ -74,6 +75,7 @@ class ArchiveFormat:
         except (
             *(CharacterError, zipfile.BadZipFile, zlib.error),
             *(EOFError, IndexError, KeyError, TypeError, ValueError),
+            *(NotImplementedError, tokenize.TokenError),  # of zipfile, and of numpy's headers
         ) as error:
             reason = " ".join(str(error).split())[:80]
             raise CharacterError(
