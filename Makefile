@@ -54,6 +54,12 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.standing
 	$(BIN)/python -m tests.bench.postures
 	$(BIN)/python -m tests.bench.upper_body
+	$(BIN)/python -m tests.bench.pitch
+	$(BIN)/python -m tests.bench.alignment
+	$(BIN)/python -m tests.bench.accents
+	$(BIN)/python -m tests.bench.gestures
+	$(BIN)/python -m tests.bench.face
+	$(BIN)/python -m tests.bench.speaking
 	$(BIN)/python -m tests.bench.picture
 	$(BIN)/python -m tests.bench.panels
 	$(BIN)/python -m tests.bench.looks
@@ -79,6 +85,7 @@ assets: .venv/ready-dev  ## make the bundled characters again
 pictures: .venv/ready-dev  ## draw the pictures of the documents again
 	$(BIN)/python -m tools.pictures
 	$(BIN)/python -m tools.sound_sheet
+	$(BIN)/python -m tools.face_sheet
 	$(BIN)/python -m tools.wiring
 	$(BIN)/python -m tests.robot.conformance.picture
 

@@ -1,5 +1,6 @@
 """`cubeling speech`."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -18,7 +19,14 @@ from app.commands.output import (
     needs_matplotlib,
 )
 from app.errors import AppError
-from characters.speech.accents import AccentSettings, accents_of, syllable_nuclei
+from characters import Character
+from characters.control.speech_profile import DEFAULT_PROFILE
+from characters.speech.accents import (
+    AccentSettings,
+    accents_of,
+    detect_accents,
+    syllable_nuclei,
+)
 from characters.speech.alignment import align as align_by_warping
 from characters.speech.alignment import align_with_sphinx
 from characters.speech.audio import read_speech
@@ -26,6 +34,7 @@ from characters.speech.contours import measure_prosody
 from characters.speech.speech import Accent, Speech
 from characters.speech.textgrid import read_textgrid, textgrid_of, with_textgrid, write_textgrid
 from characters.speech.voices import espeak
+from characters.synthesis.gestures.plan import PlannedGesture
 
 MAX_PLOT_S = 120.0
 """Longest speech that is plotted [s]."""
@@ -52,12 +61,16 @@ def show(
     threshold: Annotated[
         float, typer.Option(min=0.0, max=1.0, help="Least strength of an accent.")
     ] = AccentSettings.threshold,
+    character: Annotated[
+        str, typer.Option(help="Whose gestures are plotted: bundled, or a .glb file.")
+    ] = "human",
     output: PlotOption = None,
     overwrite: OverwriteOption = False,
 ) -> None:
     """Show a recording: duration, speech rate, pitch and pitch accents.
 
-    The plot also shows waveform, intensity and voicing, and words and phones if the text is known.
+    The plot also shows waveform, intensity and voicing, words and phones if the text is known, and
+    the gestures with which a character would say it.
     It needs matplotlib: [cyan]pip install matplotlib[/]
 
     Example: [cyan]cubeling speech show talk.wav --text "Hello there" -o talk.png[/]
@@ -79,9 +92,24 @@ def show(
     if output is None:
         return
     with needs_matplotlib():
-        from app.speech_plot import save_plot
-    save_plot(output, speech, file.name, settings=settings)
+        from app.speech_plot import GestureMark, save_plot
+    accents = detect_accents(speech.samples, speech.rate, settings, speech.phones)
+    marks = [
+        GestureMark(each.node.phrase.hand, each.start, each.apex, each.end, tuple(each.phases))
+        for each in planned_gestures(character, accents, speech.duration)
+    ]
+    save_plot(output, speech, file.name, marks, settings)
     console.print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
+
+
+def planned_gestures(
+    character: str, accents: Sequence[Accent], duration: float
+) -> tuple[PlannedGesture, ...]:
+    """Return the gestures with which a character would say it; () for one without gestures."""
+    gestures = Character.load(character).gestures
+    if gestures is None:
+        return ()
+    return DEFAULT_PROFILE.planner(gestures).plan(accents, duration).gestures
 
 
 @app.command()
