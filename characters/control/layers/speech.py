@@ -36,7 +36,7 @@ HANDS_FREE = {"idle": 1.0, "walk": 0.8, "run": 0.3}
 FREE_LAG_S = 0.2
 """Lag with which hands become free, and are taken [s]."""
 
-HANDS_SHARE = 0.6
+HANDS_SHARE = 0.4
 """Share of the head's beats that is left to a character whose hands beat too."""
 
 

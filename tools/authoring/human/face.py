@@ -3,11 +3,12 @@
 They are exaggerated because on the table the whole face is only forty pixels high.
 """
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from tools.authoring.modelling.curves import smoothstep
+from tools.authoring.modelling.expressions import all_morphs
 from tools.authoring.modelling.shapes import Array
 
 
@@ -189,24 +190,8 @@ _PARTS = {
 """Movements of one part of the face, by ARKit's names."""
 
 
-def _mouth_of(face: HumanExpression) -> HumanExpression:
-    """Return the mouth of an expression, with eyes, brows and cheeks at rest."""
-    names = [field.name for field in fields(face)]
-    mouth = {name: getattr(face, name) for name in names[names.index("width") :]}
-    return replace(NEUTRAL, **mouth | {"cheeks": NEUTRAL.cheeks})
-
-
-EXPRESSIONS = (
-    _MOODS
-    | {f"viseme_{name}": shape for name, shape in _VISEMES.items()}
-    | {
-        f"{name}Mouth": _mouth_of(_MOODS[name])
-        for name in ("happy", "angry", "sad", "surprised", "relaxed")
-    }
-    | _PARTS
-)
-"""Every morph: expressions and vowels by VRM's names, visemes, the mouths of the expressions alone,
-and parts of the face. New ones come last, since clips refer to them by number."""
+EXPRESSIONS = all_morphs(NEUTRAL, _MOODS, _VISEMES, _PARTS)
+"""Every morph: expressions and vowels by VRM's names, visemes, and parts of the face."""
 
 MOUTH_CENTRE_M = np.array([0.0, 1.327])
 """x and y of the centre of the closed mouth [m]."""

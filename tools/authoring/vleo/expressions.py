@@ -3,11 +3,12 @@
 They are exaggerated because on the table the whole head is only sixty pixels high.
 """
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from characters.skeleton import rotations
+from tools.authoring.modelling.expressions import all_morphs
 from tools.authoring.modelling.shapes import Array
 
 
@@ -164,24 +165,8 @@ _PARTS = {
 """Movements of one part of the face, by ARKit's names."""
 
 
-def _mouth_of(face: VleoExpression) -> VleoExpression:
-    """Return the mouth of an expression, with eyes, brows and cheeks at rest."""
-    names = [field.name for field in fields(face)]
-    mouth = {name: getattr(face, name) for name in names[names.index("width") :]}
-    return replace(NEUTRAL, **mouth | {"cheeks": NEUTRAL.cheeks})
-
-
-EXPRESSIONS = (
-    _MOODS
-    | {f"viseme_{name}": shape for name, shape in _VISEMES.items()}
-    | {
-        f"{name}Mouth": _mouth_of(_MOODS[name])
-        for name in ("happy", "angry", "sad", "surprised", "relaxed")
-    }
-    | _PARTS
-)
-"""Every morph: expressions and vowels by VRM's names, visemes, the mouths of the expressions alone,
-and parts of the face. New ones come last, since clips refer to them by number."""
+EXPRESSIONS = all_morphs(NEUTRAL, _MOODS, _VISEMES, _PARTS)
+"""Every morph: expressions and vowels by VRM's names, visemes, and parts of the face."""
 
 JAW_HINGE_M = np.array([0.0, 0.2235, 0.124])
 """Axis of the jaw [m]."""
