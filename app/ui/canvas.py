@@ -1,8 +1,10 @@
 """Cards over the picture, drawn at the size at which they are shown."""
 
+import importlib.util
 from copy import copy
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -17,6 +19,9 @@ PICTURE_HEIGHT = 720.0
 
 SUBPIXEL_BITS = 4
 """Fractional bits of the coordinates that OpenCV draws with."""
+
+WIDE_FONT = Path("assets/fonts/Roboto/Roboto-Regular.ttf")
+"""The font of imgui-bundle with the letters that Pillow's lacks, also the panels' second font."""
 
 _ANGLES = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
 UNIT_CIRCLE = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=1)
@@ -143,11 +148,32 @@ class Canvas:
 @lru_cache(maxsize=256)
 def text_mask(words: str, size: int) -> tuple[NDArray[np.uint8], int]:
     """Return the coverage of a line of text (height, width), and its ascent [px]."""
-    font = ImageFont.load_default(max(6, size))
+    font = _font(words, max(6, size))
     left, top, right, bottom = (round(side) for side in font.getbbox(words, anchor="ls"))
     image = Image.new("L", (max(1, right - left + 2), max(1, bottom - top + 2)))
     ImageDraw.Draw(image).text((1 - left, 1 - top), words, 255, font, anchor="ls")
     return np.asarray(image, np.uint8), 1 - top
+
+
+def _font(words: str, size: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
+    """Return the font of the cards, which is Pillow's own, or one that has letters with accents."""
+    foreign = any(not letter.isascii() and (letter.isalpha() or letter in "¡¿") for letter in words)
+    spec = importlib.util.find_spec("imgui_bundle") if foreign else None
+    if spec is None or spec.origin is None:
+        return ImageFont.load_default(size)
+    return ImageFont.truetype(Path(spec.origin).parent / WIDE_FONT, size)
+
+
+def can_be_written(words: str) -> bool:
+    """Return whether there are glyphs for words: for Latin, Greek and Cyrillic ones.
+
+    >>> can_be_written("¿Qué? Ça alors!"), can_be_written("你好")
+    (True, False)
+    """
+    return all(
+        not letter.isalpha() or ord(letter) < 0x530 or 0x1E00 <= ord(letter) < 0x2000
+        for letter in words
+    )
 
 
 def text_width(words: str, size: float) -> float:

@@ -2,7 +2,7 @@
 
 from functools import lru_cache
 
-from app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
+from app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, can_be_written, text_width
 from app.ui.palette import INK
 from characters.control.command import SpeechIntent
 from characters.speech.speech import Utterance
@@ -24,9 +24,11 @@ BOTTOM_MARGIN = 24.0
 def subtitle(speech: SpeechIntent | None, now: float) -> str:
     """Return the part of a line that is being said at a time [s]; "" for nothing.
 
+    Also nothing for words in a script without glyphs.
+
     A long line is shown in parts, each from its first word on.
     """
-    if speech is None:
+    if speech is None or not can_be_written(speech.utterance.text):
         return ""
     shown = ""
     for start, words in parts(speech.utterance):

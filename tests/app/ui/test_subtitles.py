@@ -1,6 +1,8 @@
 """Subtitles: what is being said, in parts that can be read."""
 
-from app.ui.canvas import text_width
+import numpy as np
+
+from app.ui.canvas import text_mask, text_width
 from app.ui.subtitles import MAX_LETTERS, SIZE, parts, subtitle, wrapped
 from characters.control.command import SpeechIntent
 from characters.speech.speech import Utterance, Word
@@ -45,3 +47,12 @@ def test_lines_are_as_wide_as_there_is_room():
     lines = wrapped(TEXT, 300.0)
     assert " ".join(lines) == TEXT
     assert all(text_width(line, SIZE) <= 300.0 for line in lines)
+
+
+def test_letters_with_accents_have_glyphs_and_scripts_without_are_not_shown():
+    missing = text_mask("你", 60)[0]  # the same font, which lacks it
+    for letter in "ñáéíóúü¡¿çàèßøłдΩ":
+        mask = text_mask(letter, 60)[0]
+        assert mask.shape != missing.shape or not np.array_equal(mask, missing), letter
+    assert subtitle(SpeechIntent(Utterance("¡Mañana!", "es", 1.0), 0.0), 0.5) == "¡Mañana!"
+    assert subtitle(SpeechIntent(Utterance("你好", "cmn", 1.0), 0.0), 0.5) == ""
