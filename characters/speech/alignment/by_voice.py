@@ -39,6 +39,9 @@ MIN_PAUSE_S = 0.15
 SILENT = 1e-3
 """Peak below which a recording is silent."""
 
+MIN_S = 0.1
+"""Shortest recording that is aligned [s]."""
+
 TEMPO = (0.25, 4.0)
 """How fast the speaker may be beside the voice."""
 
@@ -51,7 +54,7 @@ def align(recording: Speech, text: str, voice: Voice, language: str = "en") -> S
     Raises
     ------
     CharacterError
-        The recording is silent or too long, the text is much too long or short for it, or the
+        The recording is silent, too short or too long, the text is much too long or short for it, or the
         voice cannot say it.
     """
     if recording.duration > MAX_S:
@@ -61,6 +64,10 @@ def align(recording: Speech, text: str, voice: Voice, language: str = "en") -> S
         )
     if float(np.abs(recording.samples).max(initial=0.0)) < SILENT:
         raise CharacterError("the recording is silent: there is nothing to align")
+    if recording.duration < MIN_S:
+        raise CharacterError(
+            f"the recording lasts {1e3 * recording.duration:.0f} ms: too short for a word"
+        )
     spoken = cepstra(recording.samples, recording.rate)
     frames = _sounding(spoken.level)
     features = spoken.features[frames]

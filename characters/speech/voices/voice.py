@@ -37,6 +37,9 @@ MAX_TEXT = 20_000
 MAX_BYTES = 200_000_000
 """Longest answer [B]: more than an hour of sound."""
 
+SHORTEST_S = 0.05
+"""A shorter answer says nothing: the text has signs only [s]."""
+
 QUIET = 0.004
 """Root mean square of samples below which a phone without a symbol is a pause."""
 
@@ -103,12 +106,15 @@ class Voice:
             "range": manner.range,
         }
         try:
-            return self._ask(request).speech(text, language)
+            speech = self._ask(request).speech(text, language)
         except VoiceError:
             raise
         except (OSError, ValueError, KeyError, TypeError) as error:
             self.close()
             raise VoiceError(f"the voice '{self._command[0]}' failed: {error}") from error
+        if speech.duration < SHORTEST_S:
+            raise VoiceError(f"there is nothing to say in '{text.strip()[:40]}'")
+        return speech
 
     def close(self) -> None:
         """End the program; a second call does nothing."""

@@ -71,6 +71,7 @@ def test_other_sample_rates_are_aligned(spoken_voice, rate):
         (np.zeros(32_000), TEXT, "silent"),
         (np.zeros(10), TEXT, "silent"),
         (np.zeros(0), TEXT, "silent"),
+        (np.full(10, 0.1), TEXT, "too short for a word"),
         (np.random.default_rng(1).normal(0, 0.1, 16_000), TEXT * 5, "do not belong together"),
         (np.random.default_rng(1).normal(0, 0.1, 320_000), "Hi", "do not belong together"),
         (np.random.default_rng(1).normal(0, 0.1, 16_000), "...", "nothing to say"),

@@ -129,3 +129,9 @@ def test_a_voice_that_hangs_is_given_up():
 def test_nonsense_from_a_voice_is_one_line(lines):
     with program(*lines) as voice, pytest.raises(VoiceError):
         voice.say("Hello")
+
+
+@needs_espeak
+def test_a_text_without_a_word_is_one_line(voice):
+    with pytest.raises(VoiceError, match=r"nothing to say in '\.\.\.'"):
+        voice.say("...")
