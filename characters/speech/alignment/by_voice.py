@@ -54,8 +54,8 @@ def align(recording: Speech, text: str, voice: Voice, language: str = "en") -> S
     Raises
     ------
     CharacterError
-        The recording is silent, too short or too long, the text is much too long or short for it, or the
-        voice cannot say it.
+        The recording is silent, too short or too long, the text is much too long or short for it,
+        or the voice cannot say it.
     """
     if recording.duration > MAX_S:
         raise CharacterError(
