@@ -107,6 +107,22 @@ def speak(
         float | None,
         _profile_option("--threshold", "How alike gestures are that follow each other; 0: enough."),
     ] = None,
+    neck_weight: Annotated[
+        float | None,
+        _profile_option("--neck-weight", "Weight of the neck where postures are compared."),
+    ] = None,
+    spine_weight: Annotated[
+        float | None,
+        _profile_option("--spine-weight", "Weight of the spine where postures are compared."),
+    ] = None,
+    arm_weight: Annotated[
+        float | None,
+        _profile_option("--arm-weight", "Weight of the upper arms where postures are compared."),
+    ] = None,
+    forearm_weight: Annotated[
+        float | None,
+        _profile_option("--forearm-weight", "Weight of the forearms where postures are compared."),
+    ] = None,
     gesture_emphasis: Annotated[
         float | None, _profile_option("--gesture-emphasis", "Stronger or weaker gestures, -1 to 1.")
     ] = None,
@@ -132,6 +148,10 @@ def speak(
     given = {
         "database": database,
         "threshold": threshold,
+        "neck_weight": neck_weight,
+        "spine_weight": spine_weight,
+        "arm_weight": arm_weight,
+        "forearm_weight": forearm_weight,
         "gesture_emphasis": gesture_emphasis,
         "face_emphasis": face_emphasis,
         "visemes": visemes,

@@ -162,10 +162,10 @@ class LiveSpeaker:
         self._voice.close()
 
     def _run(self, gestures: GestureLibrary | None) -> None:
-        if gestures is not None:
-            self.profile.planner(gestures)  # takes longer than a frame
         failures = 0
+        self._prepare(gestures)
         while (request := self._requests.get()) is not None:
+            self._prepare(gestures)
             try:
                 self._said.put(spoken(self._voice, request, self.profile))
                 failures = 0
@@ -174,6 +174,11 @@ class LiveSpeaker:
                 failures += 1
                 if failures == MAX_FAILURES:
                     self.problem = str(error)
+
+    def _prepare(self, gestures: GestureLibrary | None) -> None:
+        """Make what plans the gestures, which takes longer than a frame, unless it is there."""
+        if gestures is not None:
+            self.profile.planner(gestures)
 
 
 def spoken(voice: Voice, request: LineRequest, profile: SpeechProfile) -> SpokenLine:

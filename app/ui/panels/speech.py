@@ -12,11 +12,12 @@ SLIDERS = {
     "face_emphasis": "Face",
     "accent_threshold": "Accents from",
     "accent_distance": "Between accents [s]",
+    "threshold": "Gestures' unlikeness",
 }
 """The numbers that can be changed while it plays, with their names."""
 
-MAX_SHOWN_DISTANCE_S = 1.5
-"""Right end of the slider between accents [s]."""
+MAX_SHOWN = 1.5
+"""Right end of sliders whose values may be larger."""
 
 
 def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
@@ -74,7 +75,7 @@ def _settings(monitor: SessionMonitor, profile: SpeechProfile) -> tuple[Widget, 
 
 def _range(name: str) -> tuple[float, float]:
     low, high = RANGES[name]
-    return low, min(high, MAX_SHOWN_DISTANCE_S)
+    return low, min(high, MAX_SHOWN)
 
 
 SPEECH = Panel("speech", "Speech", 316.0, content)
