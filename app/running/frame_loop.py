@@ -4,6 +4,7 @@ import time
 from dataclasses import replace
 
 from app.pipeline.scenario import Inputs
+from app.pipeline.spoken_line import SpokenLine
 from app.pipeline.step import ReplayInputs, Step
 from app.running.opened_session import OpenedSession
 from app.running.summary import Summary
@@ -17,6 +18,7 @@ class FrameLoop:
         self._session, self._summary = session, summary
         self._inputs = Inputs()
         self._start_over = False
+        self._line: SpokenLine | None = None
         self._index = 0
         self._replay: ReplayInputs | None = None
         self._hidden: Step | None = None
@@ -28,7 +30,7 @@ class FrameLoop:
         began = time.perf_counter()
         self._read_recorded(frame)
         asked = Inputs(clear=True) if self._take_start_over() else self._inputs
-        inputs = replace(asked, line=session.speaker.line(frame.timestamp))
+        inputs = replace(asked, line=self._take_line())
         session.change_scenario(inputs.scenario)
         if session.recording is not None:
             frame = session.recording.encode(frame)
@@ -41,8 +43,7 @@ class FrameLoop:
         """Process one frame without drawing and showing it."""
         session = self._session
         self._read_recorded(frame)
-        line = session.speaker.line(frame.timestamp)
-        inputs = Inputs(clear=self._take_start_over(), line=line)
+        inputs = Inputs(clear=self._take_start_over(), line=self._take_line())
         self._hidden = session.playground.step(frame, inputs, self._replay, drawn=False)
         if session.pace is None:  # else the robot lives in real time, and misses what is skipped
             session.robot.feel(self._hidden.emotion)
@@ -60,7 +61,7 @@ class FrameLoop:
             self._show(self._session.playground.drawn(self._hidden), Inputs(), time.perf_counter())
 
     def leave_out(self, frame: Frame) -> None:
-        """Process nothing; a player who started over in this frame does so in the next one."""
+        """Process nothing; what the player asked or a character says here, happens in the next."""
         self._read_recorded(frame)
 
     @property
@@ -99,12 +100,17 @@ class FrameLoop:
         start_over, self._start_over = self._start_over, False
         return start_over
 
+    def _take_line(self) -> SpokenLine | None:
+        line, self._line = self._line, None
+        return line
+
     def _read_recorded(self, frame: Frame) -> None:
-        """Read what a replay knows of a frame."""
+        """Read what a replay knows of a frame, and what the character begins to say."""
         session = self._session
         if frame.index < self._index:  # the player went back
-            self._start_over = False
+            self._start_over, self._line = False, None
         self._index = frame.index
         self._start_over |= frame.timestamp in session.start_overs
+        self._line = session.speaker.line(frame.timestamp) or self._line
         if session.replay_inputs is not None:
             self._replay = next(session.replay_inputs, None)

@@ -6,9 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from app.running.frame_loop import FrameLoop
 from app.running.opening import open_session
 from app.running.replay_check import check_session
 from app.running.runner import run
+from app.running.summary import Summary
 from app.session import SessionOptions, messages, spoken_lines
 from app.session.bundled import bundled
 from app.session.encoding import decode
@@ -91,3 +93,21 @@ def test_a_voice_that_always_dies_is_given_up_and_the_session_goes_on(tmp_path, 
     dying = (sys.executable, "-S", "-c", "import sys; sys.stdin.readline()")
     monkeypatch.setattr(voices, "espeak", lambda: Voice(dying))
     assert said_in(recording_of(tmp_path)) == []
+
+
+def test_a_line_that_begins_in_a_frame_that_is_left_out_begins_in_the_next(tmp_path, buzz):
+    path = recording_of(tmp_path)
+    begin = min(spoken_lines(path))
+    options = SessionOptions(scenario="companion", source=str(path), robot="none", pictures=False)
+    with open_session(options) as session:
+        loop = FrameLoop(session, Summary("companion"))
+        frames = iter(session.source)
+        for frame in frames:
+            if frame.timestamp == begin:
+                loop.leave_out(frame)
+                break
+            assert loop.step(frame).line is None
+        following, after = loop.step(next(frames)), loop.step(next(frames))
+    assert following.begun_line is not None
+    assert after.line is following.line
+    assert after.begun_line is None
