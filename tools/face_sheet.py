@@ -18,9 +18,9 @@ from rich.console import Console
 from app.ui.contact_sheets import save, standing_pose
 from characters import Animator, Character, CharacterCommand, Pose
 from characters.control.command import SpeechIntent
-from characters.face.visemes.coarticulation import LEVELS
+from characters.face.visemes.coarticulation import EMPHASIS_LEVELS
 from characters.face.visemes.mouth_morphs import MouthMorphs
-from characters.face.visemes.sets import SHAPES, VOWEL_SHAPES
+from characters.face.visemes.sets import MOUTH_SHAPES, VOWEL_SHAPES
 from characters.rendering import create_context
 from characters.rendering.portrait import PAPER_BGR, PortraitRenderer, side_by_side
 from characters.speech.speech import Utterance
@@ -67,8 +67,8 @@ class FaceSheets:
 
     def shaped(self, shape: str, level: int = 1) -> Pose:
         """Return the character standing with a shape of the mouth."""
-        shapes = np.zeros((len(LEVELS), len(SHAPES)))
-        shapes[level, SHAPES.index(shape)] = 1.0
+        shapes = np.zeros((len(EMPHASIS_LEVELS), len(MOUTH_SHAPES)))
+        shapes[level, MOUTH_SHAPES.index(shape)] = 1.0
         morphs = np.zeros(len(self._character.morphs))
         morphs[self._mouth.numbers] = self._mouth.of_shapes(shapes)
         return replace(standing_pose(self._character), morphs=morphs)
@@ -77,11 +77,11 @@ class FaceSheets:
         """Return all visemes from the front and from the side, and the levels of the vowels."""
         pictures = [
             self.draw(self.shaped(shape), shape, azimuth)
-            for shape in SHAPES
+            for shape in MOUTH_SHAPES
             for azimuth in (0.0, 0.8)
         ]
-        vowels = [shape for shape in SHAPES if shape in VOWEL_SHAPES]
-        for level, name in enumerate(LEVELS):
+        vowels = [shape for shape in MOUTH_SHAPES if shape in VOWEL_SHAPES]
+        for level, name in enumerate(EMPHASIS_LEVELS):
             for shape in vowels:
                 shown = self.shaped(shape, level)
                 pictures += [self.draw(shown, f"{shape} {name}", a) for a in (0.0, 0.8)]

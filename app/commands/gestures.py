@@ -32,7 +32,7 @@ CELL_PX = 140, 150
 UPPER_BODY = 0.62, 0.36
 """Height of the middle of the upper body, and its radius, over the height of the body."""
 
-SWEPT = (0.01, 0.03, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0)
+SWEPT_THRESHOLDS = (0.01, 0.03, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0)
 """Similarity thresholds in the table of connectivity."""
 
 app = typer.Typer(
@@ -120,7 +120,7 @@ def describe(console: Console, library: GestureLibrary) -> None:
             rows.add_row(hand, f"{len(own)}", *(f"{each:.1f}" for each in quartiles))
     console.print(rows)
     rows = _table("Graph", "threshold", "branches", "connected", "branches of these")
-    for row in sweep(library, SWEPT):
+    for row in sweep(library, SWEPT_THRESHOLDS):
         rows.add_row(
             f"{row.threshold:g}",
             f"{row.branching:.2f}",

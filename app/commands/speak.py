@@ -28,7 +28,7 @@ from characters.control.layers.speech import known_gestures
 from characters.control.speech_profile import DATABASES, DEFAULT_PROFILE, SpeechProfile
 from characters.face.visemes.sets import viseme_sets
 from characters.formats.mocap.bvh_writing import save_bvh
-from characters.model.files import read_file
+from characters.model.files import read_text
 from characters.model.speaking import gestures_for
 from characters.retargeting.root import with_root_joint
 from characters.speech.alignment import align
@@ -62,7 +62,7 @@ VisemesOption = Annotated[
     str | None, _profile_option("--visemes", f"The set of visemes: {', '.join(viseme_sets())}.")
 ]
 
-SUFFIXES = (".wav", ".bvh", *VIDEO_FORMATS)
+OUTPUT_SUFFIXES = (".wav", ".bvh", *VIDEO_FORMATS)
 
 
 def speak(
@@ -168,14 +168,14 @@ def speak(
     body = with_root_joint(Character.load(character))
     if gestures is not None:
         body = replace(body, gestures=gestures_for(gestures, body.skeleton, character))
-    feels = _emotion(emotion)
+    feels, pixels = _emotion(emotion), size_of(size)
     if live:
         if not has_display():
             raise AppError("there is no display here: --live needs a window")
-        speak_live(body, size=size_of(size), view=view, emotion=feels, profile=how)
+        speak_live(body, size=pixels, view=view, emotion=feels, profile=how)
         return
-    target = chosen_output(output, "speech.mp4", "speech", SUFFIXES, overwrite)
-    marked = text if file is None else _read(file)
+    target = chosen_output(output, "speech.mp4", "speech", OUTPUT_SUFFIXES, overwrite)
+    marked = text if file is None else read_text(file, MAX_TEXT_BYTES)
     if not marked.strip() and audio is None:
         raise AppError("there is nothing to say: give a text, --file, --audio or --live")
     tagged = TaggedText.read(marked)
@@ -196,22 +196,12 @@ def speak(
             if target.suffix.lower() == ".bvh":
                 save_bvh(clip, body.skeleton, body.anatomy, target)
             else:
-                write_video(
-                    target, body, clip, line, size=size_of(size), view=view, subtitles=subtitles
-                )
+                write_video(target, body, clip, line, size=pixels, view=view, subtitles=subtitles)
     console.print(
         f"[bold]{escape(str(target))}[/] is written: {speech.duration:.1f} s of speech, "
         f"{len(utterance.words)} words, {len(utterance.accents)} accents",
         soft_wrap=True,
     )
-
-
-def _read(file: Path) -> str:
-    """Return the text of a file."""
-    try:
-        return read_file(file, MAX_TEXT_BYTES).decode()
-    except UnicodeDecodeError as error:
-        raise AppError(f"{file}: not a text file in UTF-8") from error
 
 
 def _spoken(text: str, language: str, emotion: Emotion | None, command: str | None) -> Speech:

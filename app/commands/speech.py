@@ -19,12 +19,12 @@ from app.commands.output import (
     needs_matplotlib,
 )
 from app.errors import AppError
-from characters import Character
+from characters import Character, CharacterError
 from characters.control.speech_profile import DEFAULT_PROFILE
+from characters.model.files import read_text
 from characters.speech.accents import (
     AccentSettings,
     accents_of,
-    detect_accents,
     syllable_nuclei,
 )
 from characters.speech.alignment import align as align_by_warping
@@ -38,6 +38,9 @@ from characters.synthesis.gestures.plan import PlannedGesture
 
 MAX_PLOT_S = 120.0
 """Longest speech that is plotted [s]."""
+
+MAX_TEXT_BYTES = 100_000
+"""Larger files are no text of one recording."""
 
 app = typer.Typer(
     help="Look at recorded speech: its pitch, accents, words and phones.",
@@ -88,12 +91,11 @@ def show(
     elif text is not None:
         speech = aligned(speech, text, lang, console)
     settings = AccentSettings(threshold)
-    describe(console, speech, settings)
+    accents = describe(console, speech, settings)
     if output is None:
         return
     with needs_matplotlib():
         from app.speech_plot import GestureMark, save_plot
-    accents = detect_accents(speech.samples, speech.rate, settings, speech.phones)
     marks = [
         GestureMark(each.node.phrase.hand, each.start, each.apex, each.end, tuple(each.phases))
         for each in planned_gestures(character, accents, speech.duration)
@@ -147,9 +149,9 @@ def said_text(text: str) -> str:
     if not text.startswith("@"):
         return text
     try:
-        return Path(text[1:]).read_text("utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise AppError(f"cannot read the text '{text[1:]}': {error}") from error
+        return read_text(Path(text[1:]), MAX_TEXT_BYTES)
+    except CharacterError as error:
+        raise AppError(f"cannot read the text: {error}") from error
 
 
 def aligned(
@@ -164,8 +166,8 @@ def aligned(
         return align_by_warping(speech, text, voice, language)
 
 
-def describe(console: Console, speech: Speech, settings: AccentSettings) -> None:
-    """Print what a recording is like, and its accents."""
+def describe(console: Console, speech: Speech, settings: AccentSettings) -> tuple[Accent, ...]:
+    """Print what a recording is like, and its accents; return these."""
     prosody = measure_prosody(speech.samples, speech.rate, settings.prosody)
     accents = accents_of(prosody, speech.phones, settings)
     voiced = prosody.f0[prosody.f0 > 0]
@@ -181,7 +183,7 @@ def describe(console: Console, speech: Speech, settings: AccentSettings) -> None
     console.print(", ".join(facts), highlight=False, soft_wrap=True)
     if not accents:
         console.print("no pitch accents")
-        return
+        return accents
     table = Table(box=SIMPLE_HEAD, title="pitch accents", title_justify="left")
     for heading in ("time", "strength", "pitch") + (("word",) if speech.words else ()):
         table.add_column(heading, justify="left" if heading == "word" else "right")
@@ -190,6 +192,7 @@ def describe(console: Console, speech: Speech, settings: AccentSettings) -> None
         row = [f"{accent.time:.2f} s", f"{accent.strength:.2f}", f"{pitch:.0f} Hz"]
         table.add_row(*row, *([escape(_word_at(speech, accent))] if speech.words else []))
     console.print(table)
+    return accents
 
 
 def _word_at(speech: Speech, accent: Accent) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from app.errors import AppError
-from characters.model.files import read_file
+from characters.model.files import read_text
 
 MAX_BYTES = 1_000_000
 """Larger files are not written by hand."""
@@ -26,11 +26,6 @@ class ScenarioLines:
 
     lines: Mapping[str, tuple[str, ...]]
     """For each action, gait or event, what may be said, in turn; tags name gestures."""
-
-    @property
-    def moments(self) -> frozenset[str]:
-        """The actions, gaits and events that have lines."""
-        return frozenset(self.lines)
 
 
 def bundled_lines(scenario: str, language: str) -> ScenarioLines | None:
@@ -67,10 +62,7 @@ def _bundled(scenario: str) -> dict[str, Any]:
 
 
 def _read(path: Path) -> dict[str, Any]:
-    try:
-        return _voice(read_file(path, MAX_BYTES).decode(), str(path))
-    except UnicodeDecodeError as error:
-        raise AppError(f"{path}: not a text file in UTF-8") from error
+    return _voice(read_text(path, MAX_BYTES), str(path))
 
 
 def _voice(text: str, where: str) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from affect import Emotion
 from app.errors import AppError
 from app.sound import NoSoundError
-from app.speaking.microphone import RATE, SILENT_S, Microphone
+from app.speaking.microphone import MICROPHONE_HZ, SILENT_S, Microphone
 from app.speaking.performance import (
     AZIMUTH_RAD,
     ELEVATION_RAD,
@@ -38,7 +38,7 @@ class LivePerformer:
     def __init__(
         self,
         character: Character,
-        rate: int = RATE,
+        rate: int = MICROPHONE_HZ,
         emotion: Emotion | None = None,
         profile: SpeechProfile = DEFAULT_PROFILE,
     ) -> None:
@@ -78,7 +78,7 @@ def speak_live(
     """
     from app.ui.window.picture_window import PictureWindow  # needs a display's libraries
 
-    performer = LivePerformer(character, RATE, emotion, profile)
+    performer = LivePerformer(character, MICROPHONE_HZ, emotion, profile)
     try:
         microphone = Microphone()
     except NoSoundError as error:

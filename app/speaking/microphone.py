@@ -8,10 +8,10 @@ import numpy as np
 from app.sound.loudspeaker import NoSoundError, load_portaudio
 from characters.speech.speech import Samples
 
-RATE = 16_000
+MICROPHONE_HZ = 16_000
 """Sample rate [Hz]."""
 
-BLOCK = RATE // 100
+BLOCK = MICROPHONE_HZ // 100
 """Samples that come at once."""
 
 MAX_BLOCKS = 200
@@ -32,16 +32,20 @@ class Microphone:
         sounddevice = load_portaudio()
         try:
             self._stream: Any = sounddevice.InputStream(
-                samplerate=RATE, blocksize=BLOCK, channels=1, dtype="float32", latency="low",
+                samplerate=MICROPHONE_HZ,
+                blocksize=BLOCK,
+                channels=1,
+                dtype="float32",
+                latency="low",
                 callback=self._take,
-            )  # fmt: skip
+            )
             self._stream.start()
         except (sounddevice.PortAudioError, ValueError) as error:
             line = str(error).partition("\n")[0]
             raise NoSoundError(f"no microphone can be opened: {line}") from error
 
     def heard(self) -> Samples:
-        """Return what was heard since the last call, (n,), at `RATE`."""
+        """Return what was heard since the last call, (n,), at `MICROPHONE_HZ`."""
         blocks = [np.zeros(0, np.float32)]
         while True:
             try:

@@ -17,7 +17,7 @@ AGAIN_S = 9.0
 PAUSE_S = 1.5
 """Shortest time between two lines about the same action, or about events [s]."""
 
-LIVELIER = 0.12
+LIVELIER_SHARE = 0.12
 """How much faster and higher a line is said at full intensity, as a part."""
 
 
@@ -72,5 +72,5 @@ class Moments:
         lines = self._lines[moment]
         line = lines[self._counts[moment] % len(lines)]
         self._counts[moment] += 1
-        factor = 1.0 + LIVELIER * step.command.weight
+        factor = 1.0 + LIVELIER_SHARE * step.command.weight
         return LineRequest(line, self._language, Manner(factor, factor, factor))

@@ -1,6 +1,6 @@
 """Performing a speech: the poses of a character that says it, and a video of them with sound."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -17,7 +17,6 @@ from app.ui.subtitles import draw_subtitle, subtitle
 from app.ui.video_file import VideoFile
 from characters import Animator, Character, CharacterCommand, Clip, Pose, RootDelta
 from characters.control.command import SpeechIntent
-from characters.control.layers import LayerFactory
 from characters.motion.baking import stacked
 from characters.rendering import create_context
 from characters.rendering.portrait import PortraitRenderer
@@ -57,16 +56,13 @@ class Direction:
     seed: int = 0
     """Of blinks, sway and the choice between gestures."""
 
-    layers: Sequence[LayerFactory] | None = None
-    """Layers of the animator; None for those of the character."""
-
 
 def performed(character: Character, line: SpokenLine, direction: Direction, rate: float) -> Clip:
     """Return the motion of a character that says a line, `LEAD_S` after its start.
 
     `rate` is the number of frames a second.
     """
-    animator = Animator(character, place=RootDelta(), seed=direction.seed, layers=direction.layers)
+    animator = Animator(character, place=RootDelta(), seed=direction.seed)
     speech = SpeechIntent(line.utterance, LEAD_S, line.profile)
     count = round((LEAD_S + line.utterance.duration + TAIL_S) * rate) + 1
     settling = round(SETTLE_S * rate)
@@ -141,15 +137,11 @@ def write_video(
 
 def framed(character: Character, pose: Pose, view: View) -> tuple[NDArray[np.float64], float]:
     """Return what is seen of a character: a centre (3,) and a radius in its frame [m]."""
-    extent = CharacterExtent(character)
-    if view == "face":
-        points = extent.points(pose, joints_below(character, "head"))
-        size, margin = float(np.ptp(points, axis=0).max()), FACE_MARGIN
-    else:
-        points = extent.points(pose)
-        size, margin = float(np.ptp(points, axis=0).max()), BODY_MARGIN
+    joints = joints_below(character, "head") if view == "face" else None
+    points = CharacterExtent(character).points(pose, joints)
     middle = (points.min(0) + points.max(0)) / 2
     if view == "hands" and character.anatomy.kind == "humanoid":
         middle[1] = CHEST * character.height
         return middle, REACH * character.height
-    return middle, size * margin
+    margin = FACE_MARGIN if view == "face" else BODY_MARGIN
+    return middle, margin * float(np.ptp(points, axis=0).max())

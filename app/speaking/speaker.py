@@ -23,7 +23,6 @@ MAX_FAILURES = 3
 ANSWER_S = 5.0
 """How long a session that is not in real time waits for a line [s]."""
 
-
 SILENT = "none"
 """The language in which nothing is said."""
 

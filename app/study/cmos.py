@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import astuple, dataclass
 from statistics import NormalDist
 
-SCORES = (2, 1, 0, -1, -2)
+ANSWER_SCORES = (2, 1, 0, -1, -2)
 """Scores of the answers, in the order of the fields of `Votes`."""
 
 PUBLISHED_THREE_LEVEL = {
@@ -62,7 +62,7 @@ class Votes:
     @property
     def mean(self) -> float:
         """The five-level score, −2…2."""
-        return sum(map(math.prod, zip(SCORES, astuple(self), strict=True))) / self.total
+        return sum(map(math.prod, zip(ANSWER_SCORES, astuple(self), strict=True))) / self.total
 
     @property
     def three_level(self) -> float:
@@ -72,7 +72,7 @@ class Votes:
     @property
     def median(self) -> float:
         """The median score."""
-        scores = [s for s, n in zip(SCORES, astuple(self), strict=True) for _ in range(n)]
+        scores = [s for s, n in zip(ANSWER_SCORES, astuple(self), strict=True) for _ in range(n)]
         middle = self.total // 2
         return (scores[middle] + scores[-middle - 1]) / 2
 
@@ -81,7 +81,7 @@ class Votes:
 
         It takes the answers as independent; with several a rater, it is too narrow.
         """
-        squares = zip(SCORES, astuple(self), strict=True)
+        squares = zip(ANSWER_SCORES, astuple(self), strict=True)
         variance = sum(n * (s - self.mean) ** 2 for s, n in squares) / max(self.total - 1, 1)
         half = NormalDist().inv_cdf((1 + level) / 2) * math.sqrt(variance / self.total)
         return self.mean - half, self.mean + half

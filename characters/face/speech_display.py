@@ -10,13 +10,13 @@ from characters.face.composition import SpeakingExpression
 from characters.face.expressions import ExpressionMorphs
 from characters.face.visemes.coarticulation import (
     DEFAULT,
-    LEVELS,
+    EMPHASIS_LEVELS,
     PAUSE_BESIDE_S,
     Coarticulation,
     MouthTrack,
 )
 from characters.face.visemes.mouth_morphs import MouthMorphs, jaw_opening
-from characters.face.visemes.sets import SHAPES
+from characters.face.visemes.sets import MOUTH_SHAPES
 from characters.motion.curves import ease
 from characters.skeleton.pose import Array
 from characters.speech.speech import Utterance
@@ -34,7 +34,7 @@ CLOSING_S = 0.15
 ONSET_S = 0.12
 """How long an expression takes to leave the mouth to a speech, and to take it back [s]."""
 
-_CLOSED = np.zeros((len(LEVELS), len(SHAPES)))
+_CLOSED = np.zeros((len(EMPHASIS_LEVELS), len(MOUTH_SHAPES)))
 
 
 class SpeechDisplay:

@@ -10,6 +10,14 @@ MAX_FILE_BYTES = 1 << 30
 """Two hours of motion capture at 120 Hz take 0.6 GB."""
 
 
+def read_text(path: Path, max_bytes: int) -> str:
+    """Return the text of a file in UTF-8; CharacterError if it is none, and as `read_file`."""
+    try:
+        return read_file(path, max_bytes).decode()
+    except UnicodeDecodeError:
+        raise CharacterError(f"{path}: not a text file in UTF-8") from None
+
+
 def read_file(path: Path, max_bytes: int = MAX_FILE_BYTES) -> bytes:
     """Return the content of a file; refuse pipes and devices, which may never return."""
     try:

@@ -11,6 +11,7 @@ import zipfile
 import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -86,9 +87,25 @@ class ArchiveFormat:
             f"make it again with: {self.made_by}"
         )
 
+    def load_once(self, path: Path, read: Callable[[Content, Arrays], _T]) -> _T:
+        """Return what `load` does; a file that has not changed is read once."""
+        try:
+            changed = path.stat().st_mtime_ns
+        except (OSError, ValueError):
+            changed = 0  # the reader says what is wrong
+        loaded: _T = _loaded(self, path, changed, read)
+        return loaded
+
     @property
     def _one(self) -> str:
         return f"{'an' if self.kind[0] in 'aeiou' else 'a'} {self.kind}"
+
+
+@lru_cache(maxsize=16)
+def _loaded(
+    kind: ArchiveFormat, path: Path, changed: int, read: Callable[[Content, Arrays], Any]
+) -> Any:
+    return kind.load(path, read)
 
 
 def skeleton_identity(skeleton: Skeleton) -> str:

@@ -37,7 +37,7 @@ from characters.control.layers import FrameContext
 from characters.control.layers.face import FaceLayer
 from characters.face.speech_display import SpeechDisplay
 from characters.face.visemes.coarticulation import DEFAULT, Coarticulation, MouthTrack
-from characters.face.visemes.sets import SHAPES, viseme_set
+from characters.face.visemes.sets import MOUTH_SHAPES, viseme_set
 from characters.skeleton.pose import Array
 from characters.speech.speech import SILENCE, Phone, Speech, Utterance
 from characters.speech.voices import Voice, VoiceError, espeak
@@ -166,7 +166,7 @@ def offset(opening: Array, times: Array, speech: Speech, start: float) -> tuple[
 
 def jaw_openings(said: Sequence[tuple[Utterance, float]], times: Array) -> Array:
     """Return how far the mouth is open at times [s] of a fine grid, (times,)."""
-    display = SpeechDisplay([f"viseme_{shape}" for shape in SHAPES], 0)
+    display = SpeechDisplay([f"viseme_{shape}" for shape in MOUTH_SHAPES], 0)
     rows = []
     for now in times.tolist():
         current = next((each for each in reversed(said) if each[1] <= now), None)

@@ -16,7 +16,7 @@ from rich.console import Console
 
 from app.speaking.lines import bundled_lines
 from app.speaking.live import LivePerformer
-from app.speaking.microphone import BLOCK, RATE
+from app.speaking.microphone import BLOCK, MICROPHONE_HZ
 from app.speaking.moments import LineRequest
 from app.speaking.performance import Direction, performed, write_video
 from app.speaking.speaker import spoken
@@ -65,13 +65,13 @@ def live_mouth(human: Character, voice: Voice) -> None:
     loudness of the same sound, at the greatest correlation.
     """
     speech = voice.say("Papa, mama, baba! My, oh my! Poppy and Bob are a happy couple.")
-    sound = resampled(speech.samples, speech.rate, RATE)
+    sound = resampled(speech.samples, speech.rate, MICROPHONE_HZ)
     performer, mouth = LivePerformer(human), MouthMorphs.of(human.morphs)
     opening, loudness, took = [], [], []
     for number in range(len(sound) // BLOCK):
         block = sound[number * BLOCK : (number + 1) * BLOCK]
         begin = time.perf_counter()
-        pose = performer.update(block, (number + 1) * BLOCK / RATE).pose
+        pose = performer.update(block, (number + 1) * BLOCK / MICROPHONE_HZ).pose
         took.append(time.perf_counter() - begin)
         opening.append(0.0 if pose.morphs is None else pose.morphs[mouth.numbers].max())
         loudness.append(np.sqrt(np.mean(block * block)))

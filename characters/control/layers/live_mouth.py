@@ -7,7 +7,7 @@ import numpy as np
 from characters.control.layers.layer import FrameContext
 from characters.face.jaw import JawJoint
 from characters.face.visemes.mouth_morphs import MouthMorphs, jaw_opening
-from characters.face.visemes.sets import SHAPES
+from characters.face.visemes.sets import MOUTH_SHAPES
 from characters.model.character import Character
 from characters.skeleton.pose import Pose
 from characters.speech.mouth import MouthWeights
@@ -15,7 +15,7 @@ from characters.speech.mouth import MouthWeights
 SHAPE_OF = {"open": "aa", "spread": "I", "rounded": "U", "hiss": "SS"}
 """The shape for each of `MouthWeights`."""
 
-NEUTRAL = 1
+NEUTRAL_LEVEL = 1
 """The level of emphasis that is shown."""
 
 
@@ -31,9 +31,9 @@ class LiveMouthLayer:
 
     def update(self, pose: Pose, context: FrameContext) -> Pose:
         """Return the pose with the mouth in its shape."""
-        shapes = np.zeros((3, len(SHAPES)))
+        shapes = np.zeros((3, len(MOUTH_SHAPES)))
         for name, shape in SHAPE_OF.items():
-            shapes[NEUTRAL, SHAPES.index(shape)] = getattr(self.mouth, name)
+            shapes[NEUTRAL_LEVEL, MOUTH_SHAPES.index(shape)] = getattr(self.mouth, name)
         if not self._morphs:
             return self._jaw.opened(pose, jaw_opening(shapes))
         weights = np.zeros(self._count) if pose.morphs is None else pose.morphs.copy()

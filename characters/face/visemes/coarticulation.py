@@ -19,15 +19,15 @@ from itertools import accumulate, pairwise
 
 import numpy as np
 
-from characters.face.visemes.sets import SHAPES, SoundingViseme, VisemeSet, viseme_set
+from characters.face.visemes.sets import MOUTH_SHAPES, SoundingViseme, VisemeSet, viseme_set
 from characters.motion.curves import ease
 from characters.skeleton.pose import Array
 from characters.speech.speech import SILENCE, Phone, Utterance
 
-LEVELS = ("low", "neutral", "high")
+EMPHASIS_LEVELS = ("low", "neutral", "high")
 """The versions of the shape of a vowel."""
 
-NEUTRAL_LEVEL = LEVELS.index("neutral")
+NEUTRAL_LEVEL = EMPHASIS_LEVELS.index("neutral")
 
 PAUSE_BESIDE_S = 0.4
 """The pause before and after a speech, in which the mouth opens and closes [s]."""
@@ -83,7 +83,7 @@ def dominance(x: float, alpha: float) -> float:
 
 
 def level_weights(strength: float) -> tuple[float, float, float]:
-    """Return the weights of `LEVELS` for a strength of 0…1; they sum to 1.
+    """Return the weights of `EMPHASIS_LEVELS` for a strength of 0…1; they sum to 1.
 
     >>> level_weights(0.0), level_weights(0.5), level_weights(0.75)
     ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.5, 0.5))
@@ -100,7 +100,7 @@ class MouthTrack:
         self._phones = _with_contacts(list(_sounding(utterance, found)))
         self._settings = settings
         shapes = [phone.sounding.viseme.shape for phone in self._phones]
-        self._shapes = np.array([[mix.get(name, 0.0) for name in SHAPES] for mix in shapes])
+        self._shapes = np.array([[mix.get(name, 0.0) for name in MOUTH_SHAPES] for mix in shapes])
         self._accents = [phone.accent for phone in self._phones]
         # Ascending bounds of the time in which phones are active, so that a search finds them.
         firsts = [phone.centre - phone.reach for phone in self._phones]
@@ -127,7 +127,7 @@ class MouthTrack:
         `emphasis`, −1…1, is added to the strength of accents, which stays within 0…1.
         """
         active, shares = self.shares(time)
-        shapes = np.zeros((len(LEVELS), len(SHAPES)))
+        shapes = np.zeros((len(EMPHASIS_LEVELS), len(MOUTH_SHAPES)))
         accents = self._accents[active]
         if accents.count(None) == len(accents):  # most of the time, and several times as fast
             np.dot(shares, self._shapes[active], out=shapes[NEUTRAL_LEVEL])

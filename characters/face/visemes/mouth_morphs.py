@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.face.lids import numbers_by_name
-from characters.face.visemes.sets import SHAPES, VOWEL_SHAPES
+from characters.face.visemes.sets import MOUTH_SHAPES, VOWEL_SHAPES
 from characters.skeleton.pose import Array
 
 LEVEL_GAINS: Mapping[str, tuple[float, float, float]] = {
@@ -65,7 +65,7 @@ class MouthMorphs:
                 weights = _weights(family, parts, len(morphs))
                 numbers = np.flatnonzero(weights.any(axis=(0, 1)))
                 return MouthMorphs(family["name"], numbers, weights[:, :, numbers])
-        return MouthMorphs("", np.zeros(0, np.intp), np.zeros((3, len(SHAPES), 0)))
+        return MouthMorphs("", np.zeros(0, np.intp), np.zeros((3, len(MOUTH_SHAPES), 0)))
 
     def __bool__(self) -> bool:
         return self.numbers.size > 0
@@ -97,7 +97,10 @@ def _level_gains(shape: str, moves: str) -> tuple[float, float, float]:
 
 
 _JAW_OPENING = np.array(
-    [[OPENING.get(s, 0.0) * _level_gains(s, "jaw")[level] for s in SHAPES] for level in range(3)]
+    [
+        [OPENING.get(s, 0.0) * _level_gains(s, "jaw")[level] for s in MOUTH_SHAPES]
+        for level in range(3)
+    ]
 )
 
 
@@ -122,7 +125,7 @@ def _numbers(names: str, family: Mapping[str, Any], found: Mapping[str, int]) ->
 
 def _weights(family: Mapping[str, Any], parts: Mapping[str, Sequence[int]], count: int) -> Array:
     """Return the weights of all morphs in each shape of each level, (levels, shapes, morphs)."""
-    weights = np.zeros((3, len(SHAPES), count))
+    weights = np.zeros((3, len(MOUTH_SHAPES), count))
     for shape, mix in family["shapes"].items():
         for part, weight in mix.items():
             if family.get("sided"):
@@ -130,7 +133,7 @@ def _weights(family: Mapping[str, Any], parts: Mapping[str, Sequence[int]], coun
             else:
                 moves = "rounded" if shape in ("O", "U") else "whole"
             for number in parts[part]:
-                weights[:, SHAPES.index(shape), number] = weight * np.array(
+                weights[:, MOUTH_SHAPES.index(shape), number] = weight * np.array(
                     _level_gains(shape, moves)
                 )
     return weights

@@ -14,7 +14,23 @@ from typing import Any
 from characters.errors import CharacterError
 from characters.face.visemes.ipa import SEGMENTS, most_alike, parts_of
 
-SHAPES = ("sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "I", "O", "U")
+MOUTH_SHAPES = (
+    "sil",
+    "PP",
+    "FF",
+    "TH",
+    "DD",
+    "kk",
+    "CH",
+    "SS",
+    "nn",
+    "RR",
+    "aa",
+    "E",
+    "I",
+    "O",
+    "U",
+)
 """The shapes of the mouth that all sets are made of, by the names of the Oculus visemes."""
 
 VOWEL_SHAPES = frozenset(("aa", "E", "I", "O", "U"))
@@ -55,7 +71,7 @@ class Viseme:
     """Steepness of its dominance curve; 0 is a triangle."""
 
     shape: Mapping[str, float]
-    """What it is mixed of: weights of `SHAPES`, 0…1."""
+    """What it is mixed of: weights of `MOUTH_SHAPES`, 0…1."""
 
     contact: bool
     """Whether lips or teeth touch, whatever comes before and after."""

@@ -14,9 +14,10 @@ PROGRAM = Path(__file__).with_name("espeak_process.py")
 
 def espeak() -> Voice:
     """Return the voice of eSpeak NG; VoiceError if it is not installed."""
-    if not installed():
+    found = libraries()  # which asks the system, and takes a while
+    if not found:
         raise VoiceError("no voice is installed, such as eSpeak NG", remedy())
-    return Voice((sys.executable, "-S", "-u", str(PROGRAM), *libraries()))
+    return Voice((sys.executable, "-S", "-u", str(PROGRAM), *found))
 
 
 def installed() -> bool:

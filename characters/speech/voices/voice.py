@@ -204,11 +204,10 @@ class _Answer:
         """Return it as a speech."""
         if not 1000 <= self.rate <= 200_000:
             raise ValueError(f"a sample rate of {self.rate} Hz")
-        samples = np.frombuffer(bytes(self.pcm[: len(self.pcm) // 2 * 2]), "<i2") / np.float32(
-            2**15
-        )
+        whole = bytes(self.pcm[: len(self.pcm) // 2 * 2])
+        samples = np.frombuffer(whole, "<i2").astype(np.float32) / np.float32(2**15)
         end = len(samples)
-        phones = _phones(self.phones, samples.astype(np.float32), self.rate)
+        phones = _phones(self.phones, samples, self.rate)
         starts = [*(min(at, end) for _, _, at in self.words), end]
         words = tuple(
             Word(
@@ -221,7 +220,7 @@ class _Answer:
                 self.words, starts, starts[1:], strict=False
             )
         )
-        return Speech(samples.astype(np.float32), self.rate, text, language, words, phones)
+        return Speech(samples, self.rate, text, language, words, phones)
 
 
 def _last_sound(phones: Sequence[Phone], start: float, end: float) -> float:

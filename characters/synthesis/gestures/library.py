@@ -1,7 +1,7 @@
 """Libraries of beat gestures, and the .gestures file."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal, get_args
 
@@ -186,11 +186,7 @@ class GestureLibrary:
         CharacterError
             If it is missing, damaged, of another version, or something else.
         """
-        try:
-            changed = path.stat().st_mtime_ns
-        except (OSError, ValueError):
-            changed = 0  # the reader says what is wrong
-        return _load(path, changed)
+        return GESTURE_FORMAT.load_once(path, _library)
 
 
 def gesture_joints(skeleton: Skeleton, anatomy: Anatomy) -> tuple[int, ...]:
@@ -209,11 +205,6 @@ def gesture_joints(skeleton: Skeleton, anatomy: Anatomy) -> tuple[int, ...]:
     if four_legs:
         moved.update(joint for part, joint in anatomy.joints.items() if part.startswith("tail"))
     return tuple(sorted(moved))
-
-
-@lru_cache(maxsize=8)
-def _load(path: Path, changed: int) -> GestureLibrary:
-    return GESTURE_FORMAT.load(path, _library)
 
 
 def _packed(turns: Array) -> Array:

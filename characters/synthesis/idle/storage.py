@@ -1,7 +1,6 @@
 """The .idle file: the recordings of one person who stands, with her rests."""
 
 from dataclasses import astuple
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -56,16 +55,7 @@ def load_person(path: Path) -> Person:
     CharacterError
         If it is missing, damaged, of another version, or something else.
     """
-    try:
-        changed = path.stat().st_mtime_ns
-    except (OSError, ValueError):
-        changed = 0  # the reader says what is wrong
-    return _load(path, changed)
-
-
-@lru_cache(maxsize=8)
-def _load(path: Path, changed: int) -> Person:
-    return IDLE_FORMAT.load(path, _person)
+    return IDLE_FORMAT.load_once(path, _person)
 
 
 def _person(content: Content, arrays: Arrays) -> Person:

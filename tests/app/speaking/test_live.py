@@ -8,7 +8,7 @@ import pytest
 
 from app.sound import NoSoundError
 from app.speaking.live import LivePerformer
-from app.speaking.microphone import BLOCK, MAX_BLOCKS, RATE, Microphone
+from app.speaking.microphone import BLOCK, MAX_BLOCKS, MICROPHONE_HZ, Microphone
 from characters import Character
 from characters.face.visemes.mouth_morphs import MouthMorphs
 
@@ -22,7 +22,7 @@ def human():
 
 def voice(seconds, loudness=0.3):
     """Return an open vowel: harmonics of 120 Hz with much between 600 and 1100 Hz."""
-    time = np.arange(round(seconds * RATE)) / RATE
+    time = np.arange(round(seconds * MICROPHONE_HZ)) / MICROPHONE_HZ
     parts = [
         (number * 120.0, 1.0 if 500 < number * 120 < 1150 else 0.25) for number in range(1, 20)
     ]
@@ -33,9 +33,9 @@ def voice(seconds, loudness=0.3):
 def performed(character, sound):
     """Return the time and the pose of each frame."""
     performer, frames = LivePerformer(character), []
-    for number in range(int(len(sound) / RATE / FRAME)):
+    for number in range(int(len(sound) / MICROPHONE_HZ / FRAME)):
         now = (number + 1) * FRAME
-        part = sound[round(number * FRAME * RATE) : round(now * RATE)]
+        part = sound[round(number * FRAME * MICROPHONE_HZ) : round(now * MICROPHONE_HZ)]
         frames.append((now, performer.update(part, now).pose))
     return frames
 
@@ -47,7 +47,7 @@ def opening(character, pose):
 
 def test_the_mouth_opens_within_sixty_milliseconds_and_closes_again(human):
     onset, length = 0.7, 0.4
-    silence = np.zeros(round(onset * RATE), np.float32)
+    silence = np.zeros(round(onset * MICROPHONE_HZ), np.float32)
     frames = performed(human, np.concatenate([silence, voice(length), silence]))
     opened = [now for now, pose in frames if opening(human, pose) > 0.3]
     # A frame shows the sound up to its own time, so a frame of waiting is not the mouth's lag.
@@ -58,7 +58,7 @@ def test_the_mouth_opens_within_sixty_milliseconds_and_closes_again(human):
 def test_hands_begin_to_beat_with_a_stressed_syllable(human):
     quiet, loud = voice(1.6, 0.05), voice(0.4, 0.6)
     frames = performed(human, np.concatenate([quiet, loud, quiet]))
-    plain = performed(human, np.zeros(round(3.6 * RATE), np.float32))
+    plain = performed(human, np.zeros(round(3.6 * MICROPHONE_HZ), np.float32))
     arms = [human.anatomy.joint(f"{side}UpperArm") for side in ("left", "right")]
     apart = [
         np.abs(one.rotations[arms] - other.rotations[arms]).max()
@@ -69,7 +69,7 @@ def test_hands_begin_to_beat_with_a_stressed_syllable(human):
 
 
 def test_in_silence_nothing_moves(human):
-    frames = performed(human, np.zeros(2 * RATE, np.float32))
+    frames = performed(human, np.zeros(2 * MICROPHONE_HZ, np.float32))
     assert max(opening(human, pose) for _, pose in frames) == 0.0
 
 

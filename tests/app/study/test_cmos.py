@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import wilcoxon
 
-from app.study.cmos import PUBLISHED_THREE_LEVEL, SCORES, Votes, ranking
+from app.study.cmos import ANSWER_SCORES, PUBLISHED_THREE_LEVEL, Votes, ranking
 
 # 124 answers each. The thesis prints percentages, means and medians; these counts have them.
 THESIS = {
@@ -73,7 +73,7 @@ def test_the_signed_rank_test_is_that_of_scipy(own):
     scores = [
         score
         for score, count in zip(
-            SCORES,
+            ANSWER_SCORES,
             (own.much_better, own.better, own.same, own.worse, own.much_worse),
             strict=True,
         )

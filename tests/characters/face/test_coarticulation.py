@@ -13,7 +13,7 @@ from characters.face.visemes.coarticulation import (
     dominance,
     level_weights,
 )
-from characters.face.visemes.sets import SHAPES, viseme_sets
+from characters.face.visemes.sets import MOUTH_SHAPES, viseme_sets
 from characters.speech.speech import SILENCE, Accent, Phone, Utterance
 
 PUBLISHED = Coarticulation("sapi", sharpness=1.0, contacts=False)
@@ -76,7 +76,7 @@ def test_contacts_are_complete_in_a_frame_of_each_and_the_vowel_opens(name, rate
     said = spoken(*[("ɑ", length), (phone, length)] * 4, ("ɑ", length))
     track = MouthTrack(said, Coarticulation(name))
     frames = np.arange(0, said.duration, 1 / 30)
-    share = np.array([track.at(time).sum(axis=0)[SHAPES.index(shape)] for time in frames])
+    share = np.array([track.at(time).sum(axis=0)[MOUTH_SHAPES.index(shape)] for time in frames])
     for number in range(1, 9, 2):
         within = (frames >= number * length) & (frames < (number + 1) * length)
         assert share[within].max() == pytest.approx(1.0)
@@ -87,14 +87,18 @@ def test_contacts_are_complete_in_a_frame_of_each_and_the_vowel_opens(name, rate
 
 def test_lips_begin_to_close_before_the_sound():
     track = MouthTrack(spoken(("ɑ", 0.2), ("m", 0.1), ("ɑ", 0.2)))
-    closed = [track.at(time).sum(axis=0)[SHAPES.index("PP")] for time in (0.13, 0.17, 0.195, 0.25)]
+    closed = [
+        track.at(time).sum(axis=0)[MOUTH_SHAPES.index("PP")] for time in (0.13, 0.17, 0.195, 0.25)
+    ]
     assert closed[0] < 0.1
     assert closed[0] < closed[1] < closed[2] < closed[3] == pytest.approx(1.0)
 
 
 def test_lips_round_before_a_rounded_vowel():
     track = MouthTrack(spoken(("i", 0.15), ("s", 0.1), ("t", 0.08), ("u", 0.15)))
-    rounded = [track.at(time).sum(axis=0)[SHAPES.index("U")] for time in (0.05, 0.24, 0.31, 0.4)]
+    rounded = [
+        track.at(time).sum(axis=0)[MOUTH_SHAPES.index("U")] for time in (0.05, 0.24, 0.31, 0.4)
+    ]
     assert rounded[0] < 0.02 < rounded[1] < rounded[2] < rounded[3]
 
 
@@ -106,7 +110,7 @@ def test_levels_are_low_neutral_and_high_at_the_printed_strengths():
 def test_emphasis_counts_for_accented_vowels_alone():
     said = spoken(("ɑ", 0.2), ("t", 0.1), ("ɑ", 0.2), accents=(Accent(0.1, 0.6),))
     track = MouthTrack(said, Coarticulation(sharpness=8.0))
-    aa = SHAPES.index("aa")
+    aa = MOUTH_SHAPES.index("aa")
     high = [track.at(0.1, emphasis)[2, aa] for emphasis in (-1.0, 0.0, 0.2, 1.0)]
     assert all(a < b for a, b in pairwise(high))
     assert track.at(0.4, 1.0)[1, aa] == pytest.approx(track.at(0.4, 1.0)[:, aa].sum(), abs=1e-3)

@@ -4,10 +4,14 @@ import numpy as np
 import pytest
 
 from characters.face.visemes.mouth_morphs import MouthMorphs
-from characters.face.visemes.sets import SHAPES
+from characters.face.visemes.sets import MOUTH_SHAPES
 
-OCULUS = [f"viseme_{shape}" for shape in SHAPES]
-VRCHAT = [f"vrc.v_{shape.lower()}" for shape in SHAPES[:12]] + ["vrc.v_ih", "vrc.v_oh", "vrc.v_ou"]
+OCULUS = [f"viseme_{shape}" for shape in MOUTH_SHAPES]
+VRCHAT = [f"vrc.v_{shape.lower()}" for shape in MOUTH_SHAPES[:12]] + [
+    "vrc.v_ih",
+    "vrc.v_oh",
+    "vrc.v_ou",
+]
 ARKIT = [
     *("eyeBlinkLeft", "eyeBlinkRight", "jawOpen", "jawForward", "mouthClose", "mouthFunnel"),
     *("mouthPucker", "mouthRollLower", "mouthRollUpper", "mouthPressLeft", "mouthPressRight"),
@@ -28,8 +32,8 @@ FAMILIES = {
 
 def shown(morphs: list[str], shape: str, level: int = 1) -> dict[str, float]:
     """Return the weights above 0 of a shape."""
-    mouth, shapes = MouthMorphs.of(morphs), np.zeros((3, len(SHAPES)))
-    shapes[level, SHAPES.index(shape)] = 1.0
+    mouth, shapes = MouthMorphs.of(morphs), np.zeros((3, len(MOUTH_SHAPES)))
+    shapes[level, MOUTH_SHAPES.index(shape)] = 1.0
     weights = mouth.of_shapes(shapes).tolist()
     names = [morphs[number] for number in mouth.numbers.tolist()]
     return {name: weight for name, weight in zip(names, weights, strict=True) if weight > 0}

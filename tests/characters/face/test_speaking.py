@@ -140,12 +140,12 @@ def test_a_speech_that_cuts_in_is_in_time_at_once(speaker, mouth):
     assert np.allclose(cut[round(0.62 * RATE) :], alone[round(0.62 * RATE) :], atol=1e-9)
 
 
-def test_a_speech_that_a_replay_makes_anew_is_the_same_speech(speaker):
-    anew = [
+def test_a_speech_that_a_replay_makes_again_is_the_same_speech(speaker):
+    again = [
         replace(c, speech=SpeechIntent(replace(SYLLABLES, text=str(SYLLABLES.text)), 0.5))
         for c in commands(None, 2.0)
     ]
-    assert np.array_equal(shown(speaker, anew), shown(speaker, commands(SYLLABLES, 2.0)))
+    assert np.array_equal(shown(speaker, again), shown(speaker, commands(SYLLABLES, 2.0)))
 
 
 def test_the_mouth_of_a_kiss_gives_way_to_a_speech_and_returns(speaker):

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from characters.errors import CharacterError
 from characters.face.visemes.ipa import letters_of, parts_of
-from characters.face.visemes.sets import SHAPES, viseme_set, viseme_sets
+from characters.face.visemes.sets import MOUTH_SHAPES, viseme_set, viseme_sets
 
 # What eSpeak NG 1.52 prints for texts with all sounds of each language, by the shape that a person
 # who reads lips would name; where two are as good, both.
@@ -63,7 +63,7 @@ def test_every_phone_of_a_table_is_in_one_class_and_every_shape_is_whole(name):
     phones = [phone for viseme in visemes for phone in viseme.phones]
     assert len(phones) == len(set(phones))
     for viseme in visemes:
-        assert set(viseme.shape) <= set(SHAPES)
+        assert set(viseme.shape) <= set(MOUTH_SHAPES)
         assert 0.5 < sum(viseme.shape.values()) <= 1.0
         for phone in viseme.phones:
             assert [each.viseme for each in viseme_set(name).of(phone)] == [viseme]
