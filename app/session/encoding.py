@@ -100,8 +100,8 @@ def _upgraded(kind: type[Any], content: Any) -> Any:
         return {"emotion": emotion, "timestamp": content["timestamp"]}
     if kind is CharacterCommand and isinstance(content.get("action"), str):
         return _upgraded_command(content)
-    if kind is CharacterCommand and "speech" not in content:  # before characters spoke
-        return {**content, "speech": None}
+    if kind is CharacterCommand and "behaviour" not in content:  # before hands reached
+        return {"speech": None, **content, "behaviour": None}
     return content
 
 

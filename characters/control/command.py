@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from affect import Emotion
+from characters.behaviour.intents import BehaviourIntent
 from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
 from characters.locomotion.gaits import IDLE_SPEED
 from characters.skeleton.pose import Pose
@@ -87,6 +88,9 @@ class CharacterCommand:
 
     speech: SpeechIntent | None = None
     """What the character says, or has just said; None for nothing."""
+
+    behaviour: BehaviourIntent | None = None
+    """What hands, head, face, eyes and posture are to do besides; None for nothing."""
 
     @property
     def speaks(self) -> bool:

@@ -1,0 +1,1 @@
+"""Behaviour: symbolic gestures, reaching, and the blocks of the Behavior Markup Language."""

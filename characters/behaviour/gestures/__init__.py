@@ -1,0 +1,1 @@
+"""Symbolic gestures: what a gesture is, independent of who performs it."""
