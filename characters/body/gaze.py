@@ -57,6 +57,7 @@ class Gaze:
         *,
         tempo: float = 1.0,
         head_drop: float = 0.0,
+        head_turn: Array | None = None,
     ) -> Pose:
         """Advance by a time [s] and return the pose with head and eyes turned.
 
@@ -72,6 +73,9 @@ class Gaze:
             Tempo of the head; 1 is normal.
         head_drop
             How far the head drops as well [rad]; the eyes compensate.
+        head_turn
+            How it nods and turns besides, a rotation vector about the chest's axes, (3,) [rad];
+            the eyes compensate.
         """
         joints = self._joints
         if joints is None:
@@ -95,6 +99,11 @@ class Gaze:
         )
         aimed = held[0] + self._yaw, held[1] + self._pitch - head_drop
         self._turned = rotate(joints.body, _turn_between(held, aimed))
+        if head_turn is not None and head_turn.any():
+            x, y, z = head_turn.tolist()
+            besides = from_rotation_vector(rotate(joints.body, (x, y, z)))
+            both = multiply(besides, from_rotation_vector(self._turned))
+            self._turned = to_rotation_vector(both)
         local = pose.rotations.copy()
         joints.turn_head(local, self._turned)
         if aim is None:

@@ -1,30 +1,53 @@
-"""Gaze: head and eyes that follow a point."""
+"""Gaze: head and eyes that follow a point, and movements of the head besides."""
 
-from characters.body.gaze import Gaze
+import numpy as np
+
+from characters.behaviour.performing.head_movements import turned_head
+from characters.behaviour.performing.planned_values import PlannedValues
+from characters.body.gaze import HEAD_LAG_S, Gaze
+from characters.control.layers.behaviour import lag_of, looked_at
 from characters.control.layers.layer import FrameContext
 from characters.control.layers.posture import posture_share
 from characters.model.character import Character
-from characters.skeleton.pose import Pose
+from characters.skeleton.pose import Array, Pose
 
 HEAD_SHARE_IN_ACTION = 0.2
 """Part of its turn that the head makes while an action needs it."""
 
 
 class GazeLayer:
-    """Turns head and eyes to the point that the command names."""
+    """Turns head and eyes to the point that the command names, nods and shakes the head."""
 
     def __init__(self, character: Character, seed: int = 0) -> None:
         self._gaze = Gaze(character.skeleton, character.anatomy)
+        self._movements = PlannedValues(3)
 
     def update(self, pose: Pose, context: FrameContext) -> Pose:
         """Return the pose with its gaze on the point."""
+        looked = looked_at(context)
+        target, tempo = context.gaze_target, context.expressivity.tempo
+        share = 1.0 - (1.0 - HEAD_SHARE_IN_ACTION) * float(context.frame.acting)
+        if looked is not None:
+            target, tempo = context.in_character(looked.target), HEAD_LAG_S / lag_of(looked)
+            share *= float(looked.influence != "EYES")
         pose = self._gaze.update(
             pose,
-            context.gaze_target,
+            target,
             context.elapsed,
-            1.0 - (1.0 - HEAD_SHARE_IN_ACTION) * float(context.frame.acting),
-            tempo=context.expressivity.tempo,
+            share,
+            tempo=tempo,
             head_drop=context.expressivity.head_drop * posture_share(context),
+            head_turn=self._head_turn(context),
         )
         context.gaze_shift = self._gaze.shift
         return pose
+
+    def _head_turn(self, context: FrameContext) -> Array:
+        """Return how the head moves besides: a rotation vector about the body's axes, (3,)."""
+        behaviour = context.command.behaviour
+        heads = () if behaviour is None else behaviour.heads
+        return self._movements.update(
+            tuple((each.key, each.lexeme, each.times, each.amount) for each in heads),
+            lambda time: turned_head(heads, time) if heads else np.zeros(3),
+            context.command.timestamp,
+        )

@@ -53,11 +53,14 @@ class FrameContext:
     @property
     def gaze_target(self) -> Array | None:
         """The point to look at, (3,) in the character frame [m], or None."""
-        if self.command.gaze is None:
-            return None
+        return None if self.command.gaze is None else self.in_character(self.command.gaze)
+
+    def in_character(self, point: Array) -> Array:
+        """Return a point (3,) of the table frame in the character frame [m]."""
         placed = self.table_from_character
-        offset = np.asarray(self.command.gaze, float) - placed[:3, 3]
-        return offset @ placed[:3, :3] / float(placed[1, 1]) ** 2
+        offset = np.asarray(point, float) - placed[:3, 3]
+        inside: Array = offset @ placed[:3, :3] / float(placed[1, 1]) ** 2
+        return inside
 
 
 class PoseLayer(Protocol):

@@ -1,0 +1,177 @@
+"""Postures by name: sitting, crouching and leaning with the feet where they are.
+
+Trunk, neck and head turn, the pelvis comes down, and hips and knees bend so that every foot keeps
+its place. The angles are ours.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from characters.behaviour.intents import PostureIntent
+from characters.behaviour.performing.planned_values import presence
+from characters.body.axes import Degrees, body_axes, rotation_vectors
+from characters.ik.legs import LegIK, find_legs, find_paws
+from characters.skeleton import rotations
+from characters.skeleton.anatomy import Anatomy
+from characters.skeleton.pose import Array, Pose, Skeleton
+from characters.skeleton.scalar_quaternions import conjugate, multiply, rotate
+
+TRUNK = ("hips", "spine", "chest", "upperChest", "neck", "head")
+"""The parts that a stance turns, from below."""
+
+
+@dataclass(frozen=True)
+class Stance:
+    """How a body stands, or sits."""
+
+    down: float = 0.0
+    """How far the pelvis comes down, in lengths of the legs."""
+
+    back: float = 0.0
+    """How far the pelvis goes back, in lengths of the legs."""
+
+    aside: float = 0.0
+    """How far the pelvis goes to the left, in lengths of the legs."""
+
+    hips: Degrees = (0.0, 0.0, 0.0)
+    """Turn of the pelvis about the body's axes: x bends forward, y turns to the left, z leans to
+    the right."""
+
+    trunk: Degrees = (0.0, 0.0, 0.0)
+    """Turn of the trunk above it, shared out among its joints."""
+
+    head: Degrees = (0.0, 0.0, 0.0)
+    """Turn of neck and head, shared out."""
+
+
+STANCES = {
+    "SITTING": Stance(0.40, 0.22, trunk=(4.0, 0.0, 0.0), head=(-3.0, 0.0, 0.0)),
+    "CROUCHING": Stance(
+        0.46, 0.14, hips=(22.0, 0.0, 0.0), trunk=(16.0, 0.0, 0.0), head=(-30.0, 0.0, 0.0)
+    ),
+    "KNEELING": Stance(0.5, 0.1, hips=(6.0, 0.0, 0.0), trunk=(6.0, 0.0, 0.0)),
+    "LEANING_FORWARD": Stance(
+        0.02, 0.08, hips=(10.0, 0.0, 0.0), trunk=(14.0, 0.0, 0.0), head=(-16.0, 0.0, 0.0)
+    ),
+    "LEANING_BACKWARD": Stance(
+        0.01, -0.05, hips=(-4.0, 0.0, 0.0), trunk=(-11.0, 0.0, 0.0), head=(11.0, 0.0, 0.0)
+    ),
+    "LEANING_LEFT": Stance(
+        0.02, 0.0, 0.07, hips=(0.0, 0.0, -4.0), trunk=(0.0, 0.0, -9.0), head=(0.0, 0.0, 7.0)
+    ),
+    "LEANING_RIGHT": Stance(
+        0.02, 0.0, -0.07, hips=(0.0, 0.0, 4.0), trunk=(0.0, 0.0, 9.0), head=(0.0, 0.0, -7.0)
+    ),
+    "BOWING": Stance(
+        0.02, 0.12, hips=(22.0, 0.0, 0.0), trunk=(26.0, 0.0, 0.0), head=(14.0, 0.0, 0.0)
+    ),
+    "SLUMPED": Stance(
+        0.03, 0.02, hips=(-3.0, 0.0, 0.0), trunk=(15.0, 0.0, 0.0), head=(14.0, 0.0, 0.0)
+    ),
+    "ERECT": Stance(0.0, 0.0, trunk=(-7.0, 0.0, 0.0), head=(3.0, 0.0, 0.0)),
+}
+"""The stances by name; any other name, as STANDING, is how the body stands by itself."""
+
+_QUADRUPED = {
+    "SITTING": Stance(0.52, -0.12, hips=(-24.0, 0.0, 0.0), head=(14.0, 0.0, 0.0)),
+    "CROUCHING": Stance(0.34, head=(-8.0, 0.0, 0.0)),
+    "BOWING": Stance(0.12, 0.1, hips=(17.0, 0.0, 0.0), head=(-6.0, 0.0, 0.0)),
+    "LEANING_FORWARD": Stance(0.06, -0.2, hips=(4.0, 0.0, 0.0), head=(4.0, 0.0, 0.0)),
+    "LEANING_BACKWARD": Stance(0.08, 0.22, hips=(-4.0, 0.0, 0.0), head=(-4.0, 0.0, 0.0)),
+    "LEANING_LEFT": Stance(0.05, 0.0, 0.14, hips=(0.0, 0.0, -7.0), head=(0.0, 0.0, 6.0)),
+    "LEANING_RIGHT": Stance(0.05, 0.0, -0.14, hips=(0.0, 0.0, 7.0), head=(0.0, 0.0, -6.0)),
+    "SLUMPED": Stance(0.1, head=(24.0, 0.0, 0.0)),
+    "ERECT": Stance(0.0, head=(-9.0, 0.0, 0.0)),
+}
+
+
+class StanceJoints:
+    """The joints with which one body takes stances.
+
+    The values of a posture are the shift of the pelvis [legs], (3,), and the turns of pelvis, trunk
+    and head [degrees], (3,) each.
+    """
+
+    VALUES = 12
+    """How many values there are."""
+
+    def __init__(self, skeleton: Skeleton, anatomy: Anatomy) -> None:
+        self._legs = find_paws(skeleton, anatomy) or find_legs(skeleton)
+        self._stances = STANCES | (_QUADRUPED if anatomy.kind == "quadruped" else {})
+        found = [(part, anatomy.joint(part)) for part in TRUNK]
+        parts = {part: joint for part, joint in found if joint is not None}
+        if self._legs is not None:
+            parts["hips"] = int(self._legs.indices[self._legs.joints[0, 0]])
+        self._joints = np.array([*parts.values()], np.intp)
+        self._axes = body_axes(skeleton, self._joints)
+        self._shares = np.zeros((len(parts), 3))
+        for column, names in enumerate((TRUNK[:1], TRUNK[1:4], TRUNK[4:])):
+            rows = [row for row, part in enumerate(parts) if part in names]
+            self._shares[rows, column] = 1.0 / max(len(rows), 1)
+        self._leg_length = 0.0 if self._legs is None else _leg_length(self._legs)
+
+    @property
+    def able(self) -> bool:
+        """Whether the body has any of the joints."""
+        return self._joints.size > 0
+
+    def knows(self, name: str) -> bool:
+        """Return whether a name is a stance that the body can take."""
+        stance = self._stances.get(name)
+        return stance is not None and self.able and (self._legs is not None or stance.down < 0.1)
+
+    def values(self, intents: Sequence[PostureIntent], now: float) -> Array:
+        """Return the values of postures at a time [s], (12,); a later one replaces the others."""
+        shown = np.zeros(self.VALUES)
+        for intent in intents:
+            there = presence(intent.times, now)
+            if there > 0.0:
+                shown += (self._of(intent.name) - shown) * there
+        return shown
+
+    def _of(self, name: str) -> Array:
+        stance = self._stances.get(name, Stance())
+        if self._legs is None:
+            stance = Stance(trunk=stance.trunk, head=stance.head)
+        shift = (stance.aside, -stance.down, -stance.back)
+        return np.array([*shift, *stance.hips, *stance.trunk, *stance.head])
+
+    def apply(self, pose: Pose, values: Array) -> Pose:
+        """Return a pose that stands by these values, with its feet where they are."""
+        degrees = self._shares @ values[3:].reshape(3, 3)
+        turns = rotations.from_rotation_vector(
+            rotation_vectors(self._axes, [tuple(row) for row in degrees.tolist()])
+        )
+        local = pose.rotations.copy()
+        local[self._joints] = rotations.multiply(local[self._joints], turns)
+        turned = Pose(pose.translations, local, pose.scales, pose.morphs)
+        if self._legs is None or not (values[:6].any()):
+            return turned
+        return self._planted(pose, turned, values[:3] * self._leg_length)
+
+    def _planted(self, pose: Pose, turned: Pose, shift: Array) -> Pose:
+        """Return a turned pose with its pelvis shifted [m] and its feet as in the first pose."""
+        legs = self._legs
+        assert legs is not None
+        before = legs.frames(pose)
+        pelvis = int(legs.joints[0, 0])
+        parent = legs.skeleton.parents[pelvis]
+        x, y, z = shift.tolist()
+        own = rotate(conjugate(before.rotations[parent]), (x, y, z)) if parent >= 0 else (x, y, z)
+        moved = turned.translations.copy()
+        moved[legs.indices[pelvis]] += own
+        turned = Pose(moved, turned.rotations, turned.scales, turned.morphs)
+        after = legs.frames(turned)
+        ankles = legs.joints[:, 3].tolist()
+        feet = [
+            multiply(before.rotations[ankle], conjugate(after.rotations[ankle])) for ankle in ankles
+        ]
+        return legs.bend(turned, after, [before.positions[ankle] for ankle in ankles], feet)
+
+
+def _leg_length(legs: LegIK) -> float:
+    """Return the length of the shortest leg from hip to ankle at rest [m]."""
+    bones = np.linalg.norm(legs.skeleton.rest.translations[legs.joints[:, 2:4]], axis=-1)
+    return float(bones.sum(axis=1).min())

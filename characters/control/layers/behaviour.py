@@ -1,0 +1,121 @@
+"""Stances and faces that a command's behaviour asks for."""
+
+import math
+
+import numpy as np
+
+from characters.behaviour.intents import GazeIntent, Influence
+from characters.behaviour.performing.face_names import FaceNames
+from characters.behaviour.performing.planned_values import PlannedValues
+from characters.behaviour.performing.stances import StanceJoints
+from characters.control.layers.layer import FrameContext
+from characters.control.layers.posture import posture_share
+from characters.model.character import Character
+from characters.skeleton.pose import Array, Pose
+from characters.smoothing import damped_spring
+
+TURN_SHARES: dict[Influence, tuple[float, float]] = {
+    "SHOULDER": (0.0, 0.45),
+    "WAIST": (0.12, 0.55),
+    "WHOLE": (0.12, 0.55),
+}
+"""Shares of the way to what is looked at that pelvis and trunk turn, if they join in."""
+
+MAX_TURN_RAD = math.radians(50.0)
+"""How far a body turns at most to look at something, pelvis and trunk together [rad]."""
+
+TURN_LAG_S = 0.5
+"""Lag with which it turns [s]."""
+
+NEGLIGIBLE_RAD = 1e-4
+"""Turn that cannot be seen [rad]."""
+
+
+class StanceLayer:
+    """Sits, crouches, leans and turns the trunk to what is looked at; the feet stay."""
+
+    def __init__(self, character: Character, seed: int = 0) -> None:
+        self._joints = StanceJoints(character.skeleton, character.anatomy)
+        self._values = PlannedValues(StanceJoints.VALUES)
+        self._turns = ((0.0, 0.0), (0.0, 0.0))
+        self._turning = False
+
+    def update(self, pose: Pose, context: FrameContext) -> Pose:
+        """Return the pose in its stance."""
+        behaviour, now = context.command.behaviour, context.command.timestamp
+        postures = () if behaviour is None else behaviour.postures
+        values = self._values.update(
+            tuple((each.key, each.name, each.times) for each in postures),
+            lambda time: self._joints.values(postures, time),
+            now,
+        )
+        turns = self._turned(context)
+        if not self._joints.able or not (values.any() or self._turning):
+            return pose
+        share = posture_share(context)
+        values = values * share
+        values[[4, 7]] += np.degrees(turns) * share
+        return self._joints.apply(pose, values)
+
+    def _turned(self, context: FrameContext) -> tuple[float, float]:
+        """Return how far pelvis and trunk turn to what is looked at [rad], to the left."""
+        gaze = looked_at(context)
+        shares = (0.0, 0.0) if gaze is None else TURN_SHARES.get(gaze.influence, (0.0, 0.0))
+        if not self._turning and not any(shares):
+            return 0.0, 0.0
+        yaw = 0.0 if gaze is None else _yaw(context.in_character(gaze.target))
+        lag = TURN_LAG_S if gaze is None else lag_of(gaze)
+        yaw = min(max(yaw * sum(shares), -MAX_TURN_RAD), MAX_TURN_RAD) / max(sum(shares), 1e-9)
+        hips, trunk = (
+            damped_spring(*turn, yaw * share, context.elapsed, lag)
+            for turn, share in zip(self._turns, shares, strict=True)
+        )
+        self._turns = hips, trunk
+        self._turning = any(shares) or max(map(abs, (*hips, *trunk))) > NEGLIGIBLE_RAD
+        return hips[0], trunk[0]
+
+
+class FaceShiftLayer:
+    """Shows expressions and action units; it comes before blinks, emotion and speech."""
+
+    def __init__(self, character: Character, seed: int = 0) -> None:
+        self._names = FaceNames(character.morphs)
+        self._values = PlannedValues(len(character.morphs))
+
+    def update(self, pose: Pose, context: FrameContext) -> Pose:
+        """Return the pose with these expressions."""
+        behaviour, now = context.command.behaviour, context.command.timestamp
+        faces = () if behaviour is None else behaviour.faces
+        weights = self._values.update(
+            tuple((each.key, each.names, each.weights, each.times) for each in faces),
+            lambda time: self._names.shown(faces, time),
+            now,
+        )
+        if not weights.any():
+            return pose
+        shown: Array = weights if pose.morphs is None else pose.morphs + weights
+        return Pose(pose.translations, pose.rotations, pose.scales, np.minimum(shown, 1.0))
+
+
+def looked_at(context: FrameContext) -> GazeIntent | None:
+    """Return the look that counts in a frame: the last one that has begun and does not relax."""
+    behaviour, now = context.command.behaviour, context.command.timestamp
+    found = None
+    for gaze in () if behaviour is None else behaviour.gazes:
+        relax = gaze.times.relax if gaze.times.relax is not None else gaze.times.end
+        if gaze.times.start <= now and (relax is None or now < relax):
+            found = gaze
+    return found
+
+
+def lag_of(gaze: GazeIntent) -> float:
+    """Return the lag with which a head is on a point when a look is `ready` [s].
+
+    A critically damped spring has 98 % of its way behind it after three lags.
+    """
+    return min(max((gaze.times.ready - gaze.times.start) / 3.0, 0.06), 1.0)
+
+
+def _yaw(point: Array) -> float:
+    """Return the direction of a point in the character frame, to the left [rad]."""
+    return math.atan2(float(point[0]), float(point[2]))
