@@ -26,6 +26,7 @@ MOTION_READERS |= {
     ".bvh": _deferred("mocap.bvh", "load_motion"),
     ".amc": _deferred("mocap.amc", "load_motion"),
     ".asf": _deferred("mocap.asf", "refuse_motion"),
+    ".bap": _deferred("mocap.bap", "load_motion"),
 }
 
 __all__ = ["Performance", "is_motion_only", "load_motion"]
