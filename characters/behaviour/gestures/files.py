@@ -1,0 +1,123 @@
+"""Files of gestures: one TOML file a gesture.
+
+    name = "POINT_UP"
+    summary = "Up there"
+    one_handed = true
+
+    [[right]]
+    at = 1.0
+    shape = "point"
+    fingers = "up"
+    place = { x = "XP", y = "YUpperEP", z = "ZFar" }
+
+What a file leaves out is as in `SymbolicGesture`, `HandKey`, `BodyKey` and `Place`.
+"""
+
+import json
+import os
+import tomllib
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from characters.behaviour.gestures.checking import check_gesture, check_known
+from characters.behaviour.gestures.gesture import BodyKey, HandKey, Place, SymbolicGesture
+from characters.errors import CharacterError
+from characters.model.files import read_text
+
+SUFFIX = ".toml"
+"""Suffix of files of gestures."""
+
+MAX_BYTES = 1_000_000
+"""Larger files are no gestures."""
+
+_KEY_KINDS = {"right": HandKey, "left": HandKey, "body": BodyKey}
+
+
+def load_gesture(path: Path) -> SymbolicGesture:
+    """Read a gesture; a file without a name is named after itself.
+
+    Raises
+    ------
+    CharacterError
+        If it cannot be read, or is no gesture.
+    """
+    text = read_text(path, MAX_BYTES)
+    try:
+        document = {"name": path.stem.upper(), **tomllib.loads(text)}
+        _check_fields(document)
+        gesture = msgspec.convert(document, SymbolicGesture)
+        check_gesture(gesture)
+    except (ValueError, RecursionError, CharacterError) as error:
+        raise CharacterError(f"{path}: {error}") from None
+    return gesture
+
+
+def save_gesture(gesture: SymbolicGesture, path: Path) -> None:
+    """Write a gesture, whole or not at all; `load_gesture` gives the same back.
+
+    Raises
+    ------
+    CharacterError
+        If it is no gesture that can be performed, or the file cannot be written.
+    """
+    check_gesture(gesture)
+    draft = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        draft.write_text("\n".join(_lines(gesture)) + "\n", encoding="utf-8")
+        draft.replace(path)
+    except OSError as error:
+        with suppress(OSError):
+            draft.unlink()
+        raise CharacterError(
+            f"{path}: cannot be written ({error.strerror}); choose another folder"
+        ) from None
+
+
+def _check_fields(document: dict[str, Any]) -> None:
+    """Refuse fields that nothing has: a misspelt one would be as if left out."""
+    check_known("a gesture has", document, [field.name for field in fields(SymbolicGesture)])
+    for kind, key_kind in _KEY_KINDS.items():
+        keys = document.get(kind, [])
+        for key in keys if isinstance(keys, list) else []:
+            if isinstance(key, dict):
+                check_known(f"[[{kind}]] has", key, [field.name for field in fields(key_kind)])
+                place = key.get("place")
+                if isinstance(place, dict):
+                    check_known("a place has", place, [field.name for field in fields(Place)])
+
+
+def _lines(gesture: SymbolicGesture) -> Iterator[str]:
+    """Yield the lines of a file: only what is not as by default."""
+    yield f"name = {_value(gesture.name)}"
+    yield from _fields(gesture, SymbolicGesture(""), ("name", *_KEY_KINDS))
+    for kind in _KEY_KINDS:
+        for key in getattr(gesture, kind):
+            yield from ("", f"[[{kind}]]", f"at = {_value(key.at)}")
+            yield from _fields(key, type(key)(0.0), ("at",))
+
+
+def _fields(own: Any, usual: Any, without: tuple[str, ...]) -> Iterator[str]:
+    changed = [
+        (field.name, getattr(own, field.name), getattr(usual, field.name))
+        for field in fields(own)
+        if field.name not in without and getattr(own, field.name) != getattr(usual, field.name)
+    ]
+    for name, value, default in changed:
+        if is_dataclass(value):
+            inner = ", ".join(_fields(value, default, ()))
+            yield f"{name} = {{ {inner} }}"
+        else:
+            yield f"{name} = {_value(value)}"
+
+
+def _value(value: Any) -> str:
+    """Return a value as TOML; JSON writes texts as it does, but for the character DEL."""
+    if isinstance(value, tuple):
+        return "[" + ", ".join(map(_value, value)) + "]"
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
