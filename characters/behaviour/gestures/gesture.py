@@ -7,6 +7,8 @@ become places for the proportions of whoever performs it.
 from dataclasses import dataclass
 from typing import Literal
 
+from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
+
 SECTORS_X = ("XEP", "XP", "XC", "XOppC")
 """Across: extreme periphery, periphery and centre of the hand's own side, and the other centre."""
 
@@ -139,3 +141,6 @@ class SymbolicGesture:
 
     repeats: int = 1
     """How many times the stroke is performed."""
+
+    expressivity: GestureExpressivity = NEUTRAL
+    """How it is performed unless an intent says otherwise."""
