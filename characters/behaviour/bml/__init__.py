@@ -1,0 +1,65 @@
+"""BML 1.0: blocks of behaviours, their schedule, their realizer and its feedback."""
+
+from characters.behaviour.bml.document import (
+    BML,
+    BMLA,
+    FACE_SYNCS,
+    GESTURE_SYNCS,
+    HOLD_SYNCS,
+    SHIFT_SYNCS,
+    SYNCS,
+    Behaviour,
+    Block,
+    Constraint,
+    Element,
+    Mark,
+    SyncReference,
+)
+from characters.behaviour.bml.feedback import (
+    BlockProgress,
+    BmlWarning,
+    Feedback,
+    PredictedBehaviour,
+    Prediction,
+    SyncPointProgress,
+    feedback_xml,
+)
+from characters.behaviour.bml.parser import parse
+from characters.behaviour.bml.performer import (
+    CannotPerform,
+    Performer,
+    Scheduled,
+    Timing,
+    elastic,
+    rigid,
+)
+
+__all__ = [
+    "BML",
+    "BMLA",
+    "FACE_SYNCS",
+    "GESTURE_SYNCS",
+    "HOLD_SYNCS",
+    "SHIFT_SYNCS",
+    "SYNCS",
+    "Behaviour",
+    "Block",
+    "BlockProgress",
+    "BmlWarning",
+    "CannotPerform",
+    "Constraint",
+    "Element",
+    "Feedback",
+    "Mark",
+    "Performer",
+    "PredictedBehaviour",
+    "Prediction",
+    "Scheduled",
+    "SyncPointProgress",
+    "SyncReference",
+    "Timing",
+    "elastic",
+    "feedback_xml",
+    "parse",
+    "rigid",
+]

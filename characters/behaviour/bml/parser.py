@@ -1,0 +1,304 @@
+"""Read BML 1.0: one `bml` element, without DTD and entities, of bounded size."""
+
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Literal
+from xml.parsers import expat
+
+from characters.behaviour.bml.document import (
+    BML,
+    BMLA,
+    SYNC_NAMES,
+    Behaviour,
+    Block,
+    Composition,
+    Constraint,
+    Element,
+    Mark,
+    SyncReference,
+)
+from characters.errors import CharacterError
+
+MAX_BYTES = 1 << 20
+"""Size of a document that is read."""
+
+MAX_DEPTH = 32
+"""Elements within elements that are read."""
+
+MAX_ELEMENTS = 5000
+"""Elements of a document that are read."""
+
+MAX_OFFSET = 1e6
+"""Seconds that a moment may be from another."""
+
+_NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_SECONDS = re.compile(rf"\s*[+-]?{_NUMBER}\s*")
+_REFERENCE = re.compile(rf"\s*(?:([^\s:]+):)?([^\s:]+):([^\s:]+?)\s*(?:([+-])\s*({_NUMBER})\s*)?")
+_COMPOSITION = re.compile(r"(MERGE|REPLACE|APPEND)|APPEND-AFTER\(([^()]*)\)", re.IGNORECASE)
+
+
+@dataclass
+class _Open:
+    """An element whose end has not been read."""
+
+    tag: str
+    namespace: str
+    attributes: dict[str, str]
+    line: int
+    parts: list["str | _Open"] = field(default_factory=list)
+    """Characters and elements inside, in their order."""
+
+    @property
+    def children(self) -> list["_Open"]:
+        return [part for part in self.parts if isinstance(part, _Open)]
+
+    @property
+    def text(self) -> str:
+        """All characters inside."""
+        return "".join(part if isinstance(part, str) else part.text for part in self.parts)
+
+
+def parse(document: str | bytes) -> Block:
+    """Return what a BML document says.
+
+    Raises
+    ------
+    CharacterError
+        If it is no XML, declares a DTD, is too large, or is no block that can be understood.
+    """
+    root = read_xml(document, "BML")
+    if root.tag != "bml" or root.namespace != BML:
+        raise _error(root, f"<{root.tag}> is no <bml> of namespace {BML}")
+    return _Reader(root).block()
+
+
+def reference(text: str) -> SyncReference:
+    """Return the moment that a text names.
+
+    >>> reference("bml1:speech1:s1 + 0.5")
+    SyncReference(behaviour='speech1', sync='s1', block='bml1', offset=0.5)
+    >>> reference("6").offset
+    6.0
+
+    Raises
+    ------
+    CharacterError
+        If it names none.
+    """
+    found = _REFERENCE.fullmatch(text)
+    if found is None and not _SECONDS.fullmatch(text):
+        raise CharacterError(
+            f'"{text}" is no moment; write 1.5, speech1:start or speech1:start+0.5'
+        )
+    offset = float(text) if found is None else float((found[4] or "") + (found[5] or "0"))
+    if not math.isfinite(offset) or abs(offset) > MAX_OFFSET:
+        raise CharacterError(f'"{text}" is farther than {MAX_OFFSET:g} s; give fewer seconds')
+    if found is None:
+        return SyncReference(offset=offset)
+    return SyncReference(found[2], found[3], found[1] or "", offset)
+
+
+def read_xml(document: str | bytes, what: str) -> _Open:
+    """Return the root element of a bounded document without DTD.
+
+    Raises
+    ------
+    CharacterError
+        If it is not well-formed, too large or too deep, or declares a DTD.
+    """
+    if len(document) > MAX_BYTES:
+        raise CharacterError(f"{what}: more than {MAX_BYTES} bytes; send shorter documents")
+    parser = expat.ParserCreate(namespace_separator="}")
+    builder = _Builder(parser, what)
+    try:
+        parser.Parse(document, True)
+    except expat.ExpatError as error:
+        message = expat.errors.messages[error.code]
+        raise CharacterError(f"{what}, line {error.lineno}: not XML ({message})") from None
+    except (UnicodeEncodeError, LookupError, ValueError):
+        raise CharacterError(f"{what}: not XML (its encoding is not known)") from None
+    return builder.roots[0]
+
+
+class _Builder:
+    """Builds elements from the events of a parser."""
+
+    def __init__(self, parser: expat.XMLParserType, what: str) -> None:
+        self.roots: list[_Open] = []
+        self._open: list[_Open] = []
+        self._count = 0
+        self._parser, self._what = parser, what
+        parser.buffer_text = True
+        parser.StartElementHandler = self._start
+        parser.EndElementHandler = lambda tag: self._open.pop()
+        parser.CharacterDataHandler = lambda text: self._open[-1].parts.append(text)
+        parser.StartDoctypeDeclHandler = lambda *_: self._refuse("DTDs and entities are not read")
+
+    def _start(self, name: str, attributes: dict[str, str]) -> None:
+        namespace, _, tag = name.rpartition("}")
+        named = {f"{{{key}" if "}" in key else key: value for key, value in attributes.items()}
+        element = _Open(tag, namespace or BML, named, self._parser.CurrentLineNumber)
+        self._count += 1
+        if self._count > MAX_ELEMENTS:
+            self._refuse(f"more than {MAX_ELEMENTS} elements")
+        if len(self._open) >= MAX_DEPTH:
+            self._refuse(f"more than {MAX_DEPTH} nested elements")
+        (self._open[-1].parts if self._open else self.roots).append(element)
+        self._open.append(element)
+
+    def _refuse(self, why: str) -> None:
+        raise CharacterError(f"{self._what}, line {self._parser.CurrentLineNumber}: {why}")
+
+
+class _Reader:
+    """Makes a block of a `bml` element."""
+
+    def __init__(self, root: _Open) -> None:
+        self._root = root
+        self._behaviours: list[Behaviour] = []
+        self._constraints: list[Constraint] = []
+        self._ids: set[str] = set()
+
+    def block(self) -> Block:
+        given = dict(self._root.attributes)
+        name = given.pop("id", "").strip()
+        if not name:
+            raise _error(self._root, "a block without an id; write <bml id=…>")
+        self._read(self._root.children, required=False)
+        composition, after = self._composition(given.pop("composition", "MERGE"))
+        return Block(
+            id=name,
+            behaviours=tuple(self._behaviours),
+            constraints=tuple(self._constraints),
+            composition=composition,
+            append_after=after + _names(given.pop(f"{{{BMLA}}}appendAfter", "")),
+            chunk_after=_names(given.pop(f"{{{BMLA}}}chunkAfter", "")),
+            interrupt=_names(given.pop(f"{{{BMLA}}}interrupt", "")),
+            on_start=_names(given.pop(f"{{{BMLA}}}onStart", "")),
+            preplan=given.pop(f"{{{BMLA}}}preplan", "").strip().lower() in ("true", "1"),
+            character=given.pop("characterId", ""),
+            attributes=given,
+        )
+
+    def _read(self, elements: Iterable[_Open], required: bool) -> None:
+        for element in elements:
+            if element.namespace == BML and element.tag == "required":
+                self._read(element.children, required=True)
+            elif element.namespace == BML and element.tag == "constraint":
+                self._read_constraint(element, required)
+            else:
+                self._behaviours.append(self._behaviour(element, required))
+
+    def _behaviour(self, element: _Open, required: bool) -> Behaviour:
+        name = element.attributes.get("id", "").strip() or self._new_id(element.tag)
+        if name in self._ids:
+            raise _error(element, f'a second behaviour with id "{name}"; give each its own')
+        self._ids.add(name)
+        text, marks = _speech(element) if element.tag == "speech" else ("", ())
+        given = element.attributes.items()
+        return Behaviour(
+            id=name,
+            kind=element.tag,
+            namespace=element.namespace,
+            syncs={key: _moment(element, v) for key, v in given if key in SYNC_NAMES},
+            attributes={k: v for k, v in given if k not in SYNC_NAMES and k != "id"},
+            children=tuple(_as_element(child) for child in element.children),
+            text=text,
+            marks=marks,
+            required=required,
+        )
+
+    def _new_id(self, tag: str) -> str:
+        number = 1
+        while f"{tag}{number}" in self._ids:
+            number += 1
+        return f"{tag}{number}"
+
+    def _read_constraint(self, element: _Open, required: bool) -> None:
+        for rule in element.children:
+            if rule.tag not in ("synchronize", "before", "after"):
+                raise _error(rule, f"<{rule.tag}> is no synchronize, before or after")
+            kind: Literal["synchronize", "before", "after"] = rule.tag  # type: ignore[assignment]
+            syncs = tuple(
+                _moment(sync, sync.attributes.get("ref", ""))
+                for sync in rule.children
+                if sync.tag == "sync"
+            )
+            other = rule.attributes.get("ref")
+            if other is None and kind != "synchronize":
+                raise _error(rule, f"a <{kind}> without ref; say {kind} what")
+            moment = None if other is None else _moment(rule, other)
+            if kind == "synchronize" and moment is not None:
+                syncs, moment = (moment, *syncs), None
+            name = element.attributes.get("id", "")
+            self._constraints.append(Constraint(kind, syncs, moment, name, required))
+
+    def _composition(self, text: str) -> tuple[Composition, tuple[str, ...]]:
+        found = _COMPOSITION.fullmatch(text.strip())
+        if found is None:
+            raise _error(
+                self._root,
+                f'composition "{text}" is none of MERGE, APPEND, REPLACE, APPEND-AFTER(ids)',
+            )
+        if found[2] is not None:
+            return "MERGE", _names(found[2])
+        composition: Composition = found[1].upper()  # type: ignore[assignment]
+        return composition, ()
+
+
+def _speech(element: _Open) -> tuple[str, tuple[Mark, ...]]:
+    """Return the text of a speech with single spaces, and its marks."""
+    text, marks = "", list[Mark]()
+
+    def add(parts: Iterable[str | _Open]) -> None:
+        nonlocal text
+        for part in parts:
+            if isinstance(part, _Open):
+                if part.tag == "sync" and part.attributes.get("id"):
+                    marks.append(Mark(part.attributes["id"].strip(), len(text)))
+                add(part.parts)
+                continue
+            for character in part:
+                if not character.isspace():
+                    text += character
+                elif text and text[-1] != " ":
+                    text += " "
+
+    add([child for child in element.children if child.tag in ("text", "ssml", "description")])
+    _check_marks(element, marks)
+    text = text.rstrip()
+    return text, tuple(Mark(mark.id, min(mark.at, len(text))) for mark in marks)
+
+
+def _check_marks(element: _Open, marks: list[Mark]) -> None:
+    names = [mark.id for mark in marks] + ["start", "end"]
+    for name in names:
+        if names.count(name) > 1:
+            raise _error(element, f'a second sync point "{name}" in a text; give each its own id')
+
+
+def _as_element(element: _Open) -> Element:
+    return Element(
+        element.tag,
+        element.namespace,
+        element.attributes,
+        tuple(_as_element(child) for child in element.children),
+        element.text,
+    )
+
+
+def _moment(element: _Open, text: str) -> SyncReference:
+    try:
+        return reference(text)
+    except CharacterError as error:
+        raise _error(element, str(error)) from None
+
+
+def _names(text: str) -> tuple[str, ...]:
+    return tuple(text.replace(",", " ").split())
+
+
+def _error(element: _Open, message: str) -> CharacterError:
+    return CharacterError(f"BML, line {element.line}: {message}")
