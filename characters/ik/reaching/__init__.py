@@ -1,0 +1,1 @@
+"""Upper bodies that reach: torso, arms, hands and the shapes of hands."""
