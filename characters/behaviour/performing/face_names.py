@@ -49,7 +49,7 @@ ACTION_UNITS: dict[int, tuple[Mix, Mix]] = {
 """For each action unit the parts of the face that show it, and what a face without them shows."""
 
 LEXEMES: dict[str, tuple[int, ...]] = {
-    "OBLIQUE_BROWS": (1, 4),
+    "OBLIQUE_BROWS": (1,),
     "RAISE_BROWS": (1, 2),
     "RAISE_LEFT_BROW": (2,),
     "RAISE_RIGHT_BROW": (2,),
@@ -63,7 +63,7 @@ LEXEMES: dict[str, tuple[int, ...]] = {
     "WIDEN_EYES": (5,),
     "CLOSE_EYES": (43,),
     "BLINK": (45,),
-    "SMILE": (6, 12),
+    "SMILE": (12,),
     "PUCKER": (18,),
 }
 """Action units of BML's lexemes."""
@@ -71,7 +71,7 @@ LEXEMES: dict[str, tuple[int, ...]] = {
 NEUTRAL_NAMES = ("neutral", "rest", "none")
 """Names of a face at rest, which every face can show."""
 
-_SIDES = ("", "left", "right", "l", "r")
+_SIDES = ("left", "right", "l", "r")
 _AU = re.compile(r"(?:au|face_?facs)_?(\d+)", re.IGNORECASE)
 
 
@@ -155,8 +155,14 @@ class FaceNames:
                 total += weight * self._expressions[name.lower()]
                 able = True
                 continue
-            stem = re.sub(r"[\W_]", "", name).lower()
-            for number in {self._numbers[stem + s] for s in _SIDES if stem + s in self._numbers}:
+            for number in self._part(name):
                 total[number] += weight
                 able = True
         return total if able else None
+
+    def _part(self, name: str) -> set[int]:
+        """Return the morph of a part of the face, or those of its left and right sides."""
+        stem = re.sub(r"[\W_]", "", name).lower()
+        if stem in self._numbers:
+            return {self._numbers[stem]}
+        return {self._numbers[stem + side] for side in _SIDES if stem + side in self._numbers}

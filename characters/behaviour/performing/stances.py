@@ -18,8 +18,13 @@ from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Pose, Skeleton
 from characters.skeleton.scalar_quaternions import conjugate, multiply, rotate
 
-TRUNK = ("hips", "spine", "chest", "upperChest", "neck", "head")
-"""The parts that a stance turns, from below."""
+GROUPS = (
+    ("hips",),
+    ("spine", "chest", "upperChest"),
+    ("neck", "head"),
+    ("leftUpperArm", "rightUpperArm"),
+)
+"""The parts that turn: pelvis, trunk and head, which share their turn, and arms."""
 
 
 @dataclass(frozen=True)
@@ -45,13 +50,22 @@ class Stance:
     head: Degrees = (0.0, 0.0, 0.0)
     """Turn of neck and head, shared out."""
 
+    arms: float = 0.0
+    """Turn of the upper arms forward [degrees]."""
+
 
 STANCES = {
-    "SITTING": Stance(0.40, 0.22, trunk=(4.0, 0.0, 0.0), head=(-3.0, 0.0, 0.0)),
-    "CROUCHING": Stance(
-        0.46, 0.14, hips=(22.0, 0.0, 0.0), trunk=(16.0, 0.0, 0.0), head=(-30.0, 0.0, 0.0)
+    "SITTING": Stance(
+        0.86, 0.55, hips=(-14.0, 0.0, 0.0), trunk=(24.0, 0.0, 0.0), head=(-8.0, 0.0, 0.0), arms=42.0
     ),
-    "KNEELING": Stance(0.5, 0.1, hips=(6.0, 0.0, 0.0), trunk=(6.0, 0.0, 0.0)),
+    "CROUCHING": Stance(
+        0.46,
+        0.14,
+        hips=(22.0, 0.0, 0.0),
+        trunk=(16.0, 0.0, 0.0),
+        head=(-30.0, 0.0, 0.0),
+        arms=45.0,
+    ),
     "LEANING_FORWARD": Stance(
         0.02, 0.08, hips=(10.0, 0.0, 0.0), trunk=(14.0, 0.0, 0.0), head=(-16.0, 0.0, 0.0)
     ),
@@ -90,26 +104,27 @@ _QUADRUPED = {
 class StanceJoints:
     """The joints with which one body takes stances.
 
-    The values of a posture are the shift of the pelvis [legs], (3,), and the turns of pelvis, trunk
-    and head [degrees], (3,) each.
+    The values of a posture are the shift of the pelvis [legs], (3,), and the turns of pelvis,
+    trunk, head and arms [degrees], (3,) each.
     """
 
-    VALUES = 12
+    VALUES = 15
     """How many values there are."""
 
     def __init__(self, skeleton: Skeleton, anatomy: Anatomy) -> None:
         self._legs = find_paws(skeleton, anatomy) or find_legs(skeleton)
         self._stances = STANCES | (_QUADRUPED if anatomy.kind == "quadruped" else {})
-        found = [(part, anatomy.joint(part)) for part in TRUNK]
+        found = [(part, anatomy.joint(part)) for group in GROUPS for part in group]
         parts = {part: joint for part, joint in found if joint is not None}
         if self._legs is not None:
             parts["hips"] = int(self._legs.indices[self._legs.joints[0, 0]])
         self._joints = np.array([*parts.values()], np.intp)
         self._axes = body_axes(skeleton, self._joints)
-        self._shares = np.zeros((len(parts), 3))
-        for column, names in enumerate((TRUNK[:1], TRUNK[1:4], TRUNK[4:])):
+        self._shares = np.zeros((len(parts), len(GROUPS)))
+        for column, names in enumerate(GROUPS):
             rows = [row for row, part in enumerate(parts) if part in names]
-            self._shares[rows, column] = 1.0 / max(len(rows), 1)
+            self._shares[rows, column] = 1.0 if column == 3 else 1.0 / max(len(rows), 1)
+        self._legs_follow = 9 if anatomy.kind == "quadruped" else 6  # forelegs hang on the trunk
         self._leg_length = 0.0 if self._legs is None else _leg_length(self._legs)
 
     @property
@@ -123,7 +138,7 @@ class StanceJoints:
         return stance is not None and self.able and (self._legs is not None or stance.down < 0.1)
 
     def values(self, intents: Sequence[PostureIntent], now: float) -> Array:
-        """Return the values of postures at a time [s], (12,); a later one replaces the others."""
+        """Return the values of postures at a time [s], (15,); a later one replaces the others."""
         shown = np.zeros(self.VALUES)
         for intent in intents:
             there = presence(intent.times, now)
@@ -134,20 +149,21 @@ class StanceJoints:
     def _of(self, name: str) -> Array:
         stance = self._stances.get(name, Stance())
         if self._legs is None:
-            stance = Stance(trunk=stance.trunk, head=stance.head)
+            stance = Stance(trunk=stance.trunk, head=stance.head, arms=stance.arms)
         shift = (stance.aside, -stance.down, -stance.back)
-        return np.array([*shift, *stance.hips, *stance.trunk, *stance.head])
+        arms = (-stance.arms, 0.0, 0.0)
+        return np.array([*shift, *stance.hips, *stance.trunk, *stance.head, *arms])
 
     def apply(self, pose: Pose, values: Array) -> Pose:
         """Return a pose that stands by these values, with its feet where they are."""
-        degrees = self._shares @ values[3:].reshape(3, 3)
+        degrees = self._shares @ values[3:].reshape(-1, 3)
         turns = rotations.from_rotation_vector(
             rotation_vectors(self._axes, [tuple(row) for row in degrees.tolist()])
         )
         local = pose.rotations.copy()
         local[self._joints] = rotations.multiply(local[self._joints], turns)
         turned = Pose(pose.translations, local, pose.scales, pose.morphs)
-        if self._legs is None or not (values[:6].any()):
+        if self._legs is None or not values[: self._legs_follow].any():
             return turned
         return self._planted(pose, turned, values[:3] * self._leg_length)
 

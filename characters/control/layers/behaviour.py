@@ -21,6 +21,9 @@ TURN_SHARES: dict[Influence, tuple[float, float]] = {
 }
 """Shares of the way to what is looked at that pelvis and trunk turn, if they join in."""
 
+QUADRUPED_SHARE = 0.45
+"""Part of that which a body on four legs turns: its trunk carries the forelegs."""
+
 MAX_TURN_RAD = math.radians(50.0)
 """How far a body turns at most to look at something, pelvis and trunk together [rad]."""
 
@@ -39,6 +42,7 @@ class StanceLayer:
         self._values = PlannedValues(StanceJoints.VALUES)
         self._turns = ((0.0, 0.0), (0.0, 0.0))
         self._turning = False
+        self._share = QUADRUPED_SHARE if character.anatomy.kind == "quadruped" else 1.0
 
     def update(self, pose: Pose, context: FrameContext) -> Pose:
         """Return the pose in its stance."""
@@ -63,7 +67,7 @@ class StanceLayer:
         shares = (0.0, 0.0) if gaze is None else TURN_SHARES.get(gaze.influence, (0.0, 0.0))
         if not self._turning and not any(shares):
             return 0.0, 0.0
-        yaw = 0.0 if gaze is None else _yaw(context.in_character(gaze.target))
+        yaw = 0.0 if gaze is None else self._share * _yaw(context.in_character(gaze.target))
         lag = TURN_LAG_S if gaze is None else lag_of(gaze)
         yaw = min(max(yaw * sum(shares), -MAX_TURN_RAD), MAX_TURN_RAD) / max(sum(shares), 1e-9)
         hips, trunk = (
