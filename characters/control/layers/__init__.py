@@ -6,6 +6,7 @@ from characters.control.layers.foot_lock import FootLockLayer
 from characters.control.layers.gaze import GazeLayer
 from characters.control.layers.layer import FrameContext, LayerFactory
 from characters.control.layers.posture import PostureLayer
+from characters.control.layers.sitting_up import SittingUpLayer
 from characters.control.layers.speech import SpeechLayer
 from characters.control.layers.upper_body import DependentJointsLayer, SelfCollisionLayer
 from characters.model.character import Character
@@ -14,6 +15,7 @@ FOOT_LAYERS: tuple[LayerFactory, ...] = (FootLockLayer,)
 """What a character needs besides its clips."""
 
 LIVELINESS_LAYERS: tuple[LayerFactory, ...] = (
+    SittingUpLayer,
     SpeechLayer,
     PostureLayer,
     GazeLayer,
