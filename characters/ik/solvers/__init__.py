@@ -1,0 +1,1 @@
+"""Solvers of chains of joints, in batches: springs, CCD, FABRIK, Jacobians, several targets."""
