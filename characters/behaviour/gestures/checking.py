@@ -7,7 +7,7 @@ from dataclasses import fields
 from itertools import pairwise
 
 from characters.behaviour.gestures.contacts import CONTACTS
-from characters.behaviour.gestures.directions import DIRECTIONS
+from characters.behaviour.gestures.directions import DIRECTIONS, across
 from characters.behaviour.gestures.gesture import (
     SECTORS_X,
     SECTORS_Y,
@@ -16,7 +16,9 @@ from characters.behaviour.gestures.gesture import (
     HandKey,
     SymbolicGesture,
 )
+from characters.behaviour.expressivity import GestureExpressivity
 from characters.errors import CharacterError
+from characters.ik.reaching.hand_shapes import HAND_SHAPES
 
 MAX_SECONDS = 60.0
 """Longest phase of a gesture [s]."""
@@ -29,11 +31,6 @@ MAX_KEYS = 200
 
 MAX_TURNS = 20.0
 """Turns of a path from key to key."""
-
-HAND_SHAPES = (
-    "relaxed", "flat", "fist", "point", "thumb", "ok", "claw", "spread", "grasp", "two", "three",
-)  # fmt: skip
-"""Shapes that a hand may have."""
 
 
 def check_gesture(gesture: SymbolicGesture) -> None:
@@ -52,6 +49,9 @@ def check_gesture(gesture: SymbolicGesture) -> None:
         raise CharacterError(f"{gesture.name}: one_handed has keys in right only; move them there")
     for phase in ("preparation", "stroke", "hold", "retraction"):
         _check_range(f"{gesture.name}: {phase}", getattr(gesture, phase), 0.0, MAX_SECONDS)
+    for field in fields(GestureExpressivity):
+        value = getattr(gesture.expressivity, field.name)
+        _check_range(f"{gesture.name}: expressivity: {field.name}", value, -1.0, 1.0)
     _check_range(f"{gesture.name}: apex", gesture.apex, 0.0, 1.0)
     _check_range(f"{gesture.name}: repeats", gesture.repeats, 1, MAX_REPEATS)
     for kind in ("right", "left", "body"):
@@ -99,6 +99,11 @@ def _check_key(what: str, key: HandKey | BodyKey) -> None:
     check_known(f"{what}: shape is", [key.shape], HAND_SHAPES)
     check_known(f"{what}: palm is", key.palm.split("-"), DIRECTIONS)
     check_known(f"{what}: fingers is", key.fingers.split("-"), DIRECTIONS)
+    if not across(key.fingers, key.palm, left=True):
+        raise CharacterError(
+            f"{what}: fingers {key.fingers!r} are not across the palm {key.palm!r}; a hand whose "
+            "palm faces down has its fingers forward, back, in or out"
+        )
     _check_range(f"{what}: turns", key.turns, 0.0, MAX_TURNS)
     for number in (*place.offset, *key.radius):
         _check_range(f"{what}: offset or radius", number, -2.0, 2.0)

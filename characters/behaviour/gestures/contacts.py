@@ -8,7 +8,7 @@ import numpy as np
 
 from characters.model.mesh import Mesh
 from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Skeleton
+from characters.skeleton.pose import Array, Pose, Skeleton
 
 CONE = 0.92
 """Cosine of the angle within which vertices are in a direction."""
@@ -67,13 +67,18 @@ class BodySurface:
     """The joint that carries each contact, of the left hand if true."""
 
     points: Mapping[tuple[str, bool], Array]
-    """Where it is at rest, (3,) in the frame of its joint [m]."""
+    """Where it is, (3,) in the frame of its joint [m]."""
 
     @staticmethod
-    def of(skeleton: Skeleton, anatomy: Anatomy, meshes: Sequence[Mesh]) -> "BodySurface":
-        """Return the contacts of a character; without a mesh they are at the joints."""
-        rest = skeleton.rest.globals(skeleton)
-        owned = _vertices_by_joint(meshes, len(skeleton))
+    def of(
+        skeleton: Skeleton, anatomy: Anatomy, meshes: Sequence[Mesh], pose: Pose
+    ) -> "BodySurface":
+        """Return the contacts of a character, with directions as in an upright pose.
+
+        Without a mesh they are at the joints.
+        """
+        frames = pose.globals(skeleton)
+        owned = _vertices_by_joint(meshes, frames)
         joints, points = {}, {}
         for name, contact in CONTACTS.items():
             for left in (False, True):
@@ -82,9 +87,9 @@ class BodySurface:
                     continue
                 side = 1.0 if left else -1.0
                 towards = np.array([side * contact.outward, contact.up, contact.forward])
-                place = _surface(owned[joint], rest[joint, :3, 3], towards)
+                place = _surface(owned[joint], frames[joint, :3, 3], towards)
                 joints[name, left] = joint
-                points[name, left] = (np.linalg.inv(rest[joint]) @ [*place, 1.0])[:3]
+                points[name, left] = (np.linalg.inv(frames[joint]) @ [*place, 1.0])[:3]
         return BodySurface(joints, points)
 
     def place(self, contact: str, left: bool, character_from_joint: Array) -> Array | None:
@@ -102,15 +107,17 @@ def _part(part: str, left: bool) -> str:
     return part.replace("own", own).replace("other", other)
 
 
-def _vertices_by_joint(meshes: Sequence[Mesh], joints: int) -> list[Array]:
-    """Return the vertices that each joint moves most, (n, 3) each."""
-    places = np.concatenate([np.zeros((0, 3)), *(mesh.positions for mesh in meshes)])
-    strongest = [np.zeros(0, int)]
+def _vertices_by_joint(meshes: Sequence[Mesh], frames: Array) -> list[Array]:
+    """Return the vertices that each joint moves most, in a pose of its frames, (n, 3) each."""
+    places, strongest = [np.zeros((0, 3))], [np.zeros(0, int)]
     for mesh in meshes:
         column = mesh.weights.argmax(axis=1)[:, None]
-        strongest.append(np.take_along_axis(mesh.joints, column, axis=1)[:, 0].astype(int))
-    number = np.concatenate(strongest)
-    return [places[number == joint] for joint in range(joints)]
+        joint = np.take_along_axis(mesh.joints, column, axis=1)[:, 0].astype(int)
+        posed = (frames @ mesh.inverse_bind)[joint]
+        places.append(np.einsum("nij,nj->ni", posed[:, :3, :3], mesh.positions) + posed[:, :3, 3])
+        strongest.append(joint)
+    number, place = np.concatenate(strongest), np.concatenate(places)
+    return [place[number == joint] for joint in range(len(frames))]
 
 
 def _surface(vertices: Array, joint: Array, towards: Array) -> Array:

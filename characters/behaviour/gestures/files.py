@@ -24,6 +24,7 @@ from typing import Any
 
 import msgspec
 
+from characters.behaviour.expressivity import GestureExpressivity
 from characters.behaviour.gestures.checking import check_gesture, check_known
 from characters.behaviour.gestures.gesture import BodyKey, HandKey, Place, SymbolicGesture
 from characters.errors import CharacterError
@@ -82,6 +83,9 @@ def save_gesture(gesture: SymbolicGesture, path: Path) -> None:
 def _check_fields(document: dict[str, Any]) -> None:
     """Refuse fields that nothing has: a misspelt one would be as if left out."""
     check_known("a gesture has", document, [field.name for field in fields(SymbolicGesture)])
+    style = document.get("expressivity", {})
+    if isinstance(style, dict):
+        check_known("expressivity has", style, [f.name for f in fields(GestureExpressivity)])
     for kind, key_kind in _KEY_KINDS.items():
         keys = document.get(kind, [])
         for key in keys if isinstance(keys, list) else []:

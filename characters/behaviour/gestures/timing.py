@@ -1,0 +1,98 @@
+"""When the phases of a gesture are, and how far it is at a time."""
+
+from dataclasses import dataclass
+
+from characters.behaviour.gestures.gesture import SymbolicGesture
+from characters.behaviour.intents import StrokeTimes
+from characters.smoothing import interpolate
+
+RETURN_SHARE = 0.4
+"""Share of each stroke but the last that is the way back, if it does not end where it starts."""
+
+MIN_PHASE_S = 1e-4
+"""Phases that are shorter count as this long [s]."""
+
+PREPARED, STROKE, STROKE_END, RELAX, GONE = 1.0, 2.0, 3.0, 4.0, 5.0
+"""Phases, after 0.0, the start: ready, start and end of the stroke, relax, and end."""
+
+
+@dataclass(frozen=True)
+class Repeats:
+    """The parts of a stroke that is performed several times; times are 0…1 of all of it."""
+
+    count: int
+    """How many times."""
+
+    share: float
+    """Share of one period that the stroke takes; the rest is the way back."""
+
+    @staticmethod
+    def of(gesture: SymbolicGesture) -> "Repeats":
+        """Return those of a gesture."""
+        closed = all(
+            len(keys) < 2 or keys[0].place == keys[-1].place
+            for keys in (gesture.right, gesture.left)
+        )
+        returns = gesture.repeats > 1 and not closed
+        return Repeats(gesture.repeats, 1.0 - RETURN_SHARE if returns else 1.0)
+
+    @property
+    def periods(self) -> float:
+        """Length of all of it in periods: the last one has no way back."""
+        return self.count - 1.0 + self.share
+
+    def time(self, number: int, at: float) -> float:
+        """Return when a moment of one of the strokes is, 0…1 of all of it."""
+        return (number + at * self.share) / self.periods
+
+
+def apex_share(gesture: SymbolicGesture) -> float:
+    """Return when the apex of the first stroke is, 0…1 of all strokes."""
+    return Repeats.of(gesture).time(0, gesture.apex)
+
+
+def stroke_length(gesture: SymbolicGesture) -> float:
+    """Return how long all strokes take, as the gesture is written [s]."""
+    repeats = Repeats.of(gesture)
+    return gesture.stroke * repeats.periods / repeats.share
+
+
+def natural_times(gesture: SymbolicGesture, start: float = 0.0) -> StrokeTimes:
+    """Return the times of a gesture as it is written, from a start [s].
+
+    >>> from characters.behaviour.gestures.gesture import HandKey
+    >>> times = natural_times(SymbolicGesture("NOW", right=(HandKey(1.0),)), 1.0)
+    >>> times.ready, round(times.stroke_end, 6), round(times.end, 6)
+    (1.5, 2.1, 2.9)
+    """
+    ready = start + gesture.preparation
+    length = stroke_length(gesture)
+    relax = ready + length + gesture.hold
+    return StrokeTimes(
+        start,
+        ready,
+        relax,
+        relax + gesture.retraction,
+        stroke_start=ready,
+        stroke=ready + apex_share(gesture) * length,
+        stroke_end=ready + length,
+    )
+
+
+def phase_at(times: StrokeTimes, now: float, apex: float, retraction: float) -> float:
+    """Return how far a gesture is at a time: 0 before it … 5 after it, 2…3 in its stroke.
+
+    `apex` is the share of the stroke at `times.stroke`; `retraction` is how long it takes [s] if
+    its end is not known. A gesture whose `relax` is not known stays at the end of its stroke.
+    """
+    knots = [times.start, times.ready, times.stroke_start, times.stroke, times.stroke_end]
+    phases = [0.0, PREPARED, STROKE, STROKE + apex, STROKE_END]
+    if times.relax is not None:
+        end = times.relax + retraction if times.end is None else times.end
+        knots += [times.relax, end]
+        phases += [RELAX, GONE]
+    ascending: list[float] = []
+    for knot in knots:  # a phase of no length, or out of order, gets the least length
+        known = knot if knot == knot else ascending[-1]
+        ascending.append(max(known, ascending[-1] + MIN_PHASE_S) if ascending else known)
+    return interpolate(now, ascending, phases)
