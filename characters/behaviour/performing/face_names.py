@@ -48,31 +48,31 @@ ACTION_UNITS: dict[int, tuple[Mix, Mix]] = {
 }
 """For each action unit the parts of the face that show it, and what a face without them shows."""
 
-LEXEMES: dict[str, tuple[int, ...]] = {
-    "OBLIQUE_BROWS": (1,),
-    "RAISE_BROWS": (1, 2),
-    "RAISE_LEFT_BROW": (2,),
-    "RAISE_RIGHT_BROW": (2,),
-    "LOWER_BROWS": (4,),
-    "LOWER_LEFT_BROW": (4,),
-    "LOWER_RIGHT_BROW": (4,),
-    "RAISE_MOUTH_CORNERS": (12,),
-    "LOWER_MOUTH_CORNERS": (15,),
-    "OPEN_MOUTH": (26,),
-    "OPEN_LIPS": (25,),
-    "WIDEN_EYES": (5,),
-    "CLOSE_EYES": (43,),
-    "BLINK": (45,),
-    "SMILE": (12,),
-    "PUCKER": (18,),
+LEXEMES: dict[str, tuple[str, ...]] = {
+    "OBLIQUE_BROWS": ("AU1",),
+    "RAISE_BROWS": ("AU1", "AU2"),
+    "RAISE_LEFT_BROW": ("AU2_LEFT",),
+    "RAISE_RIGHT_BROW": ("AU2_RIGHT",),
+    "LOWER_BROWS": ("AU4",),
+    "LOWER_LEFT_BROW": ("AU4_LEFT",),
+    "LOWER_RIGHT_BROW": ("AU4_RIGHT",),
+    "RAISE_MOUTH_CORNERS": ("AU12",),
+    "LOWER_MOUTH_CORNERS": ("AU15",),
+    "OPEN_MOUTH": ("AU26",),
+    "OPEN_LIPS": ("AU25",),
+    "WIDEN_EYES": ("AU5",),
+    "CLOSE_EYES": ("AU43",),
+    "BLINK": ("AU45",),
+    "SMILE": ("AU12",),
+    "PUCKER": ("AU18",),
 }
-"""Action units of BML's lexemes."""
+"""Action units of BML's lexemes; `_LEFT` and `_RIGHT` are for one side, where a face can do so."""
 
 NEUTRAL_NAMES = ("neutral", "rest", "none")
 """Names of a face at rest, which every face can show."""
 
-_SIDES = ("left", "right", "l", "r")
-_AU = re.compile(r"(?:au|face_?facs)_?(\d+)", re.IGNORECASE)
+_SIDES = {"": ("left", "right", "l", "r"), "left": ("left", "l"), "right": ("right", "r")}
+_AU = re.compile(r"au_?(\d+)(?:_(left|right))?", re.IGNORECASE)
 
 
 class FaceNames:
@@ -127,9 +127,9 @@ class FaceNames:
             return np.zeros(len(self._morphs))
         unit = _AU.fullmatch(name)
         if unit is not None:
-            return self._unit(int(unit[1]))
+            return self._unit(int(unit[1]), (unit[2] or "").lower())
         if name.upper() in LEXEMES:
-            parts = [self._unit(number) for number in LEXEMES[name.upper()]]
+            parts = [self._resolved(each) for each in LEXEMES[name.upper()]]
             able = [part for part in parts if part is not None]
             return np.minimum(np.sum(able, axis=0), 1.0) if able else None
         if lower in FACE_RECIPES:
@@ -140,14 +140,14 @@ class FaceNames:
             return mixed
         return self._mixed({name: 1.0})
 
-    def _unit(self, number: int) -> Array | None:
+    def _unit(self, number: int, side: str) -> Array | None:
         for mix in ACTION_UNITS.get(number, ()):
-            shown = self._mixed(mix)
+            shown = self._mixed(mix, side)
             if shown is not None:
                 return shown
         return None
 
-    def _mixed(self, mix: Mix) -> Array | None:
+    def _mixed(self, mix: Mix, side: str = "") -> Array | None:
         """Return the weights of a mix of parts and expressions; None if the face has none."""
         total, able = np.zeros(len(self._morphs)), False
         for name, weight in mix.items():
@@ -155,14 +155,15 @@ class FaceNames:
                 total += weight * self._expressions[name.lower()]
                 able = True
                 continue
-            for number in self._part(name):
+            for number in self._part(name, side):
                 total[number] += weight
                 able = True
         return total if able else None
 
-    def _part(self, name: str) -> set[int]:
-        """Return the morph of a part of the face, or those of its left and right sides."""
+    def _part(self, name: str, side: str) -> set[int]:
+        """Return the morphs of a part of the face, on one side if there are any, else whole."""
         stem = re.sub(r"[\W_]", "", name).lower()
-        if stem in self._numbers:
+        sides = {self._numbers[stem + s] for s in _SIDES[side] if stem + s in self._numbers}
+        if stem in self._numbers and not (side and sides):
             return {self._numbers[stem]}
-        return {self._numbers[stem + side] for side in _SIDES if stem + side in self._numbers}
+        return sides

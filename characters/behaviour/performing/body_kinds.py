@@ -1,0 +1,153 @@
+"""The behaviours of the whole body: `posture`, `postureShift`, `locomotion` and `wait`."""
+
+import math
+from collections.abc import Iterator
+
+from characters.behaviour.bml import (
+    HOLD_SYNCS,
+    SHIFT_SYNCS,
+    Behaviour,
+    CannotPerform,
+    Scheduled,
+    Timing,
+    elastic,
+)
+from characters.behaviour.gestures.gesture import SymbolicGesture
+from characters.behaviour.intents import GestureIntent, PostureIntent, StrokeTimes, Times
+from characters.behaviour.performing.hand_kinds import held
+from characters.behaviour.performing.performed import (
+    Going,
+    Manner,
+    Performed,
+    Performing,
+    number,
+    shift_times_of,
+    times_of,
+)
+
+POSTURE_SPANS_S = (0.9, 1.5, 0.9)
+"""Times between the sync points of a posture [s]."""
+
+SHIFT_S = 1.0
+"""Time in which a body takes another posture [s]."""
+
+WAIT_S = 1.0
+"""Time of a wait that says nothing [s]."""
+
+UPRIGHT = ("STANDING", "NEUTRAL", "BALANCED")
+"""Names of the posture that a body has by itself."""
+
+RUNNING = ("run", "running", "fast", "hurry")
+"""Manners of going that are running."""
+
+
+class PostureKind:
+    """Takes a posture for a while."""
+
+    channel = ""
+
+    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+        """Return the times of a posture, which lasts as long as it is to."""
+        _check_posture(behaviour, who)
+        return elastic(HOLD_SYNCS, POSTURE_SPANS_S, holds=frozenset({"ready"}))
+
+    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+        """Add the posture."""
+        take(scheduled, times_of(scheduled), who, performed)
+
+
+class PostureShiftKind:
+    """Takes a posture until further notice."""
+
+    channel = "posture"
+
+    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+        """Return the times of the change."""
+        _check_posture(behaviour, who)
+        return elastic(SHIFT_SYNCS, (SHIFT_S,), least=0.3, most=math.inf)
+
+    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+        """Add the posture."""
+        take(scheduled, shift_times_of(scheduled), who, performed)
+
+
+class LocomotionKind:
+    """Walks, runs or hops to a place on the table."""
+
+    channel = ""
+
+    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+        """Return the time that the way takes from where the character is."""
+        target = who.surroundings.point(behaviour.get("target"))[[0, 2]]
+        span = max(who.walk_time(target, _manner(behaviour)), 0.1)
+        return elastic(SHIFT_SYNCS, (span,), least=0.3, most=math.inf)
+
+    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+        """Go to where the target is now."""
+        target = who.surroundings.point(scheduled.behaviour.get("target"))[[0, 2]]
+        performed.going = Going(scheduled.key, scheduled.end, target, _manner(scheduled.behaviour))
+
+
+class WaitKind:
+    """Does nothing for a while."""
+
+    channel = ""
+
+    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+        """Return the time to wait."""
+        span = number(behaviour, "duration", WAIT_S, 0.0, 3600.0)
+        return elastic(SHIFT_SYNCS, (span,), holds=frozenset({"start"}))
+
+    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+        """Do nothing."""
+
+
+def take(scheduled: Scheduled, times: Times, who: Performing, performed: Performed) -> None:
+    """Add a posture of trunk and legs, and one of the arms as a gesture that is held."""
+    names = [*_names(scheduled.behaviour)]
+    stance = "+".join(name for name in names if who.stances.knows(name)) or UPRIGHT[0]
+    performed.postures.append(PostureIntent(scheduled.key, stance, times))
+    for name in names:
+        arms = _arms(name, who)
+        if arms is not None:
+            strokes = StrokeTimes(
+                times.start, times.ready, times.relax, times.end, *(times.ready,) * 3
+            )
+            key = f"{scheduled.key}:{name}"
+            performed.gestures.append(
+                GestureIntent(key, held(arms), strokes, "both", who.how(scheduled))
+            )
+
+
+def _check_posture(behaviour: Behaviour, who: Performing) -> None:
+    """Refuse a posture of which the body can do nothing."""
+    names = [*_names(behaviour)]
+    able = [
+        name
+        for name in names
+        if name in UPRIGHT or who.stances.knows(name) or _arms(name, who) is not None
+    ]
+    if not able:
+        asked = ", ".join(names) or "a posture without stance, pose or lexeme"
+        raise CannotPerform(f"{who.character.name} cannot take {asked}")
+
+
+def _arms(name: str, who: Performing) -> SymbolicGesture | None:
+    """Return the gesture with which arms take a posture; None if it is no posture of arms."""
+    if who.arms and not who.stances.knows(name) and name in who.collection:
+        return who.collection.get(name)
+    return None
+
+
+def _names(behaviour: Behaviour) -> Iterator[str]:
+    """Yield the stance and the poses of a behaviour."""
+    if behaviour.get("lexeme"):
+        yield behaviour.get("lexeme").upper()
+    for child in behaviour.children:
+        name = child.attributes.get("type") or child.attributes.get("lexeme")
+        if name:
+            yield name.upper()
+
+
+def _manner(behaviour: Behaviour) -> Manner:
+    return "run" if behaviour.get("manner").lower() in RUNNING else "walk"

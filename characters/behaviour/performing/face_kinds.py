@@ -1,0 +1,98 @@
+"""The behaviours of faces: `face`, `faceLexeme`, `faceFacs` and `faceShift`."""
+
+import math
+from collections.abc import Iterator, Mapping
+
+from characters.behaviour.bml import (
+    FACE_SYNCS,
+    SHIFT_SYNCS,
+    Behaviour,
+    CannotPerform,
+    Element,
+    Scheduled,
+    Timing,
+    elastic,
+)
+from characters.behaviour.intents import FaceIntent
+from characters.behaviour.performing.performed import (
+    Performed,
+    Performing,
+    shift_times_of,
+    times_of,
+)
+from characters.behaviour.performing.surroundings import numbers_of
+
+FACE_SPANS_S = (0.4, 1.2, 0.5)
+"""Times between the sync points of an expression [s]."""
+
+SHIFT_S = 0.6
+"""Time in which a face takes on another expression [s]."""
+
+
+USUAL_AMOUNT = 0.5
+"""How much of an expression is shown if a behaviour does not tell, as in the standard."""
+
+
+class FaceKind:
+    """Shows something on the face for a while."""
+
+    channel = ""
+
+    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+        """Return the times of an expression, which lasts as long as it is to."""
+        _shown(behaviour, who)
+        return elastic(FACE_SYNCS, FACE_SPANS_S, holds=frozenset({"attackPeak"}))
+
+    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+        """Add the expression."""
+        names, weights = _shown(scheduled.behaviour, who)
+        times = times_of(scheduled, "attackPeak")
+        performed.faces.append(FaceIntent(scheduled.key, names, weights, times))
+
+
+class FaceShiftKind:
+    """Shows something on the face until further notice."""
+
+    channel = "face"
+
+    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+        """Return the times in which the face changes."""
+        _shown(behaviour, who)
+        return elastic(SHIFT_SYNCS, (SHIFT_S,), least=0.2, most=math.inf)
+
+    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+        """Add the expression."""
+        names, weights = _shown(scheduled.behaviour, who)
+        times = shift_times_of(scheduled)
+        performed.faces.append(FaceIntent(scheduled.key, names, weights, times))
+
+
+def _shown(behaviour: Behaviour, who: Performing) -> tuple[tuple[str, ...], tuple[float, ...]]:
+    """Return the names and weights that a behaviour and its children give."""
+    found = [*_named(behaviour, USUAL_AMOUNT)]
+    if not found:
+        raise CannotPerform("an expression without a lexeme, au or name")
+    unknown = [name for name, _ in found if who.faces.weights(name) is None]
+    if len(unknown) == len(found):
+        raise CannotPerform(f"the face of {who.character.name} cannot show {', '.join(unknown)}")
+    names, weights = zip(*found, strict=True)
+    return names, weights
+
+
+def _named(element: Behaviour | Element, usual: float) -> Iterator[tuple[str, float]]:
+    given: Mapping[str, str] = element.attributes
+    amount = _amount(given, usual)
+    unit, side = given.get("au", "").strip(), given.get("side", "BOTH").upper()
+    if unit:
+        yield f"AU{unit}" + ("" if side == "BOTH" else f"_{side}"), amount
+    for attribute in ("lexeme", "type", "name"):
+        if given.get(attribute):
+            yield given[attribute], amount
+    for child in element.children:
+        yield from _named(child, amount)
+
+
+def _amount(attributes: Mapping[str, str], usual: float) -> float:
+    text = attributes.get("amount") or attributes.get("intensity") or ""
+    found = numbers_of(text)
+    return min(max(found[0], 0.0), 1.0) if len(found) == 1 else usual

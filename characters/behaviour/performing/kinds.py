@@ -1,0 +1,27 @@
+"""What a kind of behaviour is to a performer: its natural times, and what the body does for it."""
+
+from typing import Protocol
+
+from characters.behaviour.bml import Behaviour, Scheduled, Timing
+from characters.behaviour.performing.performed import Performed, Performing
+
+
+class BehaviourKind(Protocol):
+    """Performs one kind of behaviour; a kind of one's own is an entry of a performer's `kinds`."""
+
+    channel: str
+    """What of the body stays as it leaves it, "gaze" …; "" if nothing does."""
+
+    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+        """Return the natural times of a behaviour.
+
+        Raises
+        ------
+        CannotPerform
+            If the body cannot do it, or no such target is known.
+        """
+        ...
+
+    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+        """Add what the body does for a behaviour that is being performed."""
+        ...
