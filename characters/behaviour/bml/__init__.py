@@ -33,6 +33,7 @@ from characters.behaviour.bml.performer import (
     elastic,
     rigid,
 )
+from characters.behaviour.bml.realizer import Realizer
 
 __all__ = [
     "BML",
@@ -54,6 +55,7 @@ __all__ = [
     "Performer",
     "PredictedBehaviour",
     "Prediction",
+    "Realizer",
     "Scheduled",
     "SyncPointProgress",
     "SyncReference",

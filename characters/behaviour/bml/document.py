@@ -82,7 +82,7 @@ class Constraint:
     """Which moment they are before or after; None for `synchronize`."""
 
     id: str = ""
-    """Its name, if it has one."""
+    """Its name, unique in its block; the parser names those that have none."""
 
     required: bool = False
     """Whether the block fails if it cannot be met."""

@@ -232,7 +232,9 @@ class _Reader:
             moment = None if other is None else _moment(rule, other)
             if kind == "synchronize" and moment is not None:
                 syncs, moment = (moment, *syncs), None
-            name = element.attributes.get("id", "")
+            name = element.attributes.get("id", "").strip()
+            name = self._new_id("constraint") if not name or name in self._ids else name
+            self._ids.add(name)
             self._constraints.append(Constraint(kind, syncs, moment, name, required))
 
     def _composition(self, text: str) -> tuple[Composition, tuple[str, ...]]:

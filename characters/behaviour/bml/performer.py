@@ -6,10 +6,16 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from characters.behaviour.bml.document import Behaviour, Block
+from characters.behaviour.bml.feedback import WarningType
 
 
-class CannotPerform(Exception):  # noqa: N818 -- it says what it is
+class CannotPerform(Exception):  # noqa: N818 -- a verdict on a document, not a bug
     """A behaviour that a performer cannot do; the message says why, in one line."""
+
+    def __init__(self, reason: str, type: WarningType | None = None) -> None:
+        super().__init__(reason)
+        self.type = type
+        """Type of the warning; None for what suits the kind of the behaviour."""
 
 
 @dataclass(frozen=True)

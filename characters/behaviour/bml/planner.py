@@ -1,0 +1,395 @@
+"""Find the times of all sync points of a block.
+
+Behaviours are placed one after the other, those that others refer to first. One is stretched
+between the sync points that placed ones fix; behaviours that no time fixes form clusters that are
+moved as a whole, to start as early as they can. A placement that breaks a constraint blames its
+owner, who is then left out: it is what the standard asks for, and no search is needed.
+"""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from characters.behaviour.bml.constraints import Link, Moment, Order, Unmet
+from characters.behaviour.bml.performer import Timing
+from characters.behaviour.bml.spans import TOLERANCE, fits, stretched
+
+LATENESS = 0.1
+"""A sync point that should have been so many seconds ago may be now: the standard's tolerance."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What is to be planned."""
+
+    timings: Mapping[str, Timing]
+    """Natural times by behaviour, in the document's order."""
+
+    links: Sequence[Link]
+    """Sync points at a fixed distance."""
+
+    orders: Sequence[Order]
+    """Sync points in an order."""
+
+    start: float
+    """When the block starts: nothing is before [s]."""
+
+    now: float = -math.inf
+    """What has not happened is not before this [s]."""
+
+    facts: Mapping[str, Mapping[int, float]] = field(default_factory=dict)
+    """Times of sync points that have happened or are otherwise known, by behaviour [s]."""
+
+    moved: frozenset[str] = frozenset()
+    """Behaviours whose `facts` the others follow."""
+
+    strict: bool = True
+    """Whether `Unmet` is raised; otherwise what runs goes on as well as it can."""
+
+
+@dataclass(eq=False)
+class _Cluster:
+    """Behaviours whose times are known but for a common offset."""
+
+    members: list[str]
+    grounded: bool
+    """Whether that offset is known: times are absolute."""
+
+
+@dataclass(frozen=True)
+class _Anchor:
+    """A sync point of a behaviour that is to be at the time of one that is placed."""
+
+    index: int
+    moment: Moment | None
+    """The placed one; None for an absolute time."""
+
+    offset: float
+    owner: str
+
+
+def plan(problem: Problem) -> dict[str, list[float]]:
+    """Return the times of the sync points of every behaviour [s], inf for those that never come.
+
+    Raises
+    ------
+    Unmet
+        If a constraint cannot be met, and `problem.strict`.
+    """
+    return _Planner(problem).plan()
+
+
+class _Planner:
+    def __init__(self, problem: Problem) -> None:
+        self._problem = problem
+        self._ground = _Cluster([], grounded=True)
+        self._clusters: dict[str, _Cluster] = {}
+        self._times: dict[str, list[float]] = {}
+        self._links: dict[str, list[Link]] = {name: [] for name in problem.timings}
+        self._orders: dict[str, list[Order]] = {}
+        for link in problem.links:
+            self._links[link.a[0]].append(link)
+            if link.b is not None:
+                self._links[link.b[0]].append(link)
+        for order in problem.orders:
+            for end in (order.earlier, order.later):
+                if end is not None:
+                    self._orders.setdefault(end[0], []).append(order)
+
+    def plan(self) -> dict[str, list[float]]:
+        for name in _sequence(self._problem):
+            self._place(name)
+        self._ground_all()
+        if self._problem.strict:
+            self._verify()
+        return self._times
+
+    def _unmet(self, owner: str, reason: str) -> None:
+        if self._problem.strict:
+            raise Unmet(owner, reason)
+
+    # One behaviour
+
+    def _place(self, name: str) -> None:
+        anchors = self._anchors(name)
+        facts = self._problem.facts.get(name, {})
+        cluster = self._joined(name, anchors, grounded=bool(facts))
+        fixed = self._fixed(name, anchors, facts)
+        if fixed:
+            times = self._stretched(name, fixed, cluster)
+        else:
+            times = stretched(self._problem.timings[name], {0: 0.0})
+        self._clusters[name], self._times[name] = cluster, times
+        cluster.members.append(name)
+        for order in self._orders.get(name, ()):
+            self._obey(name, order, fixed, cluster)
+
+    def _anchors(self, name: str) -> list[_Anchor]:
+        anchors = []
+        for link in self._links[name]:
+            if link.a[0] == name:
+                own, other, offset = link.a, link.b, link.offset
+            else:
+                assert link.b is not None
+                own, other, offset = link.b, link.a, -link.offset
+            if other is None or other[0] in self._times:
+                anchors.append(_Anchor(own[1], other, offset, link.owner))
+        anchors.sort(key=lambda anchor: anchor.index)
+        return anchors
+
+    def _time(self, anchor: _Anchor) -> float:
+        if anchor.moment is None:
+            return anchor.offset
+        return self._times[anchor.moment[0]][anchor.moment[1]] + anchor.offset
+
+    def _joined(self, name: str, anchors: list[_Anchor], *, grounded: bool) -> _Cluster:
+        """Return the cluster of a behaviour: clusters that it links become one."""
+        found = [self._cluster(anchor) for anchor in anchors]
+        if grounded or self._ground in found:
+            base = self._ground
+        else:
+            base = found[0] if found else _Cluster([], grounded=False)
+        timing = self._problem.timings[name]
+        known = dict(self._problem.facts.get(name, {}))
+        known |= {a.index: self._time(a) for a in anchors if self._cluster(a) is base}
+        for anchor in anchors:
+            if self._cluster(anchor) is base:
+                continue
+            nearest = min(known, key=lambda index: abs(index - anchor.index))
+            low, high = sorted((nearest, anchor.index))
+            distance = math.copysign(sum(timing.spans[low:high]), anchor.index - nearest)
+            self._shift(self._cluster(anchor), base, known[nearest] + distance - self._time(anchor))
+            known[anchor.index] = self._time(anchor)
+        return base
+
+    def _cluster(self, anchor: _Anchor) -> _Cluster:
+        return self._clusters[anchor.moment[0]] if anchor.moment else self._ground
+
+    def _shift(self, cluster: _Cluster, base: _Cluster, by: float) -> None:
+        """Move a cluster into another one; not before the start of the block."""
+        if base.grounded:
+            by = max(by, self._problem.start - self._begin(cluster))
+        for member in cluster.members:
+            self._times[member] = [time + by for time in self._times[member]]
+            self._clusters[member] = base
+        base.members += cluster.members
+        cluster.members = []
+
+    def _begin(self, cluster: _Cluster) -> float:
+        return min(self._times[member][0] for member in cluster.members)
+
+    def _fixed(
+        self, name: str, anchors: list[_Anchor], facts: Mapping[int, float]
+    ) -> dict[int, float]:
+        """Return the times that anchors and facts give to a behaviour's sync points."""
+        fixed = dict(facts)
+        for anchor in anchors:
+            time = self._in_time(anchor, self._time(anchor))
+            before = max((i for i in fixed if i <= anchor.index), default=None)
+            after = min((i for i in fixed if i > anchor.index), default=None)
+            if not time < math.inf:
+                self._unmet(anchor.owner, "it waits for something that never comes")
+            elif before == anchor.index:
+                if abs(fixed[before] - time) > TOLERANCE:
+                    self._unmet(anchor.owner, f"{self._point(name, before)} cannot be at two times")
+            elif (before is not None and time < fixed[before]) or (
+                after is not None and time > fixed[after]
+            ):
+                self._unmet(anchor.owner, f"{self._point(name, anchor.index)} is out of order")
+            else:
+                fixed[anchor.index] = time
+                self._check_span(name, fixed, before, anchor)
+                self._check_span(name, fixed, after, anchor)
+        return fixed
+
+    def _in_time(self, anchor: _Anchor, time: float) -> float:
+        """Return a time that is not in the past, if it is only a little."""
+        start = self._problem.start
+        if anchor.moment is None and start - LATENESS <= time < start:
+            time = start
+        if not self._problem.strict:
+            time = max(time, self._problem.now)
+        return time
+
+    def _check_span(
+        self, name: str, fixed: dict[int, float], other: int | None, anchor: _Anchor
+    ) -> None:
+        if other is None or not self._problem.strict:
+            return
+        first, last = sorted((other, anchor.index))
+        if not fits(self._problem.timings[name], first, last, fixed[last] - fixed[first]):
+            a, b = self._point(name, first), self._point(name, last)
+            raise Unmet(
+                anchor.owner, f"{a} and {b} cannot be {fixed[last] - fixed[first]:.3g} s apart"
+            )
+
+    def _stretched(self, name: str, fixed: dict[int, float], cluster: _Cluster) -> list[float]:
+        """Return the times of a behaviour; one that would start too early is compressed."""
+        timing = self._problem.timings[name]
+        times = stretched(timing, fixed)
+        start = self._problem.start
+        if cluster.grounded and times[0] < start - TOLERANCE:
+            first = min(fixed)
+            if first == 0 or not fits(timing, 0, first, fixed[first] - start):
+                self._unmet(
+                    self._blamed(name), f"it would start {start - times[0]:.3g} s too early"
+                )
+            if first > 0:
+                times = stretched(timing, {**fixed, 0: min(start, fixed[first])})
+        if not self._problem.strict and cluster.grounded:
+            times = self._not_in_the_past(name, times)
+        return times
+
+    def _not_in_the_past(self, name: str, times: list[float]) -> list[float]:
+        facts = self._problem.facts.get(name, {})
+        latest = self._problem.start
+        for index, time in enumerate(times):
+            latest = max(latest, time if index in facts else max(time, self._problem.now))
+            times[index] = latest
+        return times
+
+    def _blamed(self, name: str) -> str:
+        owners = {link.owner for link in self._links[name]}
+        return next((owner for owner in owners if owner not in self._problem.timings), name)
+
+    def _point(self, name: str, index: int) -> str:
+        return f"{name}:{self._problem.timings[name].syncs[index]}"
+
+    # Orders
+
+    def _of(self, moment: Moment | None) -> tuple[_Cluster, float] | None:
+        """Return the cluster and the time of a moment, None if it is not placed."""
+        if moment is None:
+            return self._ground, 0.0
+        if moment[0] not in self._times:
+            return None
+        return self._clusters[moment[0]], self._times[moment[0]][moment[1]]
+
+    def _lateness(self, order: Order) -> float:
+        """Return how far an order within a cluster is missed [s]; not positive if it is met."""
+        earlier, later = self._of(order.earlier), self._of(order.later)
+        if earlier is None or later is None or earlier[0] is not later[0]:
+            return 0.0
+        return earlier[1] - later[1] - order.offset
+
+    def _obey(self, name: str, order: Order, fixed: dict[int, float], cluster: _Cluster) -> None:
+        """Move the sync point of a behaviour that is just placed to where an order allows it."""
+        late = self._lateness(order)
+        if late <= TOLERANCE:
+            return
+        if order.later is not None and order.later[0] == name:
+            index, by = order.later[1], late
+        else:
+            assert order.earlier is not None
+            index, by = order.earlier[1], -late
+        wanted = self._times[name][index] + by
+        neighbours = [(i, t) for i, t in fixed.items() if i != index]
+        if (
+            index in fixed
+            or any((t > wanted) if i < index else (t < wanted) for i, t in neighbours)
+            or not math.isfinite(wanted)
+        ):
+            self._unmet(order.owner, f"{self._point(name, index)} cannot be so")
+            return
+        fixed[index] = wanted
+        self._check_order(name, order, fixed, index)
+        self._times[name] = self._stretched(name, fixed, cluster)
+
+    def _check_order(self, name: str, order: Order, fixed: dict[int, float], index: int) -> None:
+        anchor = _Anchor(index, None, 0.0, order.owner)
+        self._check_span(name, fixed, max((i for i in fixed if i < index), default=None), anchor)
+        self._check_span(name, fixed, min((i for i in fixed if i > index), default=None), anchor)
+
+    # All behaviours
+
+    def _ground_all(self) -> None:
+        """Give every cluster the earliest time that the orders between clusters allow."""
+        clusters = {id(c): c for c in self._clusters.values() if not c.grounded}
+        shifts = {key: self._problem.start - self._begin(c) for key, c in clusters.items()}
+        shifts[id(self._ground)] = 0.0
+        for _ in range(len(shifts) + 1):
+            late = [order for order in self._problem.orders if self._raise(order, shifts)]
+            if not late:
+                break
+        else:
+            self._unmet(late[-1].owner, "its order goes round in a circle")
+        for key, cluster in clusters.items():
+            for member in cluster.members:
+                times = [time + shifts[key] for time in self._times[member]]
+                self._times[member] = (
+                    times if self._problem.strict else self._not_in_the_past(member, times)
+                )
+
+    def _raise(self, order: Order, shifts: dict[int, float]) -> bool:
+        """Move the later cluster of an order if it is too early; return whether it was."""
+        earlier, later = self._of(order.earlier), self._of(order.later)
+        assert earlier is not None
+        assert later is not None
+        if earlier[0] is later[0]:
+            return False
+        late = earlier[1] + shifts[id(earlier[0])] - later[1] - shifts[id(later[0])] - order.offset
+        if late <= TOLERANCE:
+            return False
+        if later[0].grounded or not math.isfinite(late):
+            self._unmet(order.owner, f"it would be {late:.3g} s too late")
+            return False
+        shifts[id(later[0])] += late
+        return True
+
+    def _verify(self) -> None:
+        """Check all constraints at the end: no constraint is broken unseen."""
+        for link in self._problem.links:
+            a = self._times[link.a[0]][link.a[1]]
+            b = 0.0 if link.b is None else self._times[link.b[0]][link.b[1]]
+            late = link.b is None and a == self._problem.start and b + link.offset < a
+            if not (abs(a - b - link.offset) <= 10 * TOLERANCE or late):
+                raise Unmet(link.owner, "it contradicts another constraint")
+        for order in self._problem.orders:
+            ends = [
+                0.0 if end is None else self._times[end[0]][end[1]]
+                for end in (order.earlier, order.later)
+            ]
+            if not ends[0] <= ends[1] + order.offset + 10 * TOLERANCE:
+                raise Unmet(order.owner, "it contradicts another constraint")
+        for name, times in self._times.items():
+            if times[0] < self._problem.start - 10 * TOLERANCE:
+                raise Unmet(self._blamed(name), "it would start too early")
+
+
+def _sequence(problem: Problem) -> list[str]:
+    """Return behaviours in an order in which those that others refer to come first."""
+    waits: dict[str, list[str]] = {name: [] for name in problem.timings}
+    for link in problem.links:
+        if link.b is not None:
+            a, b = link.a[0], link.b[0]
+            if link.owner in (a, b):
+                waits[link.owner].append(b if link.owner == a else a)
+    sequence: list[str] = []
+    state: dict[str, int] = {}
+
+    def visit(names: Iterable[str]) -> None:
+        stack = [(name, iter(waits[name])) for name in names]
+        while stack:
+            name, others = stack[-1]
+            state.setdefault(name, 1)
+            if state[name] == 2:
+                stack.pop()
+                continue
+            for other in others:
+                if other not in state and other in waits:
+                    stack.append((other, iter(waits[other])))
+                    break
+            else:
+                stack.pop()
+                state[name] = 2
+                sequence.append(name)
+
+    for name in [n for n in problem.timings if n in problem.moved] + list(problem.timings):
+        if name in state:
+            continue
+        if name in problem.moved:
+            state[name] = 2
+            sequence.append(name)
+        else:
+            visit([name])
+    return sequence
