@@ -25,6 +25,7 @@ from app.pipeline.scenario_errors import checked, scenario_errors
 from app.pipeline.spoken_line import SpokenLine
 from app.pipeline.step import Rect, ReplayInputs, Step
 from app.pipeline.subjects import character_region, cube_region
+from app.pipeline.things import Body, BodyParts
 from characters import Animator, Character, CharacterCommand, PosedCharacter, RootDelta
 from characters.control.command import SpeechIntent
 from characters.control.controllers import ControllerFactory, first_suitable
@@ -49,6 +50,7 @@ STATE_NAMES = (
     "_gestures",
     "_animator",
     "_posed",
+    "_body",
     "_attention",
     "_other_cube",
     "other_cube",
@@ -136,8 +138,9 @@ class Playground:
         self.scenario, self.cube, self.character = scenario, cube, character
         self._tracker = CubeTracker(cube, self.intrinsics)
         self._gestures = CubeGestures(cube)
-        self._animator = animator
+        self._animator, self._parts = animator, BodyParts.of(character)
         self._posed: PosedCharacter | None = None
+        self._body: Body | None = None
         self._attention = Attention(self._look, cube.edge)
         self._other_cube = OtherCube(cube, self.known_cubes)
         self.other_cube: CubeModel | None = None
@@ -166,6 +169,7 @@ class Playground:
         if missing:
             raise AppError(f"{character.name} cannot {' or '.join(missing)}")
         self.character, self._animator = character, animator
+        self._parts, self._body = BodyParts.of(character), None
 
     def look_through(self, intrinsics: Intrinsics) -> None:
         """Take another camera; `play` must follow, as the table is another one in its picture."""
@@ -226,6 +230,7 @@ class Playground:
         controls = replay.controls or self.gesture(state)
         self._lap("gestures")
         inputs = inputs or Inputs()
+        inputs = replace(inputs, cube=_table_from_cube(state, controls))
         outcome = self.attend(state, controls, self.decide(controls, inputs))
         outcome = self.speak(inputs, outcome)
         self.other_cube = self._other_cube.update(frame, state)
@@ -238,7 +243,7 @@ class Playground:
         posed = (
             self.animate(outcome.command) if replay.posed is None else self._fitted(replay.posed)
         )
-        self._posed = posed
+        self._posed, self._body = posed, Body(self.character, self._parts, posed)
         self._lap("animation")
         picture = self.draw(frame, state, controls, outcome, posed) if drawn else None
         subjects = self._subjects(state, controls, posed)
@@ -265,6 +270,7 @@ class Playground:
         animator = self._animator
         inputs = replace(
             inputs,
+            body=self._body,
             actions=animator.actions,
             walks=animator.walks,
             body_length=animator.length,
@@ -322,7 +328,10 @@ class Playground:
             boxes,
         )
         seen = posed.visible and controls.camera_from_table is not None
-        characters = (SceneCharacter(self.character, posed),) if seen else ()
+        characters = [SceneCharacter(self.character, posed)] if seen else []
+        if seen and outcome.things:
+            body = Body(self.character, self._parts, posed)
+            characters += [body.placed(thing) for thing in outcome.things]
         return self._stage.draw(view, characters, outcome.floor if seen else ())
 
     def drawn(self, step: Step) -> Step:
@@ -355,3 +364,11 @@ class Playground:
         if self._stage is not None:
             self._stage.release()
             self._stage = None
+
+
+def _table_from_cube(state: CubeState, controls: CubeControls) -> NDArray[np.float64] | None:
+    """Return where a cube that is seen is on the table, (4, 4) [m]."""
+    table, cube = controls.camera_from_table, state.camera_from_cube
+    if table is None or cube is None or not controls.visible:
+        return None
+    return np.asarray(np.linalg.inv(table) @ cube)

@@ -3,9 +3,13 @@
 from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
+import numpy as np
+from numpy.typing import NDArray
+
 from affect import Emotion, Personality
 from app.errors import AppError
 from app.pipeline.spoken_line import SpokenLine
+from app.pipeline.things import Body, Thing
 from characters import CharacterCommand, PosedCharacter, RootDelta
 from characters.rendering import FloorPath
 from tracking import CubeControls, CubeModel
@@ -29,6 +33,12 @@ class Inputs:
 
     body_length: float = 0.0
     """Length of the character on the table, from front to back [m]."""
+
+    cube: NDArray[np.float64] | None = None
+    """`table_from_cube`, (4, 4) [m]; None where the cube is not seen."""
+
+    body: Body | None = None
+    """The character's body as after the previous frame; None in the first."""
 
     line: SpokenLine | None = None
     """What the character begins to say in this frame; None for nothing new."""
@@ -71,6 +81,9 @@ class Outcome:
 
     events: tuple[str, ...] = ()
     """What has just happened, such as "reached": the character may say something about it."""
+
+    things: tuple[Thing, ...] = ()
+    """Small things on the table, or in the character's hands."""
 
 
 SPEED_MAP_NAMES = ("corrected", "legacy")

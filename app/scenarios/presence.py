@@ -7,9 +7,10 @@ HIDE_DELAY_S = 0.6
 
 
 class Presence:
-    """Shows the character while the cube is visible (AvatAR), and for a moment longer."""
+    """Shows the character while the cube is visible (AvatAR), and for a moment longer [s]."""
 
-    def __init__(self) -> None:
+    def __init__(self, hide_delay: float = HIDE_DELAY_S) -> None:
+        self._hide_delay = hide_delay
         self._last_seen: float | None = None
 
     def update(self, controls: CubeControls) -> bool:
@@ -19,4 +20,4 @@ class Presence:
             self._last_seen = now
         if controls.camera_from_table is None or self._last_seen is None:
             return False
-        return now - self._last_seen <= HIDE_DELAY_S
+        return now - self._last_seen <= self._hide_delay

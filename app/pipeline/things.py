@@ -1,0 +1,136 @@
+"""Small virtual things on the table, and the body that reaches for them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters import Character, PosedCharacter
+from characters.ik.reaching.hands import find_hand
+from characters.rendering import SceneCharacter
+from characters.rendering.toys import GRIP_M, toy
+
+Point = NDArray[np.float64]
+
+Side = Literal["left", "right"]
+"""One of two hands."""
+
+GRIP = np.array([0.0, GRIP_M, 0.0])
+"""Where a hand holds a thing, from its foot [m]."""
+
+
+@dataclass(frozen=True)
+class Thing:
+    """A small thing on the table, or in a hand; it stays upright."""
+
+    name: str
+    """What it is: one of `characters.rendering.toys.TOYS`."""
+
+    place: Point
+    """Where its foot is, (3,) in the table frame [m]. In a hand: where it is from there."""
+
+    hand: Side | None = None
+    """The hand that carries it; None for none."""
+
+
+@dataclass(frozen=True)
+class BodyParts:
+    """The parts of a character that reach."""
+
+    hands: Mapping[Side, tuple[int, Point]]
+    """Joint of each hand; the middle of its palm and its fingertips, (2, 3) in the frame of the
+    joint [m]."""
+
+    chest: Point
+    """The middle of its chest at rest, (3,) in the character frame [m]."""
+
+    @staticmethod
+    def of(character: Character) -> "BodyParts":
+        """Return the parts of a character; one without arms has no hands."""
+        skeleton, anatomy = character.skeleton, character.anatomy
+        rest = skeleton.rest.globals(skeleton)
+        hands: dict[Side, tuple[int, Point]] = {}
+        sides: tuple[Side, Side] = ("left", "right")
+        for side in sides:
+            hand = find_hand(skeleton, anatomy, side)
+            if hand is not None:
+                placed = rest[hand.joint]
+                tip = placed[:3, 3] + hand.length * hand.axes[0]
+                points = np.stack([hand.palm, tip]) - placed[:3, 3]
+                hands[side] = hand.joint, points @ np.linalg.inv(placed[:3, :3]).T
+        joint = anatomy.joint("chest") or anatomy.joint("spine")
+        chest = np.array([0.0, 0.6 * character.height, 0.0])
+        return BodyParts(hands, chest if joint is None else rest[joint, :3, 3])
+
+
+@dataclass(frozen=True)
+class Body:
+    """The character's body on the table, as after the previous frame."""
+
+    character: Character
+    """The character."""
+
+    parts: BodyParts
+    """The parts of it that reach."""
+
+    posed: PosedCharacter
+    """Its pose and its place."""
+
+    @property
+    def place(self) -> Point:
+        """Where it stands, (3,) in the table frame [m]."""
+        return self.posed.table_from_character[:3, 3]
+
+    @property
+    def height(self) -> float:
+        """Its height on the table [m]."""
+        return self.character.height * float(self.posed.table_from_character[1, 1])
+
+    @property
+    def chest(self) -> Point:
+        """The middle of its chest when it stands straight, (3,) in the table frame [m]."""
+        placed = self.posed.table_from_character
+        return np.asarray(placed[:3, :3] @ self.parts.chest + placed[:3, 3])
+
+    @property
+    def has_hands(self) -> bool:
+        """Whether it has a hand to reach with."""
+        return bool(self.parts.hands)
+
+    def effort(self, target: Point) -> float:
+        """Return how hard a point, (3,) in the table frame [m], is to reach from where it stands.
+
+        0 is within the arm, 1 the limit of trunk and arm, more is beyond; infinite without arms.
+        """
+        tall = self.height
+        return (float(np.linalg.norm(target - self.chest)) - 0.3 * tall) / (0.13 * tall)
+
+    def palm(self, side: Side) -> Point | None:
+        """Return where the palm of a hand is, (3,) in the table frame [m]; None without hands."""
+        return self._hand_points(side)[0] if side in self.parts.hands else None
+
+    def hand_distance(self, target: Point) -> float:
+        """Return how far the nearest palm or fingertip is from a point, (3,) on the table [m]."""
+        points = [self._hand_points(side) for side in self.parts.hands]
+        return min(float(np.linalg.norm(each - target, axis=1).min()) for each in points)
+
+    def placed(self, thing: Thing) -> SceneCharacter:
+        """Return a thing as it is to be drawn: in the hand that carries it, or where it stands."""
+        table_from_toy = np.eye(4)
+        palm = None if thing.hand is None else self.palm(thing.hand)
+        table_from_toy[:3, 3] = thing.place if palm is None else palm - GRIP + thing.place
+        return toy(thing.name).placed(table_from_toy, self.posed.timestamp)
+
+    def _hand_points(self, side: Side) -> Point:
+        joint, points = self.parts.hands[side]
+        placed = self._table_from_joints[joint]
+        return np.asarray(points @ placed[:3, :3].T + placed[:3, 3])
+
+    @cached_property
+    def _table_from_joints(self) -> Point:
+        """Placements of all joints, (joints, 4, 4)."""
+        joints = self.posed.pose.globals(self.character.skeleton)
+        return np.asarray(self.posed.table_from_character @ joints)

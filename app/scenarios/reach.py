@@ -1,0 +1,225 @@
+"""Reaching: the character tries to get the cube, and brings it small things when it rests."""
+
+import numpy as np
+
+from affect import Personality
+from app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
+from app.pipeline.things import Body
+from app.scenarios.follow import PLAYER_POSITION, gait
+from app.scenarios.mood import MoodController
+from app.scenarios.presence import Presence
+from app.scenarios.reach_behaviour import ReachingBody, Scene
+from app.scenarios.reach_catching import ARRIVED_M, Catching, Prospect
+from app.scenarios.reach_gifts import Gifts
+from app.scenarios.reach_places import (
+    Point,
+    around,
+    gap,
+    nearest_point_of_cube,
+    stand_distance,
+    way_to,
+)
+from characters import ActionIntent, CharacterCommand, LocomotionIntent, PosedCharacter, RootDelta
+from tracking import CubeControls, CubeModel
+
+LOOK_FOR_S = 15.0
+"""How long it stays and looks for a cube that is out of sight [s]."""
+
+REST_S = 1.2
+"""A cube that has rested for so long gets its things [s]."""
+
+TOUCHING_M = 0.012
+"""A hand this near to the cube touches it [m]."""
+
+HIGH_SHARE = 0.95
+"""A cube whose centre is higher than this share of the character's height is held up."""
+
+WALK_SPEED, SPEED_PER_M, MAX_SPEED = 2.0, 6.0, 4.0
+"""AvatAR's Speed near its goal, by how much it is greater for each metre to go, and at most."""
+
+NO_HANDS_EFFORT = 3.0
+"""Effort of a character without hands that is not beside the cube."""
+
+FACING_CUBE = ("touch", "stretch", "point")
+"""What it does with its front to the cube; else it turns to the player."""
+
+ICONS = {
+    "watch": "stand", "touch": "reach", "sulk": "wait", "shade": "search", "fetch": "walk",
+    "grasp": "take", "put": "give", "hold": "wait",
+}  # fmt: skip
+"""The card of what it does, where that has another name."""
+
+HINTS = {
+    "watch": "Move the cube: can I reach it?",
+    "touch": "I have it, nearly!",
+    "cheer": "Hooray! Now move the cube",
+    "stretch": "So far! Push the cube a little to me",
+    "shrug": "I cannot reach it",
+    "point": "There it is! I come",
+    "come": "Wait, I come to the cube",
+    "sulk": "Bring the cube nearer to me",
+    "shade": "So high! Bring the cube down to me",
+    "search": "Where is the cube? Show it to me",
+    "hold": "Put the cube down: the {thing} is for you",
+    "fetch": "Look, I get the {thing} for you",
+    "grasp": "Look, I take the {thing}",
+    "carry": "I bring you the {thing}",
+    "put": "Here is the {thing}",
+}
+"""What to tell the player, by what it does."""
+
+
+class Reach:
+    """The character reaches for the cube: gladly, with effort, or in vain, as far as it is.
+
+    When the cube rests, it brings small things to it, one after the other. A shaken cube lets
+    them hop home. A cube that is out of sight or held up high makes it shade its eyes.
+    """
+
+    name = "reach"
+    summary = "the character reaches for the cube, and brings small things to it"
+    cube = "locomotion"
+    roles: tuple[str, ...] = ()
+    character = "human"
+    personality = "lively"
+    start = RootDelta(-0.14, 0.03, 0.0)
+    has_intensity = False
+    adjustable = ("personality",)
+
+    def __init__(self, cube: CubeModel, settings: ScenarioSettings) -> None:
+        self._edge = cube.edge
+        self._mood = MoodController(settings.personality or Personality.load(self.personality))
+        self._presence = Presence(LOOK_FOR_S)
+        self._catching = Catching()
+        self._gifts = Gifts(cube.edge)
+        self._hands = ReachingBody()
+        self._cube: Point | None = None  # where it was seen last, (4, 4)
+        self._rested_since: float | None = None
+
+    def adjust(self, settings: ScenarioSettings) -> None:
+        """Play on with other settings."""
+        self._mood.adjust(settings.personality or Personality.load(self.personality))
+
+    def update(
+        self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
+    ) -> Outcome:
+        """Decide on one frame; see `Scenario.update`."""
+        now, body = controls.timestamp, inputs.body
+        if inputs.clear:
+            self._mood.reset()
+        visible = self._presence.update(controls)
+        if inputs.cube is not None:
+            self._cube = inputs.cube
+            self._gifts.lay_out(inputs.cube[:3, 3])
+        if inputs.clear or controls.shaken:
+            self._gifts.scatter(body, now)
+        events: tuple[str, ...] = ()
+        scene = None
+        if visible and body is not None and self._cube is not None:
+            scene, events = self._decide(controls, inputs, body, self._cube)
+        going = LocomotionIntent(facing=PLAYER_POSITION)
+        if scene is not None and body is not None:
+            going = _going(scene, body, inputs)
+        stands = ActionIntent("idle") if going.target is None else None
+        behaviour = self._hands.update(now, scene, body)
+        command = CharacterCommand(now, going, stands, visible=visible, behaviour=behaviour)
+        emotion = self._mood.update(
+            controls, "idle", speed=going.speed, events=(*events, *inputs.events)
+        )
+        doing = "watch" if scene is None else scene.doing
+        icon = gait(going.speed, inputs.walks) if going.speed else ICONS.get(doing, doing)
+        hint = _hint(controls, doing, self._gifts.named)
+        return Outcome(command, emotion, hint, icon, events=events, things=self._gifts.things(now))
+
+    def _decide(
+        self, controls: CubeControls, inputs: Inputs, body: Body, cube: Point
+    ) -> tuple[Scene, tuple[str, ...]]:
+        """Return what it does, with what, and what has just happened."""
+        prospect = _prospect(controls, inputs, body, cube, self._edge)
+        events: tuple[str, ...] = ()
+        if self._gifts.held:
+            self._catching.look(prospect)
+        else:
+            events = self._catching.update(prospect)
+        free = self._is_free(controls)
+        gifts, centre = self._gifts, prospect.cube
+        stand = gifts.stand_point(body.place, centre, stand_distance(inputs.body_length))
+        there = stand is not None and gap(body.place, stand, 0.0) <= ARRIVED_M
+        events += gifts.update(prospect.now, centre, body, free=free, there=there)
+        doing = self._doing(free)
+        return Scene(
+            doing=doing,
+            cube=centre,
+            touch=prospect.touch,
+            effort=prospect.effort,
+            goal=gifts.goal(centre),
+            stand=stand if doing in ("fetch", "carry") else None,
+            held=bool(gifts.held),
+            hand=gifts.hand,
+        ), events
+
+    def _is_free(self, controls: CubeControls) -> bool:
+        """Whether it has time for the things: the cube rests, and it holds one or is content."""
+        rests = controls.visible and controls.resting
+        if not rests:
+            self._rested_since = None
+        elif self._rested_since is None:
+            self._rested_since = controls.timestamp
+        if self._rested_since is None or controls.timestamp - self._rested_since < REST_S:
+            return False
+        return bool(self._gifts.held) or self._catching.content
+
+    def _doing(self, free: bool) -> str:
+        """Return what it does: the cube out of sight goes first, then things, then the cube."""
+        if self._catching.doing == "search":
+            return "search"
+        if free and self._gifts.doing != "wait":
+            return self._gifts.doing
+        return "hold" if self._gifts.held else self._catching.doing
+
+
+def _prospect(
+    controls: CubeControls, inputs: Inputs, body: Body, cube: Point, edge: float
+) -> Prospect:
+    """Return what the character knows about the cube at its last place, (4, 4)."""
+    touch = nearest_point_of_cube(cube, edge, body.chest)
+    away = gap(body.place, touch, stand_distance(inputs.body_length))
+    high = bool(cube[1, 3] > HIGH_SHARE * body.height)
+    effort = body.effort(touch)
+    if not body.has_hands:  # it is content to be there
+        effort = 0.0 if away <= ARRIVED_M and not high else NO_HANDS_EFFORT
+    touching = not body.has_hands or body.hand_distance(touch) < TOUCHING_M
+    return Prospect(
+        now=controls.timestamp,
+        seen=inputs.cube is not None,
+        cube=cube[:3, 3],
+        touch=touch,
+        effort=effort,
+        gap=away,
+        high=high,
+        touching=touching,
+    )
+
+
+def _going(scene: Scene, body: Body, inputs: Inputs) -> LocomotionIntent:
+    """Return where to go, or where to turn to."""
+    here, walks = body.place, inputs.walks
+    if scene.stand is not None:
+        target = around(here, way_to(here, scene.stand, 0.0, walks=walks), scene.cube)
+    elif scene.doing == "come":
+        target = way_to(here, scene.touch, stand_distance(inputs.body_length), walks=walks)
+    else:
+        facing = PLAYER_POSITION
+        if scene.doing in ("grasp", "put") and scene.goal is not None:
+            facing = scene.goal[[0, 2]]
+        elif scene.doing in FACING_CUBE:
+            facing = scene.cube[[0, 2]]
+        return LocomotionIntent(facing=facing)
+    speed = WALK_SPEED + SPEED_PER_M * float(np.linalg.norm(target - here[[0, 2]]))
+    return LocomotionIntent(min(speed, MAX_SPEED), target)
+
+
+def _hint(controls: CubeControls, doing: str, thing: str) -> str:
+    if controls.position is None:
+        return "Put the cube on the table" if controls.visible else "Show me the cube"
+    return HINTS[doing].format(thing=thing)

@@ -1,0 +1,204 @@
+"""How a character tries to get the cube: what it does, by how easy, far or impossible that is."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Doing = Literal[
+    "watch", "touch", "cheer", "stretch", "shrug", "point", "come", "sulk", "shade", "search"
+]
+"""Watch it at rest, touch it, be glad, stretch in vain, give up, point at it, go to it, wait
+disappointed, shade the eyes against the light, and look about for it."""
+
+EASY, HARD = 0.95, 1.1
+"""Effort up to which it begins to touch the cube, and beyond which it can no longer."""
+
+EASIER = 0.25
+"""By how much the effort must fall below that at which it gave up, to try again."""
+
+NEAR_M = 0.13
+"""A cube that is no further from where it would stand is worth stretching for [m]."""
+
+ARRIVED_M, LEFT_BEHIND_M = 0.015, 0.06
+"""How near to that place it is there, and from where on it has to go again [m]."""
+
+MOVED_M = 0.03
+"""A cube that has been touched is to be touched again when it has moved by this [m]."""
+
+LOST_S, FOUND_S = 0.5, 0.2
+"""How long the cube must be hidden to be looked for, and seen to be found: fingers hide it."""
+
+CHEER_S, STRETCH_S, SHRUG_S, POINT_S, SHADE_S = 2.0, 2.2, 1.9, 1.3, 2.0
+"""How long it is glad, stretches before it gives up, shrugs, points, and shades its eyes [s]."""
+
+TOUCH_S, COME_S = 3.0, 10.0
+"""A cube that is not touched, or not arrived at, in this time is as good as out of reach [s]."""
+
+SULK_S = 5.0
+"""After so long it tries again, although nothing has become easier [s]."""
+
+
+@dataclass(frozen=True)
+class Prospect:
+    """What a character knows about the cube in a frame."""
+
+    now: float
+    """Time of the frame [s]."""
+
+    seen: bool
+    """Whether the cube is seen."""
+
+    cube: NDArray[np.float64]
+    """Its centre, (3,) in the table frame [m]; where it was last, if it is not seen."""
+
+    touch: NDArray[np.float64]
+    """The point of it that is nearest, (3,) [m]."""
+
+    effort: float
+    """How hard the cube is to touch from here: see `reach_effort`."""
+
+    gap: float
+    """How far the character is from where it would stand beside the cube [m]; 0 if it is there."""
+
+    high: bool
+    """Whether the cube is held up above its head."""
+
+    touching: bool
+    """Whether its hand is at the cube."""
+
+
+class Catching:
+    """A state machine: `update` once a frame; `doing` is what the character does now."""
+
+    def __init__(self) -> None:
+        self.doing: Doing = "search"
+        """What it does."""
+        self.since = -math.inf
+        """Since when [s]."""
+        self.gave_up_at = math.inf
+        """The effort at which it gave up last."""
+        self.caught: NDArray[np.float64] | None = None
+        """Where the cube was when it was touched last, (3,) [m]; None before."""
+        self._seen_since: float | None = None
+        self._hidden_since: float | None = None
+
+    def update(self, prospect: Prospect) -> tuple[str, ...]:
+        """Advance by one frame; return its events: "reached", "unreachable"."""
+        before = self.doing
+        self.look(prospect)
+        following = _NEXT[self.doing](self, prospect, prospect.now - self.since)
+        self._begin(following, prospect.now)
+        if self.doing == before:
+            return ()
+        if self.doing == "cheer":
+            self.caught = prospect.cube
+            return ("reached",)
+        if self.doing == "shrug":
+            self.gave_up_at = prospect.effort
+            return ("unreachable",)
+        return ()
+
+    @property
+    def content(self) -> bool:
+        """Whether the cube is where it was touched last."""
+        return self.doing == "watch" and self.caught is not None
+
+    def look(self, prospect: Prospect) -> None:
+        """Begin to look for a cube that is hidden, and stop when it is seen."""
+        now = prospect.now
+        if prospect.seen:
+            self._hidden_since = None
+            self._seen_since = now if self._seen_since is None else self._seen_since
+            if self.doing == "search" and now - self._seen_since >= FOUND_S - 1e-9:
+                self._begin("watch", now)
+        else:
+            self._seen_since = None
+            self._hidden_since = now if self._hidden_since is None else self._hidden_since
+            if now - self._hidden_since >= LOST_S - 1e-9:
+                self._begin("search", now)
+
+    def _begin(self, doing: Doing, now: float) -> None:
+        if doing != self.doing:
+            self.doing, self.since = doing, now
+
+
+def _try(catching: Catching, prospect: Prospect) -> Doing:
+    """Return how to begin to get at a cube that is not caught."""
+    if prospect.effort <= EASY:
+        return "touch"
+    if prospect.high:
+        return "shade"
+    if prospect.gap > NEAR_M:
+        return "point"
+    return "stretch"
+
+
+def _watch(catching: Catching, prospect: Prospect, spent: float) -> Doing:
+    caught = catching.caught
+    if caught is not None and math.dist(caught, prospect.cube) < MOVED_M:
+        return "watch"
+    return _try(catching, prospect)
+
+
+def _touch(catching: Catching, prospect: Prospect, spent: float) -> Doing:
+    if prospect.touching:
+        return "cheer"
+    if prospect.effort > HARD:
+        return "come" if prospect.gap > LEFT_BEHIND_M and not prospect.high else "stretch"
+    return "shrug" if spent > TOUCH_S else "touch"
+
+
+def _stretch(catching: Catching, prospect: Prospect, spent: float) -> Doing:
+    if prospect.effort <= EASY:
+        return "touch"
+    if spent > STRETCH_S:
+        return "shrug"
+    return "point" if prospect.gap > 2.0 * NEAR_M and not prospect.high else "stretch"
+
+
+def _shrug(catching: Catching, prospect: Prospect, spent: float) -> Doing:
+    if spent < SHRUG_S:
+        return "shrug"
+    return "come" if prospect.gap > ARRIVED_M and not prospect.high else "sulk"
+
+
+def _come(catching: Catching, prospect: Prospect, spent: float) -> Doing:
+    if prospect.effort <= EASY:
+        return "touch"
+    if prospect.high:
+        return "shade"
+    arrived = prospect.gap <= ARRIVED_M or spent > COME_S
+    return "stretch" if arrived else "come"
+
+
+def _sulk(catching: Catching, prospect: Prospect, spent: float) -> Doing:
+    easier = prospect.effort < catching.gave_up_at - EASIER
+    left = prospect.gap > LEFT_BEHIND_M and not prospect.high
+    return _try(catching, prospect) if easier or left or spent > SULK_S else "sulk"
+
+
+def _shade(catching: Catching, prospect: Prospect, spent: float) -> Doing:
+    if prospect.effort <= EASY:
+        return "touch"
+    if not prospect.high:
+        return _try(catching, prospect)
+    return "stretch" if spent > SHADE_S else "shade"
+
+
+_NEXT: dict[Doing, Callable[[Catching, Prospect, float], Doing]] = {
+    "watch": _watch,
+    "touch": _touch,
+    "cheer": lambda catching, prospect, spent: "watch" if spent > CHEER_S else "cheer",
+    "stretch": _stretch,
+    "shrug": _shrug,
+    "point": lambda catching, prospect, spent: "come" if spent > POINT_S else "point",
+    "come": _come,
+    "sulk": _sulk,
+    "shade": _shade,
+    "search": lambda catching, prospect, spent: "search",
+}
+"""What follows: from what it does, what it knows, and for how long it has done so [s]."""

@@ -1,0 +1,233 @@
+"""Small things on the table, which the character brings to the cube one after the other."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.pipeline.things import GRIP, Body, Side, Thing
+
+Point = NDArray[np.float64]
+
+Doing = Literal["wait", "fetch", "grasp", "carry", "put"]
+"""Nothing, go to a thing, take it, go to the cube with it, put it down."""
+
+HOMES: dict[str, tuple[float, float]] = {
+    "flower": (-0.19, -0.05),
+    "balloon": (0.20, -0.09),
+    "flag": (0.17, 0.10),
+}
+"""Where each thing stands at first, (x, z) from where the cube was first seen [m]."""
+
+SIDES_RAD = {"flower": math.radians(165), "balloon": math.radians(15), "flag": math.radians(215)}
+"""Where each thing is put down: its direction from the cube, from +x towards the player."""
+
+BESIDE_M, AWAY_M = 0.035, 0.09
+"""How far from a side of the cube a thing is put down, and from where it is brought again [m]."""
+
+RADIUS_M = 0.008
+"""Room for the foot of a thing before the feet of the character [m]."""
+
+AT_HAND_M = 0.012
+"""A palm this near to where it is to be is there [m]."""
+
+PATIENCE_S = 2.5
+"""A hand that is not there after so long takes the thing, or lets it go, from where it is [s]."""
+
+SETTLE_S, HOP_S, HOP_M = 0.25, 0.8, 0.09
+"""Time in which a thing comes to its place in a hand or from one [s]; time [s] and height [m] of
+its hop home."""
+
+
+@dataclass(frozen=True)
+class _Move:
+    """The way of a thing from one place to another."""
+
+    start: Point  # (3,) [m]
+    since: float  # [s]
+    seconds: float
+    height: float = 0.0  # of the arc [m]
+
+    def at(self, end: Point, now: float) -> Point:
+        """Return where it is, on its way to its end."""
+        share = min(max((now - self.since) / self.seconds, 0.0), 1.0)
+        share = share * share * (3.0 - 2.0 * share)
+        place = self.start + share * (end - self.start)
+        place[1] += 4.0 * self.height * share * (1.0 - share)
+        return place
+
+
+class _Gift:
+    """A thing with its history."""
+
+    def __init__(self, name: str, home: Point) -> None:
+        self.name, self.home = name, home
+        self.place = home
+        self.hand: Side | None = None
+        self._move = _Move(home, -math.inf, 1.0)
+
+    def taken(self, hand: Side, palm: Point, now: float) -> None:
+        """Let a hand have it from now on."""
+        start = self._now_at(now) + GRIP - palm
+        self.hand, self.place = hand, np.zeros(3)
+        self._move = _Move(start, now, SETTLE_S)
+
+    def put(self, place: Point, palm: Point, now: float) -> None:
+        """Let it go, to stand at a place."""
+        self.hand, self.place = None, place
+        self._move = _Move(palm - GRIP, now, SETTLE_S)
+
+    def hop_home(self, palm: Point | None, now: float) -> None:
+        """Let it hop to where it stood first."""
+        start = self._now_at(now) if palm is None or self.hand is None else palm - GRIP
+        self.hand, self.place = None, self.home
+        self._move = _Move(start, now, HOP_S, HOP_M)
+
+    def thing(self, now: float) -> Thing:
+        return Thing(self.name, self._now_at(now), self.hand)
+
+    def _now_at(self, now: float) -> Point:
+        return self._move.at(self.place, now)
+
+
+class Gifts:
+    """Where the things are, and what the character does with them."""
+
+    def __init__(self, cube_edge: float) -> None:
+        self.doing: Doing = "wait"
+        """What it does."""
+        self.gift: _Gift | None = None
+        """With which."""
+        self.hand: Side = "right"
+        """With which hand."""
+        self._beside = cube_edge / 2 + BESIDE_M
+        self._gifts: list[_Gift] = []
+        self._since = -math.inf
+
+    def lay_out(self, cube: Point) -> None:
+        """Put the things on the table about a cube, if they are not there yet."""
+        if not self._gifts:
+            self._gifts = [
+                _Gift(name, np.array([cube[0] + x, 0.0, cube[2] + z]))
+                for name, (x, z) in HOMES.items()
+            ]
+
+    def scatter(self, body: Body | None, now: float) -> None:
+        """Let all things hop home."""
+        for gift in self._gifts:
+            hand = gift.hand
+            gift.hop_home(None if body is None or hand is None else body.palm(hand), now)
+        self._begin("wait", now)
+
+    def things(self, now: float) -> tuple[Thing, ...]:
+        """Return the things as they are to be drawn."""
+        return tuple(gift.thing(now) for gift in self._gifts)
+
+    @property
+    def held(self) -> str:
+        """Name of the thing in its hand, "" for none."""
+        return self.gift.name if self.gift is not None and self.gift.hand is not None else ""
+
+    @property
+    def named(self) -> str:
+        """Name of the thing that it fetches or has, "" for none."""
+        return "" if self.gift is None else self.gift.name
+
+    def goal(self, cube: Point) -> Point | None:
+        """Return where to go, (3,) on the table [m]: the thing, or its place beside the cube."""
+        if self.gift is None or self.doing == "wait":
+            return None
+        return self.gift.place if self.gift.hand is None else self._spot(self.gift, cube)
+
+    def stand_point(self, here: Point, cube: Point, distance: float) -> Point | None:
+        """Return where to stand for that, (3,) [m]: before the thing, or behind its place."""
+        goal = self.goal(cube)
+        if goal is None:
+            return None
+        carries = self.gift is not None and self.gift.hand is not None
+        out = goal - cube if carries else here - goal
+        out[1] = 0.0
+        length = max(float(np.linalg.norm(out)), 1e-9)
+        return np.asarray(goal + out * ((distance + RADIUS_M) / length))
+
+    def update(
+        self, now: float, cube: Point, body: Body, *, free: bool, there: bool
+    ) -> tuple[str, ...]:
+        """Advance by one frame; return its events: "taken", "given", "finished".
+
+        `free` is whether the character has time for it, `there` whether it stands at its goal.
+        """
+        if not free:
+            self._begin("carry" if self.held else "wait", now)
+            return ()
+        if self.doing == "wait":
+            self._choose(cube, body, now)
+        elif self.doing == "fetch" and there:
+            assert self.gift is not None
+            self.hand = _nearer_side(body, self.gift.place)
+            self._begin("grasp", now)
+        elif self.doing == "carry" and there:
+            self._begin("put", now)
+        elif self.doing == "grasp":
+            return self._grasp(body, now)
+        elif self.doing == "put":
+            return self._put(cube, body, now)
+        return ()
+
+    def _choose(self, cube: Point, body: Body, now: float) -> None:
+        """Begin with the nearest thing that is not beside the cube."""
+        away = [
+            gift for gift in self._gifts if math.dist(gift.place, self._spot(gift, cube)) > AWAY_M
+        ]
+        here = body.posed.table_from_character[:3, 3]
+        self.gift = min(away, key=lambda gift: math.dist(gift.place, here), default=None)
+        if self.gift is not None:
+            self._begin("fetch", now)
+
+    def _grasp(self, body: Body, now: float) -> tuple[str, ...]:
+        gift, palm = self.gift, body.palm(self.hand)
+        assert gift is not None
+        if palm is None or not self._at_hand(palm, gift.place + GRIP, now):
+            return ()
+        gift.taken(self.hand, palm, now)
+        self._begin("carry", now)
+        return ("taken",)
+
+    def _put(self, cube: Point, body: Body, now: float) -> tuple[str, ...]:
+        gift, palm = self.gift, body.palm(self.hand)
+        assert gift is not None
+        spot = self._spot(gift, cube)
+        if palm is None or not self._at_hand(palm, spot + GRIP, now):
+            return ()
+        gift.put(spot, palm, now)
+        self._begin("wait", now)
+        self._choose(cube, body, now)
+        return ("given",) if self.gift is not None else ("finished",)
+
+    def _at_hand(self, palm: Point, target: Point, now: float) -> bool:
+        return math.dist(palm, target) < AT_HAND_M or now - self._since > PATIENCE_S
+
+    def _spot(self, gift: _Gift, cube: Point) -> Point:
+        angle = SIDES_RAD[gift.name]
+        return np.array(
+            [
+                cube[0] + self._beside * math.cos(angle),
+                0.0,
+                cube[2] + self._beside * math.sin(angle),
+            ]
+        )
+
+    def _begin(self, doing: Doing, now: float) -> None:
+        self.doing, self._since = doing, now
+        if doing == "wait" and not self.held:
+            self.gift = None
+
+
+def _nearer_side(body: Body, place: Sequence[float] | Point) -> Side:
+    """Return the hand on whose side a place is; the right one for a place ahead."""
+    placed = body.posed.table_from_character
+    across = float((np.asarray(place) - placed[:3, 3]) @ placed[:3, 0])
+    return "left" if across > 0.01 * float(placed[1, 1]) else "right"

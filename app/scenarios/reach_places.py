@@ -1,0 +1,93 @@
+"""Where a character that reaches for the cube stands, goes and looks; all in the table frame."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.pipeline.things import Body
+from characters.locomotion.steering import ARRIVAL_DISTANCE_M
+
+Point = NDArray[np.float64]
+
+CLEARANCE_M = 0.006
+"""Between the front of the body and what it stands before [m]."""
+
+AVOIDED_M = 0.075
+"""It walks round the centre of the cube at this distance, if it is in the way [m]."""
+
+LOOK_M, LOOK_HEIGHTS_M = 0.4, (0.05, 0.22)
+"""How far away the points are that it looks at while it looks about, and how high [m]."""
+
+LOOKS_RAD = (0.9, -0.9, -0.4, 0.5)
+"""Their directions in turn, to its left [rad]."""
+
+
+def nearest_point_of_cube(table_from_cube: Point, edge: float, point: Point) -> Point:
+    """Return the point of a cube's surface, (3,) [m], that is nearest to a point outside.
+
+    >>> nearest_point_of_cube(np.eye(4), 0.06, np.array([0.1, 0.02, 0.0])).tolist()
+    [0.03, 0.02, 0.0]
+    """
+    rotation, centre = table_from_cube[:3, :3], table_from_cube[:3, 3]
+    inside = np.clip((point - centre) @ rotation, -edge / 2, edge / 2)
+    return np.asarray(centre + rotation @ inside)
+
+
+def stand_distance(body_length: float) -> float:
+    """Return how far from a thing a character stands that takes it [m]."""
+    return body_length / 2 + CLEARANCE_M
+
+
+def gap(here: Point, goal: Point, distance: float) -> float:
+    """Return how far `here` is from standing at a distance from a goal [m]; 0 if it is nearer."""
+    return max(math.dist(here[[0, 2]], goal[[0, 2]]) - distance, 0.0)
+
+
+def way_to(here: Point, goal: Point, distance: float, *, walks: bool) -> Point:
+    """Return the target of a `LocomotionIntent`, (x, z), to stand at a distance from a goal [m].
+
+    Who walks stops `ARRIVAL_DISTANCE_M` before a target.
+    """
+    offset = here[[0, 2]] - goal[[0, 2]]
+    length = max(float(np.linalg.norm(offset)), 1e-9)
+    stop = min(distance, length) - (ARRIVAL_DISTANCE_M if walks else 0.0)
+    return np.asarray(goal[[0, 2]] + offset * (stop / length))
+
+
+def around(here: Point, target: Point, cube: Point) -> Point:
+    """Return a target (x, z), or a point beside the cube if the cube is on the way to it.
+
+    >>> around(np.array([-0.3, 0, 0]), np.array([0.3, 0.0]), np.zeros(3)).round(3).tolist()
+    [0.0, -0.075]
+    >>> around(np.array([-0.3, 0, 0]), np.array([-0.2, 0.0]), np.zeros(3)).tolist()
+    [-0.2, 0.0]
+    """
+    start, centre = here[[0, 2]], cube[[0, 2]]
+    way = target - start
+    length = float(np.linalg.norm(way))
+    if length < 1e-6:
+        return target
+    ahead = way / length
+    along = float((centre - start) @ ahead)
+    side = (centre - start) - along * ahead
+    off = float(np.linalg.norm(side))
+    if not 0.0 < along < length or off >= AVOIDED_M:
+        return target
+    out = -side / off if off > 1e-6 else np.array([-ahead[1], ahead[0]]) * -1.0
+    return np.asarray(centre + AVOIDED_M * out)
+
+
+def look_about(body: Body, number: int) -> Point:
+    """Return a point to look at, (3,) [m], the `number`-th of those around it."""
+    placed = body.posed.table_from_character
+    angle = LOOKS_RAD[number % len(LOOKS_RAD)]
+    scale = float(placed[1, 1])
+    ahead = (placed[:3, 2] * math.cos(angle) + placed[:3, 0] * math.sin(angle)) / scale
+    return np.asarray(body.place + LOOK_M * ahead + [0.0, LOOK_HEIGHTS_M[number % 2], 0.0])
+
+
+def in_front(body: Body, left: float, up: float, ahead: float) -> Point:
+    """Return a point before a character, (3,) [m], by shares of its height."""
+    placed, tall = body.posed.table_from_character, body.character.height
+    return np.asarray((placed @ [left * tall, up * tall, ahead * tall, 1.0])[:3])
