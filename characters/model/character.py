@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from characters.errors import CharacterError
+from characters.ik.reaching.upper_body import UpperBody
 from characters.model.mesh import Mesh
 from characters.model.sidecar import read_sidecar
 from characters.model.speaking import gestures_beside
@@ -135,6 +136,11 @@ class Character:
             return Anatomy.guess(self.skeleton, self.semantics)
         except CharacterError as error:
             raise CharacterError(f"{self.name}: {error}") from None
+
+    @cached_property
+    def upper_body(self) -> UpperBody:
+        """Its torso and arms, which put hands where they are to be."""
+        return UpperBody.of(self.skeleton, self.anatomy)
 
     @property
     def height(self) -> float:

@@ -1,0 +1,63 @@
+"""Where hands are to be, and how a body reaches."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from characters.ik.reaching.arms import SWIVEL_DEG
+from characters.skeleton.pose import Array
+
+ReachKind = Literal["reach", "touch", "point", "grasp"]
+
+SHAPE_OF_KIND: dict[ReachKind, str] = {
+    "reach": "relaxed",
+    "touch": "flat",
+    "point": "point",
+    "grasp": "grasp",
+}
+"""The shape of a hand that does not ask for another one."""
+
+
+@dataclass(frozen=True)
+class HandTarget:
+    """Where a hand is to be; vectors are in the character frame."""
+
+    place: Sequence[float] | Array
+    """Where, (3,) [m]."""
+
+    kind: ReachKind = "reach"
+    """The palm or the fingertips are there, or the index finger points there."""
+
+    palm: Sequence[float] | Array | None = None
+    """Where the palm faces, (3,); None as it comes."""
+
+    fingers: Sequence[float] | Array | None = None
+    """Where the fingers point, (3,); None as it comes. Used together with `palm`."""
+
+    shape: str = ""
+    """One of `HAND_SHAPES`; that of the kind if empty."""
+
+    weight: float = 1.0
+    """0 as in the pose … 1 there."""
+
+
+@dataclass(frozen=True)
+class ReachStyle:
+    """How a body reaches."""
+
+    openness: float = 0.5
+    """Elbows close to the trunk, 0, to far from it, 1."""
+
+    power: float = 0.0
+    """How much shoulders and torso join in, 0…1."""
+
+    @property
+    def swivel(self) -> float:
+        """Swivel of the elbow outward [rad]."""
+        low, high = SWIVEL_DEG
+        return math.radians(low + (high - low) * self.openness)
+
+
+NEUTRAL_REACH = ReachStyle()
+"""Without expression."""

@@ -1,0 +1,407 @@
+"""The upper body of any character with arms or front legs: it puts hands where they are to be.
+
+The order is Huang's (2013, section 8.6): the collarbones follow passively, by the power of the
+movement and the strain of the arm; the torso turns and leans as far as the arms need it; the arms
+bend; elbows swivel by openness; hands turn as they are asked to.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.ik.reaching.arms import (
+    Arm,
+    BentArm,
+    Effector,
+    bend,
+    bend_to_wrist,
+    effector_of,
+    find_arm,
+    scaled,
+    swivel_of,
+    to_quaternion,
+    to_vector,
+    turns_of,
+)
+from characters.ik.reaching.bending import (
+    NEUTRAL_SWIVEL,
+    HandOnItsWay,
+    oriented,
+    passive_shoulder,
+    pointed,
+    twisted,
+)
+from characters.ik.reaching.hand_shapes import HandShapes
+from characters.ik.reaching.targets import (
+    NEUTRAL_REACH,
+    SHAPE_OF_KIND,
+    HandTarget,
+    ReachKind,
+    ReachStyle,
+)
+from characters.ik.reaching.torso import (
+    FOUR_LEGS,
+    PlacedTorso,
+    Reaching,
+    follow_torso,
+    turn_torso,
+)
+from characters.skeleton import rotations
+from characters.skeleton.anatomy import Anatomy
+from characters.skeleton.joint_chains import chains_to_root
+from characters.skeleton.pose import Array, Pose, Skeleton
+from characters.skeleton.scalar_quaternions import (
+    IDENTITY,
+    Quaternion,
+    Vector,
+    add,
+    conjugate,
+    from_rotation_vector,
+    multiply,
+    rotate,
+    subtract,
+)
+
+PRONATION_RAD = math.radians(35.0)
+"""How far a hand that is not asked for faces down, from facing inward."""
+
+_FAR = 100.0  # arm lengths
+_FINGER_OF_KIND = {"touch": ("Middle", "Index"), "point": ("Index", "Middle")}
+
+
+@dataclass(frozen=True)
+class Frames:
+    """Global frames of the joints of an upper body and their ancestors, in one pose."""
+
+    turns: list[Quaternion]
+    """`character_from_joint` rotations."""
+
+    places: list[Vector]
+    """[m]."""
+
+
+@dataclass(frozen=True)
+class ReachedPose:
+    """A pose that reaches, and what it took."""
+
+    pose: Pose
+    """The pose."""
+
+    effort: float
+    """0 within the arms' reach … 1 where torso and arms are stretched; more beyond."""
+
+
+class UpperBody:
+    """Torso and arms of one skeleton.
+
+    Lengths are those of the rest pose: scales of joints that change in a pose are not followed.
+    """
+
+    def __init__(self, skeleton: Skeleton, anatomy: Anatomy) -> None:
+        self.shapes = HandShapes(skeleton, anatomy)
+        """The shapes of its hands."""
+        found = {
+            hand.side: find_arm(skeleton, anatomy, hand)
+            for hand in self.shapes.hands.values()
+            if hand is not None
+        }
+        self.arms: dict[str, Arm] = {side: arm for side, arm in found.items() if arm is not None}
+        """Its arms by side: none, one or both."""
+        self._four_legs = anatomy.kind == "quadruped"
+        self._effectors = {
+            (side, kind): self._effector(arm, kind, skeleton)
+            for side, arm in self.arms.items()
+            for kind in SHAPE_OF_KIND
+        }
+        self._wrists = {side: effector_of(arm, arm.wrist) for side, arm in self.arms.items()}
+        trunk = _trunk(skeleton, anatomy, self.arms)
+        ends = [arm.joints[3] for arm in self.arms.values()]
+        order = skeleton.with_ancestors([*trunk, *ends])
+        self._order = np.array(order, np.intp)
+        number = {joint: place for place, joint in enumerate(order)} | {-1: -1}
+        self._number = number
+        self._parents = [number[skeleton.parents[joint]] for joint in order]
+        rest = skeleton.rest.globals(skeleton)
+        self._rest = [to_quaternion(turn) for turn in turns_of(rest[order, :3, :3])]
+        self._sizes = _scales_above(rest, self._order, skeleton)
+        self._trunk = [number[joint] for joint in trunk]
+        self._pelvis = self._parents[self._trunk[0]] if self._trunk else -1
+        self._first = [number[arm.joints[arm.joints[0] < 0]] for arm in self.arms.values()]
+        carriers = [number[arm.carrier] for arm in self.arms.values()]
+        self._chest = self._trunk[-1] if self._trunk else (carriers[0] if carriers else -1)
+
+    @staticmethod
+    def of(skeleton: Skeleton, anatomy: Anatomy) -> "UpperBody":
+        """Return the upper body of a skeleton; without arms it has none and reaches nothing."""
+        return UpperBody(skeleton, anatomy)
+
+    def reach(
+        self,
+        pose: Pose,
+        left: HandTarget | None = None,
+        right: HandTarget | None = None,
+        style: ReachStyle = NEUTRAL_REACH,
+    ) -> Pose:
+        """Return a pose with its hands where they are to be, or as near as they get."""
+        return self.reached(pose, left, right, style).pose
+
+    def reached(
+        self,
+        pose: Pose,
+        left: HandTarget | None = None,
+        right: HandTarget | None = None,
+        style: ReachStyle = NEUTRAL_REACH,
+    ) -> ReachedPose:
+        """Return a pose with its hands where they are to be, and the effort that it takes."""
+        asked = {"left": left, "right": right}
+        wanted = [
+            (arm, target)
+            for side, arm in self.arms.items()
+            if (target := asked[side]) is not None and target.weight > 0.0
+        ]
+        if not wanted:
+            return ReachedPose(pose, 0.0)
+        frames = self._frames(pose)
+        torso = self._placed(frames)
+        hands = [self._started(frames, arm, target, style) for arm, target in wanted]
+        turned, effort = self._torso_turn(torso, hands, style)
+        local = pose.rotations.copy()
+        self._turn_trunk(local, frames, torso.step(turned))
+        whole, chest = from_rotation_vector(turned), torso.chest_after(turned)
+        step = torso.step(turned)
+        for hand in hands:
+            shoulder = torso.carried(step, hand.shoulder)
+            bent = self._bent(hand, shoulder, chest, style.swivel)
+            self._write(local, frames, hand, bent, whole)
+        if self._four_legs and len(hands) < len(self.arms):
+            self._hold(local, frames, torso, hands, turned)
+        return ReachedPose(replace(pose, rotations=local), effort)
+
+    def effort(self, pose: Pose, place: Sequence[float] | Array) -> float:
+        """Return the effort to bring a palm to a place, (3,) in the character frame [m].
+
+        The hand for which it is the least counts. It is infinite without arms.
+        """
+        if not self.arms:
+            return math.inf
+        frames = self._frames(pose)
+        torso = self._placed(frames)
+        target = HandTarget(place)
+        return min(
+            self._torso_turn(
+                torso, [self._started(frames, arm, target, NEUTRAL_REACH)], NEUTRAL_REACH
+            )[1]
+            for arm in self.arms.values()
+        )
+
+    def palm(self, pose: Pose, side: str) -> Array | None:
+        """Return where a palm is, (3,) in the character frame [m]; None without that arm."""
+        arm = self.arms.get(side)
+        if arm is None:
+            return None
+        frames = self._frames(pose)
+        hand = self._number[arm.joints[3]]
+        moved = multiply(frames.turns[hand], conjugate(arm.rest_turns[1]))
+        offset = self._effectors[side, "reach"].offset
+        return np.array(add(frames.places[hand], rotate(moved, offset)))
+
+    def _frames(self, pose: Pose) -> Frames:
+        turns: list[Quaternion] = pose.rotations[self._order].tolist()
+        places: list[Vector] = (pose.translations[self._order] * self._sizes).tolist()
+        for joint, parent in enumerate(self._parents):
+            if parent >= 0:
+                above, (x, y, z) = turns[parent], places[parent]
+                turns[joint] = multiply(above, turns[joint])
+                dx, dy, dz = rotate(above, places[joint])
+                places[joint] = (x + dx, y + dy, z + dz)
+        return Frames(turns, places)
+
+    def _placed(self, frames: Frames) -> PlacedTorso:
+        firsts = [frames.places[first] for first in self._first]
+        x, y, z = (sum(axis) / len(firsts) for axis in zip(*firsts, strict=True))
+        return PlacedTorso(
+            [frames.places[joint] for joint in self._trunk],
+            self._from_rest(frames, self._pelvis),
+            self._from_rest(frames, self._chest),
+            (x, y, z),
+            FOUR_LEGS if self._four_legs else 1.0,
+        )
+
+    def _from_rest(self, frames: Frames, joint: int) -> Quaternion:
+        return (
+            multiply(frames.turns[joint], conjugate(self._rest[joint])) if joint >= 0 else IDENTITY
+        )
+
+    def _started(
+        self, frames: Frames, arm: Arm, target: HandTarget, style: ReachStyle
+    ) -> HandOnItsWay:
+        """Return an arm with its place, and its collarbone as it follows."""
+        x, y, z = to_vector(target.place)
+        effector = self._effectors[arm.hand.side, target.kind]
+        full = arm.upper + effector.fore
+        shoulder = frames.places[self._number[arm.joints[1]]]
+        aim = subtract((x, y, z), shoulder)
+        if max(map(abs, aim)) > _FAR * full:  # squares of what is very far are infinite
+            scale = _FAR * full / max(map(abs, aim))
+            x, y, z = add(shoulder, scaled(aim, scale))
+        swung = IDENTITY
+        if arm.joints[0] >= 0:
+            base = frames.places[self._number[arm.joints[0]]]
+            swung = passive_shoulder(base, shoulder, (x, y, z), full, style.power)
+            shoulder = add(base, rotate(swung, subtract(shoulder, base)))
+        return HandOnItsWay(arm, target, effector, (x, y, z), shoulder, swung)
+
+    def _torso_turn(
+        self, torso: PlacedTorso, hands: Sequence[HandOnItsWay], style: ReachStyle
+    ) -> tuple[Vector, float]:
+        """Return the turn of the torso for one or two hands, each as far as its weight goes."""
+        single = [_turn_for(torso, [hand], style) for hand in hands]
+        effort = max(effort for _, effort in single)
+        if len(hands) == 1:
+            return scaled(single[0][0], hands[0].target.weight), effort
+        one, other = (hand.target.weight for hand in hands)
+        both, together = _turn_for(torso, hands, style)
+        shares = (one * (1.0 - other), other * (1.0 - one), one * other)
+        x, y, z = (
+            sum(share * part for share, part in zip(shares, parts, strict=True))
+            for parts in zip(single[0][0], single[1][0], both, strict=True)
+        )
+        return (x, y, z), max(effort, together)
+
+    def _turn_trunk(self, local: Array, frames: Frames, step: Quaternion) -> None:
+        for joint in self._trunk:
+            parent = self._parents[joint]
+            above = frames.turns[parent] if parent >= 0 else IDENTITY
+            turned = multiply(step, frames.turns[joint])
+            local[self._order[joint]] = multiply(conjugate(above), turned)
+
+    def _bent(
+        self, hand: HandOnItsWay, shoulder: Vector, chest: Quaternion, swivel: float
+    ) -> BentArm:
+        """Return the arm of a hand: where it goes by a neutral elbow, then the elbow it has."""
+        arm, target = hand.arm, hand.target
+        wrist = self._wrists[arm.hand.side]
+        if target.kind == "point":
+            bent = pointed(hand, shoulder, chest)
+        elif target.palm is None and target.fingers is None:
+            bent = bend(arm, hand.effector, shoulder, hand.place, chest, NEUTRAL_SWIVEL)
+        else:
+            bent = oriented(hand, wrist, shoulder, chest)
+        if swivel != NEUTRAL_SWIVEL:
+            bent = bend_to_wrist(arm, wrist, shoulder, bent, chest, swivel)
+        return bent
+
+    def _write(
+        self,
+        local: Array,
+        frames: Frames,
+        hand: HandOnItsWay,
+        bent: BentArm,
+        whole: Quaternion,
+    ) -> None:
+        """Write the local rotations of an arm and its fingers."""
+        arm, weight = hand.arm, hand.target.weight
+        collar, upper, lower, wrist = arm.joints
+        bent = twisted(arm, bent)
+        joints, rows = [upper, lower, wrist], []
+        above = frames.turns[self._parents[self._number[upper]]]
+        rows.append(multiply(conjugate(multiply(whole, multiply(hand.swung, above))), bent.upper))
+        rows.append(multiply(conjugate(multiply(bent.upper, arm.between_bones)), bent.lower))
+        rows.append(multiply(conjugate(multiply(bent.lower, arm.between_fore)), bent.hand))
+        if collar >= 0:
+            place = self._number[collar]
+            above = frames.turns[self._parents[place]]
+            joints.append(collar)
+            rows.append(multiply(conjugate(above), multiply(hand.swung, frames.turns[place])))
+        if arm.hand.fingers:
+            shape = hand.target.shape or SHAPE_OF_KIND[hand.target.kind]
+            posture = self.shapes.posture(arm.hand.side, shape)
+            _blend(local, posture.joints, posture.rotations, weight)
+        _blend(local, np.array(joints), np.array(rows), weight)
+
+    def _hold(
+        self,
+        local: Array,
+        frames: Frames,
+        torso: PlacedTorso,
+        hands: Sequence[HandOnItsWay],
+        turned: Vector,
+    ) -> None:
+        """Keep the other front paw where it is while the torso moves."""
+        busy = {hand.arm.hand.side for hand in hands}
+        (arm,) = (arm for side, arm in self.arms.items() if side not in busy)
+        _, upper, lower, paw = (self._number.get(joint, -1) for joint in arm.joints)
+        places, turns = frames.places, frames.turns
+        step, chest = torso.step(turned), torso.chest_after(turned)
+        shoulder = torso.carried(step, places[upper])
+        wrist = self._wrists[arm.hand.side]
+        now = BentArm(turns[upper], turns[lower], turns[paw], places[paw])
+        swivel = swivel_of(arm, places[upper], places[lower], places[paw], torso.chest)
+        bent = bend_to_wrist(arm, wrist, shoulder, now, chest, swivel)
+        target = HandTarget(places[paw])
+        still = HandOnItsWay(arm, target, wrist, places[paw], shoulder, IDENTITY)
+        self._write(local, frames, still, bent, from_rotation_vector(turned))
+
+    def _effector(self, arm: Arm, kind: ReachKind, skeleton: Skeleton) -> Effector:
+        """Return what of a hand is brought to a place."""
+        hand = arm.hand
+        pronation = 0.0 if self._four_legs else PRONATION_RAD
+        if self._four_legs or kind in ("reach", "grasp"):
+            held = 0.0 if kind == "grasp" else pronation
+            return effector_of(arm, to_vector(hand.palm), pronation=held)
+        tips = self.shapes.posture(hand.side, SHAPE_OF_KIND[kind]).tips
+        finger = next((name for name in _FINGER_OF_KIND[kind] if name in tips), None)
+        if finger is None:
+            tip = add(arm.wrist, to_vector(hand.length * hand.axes[0]))
+            return effector_of(arm, tip, arm.wrist, pronation)
+        knuckle = skeleton.rest.globals(skeleton)[hand.fingers[finger][0], :3, 3]
+        return effector_of(arm, to_vector(tips[finger]), to_vector(knuckle), pronation)
+
+
+def _turn_for(
+    torso: PlacedTorso, hands: Sequence[HandOnItsWay], style: ReachStyle
+) -> tuple[Vector, float]:
+    """Return the turn of a torso for some hands that are to be at their places, and its effort."""
+    reaching = [
+        Reaching(hand.arm, hand.effector.fore, hand.shoulder, hand.place)
+        for hand in hands
+        if hand.target.kind != "point"
+    ]
+    if reaching:
+        found = turn_torso(torso, reaching, style.openness, style.power)
+        return found.turned, found.effort
+    turns = [follow_torso(torso, hand.place, hand.arm.sign) for hand in hands]
+    x, y, z = (sum(axis) / len(turns) for axis in zip(*turns, strict=True))
+    return (x, y, z), 0.0
+
+
+def _trunk(skeleton: Skeleton, anatomy: Anatomy, arms: Mapping[str, Arm]) -> list[int]:
+    """Return the joints from the spine to what carries the arms; [] if they move no arm."""
+    chains = chains_to_root(skeleton.parents)
+    lines = [chains[arm.carrier] for arm in arms.values() if arm.carrier >= 0]
+    if len(lines) < len(arms) or not lines:
+        return []
+    common = [joint for joint in lines[0] if all(joint in line for line in lines)]
+    spine, hips = anatomy.joint("spine"), anatomy.joint("hips")
+    if spine in common:
+        return common[common.index(spine) :]
+    return common[common.index(hips) + 1 :] if hips in common else []
+
+
+def _scales_above(rest: Array, order: NDArray[np.intp], skeleton: Skeleton) -> Array:
+    """Return the scales at rest of the joints' parents, (n, 1)."""
+    sizes = np.append(np.linalg.norm(rest[:, :3, :3], axis=1).max(1), 1.0)
+    above = np.array(skeleton.parents)[order]
+    scales: Array = sizes[above][:, None]
+    return scales
+
+
+def _blend(local: Array, joints: NDArray[np.intp], turns: Array, weight: float) -> None:
+    """Turn joints to local rotations, or part of the way there."""
+    if weight >= 1.0:
+        local[joints] = turns
+    else:
+        local[joints] = rotations.nlerp(local[joints], turns, weight)
