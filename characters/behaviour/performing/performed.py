@@ -127,6 +127,9 @@ class Performing:
     walk_time: Callable[[Array, Manner], float] = lambda _target, _manner: 2.0
     """Returns how long it takes to go to a place (x, z) from where it is [s]."""
 
+    estimated: set[tuple[str, str]] = field(default_factory=set)
+    """Texts and languages of speeches that were planned before the voice had answered."""
+
     late: dict[str, float] = field(default_factory=dict)
     """When the voice of speeches that had begun without it was there [s]; inf: it is not yet."""
 

@@ -3,7 +3,7 @@
 import math
 from itertools import pairwise
 
-from characters.behaviour.bml import Behaviour, CannotPerform, Scheduled, Timing, rigid
+from characters.behaviour.bml import Behaviour, CannotPerform, Realizer, Scheduled, Timing, rigid
 from characters.behaviour.performing.performed import Performed, Performing, Saying
 from characters.speech.speech import Utterance, Word
 
@@ -29,7 +29,10 @@ class SpeechKind:
         """Return the times of the voice, or those of an estimate."""
         if len(behaviour.text) > MAX_LETTERS:
             raise CannotPerform(f"a text of more than {MAX_LETTERS} letters; say it in parts")
-        utterance = heard(behaviour, who) or estimated(behaviour.text)
+        utterance = heard(behaviour, who)
+        if utterance is None:
+            who.estimated.add(_asked(behaviour))
+            utterance = estimated(behaviour.text)
         marks = [(mark.id, mark_time(utterance, mark.at)) for mark in behaviour.marks]
         names = ("start", *(name for name, _ in marks), "end")
         times = [0.0, *(time for _, time in marks), utterance.duration]
@@ -41,15 +44,39 @@ class SpeechKind:
         utterance, key = heard(scheduled.behaviour, who), scheduled.key
         if utterance is None:
             who.late[key] = math.inf
-            return
-        if who.late.get(key) == math.inf:
-            who.late[key] = performed.now
-        performed.sayings.append(Saying(key, utterance, who.late.get(key, scheduled.start)))
+        start = who.late.get(key, scheduled.start)
+        if utterance is not None and start < math.inf:
+            performed.sayings.append(Saying(key, utterance, start))
+
+
+def retime_speeches(realizer: Realizer, who: Performing, now: float) -> None:
+    """Move the sync points of speeches that were estimated to where the voice has them.
+
+    A speech that had begun without its voice sounds from now on.
+    """
+    if not who.estimated:
+        return
+    known: set[tuple[str, str]] = set()
+    for scheduled in realizer.scheduled:
+        behaviour = scheduled.behaviour
+        if behaviour.kind != "speech" or _asked(behaviour) not in who.estimated:
+            continue
+        utterance = heard(behaviour, who)
+        if utterance is None:
+            continue
+        known.add(_asked(behaviour))
+        if scheduled.key in who.late:
+            who.late[scheduled.key] = now
+        start = who.late.get(scheduled.key, scheduled.start)
+        marks = {mark.id: mark_time(utterance, mark.at) for mark in behaviour.marks}
+        for sync, time in {**marks, "end": utterance.duration}.items():
+            realizer.retime(scheduled.block, behaviour.id, sync, start + time)
+    who.estimated -= known
 
 
 def heard(behaviour: Behaviour, who: Performing) -> Utterance | None:
     """Return what the voice says for a speech; None if it has not answered."""
-    return who.utterance_of(behaviour.text, behaviour.get("lang", namespace=XML))
+    return who.utterance_of(*_asked(behaviour))
 
 
 def estimated(text: str) -> Utterance:
@@ -71,3 +98,8 @@ def estimated(text: str) -> Utterance:
 def mark_time(utterance: Utterance, at: int) -> float:
     """Return when the next word after a mark begins [s]; the end after the last word."""
     return min((w.start for w in utterance.words if w.offset >= at), default=utterance.duration)
+
+
+def _asked(behaviour: Behaviour) -> tuple[str, str]:
+    """Return what a voice is asked for: text and language."""
+    return behaviour.text, behaviour.get("lang", namespace=XML)

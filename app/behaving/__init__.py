@@ -1,0 +1,1 @@
+"""Behaving: characters that perform blocks of BML, for a file or while they play."""

@@ -1,0 +1,51 @@
+"""Opening what a performance of blocks needs: documents and a voice."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from app.behaving.voice import LineSource, PatientSource, SayText, SilentSource, saying_with
+from app.speaking.voices import open_voice
+from characters import CharacterError
+from characters.behaviour.bml import parse
+from characters.model.files import read_text
+from characters.speech.voices import VoiceError
+
+MAX_BYTES = 1 << 20
+"""Size of a document that is read."""
+
+
+MakeSource = Callable[[SayText, str, Callable[[], None]], LineSource]
+"""Makes a source of lines: `PatientSource` or `ThreadedSource`."""
+
+
+def open_lines(command: str | None, language: str, kind: MakeSource = PatientSource) -> LineSource:
+    """Return what speaks; the caller closes it. Without a voice, nothing is said.
+
+    Raises
+    ------
+    AppError, VoiceError
+        The command of a voice that the user has chosen does not work.
+    """
+    try:
+        voice = open_voice(command)
+    except VoiceError as error:
+        if command is not None:
+            raise
+        return SilentSource(str(error))
+    return kind(saying_with(voice), language, voice.close)
+
+
+def read_document(path: Path) -> str:
+    """Return the BML of a file that can be read.
+
+    Raises
+    ------
+    CharacterError
+        It is none; the message names the file.
+    """
+    text = read_text(path, MAX_BYTES)
+    try:
+        parse(text)
+    except CharacterError as error:
+        raise CharacterError(f"{path}: {error}") from None
+    return text

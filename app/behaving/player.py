@@ -1,0 +1,205 @@
+"""A character that performs blocks, frame by frame, with its voice."""
+
+import math
+import re
+from collections import deque
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from affect import Emotion
+from app.behaving.voice import LineSource
+from app.behaving.ways import SPEEDS, Ways
+from app.pipeline.spoken_line import SpokenLine
+from characters import (
+    Animator,
+    Character,
+    CharacterCommand,
+    LocomotionIntent,
+    PosedCharacter,
+    RootDelta,
+)
+from characters.behaviour.bml import Feedback, Realizer
+from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
+from characters.behaviour.gestures.collection import GestureCollection
+from characters.behaviour.performing.character_performer import CharacterPerformer
+from characters.behaviour.performing.performed import Performed, Performing, Saying
+from characters.behaviour.performing.speech_kind import retime_speeches
+from characters.behaviour.performing.surroundings import Surroundings, numbers_of
+from characters.control.command import SpeechIntent
+from characters.speech.speech import Utterance
+
+VIEWER = np.array([0.1, 0.16, 0.7])
+"""The place called "viewer", in the table frame [m]."""
+
+CUBE = np.array([0.16, 0.03, 0.12])
+"""The place called "cube" where there is none: before the character, to its left [m]."""
+
+LEFT, RIGHT = np.array([0.4, 0.12, 0.25]), np.array([-0.4, 0.12, 0.25])
+"""The places called "left" and "right" [m]."""
+
+EYE_SHARE = 0.88
+"""Height of the eyes of a body without eyes, as a part of its height."""
+
+
+MAX_RECENT = 64
+"""Lines whose sound is kept."""
+
+
+@dataclass(frozen=True)
+class BehaviourOptions:
+    """How blocks are performed."""
+
+    expressivity: GestureExpressivity = NEUTRAL
+    """How gestures are performed unless they say it."""
+
+    emotion: Emotion | None = None
+    """What the character feels; None for nothing in particular."""
+
+    seed: int = 0
+    """Of blinks and sway."""
+
+    targets: Mapping[str, NDArray[np.float64]] | None = None
+    """Places by name besides viewer, cube, left and right, (3,) in the table frame [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class BehaviourFrame:
+    """A frame of a performance."""
+
+    posed: PosedCharacter
+    """The character."""
+
+    performed: Performed
+    """What it does."""
+
+    feedback: tuple[Feedback, ...]
+    """What has happened since the last frame."""
+
+
+class BehaviourPlayer:
+    """Performs blocks with a character.
+
+    Parameters
+    ----------
+    character
+        Who performs.
+    lines
+        What its voice says; the caller closes it.
+    options
+        How.
+    """
+
+    def __init__(
+        self, character: Character, lines: LineSource, options: BehaviourOptions | None = None
+    ) -> None:
+        options = options or BehaviourOptions()
+        self._emotion, self._lines = options.emotion, lines
+        self._animator = Animator(character, place=RootDelta(), seed=options.seed)
+        self._ways = Ways(character)
+        self._recent: deque[SpokenLine] = deque(maxlen=MAX_RECENT)
+        self._eye_height = _eye_height(character)
+        places = {"viewer": VIEWER, "cube": CUBE, "left": LEFT, "right": RIGHT}
+        places |= {name.lower(): place for name, place in (options.targets or {}).items()}
+        self.who = Performing(
+            character,
+            GestureCollection.bundled(),
+            Surroundings(places),
+            self._utterance,
+            options.expressivity,
+            lambda target, manner: self._ways.time(self._place, target, manner),
+        )
+        """The character, what it knows and where it is."""
+        self._place = RootDelta()
+        self._performer = CharacterPerformer(self.who)
+        self.realizer = Realizer(self._performer)
+        """What keeps the time of the blocks; `perform` gives it one."""
+
+    def update(self, now: float) -> BehaviourFrame:
+        """Advance to a time [s] and return the frame."""
+        feedback = self.realizer.update(now)
+        retime_speeches(self.realizer, self.who, now)
+        performed = self._performer.performed(self.realizer.active(now), now)
+        posed = self._animator.update(command_of(performed, self._emotion, self.who))
+        self._tell_place(posed)
+        return BehaviourFrame(posed, performed, feedback)
+
+    def settle(self, seconds: float, rate: float) -> None:
+        """Stand for a time before time 0, in frames of a rate [Hz]: eyes find the viewer."""
+        for number in range(-round(seconds * rate), 0):
+            now = number / rate
+            posed = self._animator.update(command_of(Performed(now), self._emotion, self.who))
+            self._tell_place(posed)
+
+    def over(self, now: float) -> bool:
+        """Return whether nothing more happens by itself: all is over, or goes on for ever."""
+        if self.realizer.idle:
+            return True
+        times = [time for each in self.realizer.scheduled for time in each.times.values()]
+        return bool(times) and not any(now < time < math.inf for time in times)
+
+    def line_of(self, saying: Saying) -> SpokenLine | None:
+        """Return the sound of something that is being said."""
+        return next((e for e in self._recent if e.utterance is saying.utterance), None)
+
+    def _utterance(self, text: str, language: str) -> Utterance | None:
+        line = self._lines.line(text, language)
+        if line is None:
+            return None
+        if line not in self._recent:
+            self._recent.append(line)
+        return line.utterance
+
+    def _tell_place(self, posed: PosedCharacter) -> None:
+        placed = posed.table_from_character
+        self.who.surroundings.move(placed, self._eye_height)
+        self._place = RootDelta(float(placed[0, 3]), float(placed[2, 3]), self.who.surroundings.yaw)
+
+
+def command_of(performed: Performed, emotion: Emotion | None, who: Performing) -> CharacterCommand:
+    """Return the command for what a character does in a frame; it looks at the viewer else."""
+    viewer = who.surroundings.places.get("viewer")
+    facing = viewer if performed.facing is None else performed.facing
+    speed, target = 0.0, None
+    if performed.going is not None:
+        speed, target = SPEEDS[performed.going.manner], performed.going.target
+    speech = None
+    if performed.sayings:
+        said = performed.sayings[-1]
+        speech = SpeechIntent(said.utterance, said.start)
+    return CharacterCommand(
+        performed.now,
+        LocomotionIntent(speed, target, facing=None if facing is None else facing[[0, 2]]),
+        gaze=viewer,
+        emotion=emotion,
+        speech=speech,
+        behaviour=performed.intent,
+    )
+
+
+def target_of(text: str) -> tuple[str, NDArray[np.float64]]:
+    """Return name and place of NAME=x,y,z.
+
+    >>> target_of("door=1,0,-0.5")
+    ('door', array([ 1. ,  0. , -0.5]))
+
+    Raises
+    ------
+    ValueError
+        If it is none.
+    """
+    found = re.fullmatch(r"([^\s=:]+)=(.+)", text.strip())
+    numbers = numbers_of(found[2]) if found else []
+    if found is None or len(numbers) != 3:
+        raise ValueError(text)
+    return found[1], np.array(numbers)
+
+
+def _eye_height(character: Character) -> float:
+    """Return how high the eyes are at rest, in the character frame [m]."""
+    places = character.skeleton.rest.globals(character.skeleton)[:, 1, 3]
+    eyes = [character.anatomy.joint(part) for part in ("leftEye", "rightEye")]
+    heights = [float(places[eye]) for eye in eyes if eye is not None]
+    return sum(heights) / len(heights) if heights else EYE_SHARE * character.height

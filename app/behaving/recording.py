@@ -1,0 +1,146 @@
+"""A performance of blocks for a file: its frames, its sound and its feedback."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.behaving.player import BehaviourFrame, BehaviourPlayer
+from app.pipeline.spoken_line import SpokenLine
+from app.sound import SAMPLE_RATE
+from app.sound.mixer import FADE_OUT, limited
+from app.sound.session_sound import SPEECH_GAIN, at_sample_rate
+from characters import Clip, RootDelta
+from characters.behaviour.bml import Feedback
+from characters.motion.baking import placed_clip, stacked
+
+SETTLE_S = 2.0
+"""Time before the first frame [s], which is not shown: eyes find the viewer."""
+
+TAIL_S = 1.2
+"""Time after the last behaviour [s]: the body comes to rest."""
+
+LONGEST_S = 600.0
+"""A performance is cut off there [s]."""
+
+
+@dataclass(eq=False)
+class SpokenPart:
+    """A speech, or what was heard of it."""
+
+    line: SpokenLine
+    """What is said."""
+
+    start: float
+    """When it begins [s]."""
+
+    heard_until: float
+    """The last frame in which it was said [s]."""
+
+
+@dataclass(eq=False)
+class BehaviourRecording:
+    """What a character did."""
+
+    clip: Clip
+    """Its poses, with the root where it stood."""
+
+    feedback: tuple[Feedback, ...]
+    """What was reported."""
+
+    speeches: dict[str, SpokenPart] = field(default_factory=dict)
+    """What was said, by key."""
+
+    def sound(self) -> NDArray[np.float32]:
+        """Return what is heard, (n, 2) at `SAMPLE_RATE`."""
+        mixed = np.zeros(round(self.clip.duration * SAMPLE_RATE) + 1)
+        for speech in self.speeches.values():
+            samples = SPEECH_GAIN * at_sample_rate(speech.line)
+            end = speech.start + speech.line.utterance.duration
+            if speech.heard_until + 1.5 / self.clip.rate < end:
+                samples = _cut(samples, speech.heard_until + 1.0 / self.clip.rate - speech.start)
+            begin = max(round(speech.start * SAMPLE_RATE), 0)
+            part = samples[: max(len(mixed) - begin, 0)]
+            mixed[begin : begin + len(part)] += part
+        return np.repeat(limited(mixed)[:, None], 2, axis=1).astype(np.float32)
+
+
+def perform(
+    player: BehaviourPlayer,
+    documents: Sequence[str],
+    rate: float,
+    *,
+    together: bool = False,
+    name: str = "behaviour",
+) -> BehaviourRecording:
+    """Let a character perform documents, each when those before it are over.
+
+    Parameters
+    ----------
+    player
+        The character; it has not been used before.
+    documents
+        BML.
+    rate
+        Frames a second.
+    together
+        Whether all blocks arrive at the start, so that their composition counts.
+    name
+        Name of the clip.
+    """
+    player.settle(SETTLE_S, rate)
+    waiting = list(documents)
+    frames: list[BehaviourFrame] = []
+    speeches: dict[str, SpokenPart] = {}
+    end = math.inf
+    while (now := len(frames) / rate) < min(end, LONGEST_S):
+        if waiting and (together or player.over(now)):
+            count = len(waiting) if together else 1
+            for document in waiting[:count]:
+                player.realizer.perform(document)
+            del waiting[:count]
+        frame = player.update(now)
+        frames.append(frame)
+        _hear(player, frame, speeches)
+        if waiting or not player.over(now):
+            end = math.inf
+        elif end == math.inf:
+            end = now + TAIL_S
+    feedback = tuple(each for frame in frames for each in frame.feedback)
+    return BehaviourRecording(_clip(frames, rate, name), feedback, speeches)
+
+
+def _hear(player: BehaviourPlayer, frame: BehaviourFrame, speeches: dict[str, SpokenPart]) -> None:
+    for saying in frame.performed.sayings:
+        if saying.key in speeches:
+            speeches[saying.key].heard_until = frame.performed.now
+            continue
+        line = player.line_of(saying)
+        if line is not None:
+            speeches[saying.key] = SpokenPart(line, saying.start, frame.performed.now)
+
+
+def _clip(frames: Sequence[BehaviourFrame], rate: float, name: str) -> Clip:
+    placements = np.stack([frame.posed.table_from_character for frame in frames])
+    scale = float(placements[0, 1, 1])
+    places = [
+        RootDelta(
+            float(placed[0, 3]) / scale,
+            float(placed[2, 3]) / scale,
+            math.atan2(placed[0, 2], placed[2, 2]),
+        )
+        for placed in placements
+    ]
+    clip = placed_clip(name, rate, stacked([frame.posed.pose for frame in frames]), places)
+    translations = clip.poses.translations.copy()
+    translations[:, 0, 1] += placements[:, 1, 3] / scale
+    return replace(clip, poses=replace(clip.poses, translations=translations))
+
+
+def _cut(samples: NDArray[np.float64], seconds: float) -> NDArray[np.float64]:
+    """Return a sound that fades out at a time [s]."""
+    kept = max(round(seconds * SAMPLE_RATE), 0)
+    fading = samples[kept : kept + FADE_OUT]
+    return np.concatenate([samples[:kept], fading * np.linspace(1.0, 0.0, len(fading))])

@@ -1,0 +1,184 @@
+"""`cubeling behave`."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+
+from affect import Emotion
+from affect.words import WORD_PLACES
+from app.behaving.opening import open_lines, read_document
+from app.behaving.player import BehaviourOptions, BehaviourPlayer, target_of
+from app.behaving.recording import BehaviourRecording, perform
+from app.behaving.video import write_video
+from app.commands.output import OverwriteOption, chosen_output
+from app.commands.session.play import VoiceOption
+from app.commands.session.preference_options import size_of
+from app.errors import AppError
+from app.output_path import check_output
+from app.speaking.performance import View
+from app.ui.video_file import VIDEO_FORMATS
+from characters import Character
+from characters.behaviour.bml import BlockProgress, BmlWarning, Feedback, feedback_xml
+from characters.behaviour.expressivity import GestureExpressivity
+from characters.formats.mocap.bvh_writing import save_bvh
+from characters.retargeting.bap import save_bap
+from characters.retargeting.root import with_root_joint
+
+OUTPUT_SUFFIXES = (".bvh", ".bap", *VIDEO_FORMATS)
+
+EXPRESSIVITY_PANEL = "How gestures are performed"
+
+
+def _expressivity(name: str, words: str, low: float) -> Any:
+    return typer.Option(
+        name, help=words, rich_help_panel=EXPRESSIVITY_PANEL, min=low, max=1.0, show_default=False
+    )
+
+
+def behave(
+    files: Annotated[
+        list[Path] | None, typer.Argument(help="Files of BML, performed one after the other.")
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="A video, .bvh or .bap file; default: behaviour.mp4."),
+    ] = None,
+    overwrite: OverwriteOption = False,
+    together: Annotated[
+        bool, typer.Option("--together", help="Give all blocks at the start: composition counts.")
+    ] = False,
+    feedback: Annotated[
+        Path | None, typer.Option(help="Write the feedback of the standard to this .xml file.")
+    ] = None,
+    serve: Annotated[
+        int | None,
+        typer.Option(help="Take blocks on this TCP port while playing, from this computer."),
+    ] = None,
+    window: Annotated[
+        bool, typer.Option("--window/--no-window", help="Show the character while serving.")
+    ] = True,
+    character: Annotated[
+        str, typer.Option(help="Who performs: bundled, or a .glb, .gltf or .vrm file.")
+    ] = "human",
+    target: Annotated[
+        list[str] | None,
+        typer.Option(help="A place for target=NAME, as NAME=x,y,z in metres; may be repeated."),
+    ] = None,
+    voice: VoiceOption = None,
+    lang: Annotated[str, typer.Option(help="Language of speeches that name none.")] = "en",
+    emotion: Annotated[str, typer.Option(help="A word such as happy, sad or angry.")] = "",
+    spatial: Annotated[
+        float, _expressivity("--spatial", "Smaller or wider gestures, -1 to 1.", -1.0)
+    ] = 0.0,
+    openness: Annotated[
+        float, _expressivity("--openness", "Elbows at the body, 0, or away from it, 1.", 0.0)
+    ] = 0.5,
+    fluidity: Annotated[
+        float, _expressivity("--fluidity", "Jerky or flowing, -1 to 1.", -1.0)
+    ] = 0.0,
+    bias: Annotated[
+        float, _expressivity("--bias", "Overshoot before or after keys, -1 to 1.", -1.0)
+    ] = 0.0,
+    tension: Annotated[
+        float, _expressivity("--tension", "Round or tight paths, -1 to 1.", -1.0)
+    ] = 0.0,
+    power: Annotated[
+        float, _expressivity("--power", "Faster strokes; shoulders and trunk join in, 0 to 1.", 0.0)
+    ] = 0.0,
+    view: Annotated[View, typer.Option(help="What is seen of the character.")] = "body",
+    subtitles: Annotated[
+        bool, typer.Option("--subtitles/--no-subtitles", help="Show what is being said.")
+    ] = False,
+    size: Annotated[str, typer.Option(help="Size of the picture.")] = "640x480",
+    rate: Annotated[float, typer.Option(help="Frames a second.", min=1.0, max=120.0)] = 25.0,
+    seed: Annotated[int, typer.Option(help="Of blinks and sway.")] = 0,
+) -> None:
+    """Let a character perform blocks of BML: speech, gestures, gaze, postures, ways.
+
+    Example: [cyan]cubeling behave hello.bml -o hello.mp4[/]
+    """
+    how = GestureExpressivity(spatial, openness, fluidity, bias, tension, power)
+    options = BehaviourOptions(how, _emotion(emotion), seed, _targets(target or []))
+    body, pixels = with_root_joint(Character.load(character)), size_of(size)
+    if serve is not None:
+        raise AppError("--serve is not there yet")
+    if not files:
+        raise AppError("there is nothing to perform: name a file of BML, or --serve PORT")
+    path = chosen_output(output, "behaviour.mp4", "behaviour", OUTPUT_SUFFIXES, overwrite)
+    if feedback is not None:
+        check_output(feedback, "feedback", (".xml",), overwrite=overwrite)
+    documents = [read_document(file) for file in files]
+    console = Console(highlight=False)
+    lines = open_lines(voice, lang)
+    try:
+        with console.status("performing"):
+            player = BehaviourPlayer(body, lines, options)
+            done = perform(player, documents, rate, together=together, name=path.stem)
+            _write(path, body, done, pixels, view, subtitles)
+    finally:
+        lines.close()
+    if feedback is not None:
+        feedback.write_text(feedback_document(done.feedback), "utf-8")
+    _report(console, path, done, lines.problem)
+
+
+def feedback_document(feedback: tuple[Feedback, ...]) -> str:
+    """Return all feedback as one XML document."""
+    lines = [feedback_xml(each) for each in feedback]
+    return "\n".join(
+        ['<?xml version="1.0" encoding="utf-8"?>', "<feedback>", *lines, "</feedback>", ""]
+    )
+
+
+def _write(
+    path: Path,
+    body: Character,
+    done: BehaviourRecording,
+    size: tuple[int, int],
+    view: View,
+    subtitles: bool,
+) -> None:
+    match path.suffix.lower():
+        case ".bvh":
+            save_bvh(done.clip, body.skeleton, body.anatomy, path)
+        case ".bap":
+            save_bap(done.clip, body.skeleton, body.anatomy, path)
+        case _:
+            write_video(path, body, done, size=size, view=view, subtitles=subtitles)
+
+
+def _report(console: Console, path: Path, done: BehaviourRecording, problem: str) -> None:
+    """Print warnings, and what is written."""
+    if problem:
+        console.print(f"[yellow]nothing is said:[/] {escape(problem)}", soft_wrap=True)
+    for each in done.feedback:
+        if isinstance(each, BmlWarning):
+            console.print(
+                f"[yellow]{escape(each.id)}[/]: {escape(each.description)} ({each.type})",
+                soft_wrap=True,
+            )
+    blocks = sum(isinstance(e, BlockProgress) and e.sync == "end" for e in done.feedback)
+    console.print(
+        f"[bold]{escape(str(path))}[/] is written: {done.clip.duration:.1f} s, "
+        f"{blocks} block{'s' if blocks != 1 else ''}",
+        soft_wrap=True,
+    )
+
+
+def _emotion(word: str) -> Emotion | None:
+    """Return the emotion of a word; None for ""."""
+    if not word:
+        return None
+    if word not in WORD_PLACES:
+        raise AppError(f"no emotion is called '{word}': choose one of {', '.join(WORD_PLACES)}")
+    return Emotion(*WORD_PLACES[word], word)
+
+
+def _targets(texts: list[str]) -> dict[str, Any]:
+    try:
+        return dict(map(target_of, texts))
+    except ValueError as error:
+        raise AppError(f"--target {error}: write NAME=x,y,z, in metres") from None
