@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import fields
 from itertools import pairwise
 
+from characters.behaviour.expressivity import GestureExpressivity
 from characters.behaviour.gestures.contacts import CONTACTS
 from characters.behaviour.gestures.directions import DIRECTIONS, across
 from characters.behaviour.gestures.gesture import (
@@ -16,7 +17,6 @@ from characters.behaviour.gestures.gesture import (
     HandKey,
     SymbolicGesture,
 )
-from characters.behaviour.expressivity import GestureExpressivity
 from characters.errors import CharacterError
 from characters.ik.reaching.hand_shapes import HAND_SHAPES
 

@@ -1,0 +1,179 @@
+"""Symbolic gestures: `CharacterCommand.behaviour.gestures`."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
+from characters.behaviour.gestures.easing import eased
+from characters.behaviour.gestures.gesture import SymbolicGesture
+from characters.behaviour.gestures.planning import Performer
+from characters.behaviour.gestures.timing import (
+    GONE,
+    PREPARED,
+    RELAX,
+    STROKE,
+    apex_share,
+    phase_at,
+)
+from characters.behaviour.intents import BehaviourIntent, GestureIntent, Hand, StrokeTimes
+from characters.control.layers.layer import FrameContext
+from characters.control.layers.sitting_up import STANDING_REST
+from characters.model.character import Character
+from characters.skeleton.pose import Pose
+from characters.smoothing import low_pass
+
+FADE_S = 0.3
+"""How long a gesture takes to go that is left out before its end, or to join in late [s]."""
+
+RETIME_S = 0.25
+"""How long a gesture takes to catch up with times that have changed, at most [s]."""
+
+MIN_RETIME_S = 0.03
+"""And at least [s]: its apex is late if its new time is now."""
+
+ON_TIME_S = 0.05
+"""A gesture that is first heard of so long after its start need not join in: a frame [s]."""
+
+HANDS_FREE = {"idle": 1.0, "walk": 1.0, "run": 0.5}
+"""Share of gestures that is shown while a character does something; none in its actions."""
+
+FREE_LAG_S = 0.15
+"""Lag with which hands become free, and are taken [s]."""
+
+
+@dataclass
+class PerformedGesture:
+    """One gesture that is performed, from its first frame to its last."""
+
+    intent: GestureIntent
+    """What is asked, last heard of."""
+
+    hand: Hand
+    """Which hand performs it, if it is one-handed."""
+
+    performer: Performer
+    """Whose body."""
+
+    present: float
+    """How far it has joined in, 0…1."""
+
+    _late: float = 0.0
+    _since: float = 0.0
+    _settled: float = 0.0
+
+    def __post_init__(self) -> None:
+        gesture, style = self.intent.gesture, self.intent.expressivity
+        self._style = gesture.expressivity if style == NEUTRAL else style
+        self._motion = self.performer.plan(gesture, self.hand, self._style)
+        self._apex = apex_share(gesture)
+        self._touches = any(
+            keys and keys[0].place.contact for keys in (gesture.right, gesture.left)
+        )
+
+    def retime(self, intent: GestureIntent, now: float) -> None:
+        """Follow new times from where it is; it has caught up before the next stroke."""
+        if intent.times != self.intent.times:
+            before = self.phase(now)
+            self.intent = intent
+            self._late = before - self._phase(intent.times, now)
+            stroke = intent.times.stroke
+            left = stroke - now if stroke > now else RETIME_S
+            self._since = now
+            self._settled = now + max(min(left, RETIME_S), MIN_RETIME_S)
+
+    def phase(self, now: float) -> float:
+        """Return how far it is, as `phase_at`."""
+        phase = self._phase(self.intent.times, now)
+        if self._late and now < self._settled:
+            rest = (self._settled - now) / (self._settled - self._since)
+            phase += self._late * rest * rest
+        return phase
+
+    def _phase(self, times: StrokeTimes, now: float) -> float:
+        return phase_at(times, now, self._apex, self.intent.gesture.retraction)
+
+    def over(self, pose: Pose, now: float, share: float) -> Pose:
+        """Return a pose with the gesture laid over it; `share` of it is shown, 0…1."""
+        phase = self.phase(now)
+        if not 0.0 < phase < GONE:
+            return pose
+        weight = 1.0
+        if phase < PREPARED:
+            weight = eased(_smooth(phase), self._style)
+            weight = min(weight, 1.0) if self._touches else weight
+        elif phase > RELAX:
+            weight = _smooth(GONE - phase)
+        weight *= share * _smooth(self.present)
+        return self._motion.over(pose, min(max(phase - STROKE, 0.0), 1.0), weight)
+
+
+class GestureLayer:
+    """Performs gestures; it comes after speech, whose gestures it hides, and before gaze."""
+
+    def __init__(self, character: Character, seed: int = 0) -> None:
+        self._character = character
+        self._performer: Performer | None = None
+        self._active: list[PerformedGesture] = []
+        self._free = 1.0
+
+    def update(self, pose: Pose, context: FrameContext) -> Pose:
+        """Return the pose with its gestures."""
+        asked, now = context.command.behaviour, context.command.timestamp
+        self._free = low_pass(self._free, self._hands_free(context), context.elapsed, FREE_LAG_S)
+        if not self._active and (asked is None or not asked.gestures):
+            return pose
+        self._follow(asked or BehaviourIntent(), now, context.elapsed)
+        for each in self._active:
+            pose = each.over(pose, now, self._free)
+        return pose
+
+    def _hands_free(self, context: FrameContext) -> float:
+        if self._character.anatomy.kind == "quadruped":
+            return float(context.rest > STANDING_REST)
+        return HANDS_FREE.get(context.frame.state, 0.0)
+
+    def _follow(self, asked: BehaviourIntent, now: float, elapsed: float) -> None:
+        """Begin what is new, re-time what has changed, and let go what is left out."""
+        known = {_identity(each.intent): each for each in self._active}
+        going: list[PerformedGesture] = []
+        for intent in asked.gestures:
+            each = known.pop(_identity(intent), None)
+            if each is None:
+                each = self._begin(intent, now, [*going, *known.values()], asked)
+            each.retime(intent, now)
+            each.present = min(each.present + elapsed / FADE_S, 1.0)
+            going.append(each)
+        for each in known.values():
+            each.present -= elapsed / FADE_S
+        left = [each for each in known.values() if each.present > 0.0 and each.phase(now) < GONE]
+        self._active = [*left, *going]
+
+    def _begin(
+        self,
+        intent: GestureIntent,
+        now: float,
+        others: Sequence[PerformedGesture],
+        asked: BehaviourIntent,
+    ) -> PerformedGesture:
+        if self._performer is None:
+            self._performer = Performer.of(self._character)
+        hand = intent.hand
+        if hand == "nearest":
+            hand = _free_hand(others, asked)
+        on_time = now <= intent.times.start + ON_TIME_S
+        return PerformedGesture(intent, hand, self._performer, 1.0 if on_time else 0.0)
+
+
+def _identity(intent: GestureIntent) -> tuple[str, SymbolicGesture, Hand, GestureExpressivity]:
+    """Return what makes a gesture the same as in the frame before, whatever its times."""
+    return intent.key, intent.gesture, intent.hand, intent.expressivity
+
+
+def _free_hand(others: Sequence[PerformedGesture], asked: BehaviourIntent) -> Hand:
+    """Return the right hand, unless it is taken and the left one is not."""
+    taken = {each.hand for each in others} | {each.hand for each in asked.reaches}
+    return "left" if "right" in taken and not taken & {"left", "both"} else "right"
+
+
+def _smooth(u: float) -> float:
+    return u * u * (3.0 - 2.0 * u)
