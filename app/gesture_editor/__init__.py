@@ -1,0 +1,1 @@
+"""An editor for symbolic gestures: pure in the middle, with a thin window around it."""

@@ -1,0 +1,201 @@
+"""The character that performs the edited gesture, through the same animator as in play."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from app.gesture_editor.document import GestureDocument, moves
+from app.gesture_editor.space_overlay import ShownSpace
+from app.gesture_editor.timing import duration
+from characters import Animator, Character, CharacterCommand, PosedCharacter
+from characters.behaviour.gestures.gesture import SymbolicGesture
+from characters.behaviour.gestures.planning import Performer
+from characters.behaviour.gestures.space import GestureSpace
+from characters.behaviour.gestures.timing import natural_times
+from characters.behaviour.intents import BehaviourIntent, GestureIntent, Hand
+from characters.control.controllers.in_place import InPlaceController
+from characters.control.layers import LayerFactory, layers_of
+from characters.control.layers.gestures import GestureLayer
+from characters.rendering.portrait_camera import CharacterExtent, PortraitCamera
+from characters.rendering.scene import SceneCharacter, View
+from characters.rendering.stage import Stage
+
+Picture = NDArray[np.uint8]
+
+BACKDROP_BGR = 236, 240, 242
+"""Colour behind the character."""
+
+LEAD_S = 0.5
+"""Time that the character stands before the gesture [s]."""
+
+PAUSE_S = 0.6
+"""Time that it stands between two performances [s]."""
+
+STEP_S, LONG_STEP_S = 1 / 30, 0.1
+"""Steps of the animator up to a time that is shown [s]: the last ones, and those before."""
+
+MAX_STEP_S = 0.2
+"""A time that is so far ahead is one step away, at most [s]."""
+
+EXACT_S = 0.3
+"""How long before a time that is shown the steps are short [s]."""
+
+ELEVATION_RAD = 0.12
+"""How far the camera looks down [rad]."""
+
+
+@dataclass(frozen=True)
+class Performance:
+    """What the preview performs; one that differs starts afresh."""
+
+    gesture: SymbolicGesture
+    """The gesture."""
+
+    hand: Hand
+    """Which hand, if it is one-handed."""
+
+    character: str
+    """Who performs it."""
+
+    @staticmethod
+    def of(document: GestureDocument, character: str) -> "Performance":
+        """Return what a document asks for."""
+        return Performance(document.gesture, document.hand, character)
+
+    @property
+    def cycle(self) -> float:
+        """Time from one performance to the next [s]."""
+        return duration(self.gesture) + PAUSE_S
+
+    def command(self, time: float) -> CharacterCommand:
+        """Return the command at a time from the first start of the gesture [s]."""
+        if not moves(self.gesture):
+            return CharacterCommand(time + LEAD_S)
+        number = max(int(time // self.cycle), 0)
+        intent = GestureIntent(
+            f"preview {number}",
+            self.gesture,
+            natural_times(self.gesture, LEAD_S + number * self.cycle),
+            self.hand,
+            self.gesture.expressivity,
+        )
+        return CharacterCommand(time + LEAD_S, behaviour=BehaviourIntent(gestures=(intent,)))
+
+
+class Preview:
+    """Poses and draws the character; a time that is shown again gives the same pose.
+
+    Parameters
+    ----------
+    context
+        Where it draws; it is not released.
+    load
+        Returns a character by its name.
+    """
+
+    def __init__(
+        self, context: moderngl.Context, load: Callable[[str], Character] = Character.load
+    ) -> None:
+        self._context, self._load = context, load
+        self._characters: dict[str, Character] = {}
+        self._performance: Performance | None = None
+        self._animator: Animator | None = None
+        self._time = 0.0
+        self._posed: PosedCharacter | None = None
+        self._stage: Stage | None = None
+        self._layers: dict[str, GestureLayer] = {}
+        self._spaces: dict[str, GestureSpace] = {}
+        self._cameras: dict[tuple[str, tuple[int, int]], PortraitCamera] = {}
+
+    def character(self, name: str) -> Character:
+        """Return a character, which is read once."""
+        if name not in self._characters:
+            self._characters[name] = self._load(name)
+        return self._characters[name]
+
+    def pose(self, performance: Performance, time: float) -> PosedCharacter:
+        """Return the character at a time from the start of the gesture [s].
+
+        Times may go on over many performances. A short step ahead is one update; other times, and
+        another performance, are played from the start.
+        """
+        ahead = time - self._time
+        if performance != self._performance or not -1e-9 <= ahead <= MAX_STEP_S:
+            self._performance = performance
+            self._animator = self._new_animator(performance.character)
+            self._play(performance, -LEAD_S, time)
+        elif ahead > 1e-9 or self._posed is None:
+            self._update(performance, time)
+        assert self._posed is not None, "it was updated"
+        return self._posed
+
+    def draw(self, performance: Performance, time: float, size: tuple[int, int]) -> Picture:
+        """Return a picture of the character at a time, (height, width, 3) BGR."""
+        posed = self.pose(performance, time)
+        if self._stage is None or self._stage.size != size:
+            self.release()
+            self._stage = Stage(self._context, size)
+        camera = self.camera(performance.character, size)
+        paper = np.full((size[1], size[0], 3), BACKDROP_BGR, np.uint8)
+        view = View(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
+        character = self.character(performance.character)
+        return self._stage.draw(view, [SceneCharacter(character, posed)])
+
+    def shown_space(
+        self, performance: Performance, size: tuple[int, int], left: bool
+    ) -> ShownSpace:
+        """Return the gesture space of a hand in the pictures of `draw`."""
+        name = performance.character
+        if name not in self._spaces:
+            self._spaces[name] = Performer.of(self.character(name)).space
+        assert self._posed is not None, "it was drawn"
+        space = replace(self._spaces[name], spatial=performance.gesture.expressivity.spatial)
+        placed = self._posed.table_from_character
+        return ShownSpace(space, placed, self.camera(name, size), left)
+
+    def camera(self, name: str, size: tuple[int, int]) -> PortraitCamera:
+        """Return the camera that sees a character and what its hands may reach."""
+        key = name, size
+        if key not in self._cameras:
+            character = self.character(name)
+            posed = self._new_animator(name).update(CharacterCommand(0.0))
+            points = CharacterExtent(character).points(posed.pose)
+            low, high = points.min(axis=0), points.max(axis=0)
+            above = 0.12 * (high[1] - low[1])
+            points = np.concatenate([points, [[0.0, high[1] + above, 0.0]]])
+            placed = posed.table_from_character
+            table = points @ placed[:3, :3].T + placed[:3, 3]
+            self._cameras[key] = PortraitCamera.around(table, ELEVATION_RAD, size)
+        return self._cameras[key]
+
+    def release(self) -> None:
+        """Release what draws; a second call does nothing."""
+        if self._stage is not None:
+            self._stage.release()
+        self._stage = None
+
+    def _new_animator(self, name: str) -> Animator:
+        """Return an animator of somebody who stays; gestures that were planned stay known."""
+        character = self.character(name)
+        known = self._layers.setdefault(name, GestureLayer(character))
+        others = [layer for layer in layers_of(character) if layer is not GestureLayer]
+        layers: list[LayerFactory] = [*others, lambda _character, _seed: known]
+        return Animator(character, layers=layers, controller=InPlaceController)
+
+    def _play(self, performance: Performance, start: float, end: float) -> None:
+        """Play from the start of an animator up to a time."""
+        start = max(start, end - 2 * performance.cycle)
+        now = start
+        self._update(performance, start)
+        while now < end - 1e-9:
+            step = LONG_STEP_S if now + LONG_STEP_S < end - EXACT_S else STEP_S
+            now = min(now + step, end)
+            self._update(performance, now)
+
+    def _update(self, performance: Performance, time: float) -> None:
+        assert self._animator is not None, "a performance has an animator"
+        self._time = time
+        self._posed = self._animator.update(performance.command(time))

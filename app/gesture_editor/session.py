@@ -1,0 +1,220 @@
+"""One run of the editor, with or without a window: its state, its preview and its files."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import moderngl
+
+from app.gesture_editor.document import EMPTY, ROWS, GestureDocument, Row, keys_of, moves
+from app.gesture_editor.edits import gesture_name
+from app.gesture_editor.handling import Event, handle, left_field
+from app.gesture_editor.importing import imported
+from app.gesture_editor.layout import Picture, WindowDrawing, preview_size
+from app.gesture_editor.preview import Performance, Preview
+from app.gesture_editor.state import (
+    EditorState,
+    Import,
+    New,
+    Open,
+    Quit,
+    Request,
+    Save,
+    fresh,
+    told,
+    unless_unsaved,
+)
+from app.gesture_editor.store import GestureStore
+from characters import Character
+from characters.behaviour.gestures.gesture import SymbolicGesture
+from characters.errors import CharacterError
+
+KEEP_INTERVAL_S = 2.0
+"""Time between two copies of changes that are not saved [s]."""
+
+
+class EditorSession:
+    """Takes events and time, and returns pictures; it knows no window and no clock.
+
+    Who opens it closes it; a second `close` does nothing.
+
+    Parameters
+    ----------
+    context
+        Where the preview draws; it is not released.
+    folder
+        The user's gestures.
+    character
+        Who performs: a bundled name, or a file.
+    name
+        The gesture to open; "" for a new one.
+
+    Raises
+    ------
+    CharacterError
+        There is no such gesture or character, or a file in the folder is no gesture.
+    """
+
+    def __init__(
+        self, context: moderngl.Context, folder: Path, character: str = "human", name: str = ""
+    ) -> None:
+        self._store = GestureStore(folder)
+        self._preview = Preview(context)
+        self._drawing = WindowDrawing()
+        self._preview.character(character)
+        known = Character.bundled()
+        characters = known if character in known else (*known, character)
+        self.state = EditorState(
+            character=character, characters=tuple(characters), names=self._store.names
+        )
+        """What it shows."""
+        self.closed = False
+        """Whether the user has ended it."""
+        self._played = 0.0
+        self._performance: Performance | None = None
+        self._still: tuple[object, Picture] | None = None
+        self._kept: SymbolicGesture | None = None
+        self._since_kept = 0.0
+        self._begin(name)
+
+    def send(self, *events: Event) -> None:
+        """Handle events, and do what they ask for."""
+        for event in events:
+            self.state = handle(event, self.state)
+            self._perform(self.state.requests)
+
+    def ask_to_quit(self) -> None:
+        """Close, or ask what is to become of changes that are not saved."""
+        self.state = unless_unsaved(left_field(self.state), Quit())
+        self._perform(self.state.requests)
+
+    def advance(self, elapsed: float) -> None:
+        """Let time pass [s]: the preview plays, and changes are kept."""
+        state = self.state
+        performance = Performance.of(state.document, state.character)
+        if performance != self._performance or not state.playing:
+            self._performance, self._played = performance, state.time
+        if state.playing and not state.card:
+            self._played += elapsed
+            time = self._played % performance.cycle if moves(performance.gesture) else 0.0
+            self.state = replace(state, time=time)
+        self._since_kept += elapsed
+        if self._since_kept >= KEEP_INTERVAL_S:
+            self._since_kept = 0.0
+            self.keep()
+
+    def keep(self) -> None:
+        """Keep changes that are not saved, so that nothing that happens can lose them."""
+        gesture = left_field(self.state).document.gesture
+        if gesture == self._kept or gesture == self.state.saved.gesture:
+            return
+        self._kept = gesture
+        try:
+            self._store.keep(gesture)
+        except CharacterError as error:
+            self.state = told(self.state, f"not safe yet: {error}", alarming=True)
+
+    def picture(self, scale: float) -> Picture:
+        """Return the picture of the window for a scale: 1 for 1280×720."""
+        size = preview_size(scale)
+        performance = self._performance or Performance.of(self.state.document, self.state.character)
+        shows_space = self.state.sectors_shown or self.state.held == "map"
+        shown = performance, self._played, size, shows_space, self.state.document
+        if self._still is None or self._still[0] != shown:
+            preview = self._preview.draw(performance, self._played, size)
+            if shows_space and self.state.document.hand_row is not None:
+                self._draw_space(preview, performance)
+            self._still = shown, preview
+        return self._drawing.draw(self.state, self._still[1], scale)
+
+    def _draw_space(self, preview: Picture, performance: Performance) -> None:
+        """Draw the gesture space of the selected hand over a picture, in place."""
+        document = self.state.document
+        left = document.row == "left" or (document.gesture.one_handed and document.hand == "left")
+        size = preview.shape[1], preview.shape[0]
+        place = None if document.hand_key is None else document.hand_key.place
+        self._preview.shown_space(performance, size, left).draw(preview, place)
+
+    def close(self) -> None:
+        """Release what draws; changes that are not saved and not discarded are kept."""
+        if not self.closed:
+            self.keep()
+            self.closed = True
+        self._preview.release()
+
+    def _begin(self, name: str) -> None:
+        kept = self._store.kept()
+        if kept is not None:
+            self.state = replace(
+                fresh(self.state, document_of(kept), "unsaved changes of last time are back"),
+                saved=EMPTY,
+            )
+            if name and gesture_name(name) != kept.name:
+                self.state = unless_unsaved(self.state, Open(name))
+        elif name and self._store.has(name):
+            self._perform([Open(name)])
+        elif name:
+            gesture = replace(EMPTY.gesture, name=gesture_name(name))
+            message = f"{gesture.name} is new: click a sector of the map"
+            self.state = fresh(self.state, GestureDocument(gesture), message)
+
+    def _perform(self, requests: Sequence[Request]) -> None:
+        """Do what was asked for, up to the first thing that fails."""
+        self.state = replace(self.state, requests=())
+        effects: dict[type, Callable[..., None]] = {
+            Save: self._save,
+            Open: self._open,
+            Import: self._import,
+            New: self._new,
+            Quit: self._quit,
+        }
+        for request in requests:
+            try:
+                effects[type(request)](request)
+            except (CharacterError, OSError) as error:
+                message = " ".join(str(error).split())
+                self.state = told(self.state, message, alarming=True)
+                return
+
+    def _save(self, request: Save) -> None:
+        state, gesture = self.state, self.state.document.gesture
+        renamed = gesture.name != state.saved.gesture.name
+        if renamed and not request.overwrite and self._store.has(gesture.name):
+            self.state = replace(state, card="replace")
+            return
+        place = self._store.save(gesture)
+        self._kept = None
+        self.state = replace(
+            told(state, f"{gesture.name} is saved: {place}"),
+            saved=state.document,
+            names=self._store.names,
+        )
+
+    def _open(self, request: Open) -> None:
+        gesture = self._store.load(request.name)
+        self._forget()
+        self.state = fresh(self.state, document_of(gesture), f"{gesture.name}: {gesture.summary}")
+
+    def _import(self, request: Import) -> None:
+        gesture = imported(request.recording, request.start, request.end)
+        self._forget()
+        message = "imported: save it under a name of your own"
+        self.state = replace(fresh(self.state, document_of(gesture), message), saved=EMPTY)
+
+    def _new(self, request: New) -> None:
+        self._forget()
+        self.state = fresh(self.state, EMPTY, "click a sector of the map: the hand goes there")
+
+    def _quit(self, request: Quit) -> None:
+        self._forget()
+        self.closed = True
+
+    def _forget(self) -> None:
+        self._kept = None
+        self._store.forget()
+
+
+def document_of(gesture: SymbolicGesture) -> GestureDocument:
+    """Return the document of a gesture with its last key selected: that of the first row."""
+    row: Row = next((each for each in ROWS if keys_of(gesture, each)), "right")
+    return GestureDocument(gesture).select(row, len(keys_of(gesture, row)) - 1)

@@ -1,0 +1,30 @@
+"""The words for hands in the editor."""
+
+from characters.behaviour.gestures.directions import DIRECTIONS
+
+OPPOSITES = {
+    "up": "down", "down": "up", "in": "out", "out": "in", "forward": "back", "back": "forward",
+}  # fmt: skip
+"""Directions that cannot be combined."""
+
+DIRECTION_NAMES = tuple((each, each) for each in DIRECTIONS)
+"""Directions of palms and fingers, each with its name on a button."""
+
+PATH_NAMES = (
+    ("line", "line"), ("arc", "arc"), ("circle", "circle"), ("wave", "wave"), ("keys", "curve"),
+)  # fmt: skip
+"""Paths of `HandKey`, each with its name on a button."""
+
+
+def combined(present: str, chosen: str, *, added: bool) -> str:
+    """Return a direction after a click on one: it alone, or added to the present.
+
+    >>> combined("down", "in", added=True), combined("down-in", "in", added=True)
+    ('down-in', 'down')
+    """
+    parts = [each for each in present.split("-") if each]
+    if not added:
+        return chosen
+    if chosen in parts:
+        return "-".join(each for each in parts if each != chosen) or chosen
+    return "-".join([*(each for each in parts if each != OPPOSITES[chosen]), chosen][-2:])
