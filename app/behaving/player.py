@@ -117,6 +117,10 @@ class BehaviourPlayer:
         self.realizer = Realizer(self._performer)
         """What keeps the time of the blocks; `perform` gives it one."""
 
+    def perform(self, document: str | bytes) -> None:
+        """Accept a document; it counts from the next update on."""
+        self.realizer.perform(document)
+
     def update(self, now: float) -> BehaviourFrame:
         """Advance to a time [s] and return the frame."""
         feedback = self.realizer.update(now)

@@ -12,9 +12,10 @@ from app.pipeline.spoken_line import SpokenLine
 from app.sound import SAMPLE_RATE
 from app.sound.mixer import FADE_OUT, limited
 from app.sound.session_sound import SPEECH_GAIN, at_sample_rate
-from characters import Clip, RootDelta
+from characters import Clip, Pose, PosedCharacter
 from characters.behaviour.bml import Feedback
-from characters.motion.baking import placed_clip, stacked
+from characters.motion.baking import stacked
+from characters.skeleton import rotations
 
 SETTLE_S = 2.0
 """Time before the first frame [s], which is not shown: eyes find the viewer."""
@@ -99,7 +100,7 @@ def perform(
         if waiting and (together or player.over(now)):
             count = len(waiting) if together else 1
             for document in waiting[:count]:
-                player.realizer.perform(document)
+                player.perform(document)
             del waiting[:count]
         frame = player.update(now)
         frames.append(frame)
@@ -122,21 +123,20 @@ def _hear(player: BehaviourPlayer, frame: BehaviourFrame, speeches: dict[str, Sp
             speeches[saying.key] = SpokenPart(line, saying.start, frame.performed.now)
 
 
+def placed_pose(posed: PosedCharacter) -> Pose:
+    """Return the pose of a character with its root joint where it stands, in its own metres."""
+    placed, pose = posed.table_from_character, posed.pose
+    scale = float(placed[1, 1])
+    yaw = rotations.about("y", math.atan2(placed[0, 2], placed[2, 2]))
+    translations, turns = pose.translations.copy(), pose.rotations.copy()
+    translations[0] = rotations.rotate(yaw, translations[0]) + placed[:3, 3] / scale
+    turns[0] = rotations.multiply(yaw, turns[0])
+    return replace(pose, translations=translations, rotations=turns)
+
+
 def _clip(frames: Sequence[BehaviourFrame], rate: float, name: str) -> Clip:
-    placements = np.stack([frame.posed.table_from_character for frame in frames])
-    scale = float(placements[0, 1, 1])
-    places = [
-        RootDelta(
-            float(placed[0, 3]) / scale,
-            float(placed[2, 3]) / scale,
-            math.atan2(placed[0, 2], placed[2, 2]),
-        )
-        for placed in placements
-    ]
-    clip = placed_clip(name, rate, stacked([frame.posed.pose for frame in frames]), places)
-    translations = clip.poses.translations.copy()
-    translations[:, 0, 1] += placements[:, 1, 3] / scale
-    return replace(clip, poses=replace(clip.poses, translations=translations))
+    poses = stacked([placed_pose(frame.posed) for frame in frames])
+    return Clip(name, rate, poses, loop=False, root_motion=True)
 
 
 def _cut(samples: NDArray[np.float64], seconds: float) -> NDArray[np.float64]:

@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from app.behaving.camera import camera_focus
 from app.behaving.recording import BehaviourRecording
-from app.speaking.performance import AZIMUTH_RAD, ELEVATION_RAD, View, framed
+from app.speaking.performance import AZIMUTH_RAD, ELEVATION_RAD, View
 from app.ui.canvas import PICTURE_HEIGHT
 from app.ui.subtitles import draw_subtitle, subtitle
 from app.ui.video_file import VideoFile
@@ -15,15 +16,6 @@ from characters import Character
 from characters.control.command import SpeechIntent
 from characters.rendering import create_context
 from characters.rendering.portrait import PortraitRenderer
-
-Focus = tuple[NDArray[np.float64], float]
-"""What is seen: a centre (3,) and a radius in the character frame [m]."""
-
-MAX_PATH_SHARE = 1.5
-"""Ways longer than this part of the character's size are followed by the camera."""
-
-PATH_ROOM = 1.25
-"""What a way takes of the picture, in its lengths: it comes nearer too."""
 
 
 def write_video(
@@ -45,7 +37,7 @@ def write_video(
     clip = recording.clip
     context = create_context()
     renderer = PortraitRenderer(context, size)
-    focus_at = camera_focus(character, recording, view)
+    focus_at = camera_focus(character, clip, view)
     try:
         with VideoFile(path, size, clip.rate, _blocks(recording.sound())) as video:
             for number in range(len(clip)):
@@ -63,21 +55,6 @@ def write_video(
     finally:
         renderer.release()
         context.release()
-
-
-def camera_focus(
-    character: Character, recording: BehaviourRecording, view: View
-) -> Callable[[int], Focus]:
-    """Return what the camera sees in a frame: it stands still for short ways and follows longer."""
-    clip = recording.clip
-    track = clip.poses.translations[:, 0] - clip.poses.translations[0, 0]
-    centre, radius = framed(character, clip.poses[0], view)
-    low, high = track.min(0), track.max(0)
-    way = float(np.linalg.norm(high - low))
-    if view == "body" and way <= MAX_PATH_SHARE * 2.0 * radius:
-        middle, seen = centre + (low + high) / 2, radius + PATH_ROOM * way / 2
-        return lambda _number: (middle, seen)
-    return lambda number: (centre + track[number], radius)
 
 
 def _blocks(samples: NDArray[np.float32]) -> Callable[[int], NDArray[np.float32]]:

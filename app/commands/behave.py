@@ -1,5 +1,6 @@
 """`cubeling behave`."""
 
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -9,16 +10,20 @@ from rich.markup import escape
 
 from affect import Emotion
 from affect.words import WORD_PLACES
+from app.behaving.live import NoOutput, Output, WindowOutput, play_live
 from app.behaving.opening import open_lines, read_document
 from app.behaving.player import BehaviourOptions, BehaviourPlayer, target_of
 from app.behaving.recording import BehaviourRecording, perform
+from app.behaving.server import BlockServer
 from app.behaving.video import write_video
+from app.behaving.voice import ThreadedSource
 from app.commands.output import OverwriteOption, chosen_output
 from app.commands.session.play import VoiceOption
 from app.commands.session.preference_options import size_of
 from app.errors import AppError
 from app.output_path import check_output
 from app.speaking.performance import View
+from app.ui.display import has_display
 from app.ui.video_file import VIDEO_FORMATS
 from characters import Character
 from characters.behaviour.bml import BlockProgress, BmlWarning, Feedback, feedback_xml
@@ -104,7 +109,9 @@ def behave(
     options = BehaviourOptions(how, _emotion(emotion), seed, _targets(target or []))
     body, pixels = with_root_joint(Character.load(character)), size_of(size)
     if serve is not None:
-        raise AppError("--serve is not there yet")
+        first = [read_document(file) for file in files or []]
+        _serve(serve, body, options, first, voice, lang, rate, (pixels, view) if window else None)
+        return
     if not files:
         raise AppError("there is nothing to perform: name a file of BML, or --serve PORT")
     path = chosen_output(output, "behaviour.mp4", "behaviour", OUTPUT_SUFFIXES, overwrite)
@@ -123,6 +130,39 @@ def behave(
     if feedback is not None:
         feedback.write_text(feedback_document(done.feedback), "utf-8")
     _report(console, path, done, lines.problem)
+
+
+def _serve(
+    port: int,
+    body: Character,
+    options: BehaviourOptions,
+    first: list[str],
+    voice: str | None,
+    language: str,
+    rate: float,
+    shown: tuple[tuple[int, int], View] | None,
+) -> None:
+    """Play in a window, or without one, and take blocks until that is closed or interrupted."""
+    if shown is not None and not has_display():
+        raise AppError("there is no display here: add --no-window")
+    with ExitStack() as closing:
+        server = BlockServer(port)
+        closing.callback(server.close)
+        lines = open_lines(voice, language, ThreadedSource)
+        closing.callback(lines.close)
+        player = BehaviourPlayer(body, lines, options)
+        for document in first:
+            player.perform(document)
+        output: Output = NoOutput()
+        if shown is not None:
+            output = closing.enter_context(WindowOutput.opened(body, *shown))
+        console = Console(highlight=False)
+        if lines.problem:
+            console.print(f"[yellow]nothing is said:[/] {escape(lines.problem)}", soft_wrap=True)
+        console.print(
+            f"Blocks of BML come in at 127.0.0.1:{server.port}; end with Ctrl-C", soft_wrap=True
+        )
+        play_live(player, server, output, rate)
 
 
 def feedback_document(feedback: tuple[Feedback, ...]) -> str:

@@ -1,0 +1,181 @@
+"""A character that performs blocks while it plays: in a window, or without one."""
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.behaving.camera import FollowingCamera
+from app.behaving.player import BehaviourFrame, BehaviourPlayer
+from app.behaving.recording import SETTLE_S, placed_pose
+from app.behaving.server import BlockServer
+from app.sound.bank import SoundBank
+from app.sound.loudspeaker import Loudspeaker
+from app.sound.mixer import Mixer
+from app.sound.session_sound import SPEECH_GAIN, at_sample_rate
+from app.sound.synthesis import SAMPLE_RATE
+from app.speaking.performance import AZIMUTH_RAD, ELEVATION_RAD, View
+from characters import Character
+from characters.behaviour.bml import feedback_xml
+from characters.rendering.portrait import PortraitRenderer
+
+
+class Output(Protocol):
+    """What shows and sounds of a performance."""
+
+    @property
+    def closed(self) -> bool:
+        """Whether the user has closed it."""
+        ...
+
+    def show(self, player: BehaviourPlayer, frame: BehaviourFrame) -> None:
+        """Show a frame."""
+        ...
+
+
+class NoOutput:
+    """Shows nothing, for clients that want feedback only."""
+
+    closed = False
+
+    def show(self, player: BehaviourPlayer, frame: BehaviourFrame) -> None:
+        """Do nothing."""
+
+
+class PictureScreen(Protocol):
+    """What pictures are shown in: a `PictureWindow`."""
+
+    @property
+    def closed(self) -> bool:
+        """Whether the user has closed it."""
+        ...
+
+    def show_picture(self, picture: NDArray[np.uint8]) -> None:
+        """Show a picture, (height, width, 3) BGR."""
+        ...
+
+    def poll(self) -> None:
+        """Process events."""
+        ...
+
+
+class WindowOutput:
+    """Shows the character in a window and lets its voice sound; see `opened`."""
+
+    @staticmethod
+    @contextmanager
+    def opened(character: Character, size: tuple[int, int], view: View) -> "Iterator[WindowOutput]":
+        """Open the window and the loudspeaker, and close them afterwards.
+
+        Raises
+        ------
+        AppError
+            There is no display.
+        """
+        from app.ui.window.picture_window import PictureWindow  # needs a display's libraries
+
+        with ExitStack() as closing:
+            window = PictureWindow(size, "Cubeling: behave")
+            closing.callback(window.close)
+            renderer = PortraitRenderer(window.context, size)
+            closing.callback(renderer.release)
+            mixer = Mixer(SoundBank())
+            closing.callback(Loudspeaker(mixer).close)
+            yield WindowOutput(character, window, renderer, mixer, view)
+
+    def __init__(
+        self,
+        character: Character,
+        window: PictureScreen,
+        renderer: PortraitRenderer,
+        mixer: Mixer,
+        view: View,
+    ) -> None:
+        self._character, self._window, self._renderer = character, window, renderer
+        self._voice = VoiceOutput(mixer)
+        self._camera = FollowingCamera(character, view)
+
+    @property
+    def closed(self) -> bool:
+        """Whether the user has closed the window."""
+        return bool(self._window.closed)
+
+    def show(self, player: BehaviourPlayer, frame: BehaviourFrame) -> None:
+        """Draw a frame, and let what begins with it sound."""
+        self._voice.update(player, frame)
+        pose, now = placed_pose(frame.posed), frame.performed.now
+        picture = self._renderer.portrait(
+            self._character,
+            pose,
+            azimuth=AZIMUTH_RAD,
+            elevation=ELEVATION_RAD,
+            focus=self._camera.focus(pose, now),
+        )
+        self._window.show_picture(picture)
+        self._window.poll()
+
+
+class VoiceOutput:
+    """Lets the voice sound from where it is; what is cut off falls silent."""
+
+    def __init__(self, mixer: Mixer) -> None:
+        self._mixer = mixer
+        self._key = ""
+
+    def update(self, player: BehaviourPlayer, frame: BehaviourFrame) -> None:
+        """Begin or end what is said."""
+        sayings = frame.performed.sayings
+        key = sayings[-1].key if sayings else ""
+        if key == self._key:
+            return
+        self._key = key
+        line = player.line_of(sayings[-1]) if sayings else None
+        if line is None:
+            self._mixer.say(np.zeros(0))
+            return
+        late = max(round((frame.performed.now - sayings[-1].start) * SAMPLE_RATE), 0)
+        self._mixer.say(SPEECH_GAIN * at_sample_rate(line)[late:])
+
+
+def play_live(
+    player: BehaviourPlayer,
+    server: BlockServer,
+    output: Output,
+    rate: float,
+    clock: Callable[[], float] = time.monotonic,
+) -> None:
+    """Perform what clients send, until the output is closed or the program is interrupted.
+
+    Parameters
+    ----------
+    player
+        The character; it has not been used before.
+    server
+        From where blocks come; it also gets the feedback. The caller closes it.
+    output
+        What shows the frames.
+    rate
+        Frames a second at most.
+    clock
+        The time [s].
+    """
+    player.settle(SETTLE_S, rate)
+    begin = clock()
+    frames = 0
+    while not output.closed:
+        due = begin + frames / rate
+        while (left := due - clock()) > 0.0:
+            for document in server.documents(left):
+                player.perform(document)
+        for document in server.documents():
+            player.perform(document)
+        now = clock() - begin
+        frames = max(frames, math.floor(now * rate)) + 1
+        frame = player.update(now)
+        for each in frame.feedback:
+            server.send(feedback_xml(each))
+        output.show(player, frame)
