@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters import Character, PosedCharacter
+from characters.ik.reaching import reach_effort
 from characters.ik.reaching.hands import find_hand
 from characters.rendering import SceneCharacter
 from characters.rendering.toys import GRIP_M, toy
@@ -105,8 +106,7 @@ class Body:
 
         0 is within the arm, 1 the limit of trunk and arm, more is beyond; infinite without arms.
         """
-        tall = self.height
-        return (float(np.linalg.norm(target - self.chest)) - 0.3 * tall) / (0.13 * tall)
+        return reach_effort(self.character, self.posed.table_from_character, target)
 
     def palm(self, side: Side) -> Point | None:
         """Return where the palm of a hand is, (3,) in the table frame [m]; None without hands."""

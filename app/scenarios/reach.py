@@ -31,9 +31,6 @@ REST_S = 1.2
 TOUCHING_M = 0.012
 """A hand this near to the cube touches it [m]."""
 
-HIGH_SHARE = 0.95
-"""A cube whose centre is higher than this share of the character's height is held up."""
-
 WALK_SPEED, SPEED_PER_M, MAX_SPEED = 2.0, 6.0, 4.0
 """AvatAR's Speed near its goal, by how much it is greater for each metre to go, and at most."""
 
@@ -184,10 +181,10 @@ def _prospect(
     """Return what the character knows about the cube at its last place, (4, 4)."""
     touch = nearest_point_of_cube(cube, edge, body.chest)
     away = gap(body.place, touch, stand_distance(inputs.body_length))
-    high = bool(cube[1, 3] > HIGH_SHARE * body.height)
     effort = body.effort(touch)
     if not body.has_hands:  # it is content to be there
-        effort = 0.0 if away <= ARRIVED_M and not high else NO_HANDS_EFFORT
+        near = away <= ARRIVED_M and cube[1, 3] < body.height
+        effort = 0.0 if near else NO_HANDS_EFFORT
     touching = not body.has_hands or body.hand_distance(touch) < TOUCHING_M
     return Prospect(
         now=controls.timestamp,
@@ -196,7 +193,7 @@ def _prospect(
         touch=touch,
         effort=effort,
         gap=away,
-        high=high,
+        height=float(cube[1, 3]) / body.height,
         touching=touching,
     )
 

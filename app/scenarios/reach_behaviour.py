@@ -26,7 +26,7 @@ GLANCE_S = 1.2
 SHAKE_S, SHAKES = 1.5, 3
 """Time in which it shakes its head, and how many times [s]."""
 
-CARRY_LEFT, CARRY_UP, CARRY_AHEAD = 0.17, 0.47, 0.17
+CARRY_LEFT, CARRY_UP, CARRY_AHEAD = 0.15, 0.53, 0.19
 """Where a hand carries a thing: to its side, up and ahead, in body heights."""
 
 GESTURES = {"cheer": "CHEER", "shrug": "SHRUG", "shade": "SHADE_EYES", "search": "SHADE_EYES"}

@@ -14,8 +14,13 @@ Doing = Literal[
 """Watch it at rest, touch it, be glad, stretch in vain, give up, point at it, go to it, wait
 disappointed, shade the eyes against the light, and look about for it."""
 
-EASY, HARD = 0.95, 1.1
-"""Effort up to which it begins to touch the cube, and beyond which it can no longer."""
+HIGH, LOW = 0.95, 0.85
+"""Height of the cube's centre, over that of the body, from which it is held up, and below which it
+no longer is."""
+
+EASY, HARD = 1.06, 1.18
+"""Effort up to which it begins to touch the cube, and beyond which it can no longer: fingertips
+reach further than the palm, whose limit is 1."""
 
 EASIER = 0.25
 """By how much the effort must fall below that at which it gave up, to try again."""
@@ -28,6 +33,9 @@ ARRIVED_M, LEFT_BEHIND_M = 0.015, 0.06
 
 MOVED_M = 0.03
 """A cube that has been touched is to be touched again when it has moved by this [m]."""
+
+SURPRISED = ("touch", "stretch", "point", "come", "sulk")
+"""What it stops to look up to a cube that is held up high."""
 
 LOST_S, FOUND_S = 0.5, 0.2
 """How long the cube must be hidden to be looked for, and seen to be found: fingers hide it."""
@@ -64,8 +72,8 @@ class Prospect:
     gap: float
     """How far the character is from where it would stand beside the cube [m]; 0 if it is there."""
 
-    high: bool
-    """Whether the cube is held up above its head."""
+    height: float
+    """Height of the cube's centre over that of the body."""
 
     touching: bool
     """Whether its hand is at the cube."""
@@ -83,6 +91,9 @@ class Catching:
         """The effort at which it gave up last."""
         self.caught: NDArray[np.float64] | None = None
         """Where the cube was when it was touched last, (3,) [m]; None before."""
+        self.high = False
+        """Whether the cube is held up above its head."""
+        self._shaded = False
         self._seen_since: float | None = None
         self._hidden_since: float | None = None
 
@@ -91,6 +102,9 @@ class Catching:
         before = self.doing
         self.look(prospect)
         following = _NEXT[self.doing](self, prospect, prospect.now - self.since)
+        far = prospect.effort > HARD
+        if self.high and far and not self._shaded and following in SURPRISED:
+            following, self._shaded = "shade", True
         self._begin(following, prospect.now)
         if self.doing == before:
             return ()
@@ -110,6 +124,8 @@ class Catching:
     def look(self, prospect: Prospect) -> None:
         """Begin to look for a cube that is hidden, and stop when it is seen."""
         now = prospect.now
+        self.high = prospect.height > (LOW if self.high else HIGH)
+        self._shaded = self._shaded and self.high
         if prospect.seen:
             self._hidden_since = None
             self._seen_since = now if self._seen_since is None else self._seen_since
@@ -130,11 +146,7 @@ def _try(catching: Catching, prospect: Prospect) -> Doing:
     """Return how to begin to get at a cube that is not caught."""
     if prospect.effort <= EASY:
         return "touch"
-    if prospect.high:
-        return "shade"
-    if prospect.gap > NEAR_M:
-        return "point"
-    return "stretch"
+    return "stretch" if catching.high or prospect.gap <= NEAR_M else "point"
 
 
 def _watch(catching: Catching, prospect: Prospect, spent: float) -> Doing:
@@ -148,7 +160,7 @@ def _touch(catching: Catching, prospect: Prospect, spent: float) -> Doing:
     if prospect.touching:
         return "cheer"
     if prospect.effort > HARD:
-        return "come" if prospect.gap > LEFT_BEHIND_M and not prospect.high else "stretch"
+        return "come" if prospect.gap > LEFT_BEHIND_M and not catching.high else "stretch"
     return "shrug" if spent > TOUCH_S else "touch"
 
 
@@ -157,34 +169,40 @@ def _stretch(catching: Catching, prospect: Prospect, spent: float) -> Doing:
         return "touch"
     if spent > STRETCH_S:
         return "shrug"
-    return "point" if prospect.gap > 2.0 * NEAR_M and not prospect.high else "stretch"
+    return "point" if prospect.gap > 2.0 * NEAR_M and not catching.high else "stretch"
 
 
 def _shrug(catching: Catching, prospect: Prospect, spent: float) -> Doing:
-    if spent < SHRUG_S:
+    if spent > SHRUG_S / 2 and prospect.effort <= EASY < catching.gave_up_at:
+        return "touch"
+    if spent <= SHRUG_S:
         return "shrug"
-    return "come" if prospect.gap > ARRIVED_M and not prospect.high else "sulk"
+    return "come" if prospect.gap > ARRIVED_M and not catching.high else "sulk"
+
+
+def _point(catching: Catching, prospect: Prospect, spent: float) -> Doing:
+    if prospect.effort <= EASY:
+        return "touch"
+    return "come" if spent > POINT_S else "point"
 
 
 def _come(catching: Catching, prospect: Prospect, spent: float) -> Doing:
     if prospect.effort <= EASY:
         return "touch"
-    if prospect.high:
-        return "shade"
-    arrived = prospect.gap <= ARRIVED_M or spent > COME_S
-    return "stretch" if arrived else "come"
+    arrived = prospect.gap <= ARRIVED_M or spent > COME_S or catching.high
+    if not arrived:
+        return "come"
+    return "touch" if prospect.effort <= HARD else "stretch"
 
 
 def _sulk(catching: Catching, prospect: Prospect, spent: float) -> Doing:
     easier = prospect.effort < catching.gave_up_at - EASIER
-    left = prospect.gap > LEFT_BEHIND_M and not prospect.high
+    left = prospect.gap > LEFT_BEHIND_M and not catching.high
     return _try(catching, prospect) if easier or left or spent > SULK_S else "sulk"
 
 
 def _shade(catching: Catching, prospect: Prospect, spent: float) -> Doing:
-    if prospect.effort <= EASY:
-        return "touch"
-    if not prospect.high:
+    if prospect.effort <= EASY or not catching.high:
         return _try(catching, prospect)
     return "stretch" if spent > SHADE_S else "shade"
 
@@ -195,7 +213,7 @@ _NEXT: dict[Doing, Callable[[Catching, Prospect, float], Doing]] = {
     "cheer": lambda catching, prospect, spent: "watch" if spent > CHEER_S else "cheer",
     "stretch": _stretch,
     "shrug": _shrug,
-    "point": lambda catching, prospect, spent: "come" if spent > POINT_S else "point",
+    "point": _point,
     "come": _come,
     "sulk": _sulk,
     "shade": _shade,

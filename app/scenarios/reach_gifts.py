@@ -28,7 +28,7 @@ SIDES_RAD = {"flower": math.radians(165), "balloon": math.radians(15), "flag": m
 BESIDE_M, AWAY_M = 0.035, 0.09
 """How far from a side of the cube a thing is put down, and from where it is brought again [m]."""
 
-RADIUS_M = 0.008
+RADIUS_M = 0.004
 """Room for the foot of a thing before the feet of the character [m]."""
 
 AT_HAND_M = 0.012
@@ -179,11 +179,10 @@ class Gifts:
 
     def _choose(self, cube: Point, body: Body, now: float) -> None:
         """Begin with the nearest thing that is not beside the cube."""
-        away = [
-            gift for gift in self._gifts if math.dist(gift.place, self._spot(gift, cube)) > AWAY_M
-        ]
-        here = body.posed.table_from_character[:3, 3]
-        self.gift = min(away, key=lambda gift: math.dist(gift.place, here), default=None)
+        here = body.place
+        self.gift = min(
+            self._away(cube), key=lambda each: math.dist(each.place, here), default=None
+        )
         if self.gift is not None:
             self._begin("fetch", now)
 
@@ -204,11 +203,16 @@ class Gifts:
             return ()
         gift.put(spot, palm, now)
         self._begin("wait", now)
-        self._choose(cube, body, now)
-        return ("given",) if self.gift is not None else ("finished",)
+        return ("given",) if self._away(cube) else ("finished",)
 
     def _at_hand(self, palm: Point, target: Point, now: float) -> bool:
         return math.dist(palm, target) < AT_HAND_M or now - self._since > PATIENCE_S
+
+    def _away(self, cube: Point) -> list[_Gift]:
+        """Return the things that are not beside the cube."""
+        return [
+            each for each in self._gifts if math.dist(each.place, self._spot(each, cube)) > AWAY_M
+        ]
 
     def _spot(self, gift: _Gift, cube: Point) -> Point:
         angle = SIDES_RAD[gift.name]

@@ -16,6 +16,9 @@ CLEARANCE_M = 0.006
 AVOIDED_M = 0.075
 """It walks round the centre of the cube at this distance, if it is in the way [m]."""
 
+DETOUR_M = 0.15
+"""How far ahead it aims while it does so [m]; further than where a walker stops."""
+
 LOOK_M, LOOK_HEIGHTS_M = 0.4, (0.05, 0.22)
 """How far away the points are that it looks at while it looks about, and how high [m]."""
 
@@ -56,26 +59,26 @@ def way_to(here: Point, goal: Point, distance: float, *, walks: bool) -> Point:
 
 
 def around(here: Point, target: Point, cube: Point) -> Point:
-    """Return a target (x, z), or a point beside the cube if the cube is on the way to it.
+    """Return a target (x, z), or a point to pass first if the cube is on the way to it.
 
-    >>> around(np.array([-0.3, 0, 0]), np.array([0.3, 0.0]), np.zeros(3)).round(3).tolist()
-    [0.0, -0.075]
     >>> around(np.array([-0.3, 0, 0]), np.array([-0.2, 0.0]), np.zeros(3)).tolist()
     [-0.2, 0.0]
+    >>> bool(around(np.array([-0.3, 0, 0]), np.array([0.3, 0.1]), np.zeros(3))[1] > 0.03)
+    True
     """
-    start, centre = here[[0, 2]], cube[[0, 2]]
-    way = target - start
-    length = float(np.linalg.norm(way))
-    if length < 1e-6:
+    way, offset = target - here[[0, 2]], cube[[0, 2]] - here[[0, 2]]
+    length, distance = float(np.linalg.norm(way)), float(np.linalg.norm(offset))
+    if min(length, distance) < 1e-6:
         return target
-    ahead = way / length
-    along = float((centre - start) @ ahead)
-    side = (centre - start) - along * ahead
-    off = float(np.linalg.norm(side))
-    if not 0.0 < along < length or off >= AVOIDED_M:
+    along = float(offset @ way) / length
+    aside = float(offset[0] * way[1] - offset[1] * way[0]) / length
+    if not 0.0 < along < length or abs(aside) >= AVOIDED_M:
         return target
-    out = -side / off if off > 1e-6 else np.array([-ahead[1], ahead[0]]) * -1.0
-    return np.asarray(centre + AVOIDED_M * out)
+    # Along the tangent of the circle that it does not enter, on the side of the target.
+    angle = math.copysign(math.asin(min(AVOIDED_M / distance, 1.0)), aside)
+    sine, cosine = math.sin(angle), math.cos(angle)
+    ahead = np.array([[cosine, -sine], [sine, cosine]]) @ offset / distance
+    return np.asarray(here[[0, 2]] + DETOUR_M * ahead)
 
 
 def look_about(body: Body, number: int) -> Point:

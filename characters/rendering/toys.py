@@ -17,7 +17,7 @@ from characters.model.mesh import Material, Mesh
 from characters.rendering.scene import SceneCharacter
 from characters.skeleton.pose import Array, Pose, Skeleton
 
-GRIP_M = 0.066
+GRIP_M = 0.072
 """Height at which a hand holds a toy that stands on the table [m]."""
 
 _SIDES = 18  # of everything round

@@ -1,0 +1,149 @@
+"""Small things are fetched, carried in the hand, and put down beside the cube."""
+
+import math
+
+import numpy as np
+import pytest
+
+from app.pipeline.things import GRIP
+from app.scenarios.reach_gifts import AT_HAND_M, HOMES, HOP_M, HOP_S, PATIENCE_S, SETTLE_S, Gifts
+
+FRAME = 1 / 30
+EDGE = 0.06
+CUBE = np.array([0.1, 0.03, 0.05])
+
+
+class Hand:
+    """A body whose palms are where they are told to be."""
+
+    def __init__(self):
+        self.place = np.zeros(3)
+        self.at = np.array([0.0, 0.08, 0.03])
+        self.posed = type("Posed", (), {"table_from_character": np.eye(4)})()
+
+    def palm(self, side):
+        return self.at
+
+
+class Play:
+    def __init__(self):
+        self.gifts, self.hand, self.now, self.events = Gifts(EDGE), Hand(), 0.0, []
+        self.gifts.lay_out(np.zeros(3))
+
+    def on(self, seconds, cube=CUBE, free=True, there=True):
+        for _ in range(round(seconds / FRAME)):
+            self.now += FRAME
+            self.events += self.gifts.update(self.now, cube, self.hand, free=free, there=there)
+
+    def bring(self, cube=CUBE):
+        """Let the hand follow what is asked of it until it has put a thing down."""
+        before = len(self.events)
+        while not {"given", "finished"} & set(self.events[before:]):
+            goal = self.gifts.goal(cube)
+            if goal is not None:
+                self.hand.at = goal + GRIP
+            self.on(FRAME, cube)
+
+    def thing(self, name):
+        return next(each for each in self.gifts.things(self.now) if each.name == name)
+
+
+@pytest.fixture
+def play():
+    return Play()
+
+
+def test_the_nearest_thing_is_taken_first_when_the_hand_is_there(play):
+    play.on(0.1)
+    assert play.gifts.doing == "grasp"
+    nearest = min(HOMES, key=lambda name: math.hypot(*HOMES[name]))
+    assert play.gifts.named == nearest
+    play.on(0.5)
+    assert play.gifts.held == ""
+    play.hand.at = play.gifts.goal(CUBE) + GRIP + [0.0, 0.0, 0.9 * AT_HAND_M]
+    play.on(FRAME)
+    assert (play.gifts.held, play.events) == (nearest, ["taken"])
+
+
+def test_a_thing_in_the_hand_sticks_to_it(play):
+    play.bring()
+    play.on(FRAME)
+    play.hand.at = play.gifts.goal(CUBE) + GRIP
+    play.on(2 * FRAME)
+    held = play.thing(play.gifts.held)
+    assert held.hand == play.gifts.hand
+    play.on(SETTLE_S, there=False)
+    np.testing.assert_allclose(play.thing(play.gifts.held).place, 0.0, atol=1e-12)
+
+
+def test_a_thing_moves_without_a_jump_when_it_is_taken_and_put(play):
+    """Even if the hand has lost patience before it was there."""
+    play.on(0.2)
+    name, places = play.gifts.named, []
+    for _ in range(round((2 * PATIENCE_S + 1.0) / FRAME)):
+        play.on(FRAME)
+        thing = play.thing(name)
+        places.append(thing.place if thing.hand is None else play.hand.at - GRIP + thing.place)
+        if "given" in play.events and play.gifts.named != name:
+            break
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    way = float(np.linalg.norm(play.hand.at - GRIP - [HOMES[name][0], 0.0, HOMES[name][1]]))
+    assert play.events[:2] == ["taken", "given"]
+    assert steps.max() < 1.6 * way * FRAME / SETTLE_S
+
+
+def test_all_things_are_brought_beside_the_cube_and_apart_from_each_other(play):
+    for _ in HOMES:
+        play.bring()
+    assert [each for each in play.events if each != "taken"] == ["given", "given", "finished"]
+    play.on(1.0)
+    assert play.gifts.doing == "wait"
+    places = [thing.place for thing in play.gifts.things(play.now)]
+    for number, place in enumerate(places):
+        assert place[1] == 0.0
+        assert EDGE / 2 * math.sqrt(2) + 0.01 < math.dist(place[[0, 2]], CUBE[[0, 2]]) < 0.09
+        assert all(math.dist(place, other) > 0.03 for other in places[:number])
+
+
+def test_things_are_brought_again_when_the_cube_rests_elsewhere(play):
+    for _ in HOMES:
+        play.bring()
+    play.on(0.5, CUBE + [0.02, 0.0, 0.0])
+    assert play.gifts.doing == "wait"
+    play.on(0.1, CUBE - [0.2, 0.0, 0.1])
+    assert play.gifts.doing == "grasp"
+
+
+def test_it_keeps_a_thing_while_the_cube_is_moved_and_brings_it_to_where_it_is_put(play):
+    play.on(0.1)
+    play.hand.at = play.gifts.goal(CUBE) + GRIP
+    play.on(0.1)
+    name = play.gifts.held
+    play.on(2.0, free=False)
+    assert play.gifts.held == name
+    elsewhere = CUBE - [0.25, 0.0, 0.1]
+    play.bring(elsewhere)
+    play.on(SETTLE_S, elsewhere, free=False)
+    assert math.dist(play.thing(name).place, elsewhere - [0.0, elsewhere[1], 0.0]) < 0.08
+
+
+def test_nothing_is_fetched_while_the_cube_is_played_with(play):
+    play.on(1.0, free=False)
+    assert play.gifts.doing == "wait"
+    play.on(0.1)
+    play.on(0.1, free=False)
+    assert play.gifts.doing == "wait"
+    assert play.events == []
+
+
+def test_a_shake_lets_all_things_hop_home(play):
+    play.bring()
+    play.on(0.1)
+    play.gifts.scatter(play.hand, play.now)
+    play.on(HOP_S / 2, free=False)
+    assert max(thing.place[1] for thing in play.gifts.things(play.now)) > 0.8 * HOP_M
+    play.on(HOP_S, free=False)
+    for thing in play.gifts.things(play.now):
+        x, z = HOMES[thing.name]
+        np.testing.assert_allclose(thing.place, [x, 0.0, z], atol=1e-12)
+        assert thing.hand is None
