@@ -62,29 +62,7 @@ class CapsuleBody:
             sides = [name[:4] for name in names if name.endswith((*_ARM_ENDS, "UpperArm"))]
             return bool(arms) and len(set(sides)) == len(sides)
 
-        rest = skeleton.rest.globals(skeleton)
-        vertices, weights = _skin(meshes, len(skeleton))
-        joints, ends, radii = [], [], []
-        for part, after in _BONES:
-            joint, end = anatomy.joint(part), anatomy.joint(after)
-            if joint is None:
-                continue
-            own = vertices[weights[:, joint] > 0.5]
-            local = (np.linalg.inv(rest[joint]) @ np.c_[own, np.ones(len(own))].T)[:3].T
-            if end is not None:
-                tip = (np.linalg.inv(rest[joint]) @ rest[end])[:3, 3]
-            elif len(local):
-                tip = 2.0 * local.mean(0)  # to the far side: of a head, of a hand
-            else:
-                continue
-            axis = np.stack([np.zeros(3), tip])
-            if not after:
-                axis = 0.5 * axis + 0.25 * tip  # the middle half, with a round end at either side
-            if len(local) < 4:
-                continue
-            joints.append(joint)
-            ends.append(axis)
-            radii.append(float(np.quantile(_to_segment(local, *axis), RADIUS_QUANTILE)))
+        joints, ends, radii = fitted_capsules(skeleton, anatomy, meshes)
         pairs = np.array([pair for pair in combinations(range(len(joints)), 2) if met(*pair)])
         thick = np.array(radii)
         body = CapsuleBody(np.array(joints), np.array(ends), thick, pairs, np.zeros(len(pairs)))
@@ -103,6 +81,41 @@ class CapsuleBody:
     def collides(self, poses: Pose, skeleton: Skeleton) -> NDArray[np.bool_]:
         """Return in which poses the body touches itself, (frames,)."""
         return np.asarray((self.gaps(poses, skeleton) < 0.0).any(1))
+
+
+def fitted_capsules(
+    skeleton: Skeleton, anatomy: Anatomy, meshes: Sequence[Mesh]
+) -> tuple[list[int], list[Array], list[float]]:
+    """Return joints, ends (2, 3) and radii of capsules along the bones that have a skin.
+
+    Ends are in the frames of the joints; see `CapsuleBody`.
+    """
+    rest = skeleton.rest.globals(skeleton)
+    vertices, weights = _skin(meshes, len(skeleton))
+    joints: list[int] = []
+    ends: list[Array] = []
+    radii: list[float] = []
+    for part, after in _BONES:
+        joint, end = anatomy.joint(part), anatomy.joint(after)
+        if joint is None:
+            continue
+        own = vertices[weights[:, joint] > 0.5]
+        local = (np.linalg.inv(rest[joint]) @ np.c_[own, np.ones(len(own))].T)[:3].T
+        if end is not None:
+            tip = (np.linalg.inv(rest[joint]) @ rest[end])[:3, 3]
+        elif len(local):
+            tip = 2.0 * local.mean(0)  # to the far side: of a head, of a hand
+        else:
+            continue
+        axis = np.stack([np.zeros(3), tip])
+        if not after:
+            axis = 0.5 * axis + 0.25 * tip  # the middle half, with a round end at either side
+        if len(local) < 4:
+            continue
+        joints.append(joint)
+        ends.append(axis)
+        radii.append(float(np.quantile(_to_segment(local, *axis), RADIUS_QUANTILE)))
+    return joints, ends, radii
 
 
 def segment_distances(a: Array, b: Array, c: Array, d: Array) -> Array:

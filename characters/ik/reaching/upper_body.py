@@ -8,6 +8,7 @@ bend; elbows swivel by openness; hands turn as they are asked to.
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -132,6 +133,15 @@ class UpperBody:
         self._first = [number[arm.joints[arm.joints[0] < 0]] for arm in self.arms.values()]
         carriers = [number[arm.carrier] for arm in self.arms.values()]
         self._chest = self._trunk[-1] if self._trunk else (carriers[0] if carriers else -1)
+
+    @cached_property
+    def joints(self) -> NDArray[np.intp]:
+        """All joints that it turns: torso, arms and fingers."""
+        moved = [*self._order[self._trunk]]
+        for arm in self.arms.values():
+            moved += [joint for joint in arm.joints if joint >= 0]
+            moved += [joint for finger in arm.hand.fingers.values() for joint in finger]
+        return np.array(sorted(moved), np.intp)
 
     @staticmethod
     def of(skeleton: Skeleton, anatomy: Anatomy) -> "UpperBody":

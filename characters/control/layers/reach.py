@@ -1,0 +1,297 @@
+"""Hands that reach for places, touch, grasp and point: `CharacterCommand.behaviour.reaches`."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.behaviour.intents import ReachIntent, Times
+from characters.body.capsules import fitted_capsules
+from characters.control.layers.layer import FrameContext
+from characters.errors import CharacterError
+from characters.ik.reaching import HandTarget, ReachStyle, UpperBody
+from characters.ik.reaching.arms import scaled
+from characters.ik.reaching.surface import BodySurface
+from characters.model.character import Character
+from characters.model.standing import idle_clips
+from characters.motion.curves import ease
+from characters.motion.inertialization import OffsetDecay
+from characters.skeleton import rotations
+from characters.skeleton.pose import Pose
+from characters.skeleton.scalar_quaternions import Vector, add, length, subtract
+from characters.smoothing import low_pass
+
+FADE_S = 0.3
+"""How long a hand takes to go that is not asked for any more [s]."""
+
+JOIN_S = 0.3
+"""How long it takes at least to join in late, or to go to another place than before [s]."""
+
+RELAX_S = 0.6
+"""How long it takes to go if its end is not known [s]."""
+
+MAX_WEIGHT_RATE = 6.0
+"""Bound of the change of a hand's weight when its times change [1/s]."""
+
+MAX_TARGET_SPEED = 3.0
+"""Speed of a place that a hand follows, in body heights a second: what is faster is a jump."""
+
+CLEARANCE = 0.012
+"""Distance of a palm from the body's surface ÷ the body's height."""
+
+NEARER = 0.12
+"""By how much the other hand must be nearer to take over, in arm lengths."""
+
+APART = 0.12
+"""Distance of each of two hands from the middle of what both reach for, in arm lengths."""
+
+STYLE_LAG_S = 0.15
+"""Lag with which openness and power follow [s]."""
+
+TRUNK = ("hips", "spine", "chest", "head")
+"""Parts of the body that hands stay out of."""
+
+
+@dataclass
+class ReachingHand:
+    """One hand of one character, from frame to frame."""
+
+    intent: ReachIntent | None = None
+    """What it does, or did last; None if it is free."""
+
+    place: Vector = (0.0, 0.0, 0.0)
+    """Where it is to be, in the character frame [m]."""
+
+    weight: float = 0.0
+    """How far it is there, 0…1."""
+
+    jumped: bool = False
+    """Whether it is now asked to be somewhere else than a frame before."""
+
+    _joined: tuple[float, float] = (0.0, 0.0)
+    _left: tuple[float, float] | None = None
+
+    def follow(self, intent: ReachIntent, place: Vector, now: float, step: float) -> None:
+        """Go on with an intent, or begin it; its place moves at most `step` [m] without a jump."""
+        old = self.intent
+        self.jumped = self.weight > 0.0 and (
+            old is None
+            or (old.key, old.kind) != (intent.key, intent.kind)
+            or length(subtract(place, self.place)) > step
+        )
+        if old is None or old.key != intent.key or self._left is not None:
+            self._joined, self._left = (now, self.weight), None
+        self.intent, self.place = intent, place
+
+    def leave(self, now: float) -> None:
+        """Let it fade, because nothing is asked of it."""
+        self.jumped = False
+        if self._left is None:
+            self._left = now, self.weight
+
+    def advance(self, now: float, elapsed: float) -> None:
+        """Bring its weight to a time [s]."""
+        if self.intent is None:
+            return
+        if self._left is not None:
+            since, weight = self._left
+            self.weight = weight * (1.0 - ease((now - since) / FADE_S, "gonio"))
+            if self.weight <= 0.0:
+                self.intent, self._left = None, None
+            return
+        change = self._asked(self.intent.times, now) - self.weight
+        bound = MAX_WEIGHT_RATE * elapsed
+        self.weight += min(max(change, -bound), bound)
+
+    def _asked(self, times: Times, now: float) -> float:
+        since, before = self._joined
+        begin, ready = max(times.start, since), times.ready
+        if since > times.start:  # it joins in late, or comes from another place
+            ready = max(ready, since + JOIN_S)
+        there = ease((now - begin) / (ready - begin), "gonio") if now < ready else 1.0
+        weight = before + (1.0 - before) * there
+        if times.relax is None or now <= times.relax:
+            return weight
+        end = times.relax + RELAX_S if times.end is None else times.end
+        going = (now - times.relax) / (end - times.relax) if now < end else 1.0
+        return weight * (1.0 - ease(going, "gonio"))
+
+
+@dataclass
+class NearestHand:
+    """Chooses a hand for each intent that leaves the choice, and keeps to it."""
+
+    body: UpperBody
+    """Whose hands."""
+
+    shoulders: dict[str, Vector]
+    """Where they begin, in the character frame [m]."""
+
+    _chosen: dict[str, str] = field(default_factory=dict)
+
+    def choose(self, intent: ReachIntent, place: Vector, taken: Sequence[str]) -> str:
+        """Return the side of the hand; the nearer free one, with hysteresis."""
+
+        def cost(side: str) -> float:
+            arm = self.body.arms[side]
+            far = length(subtract(place, self.shoulders[side])) / (arm.upper + arm.fore)
+            kept = NEARER if self._chosen.get(intent.key) == side else 0.0
+            return far - kept + (math.inf if side in taken and len(self.shoulders) > 1 else 0.0)
+
+        self._chosen[intent.key] = min(self.shoulders, key=cost)
+        return self._chosen[intent.key]
+
+    def forget(self, keys: set[str]) -> None:
+        """Forget all choices but those for some keys."""
+        self._chosen = {key: side for key, side in self._chosen.items() if key in keys}
+
+
+class ReachLayer:
+    """Puts hands where the command asks for; it comes after posture and before gaze.
+
+    Hands that change their place or what they do keep no jump: the difference of the joints decays.
+    """
+
+    def __init__(self, character: Character, seed: int = 0) -> None:
+        self._body = character.upper_body
+        self._height = character.height
+        self._four_legs = character.anatomy.kind == "quadruped"
+        self._hands = {side: ReachingHand() for side in self._body.arms}
+        self._shown: NDArray[np.float64] | None = None
+        self._decay: OffsetDecay | None = None
+        self._switched = 0.0
+        if not self._hands:
+            return
+        clips = idle_clips(character.clips)
+        standing = clips[0].poses[0] if clips else character.skeleton.rest
+        self._surface = surface_of(character, standing)
+        placed = standing.globals(character.skeleton)[:, :3, 3]
+        shoulders: dict[str, Vector] = {
+            side: tuple(placed[arm.joints[1]].tolist()) for side, arm in self._body.arms.items()
+        }
+        self._nearest = NearestHand(self._body, shoulders)
+        self._openness, self._power = 0.5, 0.0
+
+    def update(self, pose: Pose, context: FrameContext) -> Pose:
+        """Return the pose with its hands where they are to be."""
+        behaviour, now = context.command.behaviour, context.command.timestamp
+        reaches = () if behaviour is None else behaviour.reaches
+        busy = self._shown is not None or any(hand.intent for hand in self._hands.values())
+        if not self._hands or not (reaches or busy):
+            return pose
+        asked = dict(self._assigned(reaches, context))
+        step = MAX_TARGET_SPEED * self._height * max(context.elapsed, 1e-3)
+        for side, hand in self._hands.items():
+            if side in asked:
+                hand.follow(*asked[side], now, step)
+            else:
+                hand.leave(now)
+            hand.advance(now, context.elapsed)
+        return self._performed(pose, context)
+
+    def _assigned(
+        self, reaches: Sequence[ReachIntent], context: FrameContext
+    ) -> Iterator[tuple[str, tuple[ReachIntent, Vector]]]:
+        """Yield what each hand is to do and where; of two for one hand the later one counts."""
+        now = context.command.timestamp
+        taken: list[str] = []
+        self._nearest.forget({intent.key for intent in reaches})
+        current = [
+            each
+            for each in reaches
+            if each.times.start <= now and (each.times.end is None or now < each.times.end)
+        ]
+        for intent in sorted(current, key=lambda each: each.hand == "nearest"):
+            place = self._place(intent, context)
+            if intent.hand == "nearest":
+                sides = [self._nearest.choose(intent, place, taken)]
+            else:
+                sides = [s for s in self._hands if intent.hand in (s, "both")]
+            taken += sides
+            for side in sides:
+                shift = 0.0
+                if intent.hand == "both" and len(sides) > 1:
+                    arm = self._body.arms[side]
+                    shift = arm.sign * APART * (arm.upper + arm.fore)
+                yield side, (intent, self._kept_out(side, add(place, (shift, 0.0, 0.0))))
+
+    def _place(self, intent: ReachIntent, context: FrameContext) -> Vector:
+        x, y, z = context.in_character(np.asarray(intent.target, float)).tolist()
+        if not math.isfinite(x + y + z):
+            raise CharacterError(
+                f"reach {intent.key!r} at {context.command.timestamp} s: its target "
+                f"{intent.target} is not finite; leave out what is not known"
+            )
+        return x, y, z
+
+    def _kept_out(self, side: str, place: Vector) -> Vector:
+        """Return a place out of the body, and so that the hand is not in the body on its way."""
+        arm, shoulder = self._body.arms[side], self._nearest.shoulders[side]
+        aim = subtract(place, shoulder)
+        far = length(aim) / (arm.upper + arm.fore + arm.hand.length)
+        nearby = place if far <= 1.0 else add(shoulder, scaled(aim, 1.0 / far))
+        outside = self._surface.outside(nearby)
+        return place if outside == nearby else outside
+
+    def _performed(self, pose: Pose, context: FrameContext) -> Pose:
+        hands = {side: hand for side, hand in self._hands.items() if hand.weight > 0.0}
+        if not hands and self._decay is None:
+            self._shown = None
+            return pose
+        share = context.rest if self._four_legs else 1.0
+        targets = {
+            side: HandTarget(hand.place, hand.intent.kind, weight=hand.weight * share)
+            for side, hand in hands.items()
+            if hand.intent is not None
+        }
+        reached = self._body.reach(pose, **targets, style=self._style(hands, context.elapsed))
+        return self._without_jumps(reached, hands, context.command.timestamp)
+
+    def _style(self, hands: dict[str, ReachingHand], elapsed: float) -> ReachStyle:
+        intents = [hand.intent for hand in hands.values() if hand.intent is not None]
+        if intents:
+            wanted = intents[0].expressivity
+            fresh = self._shown is None
+            lag = 1e-6 if fresh else STYLE_LAG_S
+            self._openness = low_pass(self._openness, wanted.openness, elapsed, lag)
+            self._power = low_pass(self._power, wanted.power, elapsed, lag)
+        return ReachStyle(self._openness, self._power)
+
+    def _without_jumps(self, pose: Pose, hands: dict[str, ReachingHand], now: float) -> Pose:
+        """Return a pose that goes on from the one shown before, if a hand is asked to jump."""
+        joints = self._body.joints
+        if self._shown is not None and any(hand.jumped for hand in hands.values()):
+            offset = rotations.to_rotation_vector(
+                rotations.multiply(self._shown, rotations.conjugate(pose.rotations[joints]))
+            )
+            ready = [h.intent.times.ready for h in hands.values() if h.jumped and h.intent]
+            self._decay = OffsetDecay(
+                offset, np.zeros_like(offset), max(*ready, now + JOIN_S) - now
+            )
+            self._switched = now
+        if self._decay is not None:
+            if now - self._switched >= self._decay.length:
+                self._decay = None
+            else:
+                turns = rotations.from_rotation_vector(self._decay.at(now - self._switched))
+                local = pose.rotations.copy()
+                local[joints] = rotations.multiply(turns, local[joints])
+                pose = replace(pose, rotations=local)
+        self._shown = pose.rotations[joints]
+        return pose
+
+
+def surface_of(character: Character, standing: Pose) -> BodySurface:
+    """Return the surface of a character's trunk and head as it stands."""
+    skeleton, anatomy = character.skeleton, character.anatomy
+    joints, ends, radii = fitted_capsules(skeleton, anatomy, character.meshes)
+    placed = standing.globals(skeleton)
+    capsules: list[tuple[Vector, Vector, float]] = []
+    for joint, axis, radius in zip(joints, ends, radii, strict=True):
+        if anatomy.parts[joint] in TRUNK:
+            start, end = (placed[joint, :3, :3] @ tip + placed[joint, :3, 3] for tip in axis)
+            size = float(np.linalg.norm(placed[joint, :3, 1]))
+            capsules.append((tuple(start.tolist()), tuple(end.tolist()), radius * size))
+    return BodySurface(capsules, CLEARANCE * character.height)
