@@ -18,7 +18,7 @@ from characters.behaviour.gestures.gesture import (
     SymbolicGesture,
 )
 from characters.errors import CharacterError
-from characters.ik.reaching.hand_shapes import HAND_SHAPES
+from characters.ik.reaching import HAND_SHAPES
 
 MAX_SECONDS = 60.0
 """Longest phase of a gesture [s]."""

@@ -7,6 +7,7 @@ begins; its frames are interpolated.
 
 import math
 import warnings
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -32,13 +33,13 @@ from characters.behaviour.gestures.tracks import (
     SHAPES,
     HandTrack,
     hand_track,
-    repeated,
+    one_period,
     sided,
 )
 from characters.behaviour.gestures.trunk import TrunkTurns, body_track, chest_part
 from characters.behaviour.intents import Hand
 from characters.errors import CharacterWarning
-from characters.ik.reaching.upper_body import HandTarget, ReachStyle, UpperBody
+from characters.ik.reaching import HandTarget, ReachStyle, UpperBody
 from characters.ik.sitting_up import SittingUp
 from characters.model.character import Character
 from characters.model.standing import idle_clips
@@ -51,6 +52,12 @@ SIDES = {"left": True, "right": False}
 
 EASY, STRETCHED = 0.75, 0.95
 """Distances of a wrist from its shoulder ÷ the arm's length: as asked for below, never above."""
+
+NEGLIGIBLE = 1e-6
+"""Sine of half an angle below which a joint of the trunk is not turned."""
+
+CHARACTERS = 8
+"""Characters whose bodies are kept for their next animator."""
 
 PLANS = 64
 """Plans that are kept for when a gesture comes again."""
@@ -86,7 +93,15 @@ class Performer:
 
     @staticmethod
     def of(character: Character) -> "Performer":
-        """Return what a character gestures with."""
+        """Return what a character gestures with; the last few characters' are kept."""
+        for kept in _KEPT:
+            if kept.character.skeleton is character.skeleton:
+                return kept
+        _KEPT.append(Performer._measured(character))
+        return _KEPT[-1]
+
+    @staticmethod
+    def _measured(character: Character) -> "Performer":
         skeleton, anatomy = character.skeleton, character.anatomy
         idle = idle_clips(character.clips)
         posture = idle[0].sample(0.0) if idle else skeleton.rest
@@ -126,6 +141,9 @@ class Performer:
         return _plan(self, gesture, hand, expressivity)
 
 
+_KEPT: deque[Performer] = deque(maxlen=CHARACTERS)
+
+
 @lru_cache(maxsize=PLANS)
 def _plan(
     performer: Performer, gesture: SymbolicGesture, hand: Hand, expressivity: GestureExpressivity
@@ -144,6 +162,7 @@ class _Planner:
         expressivity: GestureExpressivity,
     ) -> None:
         self.performer = performer
+        self._turned_postures: dict[bytes, tuple[Pose, Array]] = {}
         self.expressivity = expressivity
         self.duration = stroke_length(gesture)
         self.style = ReachStyle(
@@ -152,10 +171,10 @@ class _Planner:
         space = performer.space
         self.space = GestureSpace(np.zeros(3), space.arm, expressivity.spatial)
         shown, mirrored = sided(gesture, hand)
-        repeats = Repeats.of(gesture)
-        body = repeated(shown.body, repeats) or (BodyKey(0.0),)
+        self.repeats = repeats = Repeats.of(gesture)
+        body = one_period(shown.body, repeats) or (BodyKey(0.0),)
         self.body = body_track(body, mirrored, expressivity)
-        keys = {"right": repeated(shown.right, repeats), "left": repeated(shown.left, repeats)}
+        keys = {"right": one_period(shown.right, repeats), "left": one_period(shown.left, repeats)}
         asked = {side: each for side, each in keys.items() if each}
         self.keys = {side: each for side, each in asked.items() if side in performer.body.arms}
         if len(self.keys) < len(asked):
@@ -165,6 +184,8 @@ class _Planner:
                 CharacterWarning,
                 stacklevel=4,
             )
+        upright = performer.posture.globals(performer.character.skeleton)[performer.chest]
+        self.joint_from_chest = np.linalg.inv(upright)
         self.tracks = self._hand_tracks()
 
     def motion(self) -> GestureMotion:
@@ -179,22 +200,20 @@ class _Planner:
             self._overshoot(poses, times, side, track)
         held = [self.performer.arms[side] for side in self.tracks]
         arms = np.concatenate([np.zeros(0, np.intp), *held])
-        trunk = np.setdiff1d(self._trunk_joints(), arms)
-        added = rotations.multiply(
-            rotations.conjugate(self.performer.posture.rotations[trunk]), poses[:, trunk]
-        )
+        trunk = np.setdiff1d(self.performer.trunk.joints, arms)
+        before = self.performer.posture.rotations[trunk]
+        added = rotations.multiply(rotations.conjugate(before), poses[:, trunk])
+        turned = (np.abs(added[..., :3]) > NEGLIGIBLE).any(axis=(0, 2))
         return GestureMotion(
             self.performer.posture,
             times,
             arms,
             rotations.continuous(poses[:, arms]),
-            trunk,
-            rotations.continuous(added),
+            trunk[turned],
+            rotations.continuous(added[:, turned]),
+            self.repeats,
             self.duration,
         )
-
-    def _trunk_joints(self) -> NDArray[np.intp]:
-        return np.unique(self.performer.trunk.joints)
 
     def _hand_tracks(self) -> dict[str, HandTrack]:
         """Return the tracks of both hands; one that meets the other comes after it."""
@@ -221,9 +240,7 @@ class _Planner:
             met: Array = np.zeros(3) if other is None else other.keys.between(key.at)[POSITION]
             return met + offset
         if key.place.contact:
-            posed = self._turned(self.body.between(key.at)).globals(
-                self.performer.character.skeleton
-            )
+            _, posed = self._turned(self.body.between(key.at))
             place = self.performer.surface.place(key.place.contact, left, posed)
             if place is not None:
                 turn, chest = self._chest(posed)
@@ -232,22 +249,26 @@ class _Planner:
                 return touched + (offset / size if size > 0.0 else 0.0)
         return self.space.point(key.place, left)
 
-    def _turned(self, row: Array) -> Pose:
-        return self.performer.trunk.turned(self.performer.posture, row)
+    def _turned(self, row: Array) -> tuple[Pose, Array]:
+        """Return the posture with trunk and head turned by a row of the body's track.
+
+        With it comes `character_from_joint` of all joints, (joints, 4, 4).
+        """
+        key = row.tobytes()
+        if key not in self._turned_postures:
+            pose = self.performer.trunk.turned(self.performer.posture, row)
+            self._turned_postures[key] = pose, pose.globals(self.performer.character.skeleton)
+        return self._turned_postures[key]
 
     def _chest(self, posed: Array) -> tuple[Array, Array]:
         """Return how the chest is turned from its posture, (3, 3), and the space's middle, (3,)."""
-        frame = posed[self.performer.chest]
-        upright = self.performer.space
-        back = _chest_frame(self.performer)
-        moved = frame @ back
+        moved = posed[self.performer.chest] @ self.joint_from_chest
         turn = moved[:3, :3]
-        return turn, turn @ upright.chest + moved[:3, 3]
+        return turn, turn @ self.performer.space.chest + moved[:3, 3]
 
     def _posture(self, frame: KeyFrame) -> Pose:
         """Return the whole body at a key frame."""
-        pose = self._turned(frame.parts["body"])
-        posed = pose.globals(self.performer.character.skeleton)
+        pose, posed = self._turned(frame.parts["body"])
         turn, chest = self._chest(posed)
         targets = {}
         for side in self.tracks:
@@ -259,7 +280,7 @@ class _Planner:
         if targets:
             pose = self.performer.body.reach(
                 pose, targets.get("left"), targets.get("right"), self.style
-            )
+            )  # a new pose, whose fingers may be bent
         for side, track in self.tracks.items():
             self._shape(pose, side, track.shapes, frame.parts[side][SHAPES])
         return pose
@@ -302,13 +323,6 @@ class _Planner:
             shares = np.interp(times[frames], [*over.times, over.end], [*over.shares, 0.0])
             beyond = rotations.from_rotation_vector(way * shares[:, None, None])
             poses[np.ix_(frames, joints)] = rotations.multiply(last, beyond)
-
-
-def _chest_frame(performer: Performer) -> Array:
-    """Return `joint_from_character` of the chest in the posture."""
-    posed = performer.posture.globals(performer.character.skeleton)[performer.chest]
-    inverse: Array = np.linalg.inv(posed)
-    return inverse
 
 
 def _space(

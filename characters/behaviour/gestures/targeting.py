@@ -11,7 +11,7 @@ import numpy as np
 from characters.behaviour.gestures.gesture import HandKey
 from characters.skeleton.pose import Array
 
-SAMPLES_PER_TURN = 10
+SAMPLES_PER_TURN = 8
 """Points of a circle, and of a wave to and fro."""
 
 SAMPLES = 6

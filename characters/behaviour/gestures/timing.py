@@ -1,5 +1,6 @@
 """When the phases of a gesture are, and how far it is at a time."""
 
+import math
 from dataclasses import dataclass
 
 from characters.behaviour.gestures.gesture import SymbolicGesture
@@ -18,7 +19,7 @@ PREPARED, STROKE, STROKE_END, RELAX, GONE = 1.0, 2.0, 3.0, 4.0, 5.0
 
 @dataclass(frozen=True)
 class Repeats:
-    """The parts of a stroke that is performed several times; times are 0…1 of all of it."""
+    """A stroke that is performed several times; times are 0…1 of all of it."""
 
     count: int
     """How many times."""
@@ -41,14 +42,25 @@ class Repeats:
         """Length of all of it in periods: the last one has no way back."""
         return self.count - 1.0 + self.share
 
-    def time(self, number: int, at: float) -> float:
-        """Return when a moment of one of the strokes is, 0…1 of all of it."""
-        return (number + at * self.share) / self.periods
+    @property
+    def returns(self) -> bool:
+        """Whether there is a way back."""
+        return self.share < 1.0
+
+    def period_share(self, time: float) -> float:
+        """Return how much of its period is over at a time 0…1 of all of it.
+
+        >>> Repeats(2, 1.0).period_share(0.75), Repeats(1, 1.0).period_share(1.0)
+        (0.5, 1.0)
+        """
+        elapsed = time * self.periods
+        return elapsed - min(math.floor(elapsed), self.count - 1)
 
 
 def apex_share(gesture: SymbolicGesture) -> float:
     """Return when the apex of the first stroke is, 0…1 of all strokes."""
-    return Repeats.of(gesture).time(0, gesture.apex)
+    repeats = Repeats.of(gesture)
+    return gesture.apex * repeats.share / repeats.periods
 
 
 def stroke_length(gesture: SymbolicGesture) -> float:

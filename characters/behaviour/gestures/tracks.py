@@ -67,18 +67,12 @@ def sided(gesture: SymbolicGesture, hand: Hand) -> tuple[SymbolicGesture, bool]:
     return replace(gesture, right=(), left=gesture.right), True
 
 
-def repeated(keys: tuple[Key, ...], repeats: Repeats) -> tuple[Key, ...]:
-    """Return the keys of all strokes of a gesture; `at` is 0…1 of all of them.
-
-    Where a stroke ends as the next one starts, it goes on from its last key.
-    """
-    every: list[Key] = []
-    for number in range(repeats.count):
-        for key in keys:
-            at = repeats.time(number, key.at)
-            if not every or at > every[-1].at + 1e-9:
-                every.append(replace(key, at=at))
-    return tuple(every)
+def one_period(keys: tuple[Key, ...], repeats: Repeats) -> tuple[Key, ...]:
+    """Return the keys of one stroke and of the way back to its first key, if there is one."""
+    if not (keys and repeats.returns):
+        return keys
+    stroke = tuple(replace(key, at=key.at * repeats.share) for key in keys)
+    return stroke + (replace(keys[0], at=1.0),)
 
 
 def hand_track(

@@ -111,8 +111,7 @@ class GestureLayer:
     """Performs gestures; it comes after speech, whose gestures it hides, and before gaze."""
 
     def __init__(self, character: Character, seed: int = 0) -> None:
-        self._character = character
-        self._performer: Performer | None = None
+        self._performer = Performer.of(character)
         self._active: list[PerformedGesture] = []
         self._free = 1.0
 
@@ -128,7 +127,7 @@ class GestureLayer:
         return pose
 
     def _hands_free(self, context: FrameContext) -> float:
-        if self._character.anatomy.kind == "quadruped":
+        if self._performer.character.anatomy.kind == "quadruped":
             return float(context.rest > STANDING_REST)
         return HANDS_FREE.get(context.frame.state, 0.0)
 
@@ -155,8 +154,6 @@ class GestureLayer:
         others: Sequence[PerformedGesture],
         asked: BehaviourIntent,
     ) -> PerformedGesture:
-        if self._performer is None:
-            self._performer = Performer.of(self._character)
         hand = intent.hand
         if hand == "nearest":
             hand = _free_hand(others, asked)
