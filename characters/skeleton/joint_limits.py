@@ -6,6 +6,7 @@ fingers' are those of a relaxed hand. They are ranges of the motion of people, n
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -60,6 +61,11 @@ class JointLimits:
         """Return the limits of joints that turn freely."""
         wide = np.full((joints, 3), np.pi)
         return JointLimits.of_angles(-wide, wide)
+
+    @cached_property
+    def turned(self) -> bool:
+        """Whether the axes of any joint differ from those of the joint itself."""
+        return bool((self.before[:, :3] != 0).any() or (self.after[:, :3] != 0).any())
 
     def __len__(self) -> int:
         return len(self.low)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.ik.solvers import columns
-from characters.ik.solvers.task import Arrays, Task, until_done
+from characters.ik.solvers.task import Arrays, Solved, Task, until_done
 from characters.skeleton.pose import Array
 
 
@@ -20,8 +20,8 @@ class CyclicCoordinateDescent:
     max_sweeps: int = 100
     """Most sweeps over the joints."""
 
-    def __call__(self, task: Task) -> tuple[Array, NDArray[np.intp]]:
-        """Return rotations (joints, 4, batch), within the limits, and sweeps (batch,)."""
+    def __call__(self, task: Task) -> Solved:
+        """Return rotations within the limits."""
 
         def sweep(number: int, state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
             turns, index = state
@@ -36,7 +36,7 @@ class CyclicCoordinateDescent:
 
         state = task.start, np.arange(task.count, dtype=float)
         (turns, _), used = until_done(sweep, state, self.max_sweeps)
-        return turns, used
+        return turns, task.frames(turns)[1], used
 
 
 def _aim(task: Task, turns: Array, frames: Array, joint: int, at: Array, end: Array) -> Array:
@@ -45,8 +45,7 @@ def _aim(task: Task, turns: Array, frames: Array, joint: int, at: Array, end: Ar
     The joints above have not turned yet in this sweep, so their frames hold.
     """
     way = columns.between(end - at, task.targets - at)
-    zero = np.broadcast_to(np.array([[0.0], [0.0], [0.0], [1.0]]), turns[joint].shape)
-    above = task.zero_frame(frames, joint) if joint else task.below(frames, 0, zero)
+    above = task.zero_frame(frames, joint)
     turned = columns.multiply(columns.multiply(way, above), turns[joint])
     local = columns.multiply(columns.conjugate(above), turned)
     if task.bounds is not None:

@@ -22,11 +22,16 @@ def to_rows(array: Array) -> Array:
     return np.ascontiguousarray(np.moveaxis(array, -1, 0))
 
 
+def identities(count: int) -> Array:
+    """Return as many identity rotations, (4, count)."""
+    return np.broadcast_to(_IDENTITY, (4, count))
+
+
 def dot(a: Array, b: Array) -> Array:
     """Return the dot products of vectors, (…, batch)."""
-    product: Array = (
-        a[..., 0, :] * b[..., 0, :] + a[..., 1, :] * b[..., 1, :] + a[..., 2, :] * b[..., 2, :]
-    )
+    product: Array = a[..., 0, :] * b[..., 0, :]
+    product += a[..., 1, :] * b[..., 1, :]
+    product += a[..., 2, :] * b[..., 2, :]
     return product
 
 
@@ -48,6 +53,17 @@ def cross(a: Array, b: Array) -> Array:
         ax * by - ay * bx,
     )
     return product
+
+
+def running_sum(vectors: Array) -> Array:
+    """Return the sums of the first 0, 1, 2 … vectors, (joints + 1, 3, batch).
+
+    `np.cumsum` along the first axis takes five times as long.
+    """
+    sums = np.zeros((len(vectors) + 1, *vectors.shape[1:]))
+    for number, vector in enumerate(vectors):
+        np.add(sums[number], vector, out=sums[number + 1])
+    return sums
 
 
 def multiply(a: Array, b: Array) -> Array:

@@ -38,6 +38,7 @@ class Fabrik:
 def _toward(fixed: Array, moved: Array, length: Array) -> Array:
     """Return the point at a distance from a fixed one, on the line to another."""
     bone = moved - fixed
-    bone *= length / np.maximum(columns.length(bone), columns.TINY)
+    size = np.sqrt(np.einsum("ib,ib->b", bone, bone))
+    bone *= length / np.maximum(size, columns.TINY)
     bone += fixed
     return bone

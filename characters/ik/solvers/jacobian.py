@@ -1,113 +1,149 @@
-"""Solvers by the Jacobian of the Euler angles: transpose, pseudo-inverse, damped least squares.
+"""Solvers by the Jacobian, without and with joint limits.
 
-Each joint has three axes; column i of the Jacobian is `a_i × (end − p_i)` (S18). An angle at a
-limit that would go beyond it is held, and the step is computed again without it, so the others take
-its part (active set).
+Without limits each joint turns about any axis: its part of the Jacobian is `ω × (end − p)`, and the
+points alone are enough. Where they leave a
+limit, the unknowns are the Euler angles, column i of the Jacobian is
+`a_i × (end − p_i)` (S18), and an angle at a limit that would go beyond it is held while the step is
+computed again without it, so that the others take its part (active set).
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from characters.ik.solvers import columns
-from characters.ik.solvers.task import Arrays, Bounds, Task, until_done
+from characters.ik.solvers.positional import PositionalSolver
+from characters.ik.solvers.rules import Rule
+from characters.ik.solvers.task import Arrays, Bounds, Solved, Task, until_done
 from characters.skeleton.pose import Array
 
-Rule = Callable[[Array, Array], Array]
-"""From J Jᵀ as (xx, yy, zz, xy, xz, yz), (6, batch), and errors (3, batch), to a factor of Jᵀ."""
+MAX_STEPS = 60
+"""Most steps of a Jacobian method."""
 
-
-def transpose(gram: Array, error: Array) -> Array:
-    """Return α e, with α = e·JJᵀe / JJᵀe·JJᵀe (Buss 2004)."""
-    pushed = _times(gram, error)
-    scale = columns.dot(error, pushed) / np.maximum(columns.dot(pushed, pushed), columns.TINY**2)
-    step: Array = scale * error
-    return step
-
-
-def pseudo_inverse(gram: Array, error: Array) -> Array:
-    """Return (J Jᵀ)⁻¹ e; the damping only keeps singular matrices invertible."""
-    return _solved(gram, error, 1e-9 * gram[:3].sum(0))
-
-
-@dataclass(frozen=True)
-class DampedLeastSquares:
-    """The rule (J Jᵀ + λ² I)⁻¹ e, whose damping falls with the error (Sugihara 2011)."""
-
-    damping: float = 0.05
-    """λ² over the squared error."""
-
-    floor: float = 1e-6
-    """Least λ² over the trace of J Jᵀ."""
-
-    def __call__(self, gram: Array, error: Array) -> Array:
-        """Return what Jᵀ multiplies."""
-        damping = self.damping * columns.dot(error, error) + self.floor * gram[:3].sum(0)
-        return _solved(gram, error, damping)
+MAX_TURN_RAD = 1.2
+"""Most that an angle changes in a step: the Jacobian does not see farther."""
 
 
 @dataclass(frozen=True)
 class JacobianSolver:
-    """Steps of the angles by a rule."""
+    """Steps by a rule: of points without limits, of Euler angles with them."""
 
     rule: Rule
     """Makes a step of the error."""
 
-    max_iterations: int = 100
+    max_steps: int = MAX_STEPS
     """Most steps."""
 
-    max_turn: float = 0.8
-    """Most that an angle changes in a step [rad]: the Jacobian does not see farther."""
+    def __call__(self, task: Task) -> Solved:
+        """Return rotations within the limits."""
+        free = PositionalSolver(JacobianMover(self.rule, self.max_steps), max_loops=1)
+        turns, points, used = free(replace(task, bounds=None))
+        if task.bounds is not None:
+            _, events = task.bounds.cut(turns)
+            beyond = np.flatnonzero(events.any(0))
+            part = task.select(beyond)
+            again, more = _with_limits(
+                self.rule, self.max_steps, part, task.bounds, turns[..., beyond]
+            )
+            turns[..., beyond], points[..., beyond] = again, part.frames(again)[1]
+            used[beyond] += more
+        return turns, points, used
 
-    def __call__(self, task: Task) -> tuple[Array, NDArray[np.intp]]:
-        """Return rotations (joints, 4, batch), within the limits, and steps (batch,)."""
-        angles = columns.to_euler(task.start)
-        bounds = task.bounds
-        if bounds is not None:
-            angles = np.clip(angles, bounds.low, bounds.high)
-        state = (angles, angles, np.full(task.count, np.inf), task.offsets, task.targets,
-                 task.tolerance)  # fmt: skip
 
-        def step(number: int, state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
-            angles, best, least, offsets, targets, tolerance = state
-            axes, points = _axes(task.links, angles, offsets)
-            error = targets - points[-1]
-            size = columns.length(error)
-            better = size < least
-            best, least = np.where(better, angles, best), np.where(better, size, least)
-            angles = angles + self._change(bounds, angles, axes, points, error)
-            if bounds is not None:
-                angles = np.clip(angles, bounds.low, bounds.high)
-            return (angles, best, least, offsets, targets, tolerance), size <= tolerance
+@dataclass(frozen=True)
+class JacobianMover:
+    """Moves points by turning all bones of a chain at once."""
 
-        (_, best, *_), used = until_done(step, state, self.max_iterations)
-        return columns.from_euler(best), used - 1
+    rule: Rule
+    """Makes a step of the error."""
 
-    def _change(
-        self, bounds: Bounds | None, angles: Array, axes: Array, points: Array, error: Array
-    ) -> Array:
-        """Return the change of the angles, (joints, 3, batch)."""
+    max_steps: int = MAX_STEPS
+    """Most steps."""
+
+    def __call__(self, points: Array, task: Task) -> tuple[Array, NDArray[np.intp]]:
+        """Return points (joints + 1, 3, batch), of the right lengths, and steps (batch,)."""
+        state = points, task.targets, task.tolerance
+        (moved, *_), used = until_done(self._step, state, self.max_steps)
+        return moved, used
+
+    def _step(self, number: int, state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
+        points, targets, tolerance = state
         arms = points[-1] - points[:-1]
-        jacobian = columns.cross(axes, arms[:, None])  # (joints, 3 angles, 3, batch)
-        change = self._rows(jacobian, error)
-        if bounds is not None:
-            low, high = angles <= bounds.low, angles >= bounds.high
-            held = (low & (change < 0)) | (high & (change > 0))
-            which = np.flatnonzero(held.any((0, 1)))
-            if len(which):
-                free = jacobian[..., which] * ~held[..., None, which]
-                change[..., which] = self._rows(free, error[..., which])
-        largest = np.abs(change).max((0, 1))
-        change *= np.minimum(1.0, self.max_turn / np.maximum(largest, columns.TINY))
-        return change
+        pull = self.rule(_ball_gram(arms), targets - points[-1])
+        # A bone turns by what its joint and all joints before it turn.
+        turns = columns.running_sum(columns.cross(arms, pull[None]))[1:]
+        moved = columns.running_sum(_turned(np.diff(points, axis=0), turns))
+        near = columns.length(moved[-1] - targets) <= tolerance
+        return (moved, targets, tolerance), near
 
-    def _rows(self, jacobian: Array, error: Array) -> Array:
-        x, y, z = jacobian[:, :, 0], jacobian[:, :, 1], jacobian[:, :, 2]
-        pairs = ((x, x), (y, y), (z, z), (x, y), (x, z), (y, z))
-        gram = np.stack([np.einsum("jab,jab->b", a, b) for a, b in pairs])
-        return columns.dot(jacobian, self.rule(gram, error))
+
+def _ball_gram(arms: Array) -> Array:
+    """Return J Jᵀ of joints that turn about any axis: the sum of |r|² I − r rᵀ, (6, batch)."""
+    x, y, z = arms[:, 0], arms[:, 1], arms[:, 2]
+    xx, yy, zz = (np.einsum("jb,jb->b", a, a) for a in (x, y, z))
+    xy, xz, yz = (np.einsum("jb,jb->b", a, b) for a, b in ((x, y), (x, z), (y, z)))
+    return np.stack([yy + zz, xx + zz, xx + yy, -xy, -xz, -yz])
+
+
+def _turned(vectors: Array, turns: Array) -> Array:
+    """Return vectors turned by about the rotation vectors `turns`, with their lengths unchanged.
+
+    By the Cayley map, a rotation by 2 atan(angle / 2): it needs no sine, and turns that are too
+    large for the Jacobian become smaller.
+    """
+    half = 0.5 * turns
+    first = columns.cross(half, vectors)
+    first += columns.cross(half, first)
+    first *= (2.0 / (1.0 + columns.dot(half, half)))[:, None]
+    first += vectors
+    return first
+
+
+def _with_limits(
+    rule: Rule, max_steps: int, task: Task, bounds: Bounds, start: Array
+) -> tuple[Array, NDArray[np.intp]]:
+    angles = np.clip(columns.to_euler(start), bounds.low, bounds.high)
+    least = np.full(task.count, np.inf)
+    state = angles, angles, least, task.offsets, task.targets, task.tolerance
+
+    def step(number: int, state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
+        angles, best, least, offsets, targets, tolerance = state
+        axes, points = _axes(task.links, angles, offsets)
+        error = targets - points[-1]
+        size = columns.length(error)
+        better = size < least
+        best, least = np.where(better, angles, best), np.where(better, size, least)
+        change = _change(rule, bounds, angles, axes, points[-1] - points[:-1], error)
+        angles = np.clip(angles + change, bounds.low, bounds.high)
+        return (angles, best, least, offsets, targets, tolerance), size <= tolerance
+
+    (_, best, *_), used = until_done(step, state, max_steps)
+    return columns.from_euler(best), used - 1
+
+
+def _change(
+    rule: Rule, bounds: Bounds, angles: Array, axes: Array, arms: Array, error: Array
+) -> Array:
+    """Return the change of the angles, (joints, 3, batch) [rad]."""
+    jacobian = columns.cross(axes, arms[:, None])  # (joints, 3 angles, 3, batch)
+    change = _rows(rule, jacobian, error)
+    low, high = angles <= bounds.low, angles >= bounds.high
+    held = (low & (change < 0)) | (high & (change > 0))
+    which = np.flatnonzero(held.any((0, 1)))
+    if len(which):
+        free = jacobian[..., which] * ~held[..., None, which]
+        change[..., which] = _rows(rule, free, error[..., which])
+    largest = np.abs(change).max((0, 1))
+    change *= np.minimum(1.0, MAX_TURN_RAD / np.maximum(largest, columns.TINY))
+    return change
+
+
+def _rows(rule: Rule, jacobian: Array, error: Array) -> Array:
+    x, y, z = jacobian[:, :, 0], jacobian[:, :, 1], jacobian[:, :, 2]
+    pairs = ((x, x), (y, y), (z, z), (x, y), (x, z), (y, z))
+    gram = np.stack([np.einsum("jab,jab->b", a, b) for a, b in pairs])
+    return columns.dot(jacobian, rule(gram, error))
 
 
 def _axes(links: Array | None, angles: Array, offsets: Array) -> tuple[Array, Array]:
@@ -140,22 +176,3 @@ def _linked(link: Array, basis: tuple[Array, Array, Array]) -> list[Array]:
     fixed = [columns.rotate(link, axis[:, None]) for axis in np.eye(3)]
     x, y, z = basis
     return [column[0] * x + column[1] * y + column[2] * z for column in fixed]
-
-
-def _times(gram: Array, v: Array) -> Array:
-    """Return J Jᵀ v."""
-    xx, yy, zz, xy, xz, yz = gram
-    a, b, c = v
-    return np.stack([xx * a + xy * b + xz * c, xy * a + yy * b + yz * c, xz * a + yz * b + zz * c])
-
-
-def _solved(gram: Array, error: Array, damping: Array) -> Array:
-    """Return (J Jᵀ + λ² I)⁻¹ e by the adjugate."""
-    xx, yy, zz, xy, xz, yz = gram
-    xx, yy, zz = xx + damping, yy + damping, zz + damping
-    a, b, c = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
-    d, e, f = xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy
-    determinant = xx * a + xy * b + xz * c
-    solved = _times(np.stack([a, d, f, b, c, e]), error)
-    step: Array = solved / np.maximum(determinant, columns.TINY**3)
-    return step

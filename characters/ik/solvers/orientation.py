@@ -27,9 +27,13 @@ def rigid(points: Array, lengths: Array) -> Array:
     """Return points (joints + 1, 3, batch) with the exact lengths of bones, from the base on."""
     bones = np.diff(points, axis=0)
     bones *= (lengths / np.maximum(columns.length(bones), columns.TINY))[:, None]
-    fixed = np.zeros_like(points)
-    np.cumsum(bones, axis=0, out=fixed[1:])
-    return fixed
+    return columns.running_sum(bones)
+
+
+def straight(task: Task) -> Array:
+    """Return the points (joints + 1, 3, batch) of chains that point straight to their targets."""
+    direction = task.targets / np.maximum(columns.length(task.targets), columns.TINY)
+    return columns.running_sum(task.lengths[:, None] * direction)
 
 
 def horn(start: Array, end: Array, weights: Array | None = None) -> Array:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from characters.ik.solvers import columns
 from characters.ik.solvers.limiting import limited
 from characters.ik.solvers.orientation import oriented, rigid
-from characters.ik.solvers.task import Arrays, Task, until_done
+from characters.ik.solvers.task import Arrays, Solved, Task, until_done
 from characters.skeleton.pose import Array
 
 MAX_LOOPS = 20
@@ -37,15 +37,15 @@ class PositionalSolver:
     max_loops: int = MAX_LOOPS
     """Most rounds."""
 
-    def __call__(self, task: Task) -> tuple[Array, NDArray[np.intp]]:
-        """Return rotations (joints, 4, batch), within the limits, and iterations (batch,)."""
+    def __call__(self, task: Task) -> Solved:
+        """Return rotations within the limits."""
         if task.bounds is None:
             return self._free(task)
         return self._with_limits(task)
 
-    def _free(self, task: Task) -> tuple[Array, NDArray[np.intp]]:
+    def _free(self, task: Task) -> Solved:
         """Solve without limits: rotations are needed only once, at the end."""
-        frames, start = task.frames(task.start)
+        frames, start = task.frames_at_start, task.points_at_start
         points, total = self._rigidly_moved(start, task)
         left = np.flatnonzero(~_near(points, task))
         for _ in range(1, self.max_loops):
@@ -55,11 +55,9 @@ class PositionalSolver:
             points[..., left], used = self._rigidly_moved(points[..., left], part)
             total[left] += used
             left = left[~_near(points[..., left], part)]
-        return oriented(task, frames, start, points), total
+        return oriented(task, frames, start, points), points, total
 
-    def _with_limits(self, task: Task) -> tuple[Array, NDArray[np.intp]]:
-        used = np.zeros(task.count)
-
+    def _with_limits(self, task: Task) -> Solved:
         def one_round(number: int, state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
             turns, index, used, best, least = state
             part = task.select(index.astype(np.intp))
@@ -73,11 +71,11 @@ class PositionalSolver:
             best, least = np.where(better, turns, best), np.where(better, errors, least)
             return (turns, index, used + iterations, best, least), errors <= part.tolerance
 
-        start = limited(task, task.start, task.frames(task.start)[1])
-        least = columns.length(task.frames(start)[1][-1] - task.targets)
-        state = (start, np.arange(task.count, dtype=float), used, start, least)
+        unused = np.zeros(task.count)
+        least = columns.length(task.points_at_start[-1] - task.targets)
+        state = task.start, np.arange(task.count, dtype=float), unused, task.start, least
         (_, _, used, best, _), _ = until_done(one_round, state, self.max_loops)
-        return best, used.astype(np.intp)
+        return best, task.frames(best)[1], used.astype(np.intp)
 
     def _rigidly_moved(self, points: Array, task: Task) -> tuple[Array, NDArray[np.intp]]:
         moved, used = self.move(points, task)

@@ -10,13 +10,10 @@ from characters.ik.solvers import columns
 from characters.ik.solvers.ccd import CyclicCoordinateDescent
 from characters.ik.solvers.chains import Chains, Solution
 from characters.ik.solvers.fabrik import Fabrik
-from characters.ik.solvers.jacobian import (
-    DampedLeastSquares,
-    JacobianSolver,
-    pseudo_inverse,
-    transpose,
-)
+from characters.ik.solvers.jacobian import JacobianSolver
+from characters.ik.solvers.orientation import oriented, straight
 from characters.ik.solvers.positional import PositionalSolver
+from characters.ik.solvers.rules import Damped, pseudo_inverse, transpose
 from characters.ik.solvers.springs import MassSprings
 from characters.ik.solvers.task import Limiting, Solver, Task
 from characters.skeleton.pose import Array
@@ -28,17 +25,17 @@ SOLVERS: dict[str, Solver] = {
     "fabrik": PositionalSolver(Fabrik()),
     "transpose": JacobianSolver(transpose),
     "pseudo-inverse": JacobianSolver(pseudo_inverse),
-    "damped": JacobianSolver(DampedLeastSquares()),
+    "damped": JacobianSolver(Damped(), max_steps=20),
 }
 """The solvers by name. A solver of your own is one more entry."""
 
 TOLERANCE = 1e-3
 """How near is near enough, in lengths of the chain."""
 
-RESTARTS = 8
-"""Most random starts of what is left unsolved."""
+RESTARTS = 16
+"""Random starts of what is left unsolved."""
 
-_POLISH = JacobianSolver(DampedLeastSquares(), max_iterations=40)
+_POLISH = JacobianSolver(Damped(), max_steps=20)
 _MAX_EXTENSION = 1 - 1e-9  # of a chain's length, to which a target beyond it is moved
 _NUDGE_RAD = 0.05  # by which a chain that lies on the line to its target is bent
 
@@ -92,26 +89,30 @@ def solve(
     targets = np.asarray(targets, float)
     start = chains.rest(len(targets)) if start is None else np.asarray(start, float)
     _check(chains, targets, start)
-    if chains.limits is not None and limits is not None:
-        start = chains.limits.clamp(start)
     reach = np.broadcast_to(chains.reach, len(targets))
     usable = np.isfinite(targets).all(-1) & (reach > columns.TINY)
-    found = np.flatnonzero(usable)
-    part = Task.of(
-        _some(chains, found), targets[found], start[found], tolerance * reach[found], limits
-    )
-    part = _with_reachable_targets(_nudged(part))
-    turns, used = solver(part) if len(found) else (part.start, np.zeros(0, np.intp))
+    goals = np.where(usable[:, None], targets, 0.0)
+    task = Task.of(chains, goals, start, tolerance * reach, limits)
+    reachable = _with_reachable_targets(_nudged(task))
+    turns, points, iterations = solver(reachable)
+    beyond = np.flatnonzero(columns.length(task.targets) >= task.reach)
+    if task.bounds is None and len(beyond):
+        turns[..., beyond], points[..., beyond] = _straightened(reachable.select(beyond))
     if not alone:
-        turns, used = _made_sure(part, turns, used, np.random.default_rng(seed))
-    local = start.copy()
-    local[found] = part.local_rotations(turns, chains)
-    iterations = np.zeros(len(targets), np.intp)
-    iterations[found] = used
-    _, positions = chains.frames(local)
-    errors = np.linalg.norm(positions[:, -1] - targets, axis=-1)
-    errors = np.where(np.isfinite(errors), errors, np.inf)
-    return Solution(local, positions, iterations, errors, errors <= tolerance * reach)
+        _made_sure(reachable, turns, points, iterations, np.random.default_rng(seed))
+    errors = columns.length(points[-1] - task.targets)
+    if not usable.all():
+        turns[..., ~usable] = task.start[..., ~usable]
+        points[..., ~usable] = task.points_at_start[..., ~usable]
+        errors = np.where(usable, errors, np.inf)
+        iterations[~usable] = 0
+    return Solution(
+        task.local_rotations(turns, chains),
+        columns.to_rows(points),
+        iterations,
+        errors,
+        errors <= task.tolerance,
+    )
 
 
 def _check(chains: Chains, targets: Array, start: Array) -> None:
@@ -125,12 +126,6 @@ def _check(chains: Chains, targets: Array, start: Array) -> None:
         raise CharacterError(f"{len(chains.offsets)} chains for {count} targets")
 
 
-def _some(chains: Chains, which: NDArray[np.intp]) -> Chains:
-    if chains.offsets.ndim == 2:
-        return chains
-    return replace(chains, offsets=chains.offsets[which])
-
-
 def _with_reachable_targets(task: Task) -> Task:
     """Return the task with targets moved to where chains without limits reach (7.3.7).
 
@@ -139,14 +134,23 @@ def _with_reachable_targets(task: Task) -> Task:
     others together: away from the base.
     """
     far = columns.length(task.targets)
-    longest = task.lengths.max(0)
-    least = np.maximum(2 * longest - task.reach, 0.0)
+    least = np.maximum(2 * task.lengths.max(0) - task.reach, 0.0)
     wanted = np.clip(far, least, task.reach * _MAX_EXTENSION)
-    ahead = task.frames(task.start)[1][-1]
-    direction = np.where(far > columns.TINY, task.targets, ahead)
+    if (wanted == far).all():
+        return task
+    direction = np.where(far > columns.TINY, task.targets, task.points_at_start[-1])
     size = np.maximum(columns.length(direction), columns.TINY)
     moved = np.where(wanted == far, task.targets, direction * (wanted / size))
     return replace(task, targets=moved)
+
+
+def _straightened(task: Task) -> tuple[Array, Array]:
+    """Return the rotations and points of chains that point straight to their targets.
+
+    A solver is done earlier: bones bent by 2° shorten a chain by less than its tolerance.
+    """
+    points = straight(task)
+    return oriented(task, task.frames_at_start, task.points_at_start, points), points
 
 
 def _nudged(task: Task) -> Task:
@@ -154,8 +158,8 @@ def _nudged(task: Task) -> Task:
 
     On that line every direction of a solver is along it, and the chain would never bend.
     """
-    _, points = task.frames(task.start)
-    away = columns.cross(points[1:], np.broadcast_to(task.targets, points[1:].shape))
+    points = task.points_at_start[1:]
+    away = columns.cross(points, task.targets[None])
     size = columns.length(task.targets) * task.reach
     on_line = (columns.length(away) <= 1e-6 * np.maximum(size, columns.TINY)).all(0)
     if not on_line.any():
@@ -167,35 +171,34 @@ def _nudged(task: Task) -> Task:
     if task.bounds is not None:
         low, high = task.bounds.low, task.bounds.high
         bent = np.clip(np.where(bent > high, angles - nudge, bent), low, high)
-    start = np.where(on_line, columns.from_euler(bent), task.start)
-    return replace(task, start=start)
+    return task.starting_from(np.where(on_line, columns.from_euler(bent), task.start))
 
 
 def _made_sure(
-    task: Task, turns: Array, used: NDArray[np.intp], random: np.random.Generator
-) -> tuple[Array, NDArray[np.intp]]:
-    """Return rotations and iterations with what was left unsolved polished, then started again."""
-    turns, used = turns.copy(), used.copy()
-    errors = _errors(task, turns)
-    for number in range(1 + RESTARTS):
+    task: Task,
+    turns: Array,
+    points: Array,
+    iterations: NDArray[np.intp],
+    random: np.random.Generator,
+) -> None:
+    """Polish what is left unsolved, then start it again, in place."""
+    for copies in (1, RESTARTS):
+        errors = columns.length(points[-1] - task.targets)
         left = np.flatnonzero(errors > task.tolerance)
         if len(left) == 0:
             break
-        part = task.select(left)
-        begin = turns[..., left] if number == 0 else _random_start(part, random)
-        again, more = _POLISH(replace(part, start=begin))
-        now = _errors(part, again)
-        better = now < errors[left]
-        turns[..., left[better]] = again[..., better]
-        errors[left] = np.where(better, now, errors[left])
-        used[left] += more
-    return turns, used
+        part = task.select(np.repeat(left, copies))
+        begin = turns[..., left] if copies == 1 else _random_start(part, random)
+        again, ends, used = _POLISH(part.starting_from(begin))
+        now = columns.length(ends[-1] - part.targets).reshape(-1, copies)
+        best = now.argmin(-1)
+        better = now[np.arange(len(left)), best] < errors[left]
+        source = (np.arange(len(left)) * copies + best)[better]
+        turns[..., left[better]] = again[..., source]
+        points[..., left[better]] = ends[..., source]
+        iterations[left] += used.reshape(-1, copies)[np.arange(len(left)), best]
 
 
 def _random_start(task: Task, random: np.random.Generator) -> Array:
     low, high = (-np.pi, np.pi) if task.bounds is None else (task.bounds.low, task.bounds.high)
     return columns.from_euler(random.uniform(low, high, (task.joints, 3, task.count)))
-
-
-def _errors(task: Task, turns: Array) -> Array:
-    return columns.length(task.frames(turns)[1][-1] - task.targets)

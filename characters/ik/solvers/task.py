@@ -64,6 +64,12 @@ class Task:
     start: Array
     """Rotations to start from, (joints, 4, batch)."""
 
+    frames_at_start: Array
+    """Base-frame rotations of the joints at the start, (joints, 4, batch)."""
+
+    points_at_start: Array
+    """Points of the joints, and the end of the last bone, at the start, (joints + 1, 3, batch)."""
+
     targets: Array
     """Where the ends of the chains are to be, (3, batch) [m]."""
 
@@ -80,33 +86,43 @@ class Task:
     def of(
         chains: Chains, targets: Array, start: Array, tolerance: Array, limiting: Limiting | None
     ) -> "Task":
-        """Return the task of chains, targets (batch, 3) and local rotations (batch, joints, 4)."""
-        count = len(targets)
-        offsets = np.broadcast_to(chains.offsets, (count, chains.joints, 3))
-        lengths = np.broadcast_to(chains.lengths, (count, chains.joints))
-        links = bounds = None
-        if chains.limits is not None:
-            limits = chains.limits
-            before, after = limits.before, limits.after
-            inner = rotations.multiply(rotations.conjugate(before), start)
-            start = rotations.multiply(inner, rotations.conjugate(after))
-            offsets = rotations.rotate(after, offsets)
-            above = np.concatenate([rotations.IDENTITY[None], after[:-1]])
-            links = rotations.multiply(above, before)[..., None]
-            if np.allclose(np.abs(links[:, 3]), 1.0, atol=1e-12):
-                links = None
+        """Return the task of chains, targets (batch, 3) and local rotations (batch, joints, 4).
+
+        The start is within the limits, unless `limiting` is None.
+        """
+        count, limits = len(targets), chains.limits
+        turns, bones, links, bounds = columns.to_columns(start), chains.offsets, None, None
+        if limits is not None:
+            before, after = limits.before[..., None], limits.after[..., None]
+            if limits.turned:
+                inner = columns.multiply(columns.conjugate(before), turns)
+                turns = columns.multiply(inner, columns.conjugate(after))
+                bones = rotations.rotate(limits.after, bones)
+                above = np.concatenate([columns.identities(1)[None], after[:-1]])
+                links = columns.multiply(above, before)
             if limiting is not None:
                 bounds = Bounds(limits.low[..., None], limits.high[..., None])
+                turns, _ = bounds.cut(turns)
+        offsets = columns.to_columns(np.broadcast_to(bones, (count, *bones.shape[-2:])))
+        lengths = np.broadcast_to(chains.lengths, (count, chains.joints))
+        frames, points = chain_frames(turns, offsets, links)
         return Task(
-            columns.to_columns(offsets),
+            offsets,
             columns.to_columns(lengths),
             links,
-            columns.to_columns(start),
+            turns,
+            frames,
+            points,
             columns.to_columns(targets),
             tolerance,
             bounds,
             limiting or "propagate",
         )
+
+    def starting_from(self, turns: Array) -> "Task":
+        """Return the task with other rotations to start from."""
+        frames, points = self.frames(turns)
+        return replace(self, start=turns, frames_at_start=frames, points_at_start=points)
 
     @property
     def joints(self) -> int:
@@ -131,37 +147,26 @@ class Task:
             offsets=self.offsets[..., which],
             lengths=self.lengths[..., which],
             start=self.start[..., which],
+            frames_at_start=self.frames_at_start[..., which],
+            points_at_start=self.points_at_start[..., which],
             targets=self.targets[..., which],
             tolerance=self.tolerance[which],
         )
 
     def local_rotations(self, turns: Array, chains: Chains) -> Array:
         """Return rotations (joints, 4, batch) as local ones of the chains, (batch, joints, 4)."""
-        rows = columns.to_rows(turns)
-        if chains.limits is None:
-            return rows
-        inner = rotations.multiply(chains.limits.before, rows)
-        return rotations.multiply(inner, chains.limits.after)
+        if chains.limits is not None and chains.limits.turned:
+            before, after = chains.limits.before[..., None], chains.limits.after[..., None]
+            turns = columns.multiply(columns.multiply(before, turns), after)
+        return columns.to_rows(turns)
 
     def frames(self, turns: Array) -> tuple[Array, Array]:
         """Return base-frame rotations (joints, 4, batch) and points (joints + 1, 3, batch)."""
-        frames = np.empty_like(turns)
-        points = np.zeros((self.joints + 1, 3, turns.shape[-1]))
-        for joint in range(self.joints):
-            frames[joint] = self.below(frames, joint, turns[joint])
-            bone = columns.rotate(frames[joint], self.offsets[joint])
-            np.add(points[joint], bone, out=points[joint + 1])
-        return frames, points
-
-    def below(self, frames: Array, joint: int, turn: Array) -> Array:
-        """Return the base-frame rotation of a joint with a rotation, from those above it."""
-        if joint == 0:
-            return turn if self.links is None else columns.multiply(self.links[0], turn)
-        return columns.multiply(self.zero_frame(frames, joint), turn)
+        return chain_frames(turns, self.offsets, self.links)
 
     def zero_frame(self, frames: Array, joint: int) -> Array:
-        """Return the base-frame rotation of the axes of a joint (not the first) at zero."""
-        above = frames[joint - 1]
+        """Return the base-frame rotation of the axes of a joint at zero, from those above it."""
+        above = frames[joint - 1] if joint else columns.identities(frames.shape[-1])
         return above if self.links is None else columns.multiply(above, self.links[joint])
 
     def turns(self, frames: Array) -> Array:
@@ -173,11 +178,26 @@ class Task:
         return columns.multiply(columns.conjugate(above), frames)
 
 
+def chain_frames(turns: Array, offsets: Array, links: Array | None) -> tuple[Array, Array]:
+    """Return base-frame rotations (joints, 4, batch) and points (joints + 1, 3, batch)."""
+    frames = np.empty_like(turns)
+    above = columns.identities(turns.shape[-1])
+    for joint, turn in enumerate(turns):
+        if links is not None:
+            above = columns.multiply(above, links[joint])
+        frames[joint] = above = columns.multiply(above, turn)
+    return frames, columns.running_sum(columns.rotate(frames, offsets))
+
+
+Solved = tuple[Array, Array, NDArray[np.intp]]
+"""Rotations (joints, 4, batch), points (joints + 1, 3, batch) [m] and iterations (batch,)."""
+
+
 class Solver(Protocol):
     """A method of inverse kinematics: one entry of `SOLVERS`."""
 
-    def __call__(self, task: Task) -> tuple[Array, NDArray[np.intp]]:
-        """Return rotations (joints, 4, batch), within the limits, and iterations (batch,)."""
+    def __call__(self, task: Task) -> Solved:
+        """Return rotations within the limits."""
 
 
 Arrays = tuple[Array, ...]
