@@ -49,9 +49,6 @@ class Performance:
     interrupts: tuple[str, ...] = ()
     """Blocks that it has to end before it starts."""
 
-    reported: set[str] = field(default_factory=set)
-    """Behaviours and constraints that a warning has been sent about."""
-
     @property
     def awaits_nothing(self) -> bool:
         """Whether it can start."""

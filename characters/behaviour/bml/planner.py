@@ -102,7 +102,8 @@ class _Planner:
         self._ground_all()
         if self._problem.strict:
             self._verify()
-        return self._times
+        start = self._problem.start
+        return {name: [max(t, start) for t in times] for name, times in self._times.items()}
 
     def _unmet(self, owner: str, reason: str) -> None:
         if self._problem.strict:
@@ -115,10 +116,13 @@ class _Planner:
         facts = self._problem.facts.get(name, {})
         cluster = self._joined(name, anchors, grounded=bool(facts))
         fixed = self._fixed(name, anchors, facts)
+        timing = self._problem.timings[name]
         if fixed:
             times = self._stretched(name, fixed, cluster)
+        elif cluster.grounded:
+            times = [math.inf] * len(timing.syncs)
         else:
-            times = stretched(self._problem.timings[name], {0: 0.0})
+            times = stretched(timing, {0: 0.0})
         self._clusters[name], self._times[name] = cluster, times
         cluster.members.append(name)
         for order in self._orders.get(name, ()):
@@ -170,10 +174,16 @@ class _Planner:
         if base.grounded:
             by = max(by, self._problem.start - self._begin(cluster))
         for member in cluster.members:
-            self._times[member] = [time + by for time in self._times[member]]
+            self._move(member, by, grounded=base.grounded)
             self._clusters[member] = base
         base.members += cluster.members
         cluster.members = []
+
+    def _move(self, name: str, by: float, *, grounded: bool) -> None:
+        times = [time + by for time in self._times[name]]
+        if grounded and not self._problem.strict:
+            times = self._not_in_the_past(name, times)
+        self._times[name] = times
 
     def _begin(self, cluster: _Cluster) -> float:
         return min(self._times[member][0] for member in cluster.members)
@@ -187,17 +197,17 @@ class _Planner:
             time = self._in_time(anchor, self._time(anchor))
             before = max((i for i in fixed if i <= anchor.index), default=None)
             after = min((i for i in fixed if i > anchor.index), default=None)
+            low = -math.inf if before is None else fixed[before]
+            high = math.inf if after is None else fixed[after]
             if not time < math.inf:
                 self._unmet(anchor.owner, "it waits for something that never comes")
             elif before == anchor.index:
-                if abs(fixed[before] - time) > TOLERANCE:
+                if abs(low - time) > TOLERANCE:
                     self._unmet(anchor.owner, f"{self._point(name, before)} cannot be at two times")
-            elif (before is not None and time < fixed[before]) or (
-                after is not None and time > fixed[after]
-            ):
-                self._unmet(anchor.owner, f"{self._point(name, anchor.index)} is out of order")
             else:
-                fixed[anchor.index] = time
+                if not low <= time <= high:
+                    self._unmet(anchor.owner, f"{self._point(name, anchor.index)} is out of order")
+                fixed[anchor.index] = min(max(time, low), high)
                 self._check_span(name, fixed, before, anchor)
                 self._check_span(name, fixed, after, anchor)
         return fixed
@@ -207,7 +217,7 @@ class _Planner:
         start = self._problem.start
         if anchor.moment is None and start - LATENESS <= time < start:
             time = start
-        if not self._problem.strict:
+        if not self._problem.strict and self._cluster(anchor).grounded:
             time = max(time, self._problem.now)
         return time
 
@@ -315,10 +325,7 @@ class _Planner:
             self._unmet(late[-1].owner, "its order goes round in a circle")
         for key, cluster in clusters.items():
             for member in cluster.members:
-                times = [time + shifts[key] for time in self._times[member]]
-                self._times[member] = (
-                    times if self._problem.strict else self._not_in_the_past(member, times)
-                )
+                self._move(member, shifts[key], grounded=True)
 
     def _raise(self, order: Order, shifts: dict[int, float]) -> bool:
         """Move the later cluster of an order if it is too early; return whether it was."""

@@ -8,6 +8,7 @@ chunks are those of AsapRealizer (van Welbergen et al. 2014, sections 4 and 5).
 
 import math
 from collections.abc import Iterable
+from contextlib import suppress
 
 from characters.behaviour.bml.document import BMLA, Behaviour, Block, SyncReference
 from characters.behaviour.bml.feedback import (
@@ -146,13 +147,15 @@ class Realizer:
         performance.interrupts = tuple(name for name in wanted if name in others)
 
     def _preview(self, performance: Performance) -> None:
-        """Schedule a block that does not start yet, so that warnings and predictions come early."""
+        """Predict a block that does not start yet; what it cannot do is known when it starts."""
         if performance.state != "preplanned":
             ends = [self._performances[name].end for name in performance.awaits_end]
             ends += [self._performances[name].release for name in performance.awaits_release]
             performance.start = max([performance.ready, *ends])
         start = performance.start if math.isfinite(performance.start) else self._now
-        if self._schedule(performance, start):
+        with suppress(BlockFailed):
+            scheduler = Scheduler(performance.block, self._performer, self._external)
+            performance.tracks = scheduler.schedule(start, self._others(performance)).tracks
             self._feedback.append(performance.prediction())
 
     def _schedule(self, performance: Performance, start: float) -> bool:
@@ -167,9 +170,7 @@ class Realizer:
             return False
         performance.tracks, performance.constraints = schedule.tracks, schedule.constraints
         for failure in schedule.failures:
-            if failure.id not in performance.reported:
-                performance.reported.add(failure.id)
-                self._warn(block, failure.id, failure.type, failure.reason)
+            self._warn(block, failure.id, failure.type, failure.reason)
         return True
 
     # Time

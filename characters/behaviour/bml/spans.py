@@ -71,7 +71,7 @@ def stretched(timing: Timing, fixed: dict[int, float]) -> list[float]:
         time = fixed[left]
         for index, span in enumerate(shared(timing, left, right, fixed[right] - time), left + 1):
             time += span
-            times[index] = time
+            times[index] = min(time, fixed[right])
         times[right] = fixed[right]
     for index in range(last, len(times) - 1):
         times[index + 1] = times[index] + timing.spans[index]
