@@ -40,6 +40,8 @@ COMMANDS = {
     "gestures": "Learn how a person's hands beat the rhythm of speech, from recordings.",
     "speech": "Look at recorded speech: its pitch, accents, words and phones.",
     "speak": "Let a character say something, with its mouth, face and hands.",
+    "behave": "Let a character perform blocks of BML: speech, gestures, gaze, postures, ways.",
+    "gesture": "Make gestures that every character can perform, look at them, and edit them.",
     "schedule": "Render a blending schedule in XML to a motion file or a video.",
     "robot": "Simulate, try out and test robots, and list the serial ports.",
     "sounds": "Write all sounds as .wav files, to listen to them and to replace them.",

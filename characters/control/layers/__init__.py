@@ -1,9 +1,11 @@
 """The pose layers, a file each, in the order in which they are applied."""
 
+from characters.control.layers.behaviour import FaceShiftLayer, StanceLayer
 from characters.control.layers.breath import BreathLayer
 from characters.control.layers.face import FaceLayer
 from characters.control.layers.foot_lock import FootLockLayer
 from characters.control.layers.gaze import GazeLayer
+from characters.control.layers.gestures import GestureLayer
 from characters.control.layers.layer import FrameContext, LayerFactory
 from characters.control.layers.posture import PostureLayer
 from characters.control.layers.sitting_up import SittingUpLayer
@@ -16,13 +18,16 @@ FOOT_LAYERS: tuple[LayerFactory, ...] = (FootLockLayer,)
 
 LIVELINESS_LAYERS: tuple[LayerFactory, ...] = (
     SittingUpLayer,
+    StanceLayer,
     SpeechLayer,
+    GestureLayer,
     PostureLayer,
     GazeLayer,
+    FaceShiftLayer,
     FaceLayer,
     BreathLayer,
 )
-"""What makes it look alive: it speaks, sways, looks, blinks, breathes and shows its emotion."""
+"""What makes it look alive: it speaks, gestures, sways, looks, blinks, breathes and feels."""
 
 DEFAULT_LAYERS: tuple[LayerFactory, ...] = (*FOOT_LAYERS, *LIVELINESS_LAYERS)
 """The layers of every character."""
