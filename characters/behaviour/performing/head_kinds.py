@@ -1,6 +1,7 @@
 """The behaviours of head and eyes: `head`, `headDirectionShift`, `gaze` and `gazeShift`."""
 
 import math
+from dataclasses import replace
 from typing import get_args
 
 from characters.behaviour.bml import (
@@ -61,7 +62,9 @@ class HeadKind:
         swings = _repeats(behaviour)
         first = SWING_S / (4 if HEAD_MOVEMENTS[lexeme].to_and_fro else 2)
         spans = (HEAD_SPANS_S[0], 0.0, first, SWING_S * swings - first, 0.0, HEAD_SPANS_S[-1])
-        return elastic(GESTURE_SYNCS, spans, holds=frozenset({"ready", "strokeEnd"}), most=12.0)
+        natural = elastic(GESTURE_SYNCS, spans)
+        # A head that has more time goes on to nod; it does not wait.
+        return replace(natural, longest=(*natural.longest[:3], math.inf, *natural.longest[4:]))
 
     def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
         """Add the movement; one that takes longer has more swings unless their number is told."""

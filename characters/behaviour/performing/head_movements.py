@@ -24,6 +24,9 @@ LIFT_SHARE = 0.2
 LAST_SHARE = 0.5
 """Size of the last of several nods or shakes, as a share of the first."""
 
+MIN_HALF_S = 0.08
+"""Shortest time of half a nod [s]; one that is to be shorter lasts so long."""
+
 
 @dataclass(frozen=True)
 class HeadMovement:
@@ -91,12 +94,12 @@ def _stroke(times: StrokeTimes, first: float, now: float) -> float:
     end = times.stroke_end
     if not math.isfinite(end):
         end = next(t for t in (times.relax, times.end, start + 0.6) if t is not None)
-    end = max(end, start)
     apex = times.stroke if math.isfinite(times.stroke) else start + first * (end - start)
-    apex = min(max(apex, start), end)
+    apex = max(apex, start + MIN_HALF_S)
+    end = max(end, apex + MIN_HALF_S)
     if now <= apex:
-        return first * max(now - start, 0.0) / max(apex - start, 1e-6)
-    return first + (1.0 - first) * min((now - apex) / max(end - apex, 1e-6), 1.0)
+        return first * max(now - start, 0.0) / (apex - start)
+    return first + (1.0 - first) * min((now - apex) / (end - apex), 1.0)
 
 
 def _stroke_start(times: StrokeTimes) -> float:
