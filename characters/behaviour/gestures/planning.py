@@ -20,12 +20,7 @@ from characters.behaviour.gestures.contacts import OTHER_HAND, BodySurface
 from characters.behaviour.gestures.gathering import KeyFrame, gather
 from characters.behaviour.gestures.gesture import BodyKey, HandKey, SymbolicGesture
 from characters.behaviour.gestures.motion import GestureMotion
-from characters.behaviour.gestures.space import (
-    CENTRES_Y_CM,
-    CHEST_CM,
-    REFERENCE_ARM_M,
-    GestureSpace,
-)
+from characters.behaviour.gestures.space import GestureSpace
 from characters.behaviour.gestures.timing import Repeats, stroke_length
 from characters.behaviour.gestures.tracks import (
     ORIENTATION,
@@ -122,7 +117,7 @@ class Performer:
             body,
             TrunkTurns.of(skeleton, anatomy, posture),
             surface,
-            _space(character, posture, body, surface),
+            _space(character, posture, body),
             0 if chest is None else chest,
             joints,
         )
@@ -325,18 +320,16 @@ class _Planner:
             poses[np.ix_(frames, joints)] = rotations.multiply(last, beyond)
 
 
-def _space(
-    character: Character, posture: Pose, body: UpperBody, surface: BodySurface
-) -> GestureSpace:
-    """Return the gesture space of a body in a posture: shoulders are at the height of YUpperC."""
-    posed = posture.globals(character.skeleton)
+def _space(character: Character, posture: Pose, body: UpperBody) -> GestureSpace:
+    """Return the gesture space of a body in a posture; without arms, one of usual size."""
     if not body.arms:
-        return GestureSpace(np.array([0.0, 0.6 * character.height, 0.0]), 0.3 * character.height)
-    arm = float(np.mean([each.upper + each.fore for each in body.arms.values()]))
+        height = character.height
+        return GestureSpace(np.array([0.0, 0.6 * height, 0.0]), 0.3 * height)
+    posed = posture.globals(character.skeleton)
     shoulders = posed[[each.joints[1] for each in body.arms.values()], :3, 3].mean(0)
-    below = (CENTRES_Y_CM["YUpperC"] - CHEST_CM) / 100.0 * arm / REFERENCE_ARM_M
-    chest = shoulders - np.array([0.0, below, 0.0])
-    front = surface.place("chest", True, posed)
-    if front is not None:
-        chest[2] = max(chest[2], float(front[2]))
-    return GestureSpace(chest, arm)
+    return GestureSpace.about(shoulders, arm_length(body))
+
+
+def arm_length(body: UpperBody) -> float:
+    """Return the mean length of its arms, shoulder to wrist [m]."""
+    return float(np.mean([each.upper + each.fore for each in body.arms.values()]))

@@ -17,6 +17,9 @@ REFERENCE_ARM_M = 0.55
 CHEST_CM = 10.0
 """Height of the middle of the chest in the centimetres below: XC, YCC [cm]."""
 
+DEPTH = 0.25
+"""From the shoulders' middle to the front of the chest, in parts of an arm's length."""
+
 CENTRES_X_CM = dict(zip(SECTORS_X, (45.0, 30.0, 15.0, -15.0), strict=True))
 """Outward from the middle of the body [cm]."""
 
@@ -45,6 +48,15 @@ class GestureSpace:
 
     torso_scale: float = 1.0
     """Length of the torso ÷ its length when upright."""
+
+    @staticmethod
+    def about(shoulders: Array, arm: float) -> "GestureSpace":
+        """Return the space of a body whose shoulders' middle is at a place, (3,) [m].
+
+        Shoulders are at the height of YUpperC, a trunk is half as thick as `DEPTH` of an arm.
+        """
+        below = (CENTRES_Y_CM["YUpperC"] - CHEST_CM) / 100.0 * arm / REFERENCE_ARM_M
+        return GestureSpace(shoulders + np.array([0.0, -below, DEPTH * arm]), arm)
 
     def turned(self, turn: Array, chest: Array, torso_scale: float = 1.0) -> "GestureSpace":
         """Return the space of a body whose torso is turned, moved and bent."""
