@@ -7,6 +7,7 @@ The upper arm and the forearm are turned by frames of two directions each (Huang
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -112,8 +113,7 @@ class Effector:
     """Knuckle of the finger that points from the wrist at rest, and its tip from there [m]."""
 
 
-@dataclass(frozen=True)
-class BentArm:
+class BentArm(NamedTuple):
     """An arm that reaches somewhere; rotations are `character_from_joint`."""
 
     upper: Quaternion

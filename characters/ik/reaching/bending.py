@@ -1,7 +1,7 @@
 """One hand on its way: passive collarbone, pointing, and hands that face as they are asked to."""
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from characters.ik.reaching.arms import (
     Arm,
@@ -57,8 +57,7 @@ NEUTRAL_SWIVEL = NEUTRAL_REACH.swivel
 _POINTING_ROUNDS = 2
 
 
-@dataclass(frozen=True)
-class HandOnItsWay:
+class HandOnItsWay(NamedTuple):
     """A hand that reaches, before the torso moves."""
 
     arm: Arm

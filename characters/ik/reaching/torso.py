@@ -9,8 +9,9 @@ snaps.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from characters.ik.reaching.arms import CONE_RAD, Arm, clamped_aim, cone_axis
+from characters.ik.reaching.arms import CONE_RAD, Arm, clamped_aim, cone_axis, scaled
 from characters.skeleton.scalar_quaternions import (
     IDENTITY,
     Quaternion,
@@ -52,7 +53,8 @@ FOUR_LEGS = 0.4
 
 _BEHIND_RAD = math.radians(40.0)
 _FOLLOWING_RAD = math.radians(40.0)
-_ROUNDS = 6
+_ROUNDS = 12
+_SAME_SHARE = 1e-4
 
 
 @dataclass(frozen=True)
@@ -86,16 +88,14 @@ class PlacedTorso:
 
     def step(self, turned: Vector) -> Quaternion:
         """Return the part of each joint of a whole turn, a rotation vector [rad]."""
-        share = 1.0 / max(len(self.places), 1)
-        return from_rotation_vector((turned[0] * share, turned[1] * share, turned[2] * share))
+        return from_rotation_vector(scaled(turned, 1.0 / max(len(self.places), 1)))
 
     def chest_after(self, turned: Vector) -> Quaternion:
         """Return the rotation of the chest from its rest after a turn."""
         return multiply(from_rotation_vector(turned), self.chest) if self.places else self.chest
 
 
-@dataclass(frozen=True)
-class Reaching:
+class Reaching(NamedTuple):
     """One arm that is to get somewhere."""
 
     arm: Arm
@@ -130,14 +130,11 @@ def turn_torso(
         return TorsoTurn((0.0, 0.0, 0.0), _beyond(torso, reaching, (0.0, 0.0, 0.0), power))
     turn, lean = _directions(torso, reaching)
     easy = EASY_EXTENSION - POWER_EXTENSION * power
-    effort = _effort(torso, reaching, add(turn, lean), easy)
+    whole = add(turn, lean)
+    effort = max(_effort(torso, each, whole, easy) for each in reaching)
     # An open posture turns by itself, the less the more it has to turn anyway.
     share = effort + (1.0 - effort) * OPEN_TURN * openness
-    turned = (
-        share * turn[0] + effort * lean[0],
-        share * turn[1] + effort * lean[1],
-        share * turn[2] + effort * lean[2],
-    )
+    turned = add(scaled(turn, share), scaled(lean, effort))
     if effort >= 1.0:
         effort = max(effort, _beyond(torso, reaching, turned, power))
     return TorsoTurn(turned, effort)
@@ -195,59 +192,75 @@ def _turn(azimuth: float, sign: float, limits: float) -> float:
     return turn * cut * cut * (3.0 - 2.0 * cut)
 
 
-def _effort(torso: PlacedTorso, reaching: Sequence[Reaching], whole: Vector, easy: float) -> float:
-    """Return the share of its whole turn that brings all arms to their places, 0…1."""
-    low, at_low = 0.0, max(_lack(torso, each, IDENTITY, easy) for each in reaching)
-    if at_low <= 0.0:
-        return 0.0
-
-    def lack(share: float) -> float:
-        step = torso.step((whole[0] * share, whole[1] * share, whole[2] * share))
-        extension = 1.0 - (1.0 - easy) * (1.0 - share) ** 2
-        return max(_lack(torso, each, step, extension) for each in reaching)
-
-    high, at_high = 1.0, lack(1.0)
-    if at_high >= 0.0:
-        return 1.0
-    share = _law_of_cosines(torso, reaching[0], whole, easy)
-    for _ in range(_ROUNDS):  # the Illinois method (Dowell & Jarratt 1971)
-        at = lack(share)
-        if abs(at) < 1e-4:
-            break
-        if at > 0.0:
-            low, at_low, at_high = share, at, 0.5 * at_high
-        else:
-            high, at_high, at_low = share, at, 0.5 * at_low
-        share = (low * at_high - high * at_low) / (at_high - at_low)
+def _effort(torso: PlacedTorso, each: Reaching, whole: Vector, easy: float) -> float:
+    """Return the share of its whole turn with which an arm gets to its place, 0…1."""
+    aim = subtract(each.target, each.shoulder)
+    size = easy * (each.arm.upper + each.fore)
+    share = 0.0
+    if dot(aim, aim) > size * size:
+        share = _share_for_distance(torso, each, whole, easy)
+    if share < 1.0 and _turned_away(torso, each, IDENTITY):
+        share = _share_for_direction(torso, each, whole, share)
     return share
 
 
-def _law_of_cosines(torso: PlacedTorso, each: Reaching, whole: Vector, easy: float) -> float:
-    """Return the effort of a torso that turned about its lowest joint alone (Huang, Fig. 8.5)."""
-    base = torso.places[0]
-    trunk, way = subtract(each.shoulder, base), subtract(each.target, base)
-    long, far = length(trunk), max(length(way), 1e-9)
-    arm = easy * (each.arm.upper + each.fore)
-    cosine = (long * long + far * far - arm * arm) / max(2.0 * long * far, 1e-9)
-    left_open = math.acos(min(max(cosine, -1.0), 1.0))
-    now = math.atan2(length(cross(trunk, way)), dot(trunk, way))
-    return min(max((now - left_open) / max(length(whole), 1e-9), 0.05), 0.95)
+def _share_for_distance(torso: PlacedTorso, each: Reaching, whole: Vector, easy: float) -> float:
+    """Return the share of a whole turn for which an arm is as long as it is stretched then.
+
+    The way of the shoulder is nearly a parabola: it is followed at its ends and its middle, and
+    Newton's method finds the share.
+    """
+    place, target, size = each.shoulder, each.target, each.arm.upper + each.fore
+    x0, y0, z0 = subtract(target, place)
+    x1, y1, z1 = subtract(target, torso.carried(torso.step(scaled(whole, 0.5)), place))
+    x2, y2, z2 = subtract(target, torso.carried(torso.step(whole), place))
+    if x2 * x2 + y2 * y2 + z2 * z2 >= size * size:
+        return 1.0
+    ax, ay, az = 2.0 * (x0 + x2) - 4.0 * x1, 2.0 * (y0 + y2) - 4.0 * y1, 2.0 * (z0 + z2) - 4.0 * z1
+    bx, by, bz = x2 - x0 - ax, y2 - y0 - ay, z2 - z0 - az
+    low, high, share, slack = 0.0, 1.0, 0.5, size * (1.0 - easy)
+    for _ in range(_ROUNDS):
+        x, y, z = (
+            (ax * share + bx) * share + x0,
+            (ay * share + by) * share + y0,
+            (az * share + bz) * share + z0,
+        )
+        left = 1.0 - share
+        stretched = size - slack * left * left
+        lack = x * x + y * y + z * z - stretched * stretched
+        along = x * (2 * ax * share + bx) + y * (2 * ay * share + by) + z * (2 * az * share + bz)
+        slope = 2.0 * (along - 2.0 * stretched * slack * left)
+        low, high = (share, high) if lack > 0.0 else (low, share)
+        before = share
+        share = share - lack / slope if slope < 0.0 else low
+        if not low < share < high:
+            share = 0.5 * (low + high)
+        if abs(share - before) < _SAME_SHARE:
+            break
+    return share
 
 
-def _lack(torso: PlacedTorso, each: Reaching, step: Quaternion, extension: float) -> float:
-    """Return by how much an arm is too short, or turned too far, in parts of its length."""
-    shoulder = each.shoulder if step is IDENTITY else torso.carried(step, each.shoulder)
-    aim = subtract(each.target, shoulder)
-    size = length(aim)
-    lack = size / (each.arm.upper + each.fore) - extension
-    axis = cone_axis(torso.chest, each.arm.sign)
-    if step is not IDENTITY and dot(axis, aim) < 0.0:
+def _share_for_direction(torso: PlacedTorso, each: Reaching, whole: Vector, low: float) -> float:
+    """Return the share of a whole turn, at least `low`, that brings a place before a shoulder."""
+    high = 1.0
+    if _turned_away(torso, each, torso.step(whole)):
+        return high
+    for _ in range(_ROUNDS):
+        middle = 0.5 * (low + high)
+        away = _turned_away(torso, each, torso.step(scaled(whole, middle)))
+        low, high = (middle, high) if away else (low, middle)
+    return high
+
+
+def _turned_away(torso: PlacedTorso, each: Reaching, step: Quaternion) -> bool:
+    """Return whether a place is further behind than a hand gets, after steps of the torso."""
+    shoulder, axis = each.shoulder, cone_axis(torso.chest, each.arm.sign)
+    if step is not IDENTITY:
+        shoulder = torso.carried(step, shoulder)
         for _ in torso.places:
             axis = rotate(step, axis)
-    cosine = dot(axis, aim) / max(size, 1e-9)
-    if cosine >= 0.0:
-        return lack
-    return max(lack, math.acos(max(cosine, -1.0)) - CONE_RAD)
+    aim = subtract(each.target, shoulder)
+    return dot(axis, aim) < math.cos(CONE_RAD) * length(aim)
 
 
 def _beyond(

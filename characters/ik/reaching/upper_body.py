@@ -7,8 +7,9 @@ bend; elbows swivel by openness; hands turn as they are asked to.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,8 +74,7 @@ _FAR = 100.0  # arm lengths
 _FINGER_OF_KIND = {"touch": ("Middle", "Index"), "point": ("Index", "Middle")}
 
 
-@dataclass(frozen=True)
-class Frames:
+class Frames(NamedTuple):
     """Global frames of the joints of an upper body and their ancestors, in one pose."""
 
     turns: list[Quaternion]
@@ -119,17 +119,23 @@ class UpperBody:
         }
         self._wrists = {side: effector_of(arm, arm.wrist) for side, arm in self.arms.items()}
         trunk = _trunk(skeleton, anatomy, self.arms)
-        ends = [arm.joints[3] for arm in self.arms.values()]
-        order = skeleton.with_ancestors([*trunk, *ends])
+        roots = skeleton.with_ancestors([*trunk, *(arm.joints[1] for arm in self.arms.values())])
+        ends = skeleton.with_ancestors(arm.joints[3] for arm in self.arms.values())
+        order = [*roots, *(joint for joint in ends if joint not in roots)]
         self._order = np.array(order, np.intp)
         number = {joint: place for place, joint in enumerate(order)} | {-1: -1}
         self._number = number
         self._parents = [number[skeleton.parents[joint]] for joint in order]
+        self._roots = len(roots)
         rest = skeleton.rest.globals(skeleton)
         self._rest = [to_quaternion(turn) for turn in turns_of(rest[order, :3, :3])]
         self._sizes = _scales_above(rest, self._order, skeleton)
         self._trunk = [number[joint] for joint in trunk]
         self._pelvis = self._parents[self._trunk[0]] if self._trunk else -1
+        self._written = {
+            side: np.array([*arm.joints[1:], *(j for j in arm.joints[:1] if j >= 0)], np.intp)
+            for side, arm in self.arms.items()
+        }
         self._first = [number[arm.joints[arm.joints[0] < 0]] for arm in self.arms.values()]
         carriers = [number[arm.carrier] for arm in self.arms.values()]
         self._chest = self._trunk[-1] if self._trunk else (carriers[0] if carriers else -1)
@@ -174,21 +180,22 @@ class UpperBody:
         ]
         if not wanted:
             return ReachedPose(pose, 0.0)
-        frames = self._frames(pose)
+        holds = self._four_legs and len(wanted) < len(self.arms)
+        frames = self._frames(pose, whole_arms=holds)
         torso = self._placed(frames)
         hands = [self._started(frames, arm, target, style) for arm, target in wanted]
         turned, effort = self._torso_turn(torso, hands, style)
-        local = pose.rotations.copy()
-        self._turn_trunk(local, frames, torso.step(turned))
-        whole, chest = from_rotation_vector(turned), torso.chest_after(turned)
-        step = torso.step(turned)
+        local, step = pose.rotations.copy(), torso.step(turned)
+        self._turn_trunk(local, frames, step)
+        whole = from_rotation_vector(turned)
+        chest = multiply(whole, torso.chest)
         for hand in hands:
             shoulder = torso.carried(step, hand.shoulder)
             bent = self._bent(hand, shoulder, chest, style.swivel)
             self._write(local, frames, hand, bent, whole)
-        if self._four_legs and len(hands) < len(self.arms):
-            self._hold(local, frames, torso, hands, turned)
-        return ReachedPose(replace(pose, rotations=local), effort)
+        if holds:
+            self._hold(local, frames, torso, hands[0], turned)
+        return ReachedPose(Pose(pose.translations, local, pose.scales, pose.morphs), effort)
 
     def effort(self, pose: Pose, place: Sequence[float] | Array) -> float:
         """Return the effort to bring a palm to a place, (3,) in the character frame [m].
@@ -212,16 +219,18 @@ class UpperBody:
         arm = self.arms.get(side)
         if arm is None:
             return None
-        frames = self._frames(pose)
+        frames = self._frames(pose, whole_arms=True)
         hand = self._number[arm.joints[3]]
         moved = multiply(frames.turns[hand], conjugate(arm.rest_turns[1]))
         offset = self._effectors[side, "reach"].offset
         return np.array(add(frames.places[hand], rotate(moved, offset)))
 
-    def _frames(self, pose: Pose) -> Frames:
-        turns: list[Quaternion] = pose.rotations[self._order].tolist()
-        places: list[Vector] = (pose.translations[self._order] * self._sizes).tolist()
-        for joint, parent in enumerate(self._parents):
+    def _frames(self, pose: Pose, *, whole_arms: bool = False) -> Frames:
+        """Return the frames of trunk and upper arms, or of the whole arms."""
+        order = self._order if whole_arms else self._order[: self._roots]
+        turns: list[Quaternion] = pose.rotations[order].tolist()
+        places: list[Vector] = (pose.translations[order] * self._sizes[: len(order)]).tolist()
+        for joint, parent in enumerate(self._parents[: len(order)]):
             if parent >= 0:
                 above, (x, y, z) = turns[parent], places[parent]
                 turns[joint] = multiply(above, turns[joint])
@@ -282,11 +291,14 @@ class UpperBody:
         return (x, y, z), max(effort, together)
 
     def _turn_trunk(self, local: Array, frames: Frames, step: Quaternion) -> None:
+        if not self._trunk:
+            return
+        rows = []
         for joint in self._trunk:
             parent = self._parents[joint]
             above = frames.turns[parent] if parent >= 0 else IDENTITY
-            turned = multiply(step, frames.turns[joint])
-            local[self._order[joint]] = multiply(conjugate(above), turned)
+            rows.append(multiply(conjugate(above), multiply(step, frames.turns[joint])))
+        local[self._order[self._trunk]] = rows
 
     def _bent(
         self, hand: HandOnItsWay, shoulder: Vector, chest: Quaternion, swivel: float
@@ -298,11 +310,13 @@ class UpperBody:
             bent = pointed(hand, shoulder, chest)
         elif target.palm is None and target.fingers is None:
             bent = bend(arm, hand.effector, shoulder, hand.place, chest, NEUTRAL_SWIVEL)
+            if swivel == NEUTRAL_SWIVEL:
+                return bent
         else:
             bent = oriented(hand, wrist, shoulder, chest)
         if swivel != NEUTRAL_SWIVEL:
             bent = bend_to_wrist(arm, wrist, shoulder, bent, chest, swivel)
-        return bent
+        return twisted(arm, bent)
 
     def _write(
         self,
@@ -314,46 +328,42 @@ class UpperBody:
     ) -> None:
         """Write the local rotations of an arm and its fingers."""
         arm, weight = hand.arm, hand.target.weight
-        collar, upper, lower, wrist = arm.joints
-        bent = twisted(arm, bent)
-        joints, rows = [upper, lower, wrist], []
-        above = frames.turns[self._parents[self._number[upper]]]
-        rows.append(multiply(conjugate(multiply(whole, multiply(hand.swung, above))), bent.upper))
-        rows.append(multiply(conjugate(multiply(bent.upper, arm.between_bones)), bent.lower))
-        rows.append(multiply(conjugate(multiply(bent.lower, arm.between_fore)), bent.hand))
+        collar, upper = (self._number.get(joint, -1) for joint in arm.joints[:2])
+        above = multiply(hand.swung, frames.turns[self._parents[upper]])
+        rows = [
+            multiply(conjugate(multiply(whole, above)), bent.upper),
+            multiply(conjugate(multiply(bent.upper, arm.between_bones)), bent.lower),
+            multiply(conjugate(multiply(bent.lower, arm.between_fore)), bent.hand),
+        ]
         if collar >= 0:
-            place = self._number[collar]
-            above = frames.turns[self._parents[place]]
-            joints.append(collar)
-            rows.append(multiply(conjugate(above), multiply(hand.swung, frames.turns[place])))
+            above = frames.turns[self._parents[collar]]
+            rows.append(multiply(conjugate(above), multiply(hand.swung, frames.turns[collar])))
+        _blend(local, self._written[arm.hand.side], rows, weight)
         if arm.hand.fingers:
             shape = hand.target.shape or SHAPE_OF_KIND[hand.target.kind]
             posture = self.shapes.posture(arm.hand.side, shape)
             _blend(local, posture.joints, posture.rotations, weight)
-        _blend(local, np.array(joints), np.array(rows), weight)
 
     def _hold(
         self,
         local: Array,
         frames: Frames,
         torso: PlacedTorso,
-        hands: Sequence[HandOnItsWay],
+        reaching: HandOnItsWay,
         turned: Vector,
     ) -> None:
         """Keep the other front paw where it is while the torso moves."""
-        busy = {hand.arm.hand.side for hand in hands}
-        (arm,) = (arm for side, arm in self.arms.items() if side not in busy)
+        (arm,) = (arm for arm in self.arms.values() if arm is not reaching.arm)
+        turns, places = frames
         _, upper, lower, paw = (self._number.get(joint, -1) for joint in arm.joints)
-        places, turns = frames.places, frames.turns
-        step, chest = torso.step(turned), torso.chest_after(turned)
-        shoulder = torso.carried(step, places[upper])
+        shoulder = torso.carried(torso.step(turned), places[upper])
         wrist = self._wrists[arm.hand.side]
         now = BentArm(turns[upper], turns[lower], turns[paw], places[paw])
         swivel = swivel_of(arm, places[upper], places[lower], places[paw], torso.chest)
-        bent = bend_to_wrist(arm, wrist, shoulder, now, chest, swivel)
-        target = HandTarget(places[paw])
-        still = HandOnItsWay(arm, target, wrist, places[paw], shoulder, IDENTITY)
-        self._write(local, frames, still, bent, from_rotation_vector(turned))
+        bent = bend_to_wrist(arm, wrist, shoulder, now, torso.chest_after(turned), swivel)
+        still = HandTarget(places[paw])
+        held = HandOnItsWay(arm, still, wrist, places[paw], shoulder, IDENTITY)
+        self._write(local, frames, held, bent, from_rotation_vector(turned))
 
     def _effector(self, arm: Arm, kind: ReachKind, skeleton: Skeleton) -> Effector:
         """Return what of a hand is brought to a place."""
@@ -409,7 +419,9 @@ def _scales_above(rest: Array, order: NDArray[np.intp], skeleton: Skeleton) -> A
     return scales
 
 
-def _blend(local: Array, joints: NDArray[np.intp], turns: Array, weight: float) -> None:
+def _blend(
+    local: Array, joints: NDArray[np.intp], turns: Array | list[Quaternion], weight: float
+) -> None:
     """Turn joints to local rotations, or part of the way there."""
     if weight >= 1.0:
         local[joints] = turns
