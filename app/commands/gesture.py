@@ -132,19 +132,26 @@ def import_gesture(
 
     Example: [cyan]cubeling gesture import greeting.bvh --from 1.2 --to 2.4 -o GREET[/]
     """
-    name = output or Path(recording.partition("#")[0]).stem
-    if name.endswith(SUFFIX):
-        path = chosen_output(Path(name), "", "gesture", (SUFFIX,), overwrite)
-        gesture = imported(recording, start, end)
-        save_gesture(replace(gesture, name=gesture_name(path.stem)), path)
-        written = str(path)
+    file = output is not None and output.endswith(SUFFIX)
+    if file:
+        chosen_output(Path(str(output)), "", "gesture", (SUFFIX,), overwrite)
+    gesture = imported(recording, start, end)
+    if output is not None:
+        gesture = replace(gesture, name=gesture_name(Path(output).stem if file else output))
+    if file:
+        save_gesture(gesture, Path(str(output)))
     else:
-        store, name = GestureStore(folder), gesture_name(name)
-        if store.has(name) and not overwrite:
-            remedy = "choose another name or add --overwrite"
-            raise AppError(f"there is a gesture {name} already: {remedy}")
-        written = store.save(replace(imported(recording, start, end), name=name))
-    print_written(written)
+        output = _saved(GestureStore(folder), gesture, overwrite)
+    describe(Console(), gesture)
+    print_written(str(output))
+
+
+def _saved(store: GestureStore, gesture: SymbolicGesture, overwrite: bool) -> str:
+    """Save a gesture to the library, unless there is one of its name; return where."""
+    if store.has(gesture.name) and not overwrite:
+        remedy = "choose another name with -o, or add --overwrite"
+        raise AppError(f"there is a gesture {gesture.name} already: {remedy}")
+    return store.save(gesture)
 
 
 def describe(console: Console, gesture: SymbolicGesture) -> None:

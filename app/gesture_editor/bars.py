@@ -110,10 +110,10 @@ def lower_bar(state: EditorState) -> list[Widget]:
 
 def with_card(state: EditorState, name: str) -> EditorState:
     """Open a card, with its first text field ready for what is typed."""
-    first = {"open": "find", "import": "recording", "save as": "save as"}.get(name, "")
+    first = {"open": "find", "import": "recording", "save as": "new name"}.get(name, "")
     state = replace(state, card=name, focus=first)  # type: ignore[arg-type]
     if name == "save as":
-        state = with_text(state, "save as", state.document.gesture.name)
+        state = with_text(state, "new name", state.document.gesture.name)
     return with_text(state, "find", "") if name == "open" else state
 
 

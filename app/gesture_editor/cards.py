@@ -44,9 +44,9 @@ MAX_NAMES, NAME_COLUMNS = 70, 5
 KEYS = (
     ("Space", "play and pause"),
     (", and .", "one frame back and ahead"),
-    ("← →", "another key of the row"),
-    ("Shift ← →", "move the key in time"),
-    ("↑ ↓", "another row"),
+    ("Left, Right", "another key of the row"),
+    ("Shift+Left, Shift+Right", "move the key in time"),
+    ("Up, Down", "another row"),
     ("Ctrl and an arrow", "move the hand by a sector"),
     ("A, Delete", "add a key, delete it"),
     ("Ctrl+Z", "undo"),
@@ -200,18 +200,18 @@ def _name(state: EditorState) -> list[Widget]:
     return [
         *widgets,
         TextField(
-            "save as", (left + 24, top + 70, 432.0, 34.0), state.text("save as"),
-            "a name, such as WAVE", state.focus == "save as",
+            "new name", (left + 24, top + 70, 432.0, 34.0), state.text("new name"),
+            "a name, such as WAVE", state.focus == "new name",
         ),
         Button(
             "save it", (left + 346, top + 136, 110.0, 34.0), "Save", _save_under_name,
-            primary=True, enabled=bool(state.text("save as").strip()),
+            primary=True, enabled=bool(state.text("new name").strip()),
         ),
     ]  # fmt: skip
 
 
 def _save_under_name(state: EditorState) -> EditorState:
-    name = gesture_name(state.text("save as"))
+    name = gesture_name(state.text("new name"))
     if not name:
         return told(state, "a gesture needs a name", alarming=True)
     document = state.document
@@ -253,8 +253,8 @@ def _go_on(state: EditorState) -> EditorState:
 
 def _named_first(state: EditorState) -> EditorState:
     """Ask for a name to save under."""
-    named = with_text(state, "save as", state.document.gesture.name)
-    return replace(named, card="save as", focus="save as")
+    named = with_text(state, "new name", state.document.gesture.name)
+    return replace(named, card="save as", focus="new name")
 
 
 def _question(title: str, buttons: tuple[tuple[str, Action], ...]) -> list[Widget]:
@@ -263,7 +263,7 @@ def _question(title: str, buttons: tuple[tuple[str, Action], ...]) -> list[Widge
     for place, (label, action) in enumerate(buttons):
         rect: Rect = (left + 24 + 162 * place, top + 84, 152.0, 36.0)
         primary = place == len(buttons) - 1
-        widgets.append(Button(label.lower(), rect, label, action, primary=primary))
+        widgets.append(Button(f"answer:{label.lower()}", rect, label, action, primary=primary))
     return widgets
 
 

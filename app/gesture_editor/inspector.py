@@ -309,7 +309,7 @@ def _expressivity(now: GestureExpressivity) -> list[Widget]:
 
 def _hint(left: float, lines: tuple[str, ...]) -> list[Widget]:
     return [
-        Label(f"hint:{number}", (left, 190.0 + 24 * number, 400.0, 0.0), words, NORMAL, SUBTLE)
+        Label(f"hint:{number}", (left, 190.0 + 24 * number, COLUMN, 0.0), words, NORMAL, SUBTLE)
         for number, words in enumerate(lines)
     ]
 

@@ -9,7 +9,7 @@ from app.gesture_editor.bars import lower_bar, upper_bar
 from app.gesture_editor.cards import HEIGHT, WIDTH, card
 from app.gesture_editor.inspector import inspector
 from app.gesture_editor.state import EditorState
-from app.gesture_editor.time_line import draw_playhead, time_line
+from app.gesture_editor.time_line import KeyMark, draw_playhead, time_line
 from app.gesture_editor.widgets import (
     CARD,
     SMALL,
@@ -89,6 +89,9 @@ class WindowDrawing:
         canvas = self._still.copy()
         canvas.picture(PREVIEW[0], PREVIEW[1], preview, 12.0)
         draw_playhead(canvas, state)
+        for widget in time_line(state):
+            if isinstance(widget, KeyMark):
+                widget.draw(canvas, _look(widget, state, under))
         _message(canvas, state)
         for widget in card(state):
             widget.draw(canvas, _look(widget, state, under))

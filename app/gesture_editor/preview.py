@@ -13,7 +13,6 @@ from app.gesture_editor.timing import duration
 from characters import Animator, Character, CharacterCommand, PosedCharacter
 from characters.behaviour.gestures.gesture import SymbolicGesture
 from characters.behaviour.gestures.planning import Performer
-from characters.behaviour.gestures.space import GestureSpace
 from characters.behaviour.gestures.timing import natural_times
 from characters.behaviour.intents import BehaviourIntent, GestureIntent, Hand
 from characters.control.controllers.in_place import InPlaceController
@@ -42,6 +41,9 @@ MAX_STEP_S = 0.2
 
 EXACT_S = 0.3
 """How long before a time that is shown the steps are short [s]."""
+
+HEADROOM = 0.12
+"""What the picture shows above a character, for raised hands, over its height."""
 
 ELEVATION_RAD = 0.12
 """How far the camera looks down [rad]."""
@@ -91,13 +93,13 @@ class Preview:
     Parameters
     ----------
     context
-        Where it draws; it is not released.
+        Where it draws; it is not released. None to pose only.
     load
         Returns a character by its name.
     """
 
     def __init__(
-        self, context: moderngl.Context, load: Callable[[str], Character] = Character.load
+        self, context: moderngl.Context | None, load: Callable[[str], Character] = Character.load
     ) -> None:
         self._context, self._load = context, load
         self._characters: dict[str, Character] = {}
@@ -107,7 +109,7 @@ class Preview:
         self._posed: PosedCharacter | None = None
         self._stage: Stage | None = None
         self._layers: dict[str, GestureLayer] = {}
-        self._spaces: dict[str, GestureSpace] = {}
+        self._performers: dict[str, Performer] = {}
         self._cameras: dict[tuple[str, tuple[int, int]], PortraitCamera] = {}
 
     def character(self, name: str) -> Character:
@@ -136,6 +138,7 @@ class Preview:
         """Return a picture of the character at a time, (height, width, 3) BGR."""
         posed = self.pose(performance, time)
         if self._stage is None or self._stage.size != size:
+            assert self._context is not None, "it was made to draw"
             self.release()
             self._stage = Stage(self._context, size)
         camera = self.camera(performance.character, size)
@@ -149,10 +152,9 @@ class Preview:
     ) -> ShownSpace:
         """Return the gesture space of a hand in the pictures of `draw`."""
         name = performance.character
-        if name not in self._spaces:
-            self._spaces[name] = Performer.of(self.character(name)).space
         assert self._posed is not None, "it was drawn"
-        space = replace(self._spaces[name], spatial=performance.gesture.expressivity.spatial)
+        space = self._performer(name).space
+        space = replace(space, spatial=performance.gesture.expressivity.spatial)
         placed = self._posed.table_from_character
         return ShownSpace(space, placed, self.camera(name, size), left)
 
@@ -162,10 +164,10 @@ class Preview:
         if key not in self._cameras:
             character = self.character(name)
             posed = self._new_animator(name).update(CharacterCommand(0.0))
-            points = CharacterExtent(character).points(posed.pose)
-            low, high = points.min(axis=0), points.max(axis=0)
-            above = 0.12 * (high[1] - low[1])
-            points = np.concatenate([points, [[0.0, high[1] + above, 0.0]]])
+            extent, sitting = CharacterExtent(character), self._performer(name).posture
+            points = np.concatenate([extent.points(pose) for pose in (posed.pose, sitting)])
+            top = points[:, 1].max() + HEADROOM * np.ptp(points[:, 1])
+            points = np.concatenate([points, [[0.0, top, 0.0]]])
             placed = posed.table_from_character
             table = points @ placed[:3, :3].T + placed[:3, 3]
             self._cameras[key] = PortraitCamera.around(table, ELEVATION_RAD, size)
@@ -176,6 +178,11 @@ class Preview:
         if self._stage is not None:
             self._stage.release()
         self._stage = None
+
+    def _performer(self, name: str) -> Performer:
+        if name not in self._performers:
+            self._performers[name] = Performer.of(self.character(name))
+        return self._performers[name]
 
     def _new_animator(self, name: str) -> Animator:
         """Return an animator of somebody who stays; gestures that were planned stay known."""

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import moderngl
 
+from app.errors import AppError
 from app.gesture_editor.document import EMPTY, ROWS, GestureDocument, Row, keys_of, moves
 from app.gesture_editor.edits import gesture_name
 from app.gesture_editor.handling import Event, handle, left_field
@@ -171,7 +172,7 @@ class EditorSession:
         for request in requests:
             try:
                 effects[type(request)](request)
-            except (CharacterError, OSError) as error:
+            except (AppError, CharacterError, OSError) as error:
                 message = " ".join(str(error).split())
                 self.state = told(self.state, message, alarming=True)
                 return

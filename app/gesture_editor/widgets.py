@@ -153,7 +153,8 @@ class Button(Widget):
         fill, ink = self._colors(look)
         left, top, width, height = self.rect
         radius = min(10.0, height / 2)
-        rounded(canvas, self.rect, radius, fill if self.chosen or self.primary else RULE)
+        filled = self.enabled and (self.chosen or self.primary)
+        rounded(canvas, self.rect, radius, fill if filled else RULE)
         inner = (left + 1, top + 1, width - 2, height - 2)
         rounded(canvas, inner, radius - 1, fill)
         size = fitting(self.label, self.size, width - 10)

@@ -1,0 +1,232 @@
+"""The whole editor: preview, files, and what is left after a crash."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.gesture_editor.handling import Dropped, KeyPressed, Moved, Pressed, Released
+from app.gesture_editor.preview import Performance, Preview
+from app.gesture_editor.session import KEEP_INTERVAL_S, EditorSession
+from app.gesture_editor.tour import Hand, draw_tour, from_empty_to_saved
+from characters import Character, Clip, Pose
+from characters.behaviour.gestures.collection import GestureCollection
+from characters.behaviour.gestures.files import load_gesture
+from characters.errors import CharacterError
+
+
+def hand_height(preview: Preview, performance: Performance, time: float) -> float:
+    """Return the height of the right hand over the table [m]."""
+    posed = preview.pose(performance, time)
+    character = preview.character(performance.character)
+    joint = character.anatomy.joint("rightHand")
+    if joint is None:
+        joint = character.anatomy.joint("rightFrontFoot")
+    assert joint is not None
+    placed = posed.table_from_character @ posed.pose.globals(character.skeleton)[joint]
+    return float(placed[1, 3])
+
+
+def test_a_gesture_is_made_from_empty_to_saved(opened, tmp_path):
+    session = opened()
+    assert len(list(from_empty_to_saved(session))) == 7
+    saved = load_gesture(tmp_path / "gestures" / "big_hello.toml")
+    assert saved == session.state.document.gesture
+    assert saved.name == "BIG_HELLO"
+    assert saved.one_handed
+    assert saved.expressivity.power == 0.5
+    assert [key.path for key in saved.right] == ["line", "wave"]
+    assert not session.state.changed
+    assert "BIG_HELLO" in session.state.names
+    again = opened("big hello")
+    assert again.state.document.gesture == saved
+
+
+def test_pictures_of_the_tour_are_drawn(context, tmp_path):
+    paths = draw_tour(tmp_path, tmp_path / "gestures")
+    assert len(paths) == 7
+    assert all(path.stat().st_size > 20_000 for path in paths)
+
+
+@pytest.mark.parametrize("name", GestureCollection.bundled().names)
+def test_every_gesture_of_the_library_survives_the_editor(name, opened, tmp_path):
+    session = opened(name)
+    session.send(KeyPressed("S", control=True))
+    assert load_gesture(tmp_path / "gestures" / f"{name.lower()}.toml") == (
+        GestureCollection.bundled().get(name)
+    )
+
+
+def test_the_preview_shows_what_is_edited(opened):
+    session = opened("STOP", "human")
+    hand = Hand(session)
+    preview, heights = session._preview, []
+    for sector in ("YLowerC", "YUpperEP"):
+        hand.click(f"key:right:{len(session.state.document.gesture.right) - 1}")
+        hand.put_hand("XP", sector)
+        session.advance(0.0)
+        performance = Performance.of(session.state.document, "human")
+        heights.append(hand_height(preview, performance, session.state.time))
+    assert heights[1] > heights[0] + 0.02
+
+
+def test_a_time_shows_the_same_pose_however_it_was_reached(context):
+    preview = Preview(context)
+    performance = Performance(GestureCollection.bundled().get("WAVE"), "right", "human")
+    first = preview.pose(performance, 0.9).pose.rotations
+    preview.pose(performance, 0.2)
+    np.testing.assert_allclose(preview.pose(performance, 0.9).pose.rotations, first, atol=1e-9)
+
+
+def test_the_picture_changes_while_it_plays_and_rests_in_a_pause(opened):
+    session = opened("WAVE")
+    session.advance(0.5)
+    first = session.picture(1.0)
+    session.advance(0.5)
+    assert not np.array_equal(session.picture(1.0), first)
+    session.send(KeyPressed("Space"))
+    paused = session.picture(1.0)
+    session.advance(0.5)
+    np.testing.assert_array_equal(session.picture(1.0), paused)
+
+
+def test_the_sector_of_the_hand_glows(opened):
+    session = opened("WAVE", "human")
+    session.send(KeyPressed("Space"))
+    session.advance(0.0)
+    plain = session.picture(1.0)
+    Hand(session).click("sectors")
+    session.send(Moved(5.0, 500.0))
+    session.advance(0.0)
+    left = np.s_[60:550, 20:740]
+    assert (np.abs(session.picture(1.0)[left].astype(int) - plain[left]) > 20).any(2).sum() > 300
+
+
+@pytest.mark.parametrize("scale", [1.0, 1.5])
+def test_the_picture_has_the_size_of_the_window(opened, scale):
+    assert opened().picture(scale).shape == (720 * scale, 1280 * scale, 3)
+
+
+def test_a_folder_that_cannot_be_written_loses_nothing(opened, tmp_path):
+    session = opened()
+    for _ in from_empty_to_saved(session):
+        pass
+    Hand(session).click("shape:fist")
+    (tmp_path / "gestures").rename(tmp_path / "elsewhere")
+    (tmp_path / "gestures").write_text("not a folder")
+    before = session.state.document
+    session.send(KeyPressed("S", control=True))
+    assert session.state.alarming
+    assert "\n" not in session.state.message
+    assert session.state.document == before
+    assert session.state.changed
+    session.advance(2 * KEEP_INTERVAL_S)
+    assert "not safe yet" in session.state.message
+
+
+def test_a_failed_save_does_not_close_the_editor(opened, tmp_path):
+    session = opened()
+    (tmp_path / "gestures").write_text("not a folder")
+    hand = Hand(session)
+    hand.put_hand("XP", "YCC")
+    hand.write("name", "mine")
+    session.send(KeyPressed("Esc"))
+    hand.click("answer:save")
+    assert session.state.alarming
+    assert not session.closed
+
+
+def test_changes_survive_a_crash(opened):
+    session = opened("WAVE")
+    Hand(session).click("shape:fist")
+    session.advance(KEEP_INTERVAL_S)
+    again = opened()  # the first one was never closed
+    assert again.state.document.gesture == session.state.document.gesture
+    assert again.state.changed
+    again.send(KeyPressed("S", control=True))
+    Hand(again).click("answer:replace it")
+    assert not opened().state.changed
+    assert opened().state.document.gesture.name == ""
+
+
+def test_a_gesture_without_a_name_survives_a_crash(opened):
+    session = opened()
+    Hand(session).put_hand("XEP", "YUpperP")
+    session.close()
+    again = opened()
+    assert again.state.document.gesture == session.state.document.gesture
+
+
+def test_discarded_changes_do_not_come_back(opened):
+    session = opened("WAVE")
+    Hand(session).click("shape:fist")
+    session.advance(KEEP_INTERVAL_S)
+    session.send(KeyPressed("Esc"))
+    Hand(session).click("answer:discard changes")
+    assert session.closed
+    session.close()
+    assert opened().state.document.gesture.name == ""
+
+
+def test_another_gesture_is_replaced_only_if_asked(opened, tmp_path):
+    session = opened("WAVE")
+    hand = Hand(session)
+    hand.click("shape:fist")
+    hand.click("name")
+    session.send(*[KeyPressed("Backspace")] * 4)
+    hand.write("name", "clap")
+    session.send(KeyPressed("S", control=True))
+    assert session.state.card == "replace"
+    assert not (tmp_path / "gestures" / "clap.toml").exists()
+    hand.click("answer:replace it")
+    assert load_gesture(tmp_path / "gestures" / "clap.toml") == session.state.document.gesture
+
+
+def test_an_import_that_fails_changes_nothing(opened):
+    session = opened("WAVE")
+    before = session.state.document
+    hand = Hand(session)
+    hand.click("import")
+    hand.write("recording", "nowhere.bvh")
+    assert session.state.alarming
+    assert session.state.document == before
+
+
+def test_a_recording_is_imported_and_waits_for_a_name(opened, context, tmp_path):
+    preview, human = Preview(context), Character.load("human")
+    performance = Performance(GestureCollection.bundled().get("CHEER"), "right", "human")
+    times = np.arange(0.0, performance.cycle, 1 / 30)
+    poses = Pose.of_frames([preview.pose(performance, float(time)).pose for time in times])
+    clip = Clip("cheer", 30.0, poses, loop=False)
+    Character("cheers", human.skeleton, {"cheer": clip}, human.meshes, morphs=human.morphs).save(
+        tmp_path / "cheers.glb"
+    )
+    session = opened()
+    session.send(Dropped(str(tmp_path / "cheers.glb")), KeyPressed("Enter"))
+    assert not session.state.alarming
+    gesture = session.state.document.gesture
+    assert gesture.right
+    assert gesture.left
+    assert session.state.changed
+
+
+def test_a_character_of_the_users_can_perform(opened, tmp_path):
+    path = tmp_path / "mine.glb"
+    Character.load("robot").save(path)
+    session = opened("CLAP", str(path))
+    assert session.state.characters[-1] == str(path)
+    session.advance(0.4)
+    assert session.picture(1.0).shape == (720, 1280, 3)
+
+
+def test_a_broken_file_in_the_folder_is_named(context, tmp_path):
+    (tmp_path / "bad.toml").write_text("[[right]]\nat = 'soon'")
+    with pytest.raises(CharacterError, match=r"bad\.toml"):
+        EditorSession(context, tmp_path)
+
+
+def test_a_press_without_a_release_elsewhere_does_not_stay_held(opened):
+    session = opened("WAVE")
+    session.send(Moved(900, 500), Pressed(), Moved(1, 1), Released())
+    assert session.state.held == ""
+    assert replace(session.state, pointer=(0, 0)).grip is None

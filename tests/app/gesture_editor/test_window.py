@@ -1,0 +1,26 @@
+"""The editor's window, on a virtual display."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.virtual_screen import VirtualScreen
+
+SCRIPT = Path(__file__).with_name("window_script.py")
+ROOT = SCRIPT.parents[3]
+
+
+def test_a_gesture_is_made_and_saved_in_the_window(tmp_path):
+    if not VirtualScreen.installed():
+        pytest.skip("Xvfb is not installed")
+    with VirtualScreen() as screen:
+        done = subprocess.run(
+            [sys.executable, str(SCRIPT), str(tmp_path)],
+            env={**screen.environment, "PYTHONPATH": str(ROOT)},
+            capture_output=True,
+            text=True,
+            timeout=120,
+        )
+    assert done.returncode == 0, done.stderr
