@@ -9,6 +9,7 @@ from characters.errors import CharacterError
 from characters.ik.solvers import columns
 from characters.ik.solvers.ccd import CyclicCoordinateDescent
 from characters.ik.solvers.chains import Chains, Solution
+from characters.ik.solvers.curling import curled
 from characters.ik.solvers.fabrik import Fabrik
 from characters.ik.solvers.jacobian import JacobianSolver
 from characters.ik.solvers.orientation import oriented, straight
@@ -68,8 +69,9 @@ def solve(
     limits
         What becomes of a rotation beyond the limits of the chains; None to ignore the limits.
     alone
-        Whether the method is left alone. Otherwise damped least squares goes on from what it leaves
-        unsolved, and starts again from random postures (as TRAC-IK does).
+        Whether the method is left alone. Otherwise chains curl up for targets near their base, and
+        damped least squares goes on from what the method leaves unsolved, also from random postures
+        (as TRAC-IK does).
     seed
         Of the random postures.
 
@@ -94,6 +96,8 @@ def solve(
     goals = np.where(usable[:, None], targets, 0.0)
     task = Task.of(chains, goals, start, tolerance * reach, limits)
     reachable = _with_reachable_targets(_nudged(task))
+    if not alone:
+        reachable = curled(reachable)
     turns, points, iterations = solver(reachable)
     beyond = np.flatnonzero(columns.length(task.targets) >= task.reach)
     if task.bounds is None and len(beyond):

@@ -35,13 +35,13 @@ class MassSprings:
     pinned: bool
     """Whether the end is pinned to the target (method 2) or pulled to it (method 1)."""
 
-    stiffness: float = 0.7
+    stiffness: float = 0.6
     """k of the bones, in masses over step². Chains are unstable at (2 − damping) / 2 and above."""
 
     pull: float = 0.5
     """k of the spring from the end to the target."""
 
-    damping: float = 0.4
+    damping: float = 0.45
     """Share of the velocity that is lost in a step."""
 
     rest_energy: float = 0.1
