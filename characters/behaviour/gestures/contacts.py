@@ -50,7 +50,7 @@ CONTACTS: Mapping[str, Contact] = {
     "chest": Contact("chest", 0.15, 0.3, 1.0),
     "heart": Contact("chest", -0.35, 0.35, 1.0),
     "belly": Contact("spine", 0.2, 0.0, 1.0),
-    "hip": Contact("hips", 1.0, 0.45, 0.15),
+    "hip": Contact("hips", 1.0, 0.45, 0.6),
     "thigh": Contact("ownUpperLeg", 0.3, 0.3, 1.0),
     "other shoulder": Contact("otherUpperArm", 0.2, 0.8, 0.7),
     "other arm": Contact("otherLowerArm", 0.0, 0.3, 1.0),

@@ -48,6 +48,9 @@ SIDES = {"left": True, "right": False}
 EASY, STRETCHED = 0.75, 0.95
 """Distances of a wrist from its shoulder ÷ the arm's length: as asked for below, never above."""
 
+STRETCHED_ON_FOUR = 0.8
+"""The same for front legs, whose trunk would else stretch after them."""
+
 NEGLIGIBLE = 1e-6
 """Sine of half an angle below which a joint of the trunk is not turned."""
 
@@ -158,6 +161,7 @@ class _Planner:
     ) -> None:
         self.performer = performer
         self._turned_postures: dict[bytes, tuple[Pose, Array]] = {}
+        self._four_legs = performer.character.anatomy.kind == "quadruped"
         self.expressivity = expressivity
         self.duration = stroke_length(gesture)
         self.style = ReachStyle(
@@ -290,10 +294,11 @@ class _Planner:
         palm = float(np.linalg.norm(np.subtract(arm.hand.palm, arm.wrist)))
         offset = place - palm * fingers - posed[arm.joints[1], :3, 3]
         distance = float(np.linalg.norm(offset)) / (arm.upper + arm.fore)
-        beyond = (distance - EASY) / (STRETCHED - EASY)
+        most = STRETCHED_ON_FOUR if self._four_legs else STRETCHED
+        beyond = (distance - EASY) / (most - EASY)
         if beyond <= 0.0:
             return place
-        taken = EASY + (STRETCHED - EASY) * -math.expm1(-beyond)
+        taken = EASY + (most - EASY) * -math.expm1(-beyond)
         nearer: Array = place - offset * (1.0 - taken / distance)
         return nearer
 
