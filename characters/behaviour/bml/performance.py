@@ -77,14 +77,20 @@ class Performance:
         return max([self.start, *releases]) if math.isfinite(self.start) else math.inf
 
     def next_track(self) -> Track | None:
-        """Return the behaviour whose sync point comes next."""
-        left = [track for track in self.tracks.values() if not track.over]
-        return min(left, key=lambda track: track.times[track.happened], default=None)
-
-    def scheduled(self) -> Iterator[Scheduled]:
-        """Yield its behaviours that are not over and are for a performer."""
+        """Return the behaviour whose sync point comes next, the first of those that tie."""
+        found, earliest = None, math.inf
         for track in self.tracks.values():
-            if not track.over and not track.control:
+            if track.happened < len(track.times):
+                time = track.times[track.happened]
+                if found is None or time < earliest:
+                    found, earliest = track, time
+        return found
+
+    def scheduled(self, at: float | None = None) -> Iterator[Scheduled]:
+        """Yield its behaviours for a performer that are not over, or only those that go on then."""
+        for track in self.tracks.values():
+            goes_on = not track.over if at is None else track.times[0] <= at < track.times[-1]
+            if goes_on and not track.control:
                 times = dict(zip(track.timing.syncs, track.times, strict=True))
                 yield Scheduled(self.block.id, track.behaviour, times, self.block.attributes)
 

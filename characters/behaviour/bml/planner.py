@@ -85,11 +85,12 @@ class _Planner:
         self._ground = _Cluster([], grounded=True)
         self._clusters: dict[str, _Cluster] = {}
         self._times: dict[str, list[float]] = {}
+        self._known: dict[str, dict[int, float]] = {}
         self._links: dict[str, list[Link]] = {name: [] for name in problem.timings}
         self._orders: dict[str, list[Order]] = {}
         for link in problem.links:
             self._links[link.a[0]].append(link)
-            if link.b is not None:
+            if link.b is not None and link.b[0] != link.a[0]:
                 self._links[link.b[0]].append(link)
         for order in problem.orders:
             for end in (order.earlier, order.later):
@@ -116,6 +117,9 @@ class _Planner:
         facts = self._problem.facts.get(name, {})
         cluster = self._joined(name, anchors, grounded=bool(facts))
         fixed = self._fixed(name, anchors, facts)
+        for link in self._links[name]:
+            if link.b is not None and link.b[0] == link.a[0] and (fixed or not cluster.grounded):
+                self._fix_distance(name, link, fixed)
         timing = self._problem.timings[name]
         if fixed:
             times = self._stretched(name, fixed, cluster)
@@ -123,10 +127,10 @@ class _Planner:
             times = [math.inf] * len(timing.syncs)
         else:
             times = stretched(timing, {0: 0.0})
-        self._clusters[name], self._times[name] = cluster, times
+        self._clusters[name], self._times[name], self._known[name] = cluster, times, fixed
         cluster.members.append(name)
         for order in self._orders.get(name, ()):
-            self._obey(name, order, fixed, cluster)
+            self._obey(name, order)
 
     def _anchors(self, name: str) -> list[_Anchor]:
         anchors = []
@@ -136,7 +140,7 @@ class _Planner:
             else:
                 assert link.b is not None
                 own, other, offset = link.b, link.a, -link.offset
-            if other is None or other[0] in self._times:
+            if other is None or (other[0] in self._times and other[0] != name):
                 anchors.append(_Anchor(own[1], other, offset, link.owner))
         anchors.sort(key=lambda anchor: anchor.index)
         return anchors
@@ -180,6 +184,7 @@ class _Planner:
         cluster.members = []
 
     def _move(self, name: str, by: float, *, grounded: bool) -> None:
+        self._known[name] = {index: time + by for index, time in self._known[name].items()}
         times = [time + by for time in self._times[name]]
         if grounded and not self._problem.strict:
             times = self._not_in_the_past(name, times)
@@ -195,22 +200,39 @@ class _Planner:
         fixed = dict(facts)
         for anchor in anchors:
             time = self._in_time(anchor, self._time(anchor))
-            before = max((i for i in fixed if i <= anchor.index), default=None)
-            after = min((i for i in fixed if i > anchor.index), default=None)
-            low = -math.inf if before is None else fixed[before]
-            high = math.inf if after is None else fixed[after]
-            if not time < math.inf:
-                self._unmet(anchor.owner, "it waits for something that never comes")
-            elif before == anchor.index:
-                if abs(low - time) > TOLERANCE:
-                    self._unmet(anchor.owner, f"{self._point(name, before)} cannot be at two times")
-            else:
-                if not low <= time <= high:
-                    self._unmet(anchor.owner, f"{self._point(name, anchor.index)} is out of order")
-                fixed[anchor.index] = min(max(time, low), high)
-                self._check_span(name, fixed, before, anchor)
-                self._check_span(name, fixed, after, anchor)
+            self._fix(name, fixed, anchor.index, time, anchor.owner)
         return fixed
+
+    def _fix(self, name: str, fixed: dict[int, float], index: int, time: float, owner: str) -> None:
+        """Fix the time of a sync point, if the others that are fixed allow it."""
+        if not time < math.inf:
+            self._unmet(owner, "it waits for something that never comes")
+            return
+        low = max((i for i in fixed if i <= index), default=None)
+        high = min((i for i in fixed if i > index), default=None)
+        earliest = -math.inf if low is None else fixed[low]
+        latest = math.inf if high is None else fixed[high]
+        if low == index:
+            if abs(earliest - time) > TOLERANCE:
+                self._unmet(owner, f"{self._point(name, index)} cannot be at two times")
+            return
+        if not earliest <= time <= latest:
+            self._unmet(owner, f"{self._point(name, index)} is out of order")
+        fixed[index] = min(max(time, earliest), latest)
+        self._check_span(name, fixed, low, index, owner)
+        self._check_span(name, fixed, index, high, owner)
+
+    def _fix_distance(self, name: str, link: Link, fixed: dict[int, float]) -> None:
+        """Fix how far two sync points of one behaviour are from each other."""
+        assert link.b is not None
+        one, other = link.a[1], link.b[1]
+        if one not in fixed and other not in fixed:
+            times = stretched(self._problem.timings[name], fixed or {0: 0.0})
+            fixed[other] = times[other]
+        if other in fixed:
+            self._fix(name, fixed, one, fixed[other] + link.offset, link.owner)
+        else:
+            self._fix(name, fixed, other, fixed[one] - link.offset, link.owner)
 
     def _in_time(self, anchor: _Anchor, time: float) -> float:
         """Return a time that is not in the past, if it is only a little."""
@@ -222,16 +244,14 @@ class _Planner:
         return time
 
     def _check_span(
-        self, name: str, fixed: dict[int, float], other: int | None, anchor: _Anchor
+        self, name: str, fixed: dict[int, float], first: int | None, last: int | None, owner: str
     ) -> None:
-        if other is None or not self._problem.strict:
+        if first is None or last is None or not self._problem.strict:
             return
-        first, last = sorted((other, anchor.index))
-        if not fits(self._problem.timings[name], first, last, fixed[last] - fixed[first]):
+        duration = fixed[last] - fixed[first]
+        if not fits(self._problem.timings[name], first, last, duration):
             a, b = self._point(name, first), self._point(name, last)
-            raise Unmet(
-                anchor.owner, f"{a} and {b} cannot be {fixed[last] - fixed[first]:.3g} s apart"
-            )
+            raise Unmet(owner, f"{a} and {b} cannot be {duration:.3g} s apart")
 
     def _stretched(self, name: str, fixed: dict[int, float], cluster: _Cluster) -> list[float]:
         """Return the times of a behaviour; one that would start too early is compressed."""
@@ -282,8 +302,8 @@ class _Planner:
             return 0.0
         return earlier[1] - later[1] - order.offset
 
-    def _obey(self, name: str, order: Order, fixed: dict[int, float], cluster: _Cluster) -> None:
-        """Move the sync point of a behaviour that is just placed to where an order allows it."""
+    def _obey(self, name: str, order: Order) -> None:
+        """Move the sync point of a behaviour to where an order allows it."""
         late = self._lateness(order)
         if late <= TOLERANCE:
             return
@@ -292,23 +312,12 @@ class _Planner:
         else:
             assert order.earlier is not None
             index, by = order.earlier[1], -late
-        wanted = self._times[name][index] + by
-        neighbours = [(i, t) for i, t in fixed.items() if i != index]
-        if (
-            index in fixed
-            or any((t > wanted) if i < index else (t < wanted) for i, t in neighbours)
-            or not math.isfinite(wanted)
-        ):
-            self._unmet(order.owner, f"{self._point(name, index)} cannot be so")
+        fixed = self._known[name]
+        if index in fixed:
+            self._unmet(order.owner, f"{self._point(name, index)} would be {late:.3g} s too late")
             return
-        fixed[index] = wanted
-        self._check_order(name, order, fixed, index)
-        self._times[name] = self._stretched(name, fixed, cluster)
-
-    def _check_order(self, name: str, order: Order, fixed: dict[int, float], index: int) -> None:
-        anchor = _Anchor(index, None, 0.0, order.owner)
-        self._check_span(name, fixed, max((i for i in fixed if i < index), default=None), anchor)
-        self._check_span(name, fixed, min((i for i in fixed if i > index), default=None), anchor)
+        self._fix(name, fixed, index, self._times[name][index] + by, order.owner)
+        self._times[name] = self._stretched(name, fixed, self._clusters[name])
 
     # All behaviours
 
@@ -326,6 +335,11 @@ class _Planner:
         for key, cluster in clusters.items():
             for member in cluster.members:
                 self._move(member, shifts[key], grounded=True)
+                self._clusters[member] = self._ground
+        for order in self._problem.orders:
+            moment = order.later or order.earlier
+            if moment is not None:
+                self._obey(moment[0], order)
 
     def _raise(self, order: Order, shifts: dict[int, float]) -> bool:
         """Move the later cluster of an order if it is too early; return whether it was."""
@@ -335,10 +349,7 @@ class _Planner:
         if earlier[0] is later[0]:
             return False
         late = earlier[1] + shifts[id(earlier[0])] - later[1] - shifts[id(later[0])] - order.offset
-        if late <= TOLERANCE:
-            return False
-        if later[0].grounded or not math.isfinite(late):
-            self._unmet(order.owner, f"it would be {late:.3g} s too late")
+        if late <= TOLERANCE or later[0].grounded or not math.isfinite(late):
             return False
         shifts[id(later[0])] += late
         return True

@@ -64,7 +64,7 @@ class Realizer:
 
     def active(self, now: float) -> tuple[Scheduled, ...]:
         """Return the behaviours that are going on, in the order in which their blocks came."""
-        return tuple(s for s in self.scheduled if s.start <= now < s.end)
+        return tuple(s for performance in self._running() for s in performance.scheduled(now))
 
     @property
     def scheduled(self) -> tuple[Scheduled, ...]:
