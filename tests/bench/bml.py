@@ -22,6 +22,7 @@ is missed: scheduling 20 behaviours ≤ 2 ms, the suite < 5 s.
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 
 import pytest
 from rich.console import Console
