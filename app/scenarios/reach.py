@@ -16,6 +16,7 @@ from app.scenarios.reach_places import (
     around,
     gap,
     nearest_point_of_cube,
+    out_of,
     stand_distance,
     way_to,
 )
@@ -40,9 +41,12 @@ NO_HANDS_EFFORT = 3.0
 FACING_CUBE = ("touch", "stretch", "point")
 """What it does with its front to the cube; else it turns to the player."""
 
+STAYING = ("watch", "touch", "cheer", "stretch", "shrug", "sulk", "search", "hold", "rejoice")
+"""What it does where it stands; it steps out of a cube that is put down on it."""
+
 ICONS = {
     "watch": "stand", "touch": "reach", "sulk": "wait", "shade": "search", "fetch": "walk",
-    "grasp": "take", "put": "give", "hold": "wait",
+    "grasp": "take", "put": "give", "hold": "wait", "rejoice": "cheer",
 }  # fmt: skip
 """The card of what it does, where that has another name."""
 
@@ -62,6 +66,8 @@ HINTS = {
     "grasp": "Look, I take the {thing}",
     "carry": "I bring you the {thing}",
     "put": "Here is the {thing}",
+    "give": "Here you are",
+    "rejoice": "All for you! Move the cube, or shake it",
 }
 """What to tell the player, by what it does."""
 
@@ -116,7 +122,7 @@ class Reach:
             scene, events = self._decide(controls, inputs, body, self._cube)
         going = LocomotionIntent(facing=PLAYER_POSITION)
         if scene is not None and body is not None:
-            going = _going(scene, body, inputs)
+            going = _going(scene, body, inputs, self._edge)
         stands = ActionIntent("idle") if going.target is None else None
         behaviour = self._hands.update(now, scene, body)
         command = CharacterCommand(now, going, stands, visible=visible, behaviour=behaviour)
@@ -134,7 +140,8 @@ class Reach:
         """Return what it does, with what, and what has just happened."""
         prospect = _prospect(controls, inputs, body, cube, self._edge)
         events: tuple[str, ...] = ()
-        if self._gifts.held:
+        self._gifts.end_pauses(prospect.now)
+        if self._gifts.busy:
             self._catching.look(prospect)
         else:
             events = self._catching.update(prospect)
@@ -156,7 +163,7 @@ class Reach:
         ), events
 
     def _is_free(self, controls: CubeControls) -> bool:
-        """Whether it has time for the things: the cube rests, and it holds one or is content."""
+        """Whether it has time for the things: the cube rests, and it has one or is content."""
         rests = controls.visible and controls.resting
         if not rests:
             self._rested_since = None
@@ -164,7 +171,7 @@ class Reach:
             self._rested_since = controls.timestamp
         if self._rested_since is None or controls.timestamp - self._rested_since < REST_S:
             return False
-        return bool(self._gifts.held) or self._catching.content
+        return self._gifts.busy or self._catching.content
 
     def _doing(self, free: bool) -> str:
         """Return what it does: the cube out of sight goes first, then things, then the cube."""
@@ -198,13 +205,15 @@ def _prospect(
     )
 
 
-def _going(scene: Scene, body: Body, inputs: Inputs) -> LocomotionIntent:
+def _going(scene: Scene, body: Body, inputs: Inputs, edge: float) -> LocomotionIntent:
     """Return where to go, or where to turn to."""
     here, walks = body.place, inputs.walks
     if scene.stand is not None:
         target = around(here, way_to(here, scene.stand, 0.0, walks=walks), scene.cube)
     elif scene.doing == "come":
         target = way_to(here, scene.touch, stand_distance(inputs.body_length), walks=walks)
+    elif scene.doing in STAYING and (aside := out_of(here, scene.cube, edge)) is not None:
+        target = way_to(here, aside, 0.0, walks=walks)
     else:
         facing = PLAYER_POSITION
         if scene.doing in ("grasp", "put") and scene.goal is not None:

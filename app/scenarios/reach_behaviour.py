@@ -29,7 +29,13 @@ SHAKE_S, SHAKES = 1.5, 3
 CARRY_LEFT, CARRY_UP, CARRY_AHEAD = 0.15, 0.53, 0.19
 """Where a hand carries a thing: to its side, up and ahead, in body heights."""
 
-GESTURES = {"cheer": "CHEER", "shrug": "SHRUG", "shade": "SHADE_EYES", "search": "SHADE_EYES"}
+GESTURES = {
+    "cheer": "CHEER",
+    "rejoice": "CHEER",
+    "shrug": "SHRUG",
+    "shade": "SHADE_EYES",
+    "search": "SHADE_EYES",
+}
 """The gesture that belongs to what it does."""
 
 HELD_GESTURES = ("shade", "search")

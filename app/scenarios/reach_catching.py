@@ -156,6 +156,10 @@ def _watch(catching: Catching, prospect: Prospect, spent: float) -> Doing:
     return _try(catching, prospect)
 
 
+def _cheer(catching: Catching, prospect: Prospect, spent: float) -> Doing:
+    return _watch(catching, prospect, spent) if spent > CHEER_S else "cheer"
+
+
 def _touch(catching: Catching, prospect: Prospect, spent: float) -> Doing:
     if prospect.touching:
         return "cheer"
@@ -165,6 +169,8 @@ def _touch(catching: Catching, prospect: Prospect, spent: float) -> Doing:
 
 
 def _stretch(catching: Catching, prospect: Prospect, spent: float) -> Doing:
+    if prospect.touching:
+        return "cheer"
     if prospect.effort <= EASY:
         return "touch"
     if spent > STRETCH_S:
@@ -210,7 +216,7 @@ def _shade(catching: Catching, prospect: Prospect, spent: float) -> Doing:
 _NEXT: dict[Doing, Callable[[Catching, Prospect, float], Doing]] = {
     "watch": _watch,
     "touch": _touch,
-    "cheer": lambda catching, prospect, spent: "watch" if spent > CHEER_S else "cheer",
+    "cheer": _cheer,
     "stretch": _stretch,
     "shrug": _shrug,
     "point": _point,

@@ -12,8 +12,9 @@ from app.pipeline.things import GRIP, Body, Side, Thing
 
 Point = NDArray[np.float64]
 
-Doing = Literal["wait", "fetch", "grasp", "carry", "put"]
-"""Nothing, go to a thing, take it, go to the cube with it, put it down."""
+Doing = Literal["wait", "fetch", "grasp", "carry", "put", "give", "rejoice"]
+"""Nothing, go to a thing, take it, go to the cube with it, put it down, let go of it, be glad that
+all are there."""
 
 HOMES: dict[str, tuple[float, float]] = {
     "flower": (-0.19, -0.05),
@@ -33,6 +34,9 @@ RADIUS_M = 0.004
 
 AT_HAND_M = 0.012
 """A palm this near to where it is to be is there [m]."""
+
+GIVE_S, REJOICE_S = 0.5, 2.2
+"""How long it stays with a thing that it has put down, and how long it is glad [s]."""
 
 PATIENCE_S = 2.5
 """A hand that is not there after so long takes the thing, or lets it go, from where it is [s]."""
@@ -132,6 +136,11 @@ class Gifts:
         return self.gift.name if self.gift is not None and self.gift.hand is not None else ""
 
     @property
+    def busy(self) -> bool:
+        """Whether it has a thing in its hand, or has just had one: the cube must wait."""
+        return bool(self.held) or self.doing in ("give", "rejoice")
+
+    @property
     def named(self) -> str:
         """Name of the thing that it fetches or has, "" for none."""
         return "" if self.gift is None else self.gift.name
@@ -152,6 +161,12 @@ class Gifts:
         out[1] = 0.0
         length = max(float(np.linalg.norm(out)), 1e-9)
         return np.asarray(goal + out * ((distance + RADIUS_M) / length))
+
+    def end_pauses(self, now: float) -> None:
+        """Have time for something else again, some time after a thing was put down."""
+        lasts = {"give": GIVE_S, "rejoice": REJOICE_S}.get(self.doing, math.inf)
+        if now - self._since > lasts:
+            self._begin("wait", now)
 
     def update(
         self, now: float, cube: Point, body: Body, *, free: bool, there: bool
@@ -202,8 +217,9 @@ class Gifts:
         if palm is None or not self._at_hand(palm, spot + GRIP, now):
             return ()
         gift.put(spot, palm, now)
-        self._begin("wait", now)
-        return ("given",) if self._away(cube) else ("finished",)
+        missing = self._away(cube)
+        self._begin("give" if missing else "rejoice", now)
+        return ("given",) if missing else ("finished",)
 
     def _at_hand(self, palm: Point, target: Point, now: float) -> bool:
         return math.dist(palm, target) < AT_HAND_M or now - self._since > PATIENCE_S
@@ -226,7 +242,7 @@ class Gifts:
 
     def _begin(self, doing: Doing, now: float) -> None:
         self.doing, self._since = doing, now
-        if doing == "wait" and not self.held:
+        if doing in ("wait", "give", "rejoice"):
             self.gift = None
 
 

@@ -16,6 +16,9 @@ CLEARANCE_M = 0.006
 AVOIDED_M = 0.075
 """It walks round the centre of the cube at this distance, if it is in the way [m]."""
 
+INSIDE_EDGES = 0.7
+"""A body this near to the middle of the cube is in it, in edges of the cube: just at a corner."""
+
 DETOUR_M = 0.15
 """How far ahead it aims while it does so [m]; further than where a walker stops."""
 
@@ -79,6 +82,22 @@ def around(here: Point, target: Point, cube: Point) -> Point:
     sine, cosine = math.sin(angle), math.cos(angle)
     ahead = np.array([[cosine, -sine], [sine, cosine]]) @ offset / distance
     return np.asarray(here[[0, 2]] + DETOUR_M * ahead)
+
+
+def out_of(here: Point, cube: Point, edge: float) -> Point | None:
+    """Return where to go, (3,) [m], out of a cube that was put down on it; None if it was not.
+
+    >>> out_of(np.array([0.0, 0, 0.01]), np.array([0.0, 0.03, 0.0]), 0.06).tolist()
+    [0.0, 0.0, 0.06]
+    >>> out_of(np.array([0.0, 0, 0.05]), np.array([0.0, 0.03, 0.0]), 0.06)
+    """
+    offset = here - cube
+    offset[1] = 0.0
+    distance = float(np.linalg.norm(offset))
+    if distance > INSIDE_EDGES * edge or cube[1] > edge:
+        return None
+    out = offset / distance if distance > 1e-6 else np.array([0.0, 0.0, 1.0])
+    return np.asarray(cube * [1.0, 0.0, 1.0] + edge * out)
 
 
 def look_about(body: Body, number: int) -> Point:

@@ -67,6 +67,13 @@ def companion(edge: float, options: SyntheticOptions) -> Script:
     return _script("companion", c.tip(TOP).rest(2.6))
 
 
+def reach(edge: float, options: SyntheticOptions) -> Script:
+    """Rest until the character has come and fetched things, slide away, rise high, and rest."""
+    c = Choreography(edge, 0.03, 0.03).rest(14.4)
+    c.hold(0.3).slide(0.11, -0.03, 1.3, 0.02).hold(0.3).rest(4.6)
+    return _script("locomotion", c.carry(-0.04, 0.02, 0.19, 8.4).rest(6.4))
+
+
 def static(edge: float, options: SyntheticOptions) -> Script:
     """Rest in a random position and heading."""
     random = np.random.default_rng(options.seed)
@@ -190,7 +197,8 @@ def _stops(edge: float, options: SyntheticOptions) -> list[Array]:
 SCRIPTS: dict[str, Callable[[float, SyntheticOptions], Script]] = {
     script.__name__: script
     for script in (
-        follow, sketch, companion, static, turn, turns, tip, shake, sweep, fingers, poses, wave,
+        follow, sketch, companion, reach,
+        static, turn, turns, tip, shake, sweep, fingers, poses, wave,
     )
 }  # fmt: skip
 """Every script by its name."""

@@ -1,6 +1,7 @@
 """How hard the cube is to reach decides what the character does about it."""
 
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,6 +21,15 @@ from app.scenarios.reach_catching import (
 
 FRAME = 1 / 30
 EASY, HARD, FAR = 0.2, 1.6, 4.0
+EASILY: dict[str, Any] = {
+    "seen": True,
+    "cube": np.zeros(3),
+    "touch": np.zeros(3),
+    "effort": EASY,
+    "gap": 0.0,
+    "height": 0.2,
+    "touching": False,
+}
 
 
 class Play:
@@ -32,8 +42,7 @@ class Play:
         """Play on; return all that the character does in this time."""
         done = []
         for _ in range(round(seconds / FRAME)):
-            known = {"seen": True, "cube": np.zeros(3), "touch": np.zeros(3), "effort": EASY,
-                     "gap": 0.0, "height": 0.2, "touching": False} | facts  # fmt: skip
+            known = {**EASILY, **facts}
             self.events += self.catching.update(Prospect(now=self.frames * FRAME, **known))
             done.append(self.catching.doing)
             self.frames += 1

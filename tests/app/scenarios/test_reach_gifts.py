@@ -1,12 +1,23 @@
 """Small things are fetched, carried in the hand, and put down beside the cube."""
 
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from app.pipeline.things import GRIP
-from app.scenarios.reach_gifts import AT_HAND_M, HOMES, HOP_M, HOP_S, PATIENCE_S, SETTLE_S, Gifts
+from app.scenarios.reach_gifts import (
+    AT_HAND_M,
+    HOMES,
+    HOP_M,
+    HOP_S,
+    PATIENCE_S,
+    REJOICE_S,
+    SETTLE_S,
+    Gifts,
+)
 
 FRAME = 1 / 30
 EDGE = 0.06
@@ -16,10 +27,10 @@ CUBE = np.array([0.1, 0.03, 0.05])
 class Hand:
     """A body whose palms are where they are told to be."""
 
+    place, posed = np.zeros(3), SimpleNamespace(table_from_character=np.eye(4))
+
     def __init__(self):
-        self.place = np.zeros(3)
         self.at = np.array([0.0, 0.08, 0.03])
-        self.posed = type("Posed", (), {"table_from_character": np.eye(4)})()
 
     def palm(self, side):
         return self.at
@@ -27,12 +38,14 @@ class Hand:
 
 class Play:
     def __init__(self):
-        self.gifts, self.hand, self.now, self.events = Gifts(EDGE), Hand(), 0.0, []
+        self.gifts, self.now, self.events = Gifts(EDGE), 0.0, []
+        self.hand: Any = Hand()
         self.gifts.lay_out(np.zeros(3))
 
     def on(self, seconds, cube=CUBE, free=True, there=True):
         for _ in range(round(seconds / FRAME)):
             self.now += FRAME
+            self.gifts.end_pauses(self.now)
             self.events += self.gifts.update(self.now, cube, self.hand, free=free, there=there)
 
     def bring(self, cube=CUBE):
@@ -66,8 +79,7 @@ def test_the_nearest_thing_is_taken_first_when_the_hand_is_there(play):
 
 
 def test_a_thing_in_the_hand_sticks_to_it(play):
-    play.bring()
-    play.on(FRAME)
+    play.on(0.1)
     play.hand.at = play.gifts.goal(CUBE) + GRIP
     play.on(2 * FRAME)
     held = play.thing(play.gifts.held)
@@ -96,7 +108,7 @@ def test_all_things_are_brought_beside_the_cube_and_apart_from_each_other(play):
     for _ in HOMES:
         play.bring()
     assert [each for each in play.events if each != "taken"] == ["given", "given", "finished"]
-    play.on(1.0)
+    play.on(REJOICE_S + 0.1)
     assert play.gifts.doing == "wait"
     places = [thing.place for thing in play.gifts.things(play.now)]
     for number, place in enumerate(places):
@@ -108,7 +120,7 @@ def test_all_things_are_brought_beside_the_cube_and_apart_from_each_other(play):
 def test_things_are_brought_again_when_the_cube_rests_elsewhere(play):
     for _ in HOMES:
         play.bring()
-    play.on(0.5, CUBE + [0.02, 0.0, 0.0])
+    play.on(REJOICE_S + 0.1, CUBE + [0.02, 0.0, 0.0])
     assert play.gifts.doing == "wait"
     play.on(0.1, CUBE - [0.2, 0.0, 0.1])
     assert play.gifts.doing == "grasp"
