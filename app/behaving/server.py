@@ -19,6 +19,9 @@ MAX_WAITING = 256
 MAX_UNSENT = 1 << 20
 """Feedback that waits for a client [B]; one that takes less is disconnected."""
 
+MAX_PORT = 65_535
+"""The last TCP port."""
+
 RECEIVED_AT_ONCE = 1 << 16
 """Bytes that are taken from a client before it is another's turn."""
 
@@ -51,12 +54,13 @@ class BlockServer:
     """
 
     def __init__(self, port: int, host: str = "127.0.0.1") -> None:
+        if not 0 <= port <= MAX_PORT:
+            raise AppError(f"there is no port {port}: choose another port, up to {MAX_PORT}")
         try:
             self._listener = socket.create_server((host, port))
-        except (OSError, OverflowError) as error:
-            reason = getattr(error, "strerror", None) or "ports are 0 to 65535"
+        except OSError as error:
             raise AppError(
-                f"cannot listen at {host}:{port}: {reason}; choose another port"
+                f"cannot listen at {host}:{port}: {error.strerror}; choose another port"
             ) from error
         self.port: int = self._listener.getsockname()[1]
         """The port."""

@@ -6,6 +6,9 @@ from xml.parsers import expat
 MAX_BYTES = 1 << 20
 """Size of a document that is taken."""
 
+BETWEEN = b" \t\r\n\xef\xbb\xbf"
+"""Bytes between documents: white space, and the mark of UTF-8."""
+
 
 class StreamBroken(Exception):  # noqa: N818 -- the state of a stream, not a bug
     """What comes is no XML; where the next document begins is not known. The message says why."""
@@ -42,9 +45,11 @@ class DocumentSplitter:
 
     def _take(self, piece: bytes) -> None:
         if not self._document:
-            piece = piece.lstrip()
+            piece = piece.lstrip(BETWEEN)
         if not piece:
             return
+        if not self._document and not piece.startswith(b"<"):
+            raise StreamBroken("not XML (a document begins with <)")
         self._document += piece
         if len(self._document) > MAX_BYTES:
             raise StreamBroken(f"a document of more than {MAX_BYTES} bytes")

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from app.behaving.camera import camera_focus
+from app.behaving.camera import FollowingCamera
 from app.behaving.recording import BehaviourRecording
 from app.speaking.performance import AZIMUTH_RAD, ELEVATION_RAD, View
 from app.ui.canvas import PICTURE_HEIGHT
@@ -37,17 +37,18 @@ def write_video(
     clip = recording.clip
     context = create_context()
     renderer = PortraitRenderer(context, size)
-    focus_at = camera_focus(character, clip, view)
+    camera = FollowingCamera(character, view)
     try:
         with VideoFile(path, size, clip.rate, _blocks(recording.sound())) as video:
             for number in range(len(clip)):
                 now = number / clip.rate
+                pose = clip.poses[number]
                 picture = renderer.portrait(
                     character,
-                    clip.poses[number],
+                    pose,
                     azimuth=AZIMUTH_RAD,
                     elevation=ELEVATION_RAD,
-                    focus=focus_at(number),
+                    focus=camera.focus(pose, now),
                 )
                 if subtitles:
                     _subtitle(picture, recording, now)

@@ -1,5 +1,6 @@
 """The joints from the root to the head and the eyes: where they are, and turning them."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -20,6 +21,9 @@ from characters.skeleton.scalar_quaternions import (
     rotate,
     subtract,
 )
+
+MAX_RAISED_RAD = math.radians(30.0)
+"""How far the chest of a quadruped is raised at most where its head's turns are measured [rad]."""
 
 
 @dataclass
@@ -67,14 +71,16 @@ class HeadJoints:
         self._numbers = np.array([joint.number for joint in self._joints], np.intp)
         self._line = [self._joints[places[joint]] for joint in line]
         self.head = self._line[-1]
+        self._four_legs = anatomy.kind == "quadruped"
         self.eyes = [self._joints[places[joint]] for joint in eyes]
         """The left and the right eye; none, one or both."""
 
     @property
     def body(self) -> Quaternion:
-        """The rotation of the chest."""
+        """The rotation of the chest; a quadruped that sits up looks as if it did so less."""
         base = self._line[0].parent
-        return self._joints[base].facing if base >= 0 else IDENTITY
+        facing = self._joints[base].facing if base >= 0 else IDENTITY
+        return _lowered(facing) if self._four_legs else facing
 
     def place(self, pose: Pose) -> None:
         """Compute the joints' rotations and positions in a pose."""
@@ -124,6 +130,13 @@ class HeadJoints:
         if joint.parent >= 0:
             turned = rotate(conjugate(self._joints[joint.parent].turn), turned)
         local[joint.number] = multiply(from_rotation_vector(turned), local[joint.number].tolist())
+
+
+def _lowered(chest: Quaternion) -> Quaternion:
+    """Return the rotation of a chest without what it is raised beyond `MAX_RAISED_RAD`."""
+    _, up, _ = rotate(chest, (0.0, 0.0, 1.0))
+    beyond = math.asin(min(max(up, -1.0), 1.0)) - MAX_RAISED_RAD
+    return chest if beyond <= 0.0 else multiply(chest, from_rotation_vector((beyond, 0.0, 0.0)))
 
 
 def middle(places: Sequence[Vector]) -> Vector:

@@ -37,6 +37,9 @@ WAIT_S = 1.0
 UPRIGHT = ("STANDING", "NEUTRAL", "BALANCED")
 """Names of the posture that a body has by itself."""
 
+ARM_POSTURES = {"ARMS_AKIMBO": "HANDS_ON_HIPS", "ARMS_CROSSED": "CROSS_ARMS"}
+"""Gestures with which arms take postures that are named otherwise."""
+
 RUNNING = ("run", "running", "fast", "hurry")
 """Manners of going that are running."""
 
@@ -134,8 +137,9 @@ def _check_posture(behaviour: Behaviour, who: Performing) -> None:
 
 def _arms(name: str, who: Performing) -> SymbolicGesture | None:
     """Return the gesture with which arms take a posture; None if it is no posture of arms."""
-    if who.arms and not who.stances.knows(name) and name in who.collection:
-        return who.collection.get(name)
+    lexeme = ARM_POSTURES.get(name, name)
+    if who.arms and not who.stances.knows(name) and lexeme in who.collection:
+        return who.collection.get(lexeme)
     return None
 
 

@@ -16,7 +16,14 @@ from characters.ik.legs import LegIK, find_legs, find_paws
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.skeleton.scalar_quaternions import conjugate, multiply, rotate
+from characters.skeleton.scalar_quaternions import (
+    IDENTITY,
+    Quaternion,
+    conjugate,
+    from_rotation_vector,
+    multiply,
+    rotate,
+)
 
 GROUPS = (
     ("hips",),
@@ -120,6 +127,8 @@ class StanceJoints:
             parts["hips"] = int(self._legs.indices[self._legs.joints[0, 0]])
         self._joints = np.array([*parts.values()], np.intp)
         self._axes = body_axes(skeleton, self._joints)
+        self._order = skeleton.with_ancestors(self._joints.tolist())
+        self._parents = skeleton.parents
         self._shares = np.zeros((len(parts), len(GROUPS)))
         for column, names in enumerate(GROUPS):
             rows = [row for row, part in enumerate(parts) if part in names]
@@ -154,18 +163,37 @@ class StanceJoints:
         arms = (-stance.arms, 0.0, 0.0)
         return np.array([*shift, *stance.hips, *stance.trunk, *stance.head, *arms])
 
-    def apply(self, pose: Pose, values: Array) -> Pose:
-        """Return a pose that stands by these values, with its feet where they are."""
+    def apply(self, pose: Pose, values: Array, hips: float = 0.0, trunk: float = 0.0) -> Pose:
+        """Return a pose that stands by these values, with its feet where they are.
+
+        Pelvis and trunk turn besides to the left, about the vertical [rad].
+        """
         degrees = self._shares @ values[3:].reshape(-1, 3)
         turns = rotations.from_rotation_vector(
             rotation_vectors(self._axes, [tuple(row) for row in degrees.tolist()])
         )
         local = pose.rotations.copy()
         local[self._joints] = rotations.multiply(local[self._joints], turns)
+        if hips or trunk:
+            self._turn(local, hips, trunk)
         turned = Pose(pose.translations, local, pose.scales, pose.morphs)
-        if self._legs is None or not values[: self._legs_follow].any():
+        if self._legs is None or not (hips or trunk or values[: self._legs_follow].any()):
             return turned
         return self._planted(pose, turned, values[:3] * self._leg_length)
+
+    def _turn(self, local: Array, hips: float, trunk: float) -> None:
+        """Turn pelvis and trunk to the left, in local rotations, about the vertical [rad].
+
+        A turn about the vertical leaves the vertical of the joints above it as it is.
+        """
+        turns: dict[int, Quaternion] = {-1: IDENTITY}
+        for joint in self._order:
+            turns[joint] = multiply(turns[self._parents[joint]], local[joint].tolist())
+        shares = self._shares[:, :2] @ (hips, trunk)
+        for joint, angle in zip(self._joints.tolist(), shares.tolist(), strict=True):
+            if angle:
+                up = rotate(conjugate(turns[joint]), (0.0, angle, 0.0))
+                local[joint] = multiply(local[joint].tolist(), from_rotation_vector(up))
 
     def _planted(self, pose: Pose, turned: Pose, shift: Array) -> Pose:
         """Return a turned pose with its pelvis shifted [m] and its feet as in the first pose."""

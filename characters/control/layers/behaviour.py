@@ -57,9 +57,7 @@ class StanceLayer:
         if not self._joints.able or not (values.any() or self._turning):
             return pose
         share = posture_share(context)
-        values = values * share
-        values[[4, 7]] += np.degrees(turns) * share
-        return self._joints.apply(pose, values)
+        return self._joints.apply(pose, values * share, turns[0] * share, turns[1] * share)
 
     def _turned(self, context: FrameContext) -> tuple[float, float]:
         """Return how far pelvis and trunk turn to what is looked at [rad], to the left."""
