@@ -317,7 +317,8 @@ class _Planner:
             self._unmet(order.owner, f"{self._point(name, index)} would be {late:.3g} s too late")
             return
         self._fix(name, fixed, index, self._times[name][index] + by, order.owner)
-        self._times[name] = self._stretched(name, fixed, self._clusters[name])
+        if fixed:
+            self._times[name] = self._stretched(name, fixed, self._clusters[name])
 
     # All behaviours
 

@@ -110,7 +110,7 @@ class Realizer:
             if other is performance or other.refers_to(changed):
                 changed.add(other.block.id)
                 other.replan(self._now, self._external)
-                lead_over(other.tracks.values(), self._others(other))
+                lead_over(other.tracks.values(), self._others(other), self._now)
                 self._feedback.append(other.prediction())
 
     # Arrival

@@ -131,7 +131,7 @@ class Scheduler:
                 continue
             conflict = _conflict(tracks.values(), others)
             if conflict is None:
-                lead_over(tracks.values(), others)
+                lead_over(tracks.values(), others, start)
                 return Schedule(tracks, tuple(self._constraints.values()), self._failures)
             self._leave_out(*conflict)
 
@@ -183,8 +183,11 @@ def rules(
     return links, [rule for rule in wanted if isinstance(rule, Order)]
 
 
-def lead_over(tracks: Iterable[Track], others: Iterable[Track]) -> None:
-    """Let behaviours end when the next one takes what they occupied: none returns to rest first."""
+def lead_over(tracks: Iterable[Track], others: Iterable[Track], now: float) -> None:
+    """Let behaviours end when the next one takes what they occupied: none returns to rest first.
+
+    Those that others have taken from already end `now` [s].
+    """
     tracks = list(tracks)
     for track in tracks:
         for other in [*others, *tracks]:
@@ -192,7 +195,8 @@ def lead_over(tracks: Iterable[Track], others: Iterable[Track]) -> None:
                 continue
             shares = track.timing.occupies & other.timing.occupies
             if shares and other.release <= track.times[0] + TOLERANCE < other.times[-1]:
-                other.times[-1] = max(track.times[0], other.release)
+                end = max(track.times[0], other.release, now)
+                other.times[-1] = min(other.times[-1], end)
 
 
 def _conflict(
