@@ -22,8 +22,9 @@ from characters.skeleton.scalar_quaternions import (
     subtract,
 )
 
-MAX_RAISED_RAD = math.radians(30.0)
-"""How far the chest of a quadruped is raised at most where its head's turns are measured [rad]."""
+RAISED_RAD, UPRIGHT_RAD = math.radians(28.0), math.radians(58.0)
+"""How far the chest of a quadruped is raised in its actions at most, and where it sits up [rad]:
+between, its head's turns are more and more measured from the level."""
 
 
 @dataclass
@@ -77,10 +78,10 @@ class HeadJoints:
 
     @property
     def body(self) -> Quaternion:
-        """The rotation of the chest; a quadruped that sits up looks as if it did so less."""
+        """The rotation of the chest; it is taken as level where a quadruped sits up."""
         base = self._line[0].parent
         facing = self._joints[base].facing if base >= 0 else IDENTITY
-        return _lowered(facing) if self._four_legs else facing
+        return _levelled(facing) if self._four_legs else facing
 
     def place(self, pose: Pose) -> None:
         """Compute the joints' rotations and positions in a pose."""
@@ -132,11 +133,14 @@ class HeadJoints:
         local[joint.number] = multiply(from_rotation_vector(turned), local[joint.number].tolist())
 
 
-def _lowered(chest: Quaternion) -> Quaternion:
-    """Return the rotation of a chest without what it is raised beyond `MAX_RAISED_RAD`."""
+def _levelled(chest: Quaternion) -> Quaternion:
+    """Return the rotation of a chest that is level where it is as far up as `UPRIGHT_RAD`."""
     _, up, _ = rotate(chest, (0.0, 0.0, 1.0))
-    beyond = math.asin(min(max(up, -1.0), 1.0)) - MAX_RAISED_RAD
-    return chest if beyond <= 0.0 else multiply(chest, from_rotation_vector((beyond, 0.0, 0.0)))
+    raised = math.asin(min(max(up, -1.0), 1.0))
+    if raised <= RAISED_RAD:
+        return chest
+    share = min((raised - RAISED_RAD) / (UPRIGHT_RAD - RAISED_RAD), 1.0)
+    return multiply(chest, from_rotation_vector((raised * share, 0.0, 0.0)))
 
 
 def middle(places: Sequence[Vector]) -> Vector:
