@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
 from typing import Literal
 from xml.parsers import expat
@@ -34,7 +34,8 @@ MAX_OFFSET = 1e6
 """Seconds that a moment may be from another."""
 
 _NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-_SECONDS = re.compile(rf"\s*[+-]?{_NUMBER}\s*")
+SECONDS = re.compile(rf"\s*[+-]?{_NUMBER}\s*")
+"""A number of seconds."""
 _REFERENCE = re.compile(rf"\s*(?:([^\s:]+):)?([^\s:]+):([^\s:]+?)\s*(?:([+-])\s*({_NUMBER})\s*)?")
 _COMPOSITION = re.compile(r"(MERGE|REPLACE|APPEND)|APPEND-AFTER\(([^()]*)\)", re.IGNORECASE)
 
@@ -68,10 +69,23 @@ def parse(document: str | bytes) -> Block:
     CharacterError
         If it is no XML, declares a DTD, is too large, or is no block that can be understood.
     """
-    root = read_xml(document, "BML")
-    if root.tag != "bml" or root.namespace != BML:
-        raise _error(root, f"<{root.tag}> is no <bml> of namespace {BML}")
-    return _Reader(root).block()
+    return parse_as(document, ("bml",))
+
+
+def parse_as(document: str | bytes, roots: Collection[str]) -> Block:
+    """Return what a document says that is written as BML is, but whose root has another name.
+
+    Elements of these names inside it are read as if what they contain stood there itself.
+
+    Raises
+    ------
+    CharacterError
+        As for `parse`.
+    """
+    root = _read_xml(document)
+    if root.tag not in roots or root.namespace != BML:
+        raise _error(root, f"<{root.tag}> is no <{'> or <'.join(roots)}> of namespace {BML}")
+    return _Reader(root, roots).block()
 
 
 def reference(text: str) -> SyncReference:
@@ -88,7 +102,7 @@ def reference(text: str) -> SyncReference:
         If it names none.
     """
     found = _REFERENCE.fullmatch(text)
-    if found is None and not _SECONDS.fullmatch(text):
+    if found is None and not SECONDS.fullmatch(text):
         raise CharacterError(
             f'"{text}" is no moment; write 1.5, speech1:start or speech1:start+0.5'
         )
@@ -100,36 +114,30 @@ def reference(text: str) -> SyncReference:
     return SyncReference(found[2], found[3], found[1] or "", offset)
 
 
-def read_xml(document: str | bytes, what: str) -> _Open:
-    """Return the root element of a bounded document without DTD.
-
-    Raises
-    ------
-    CharacterError
-        If it is not well-formed, too large or too deep, or declares a DTD.
-    """
+def _read_xml(document: str | bytes) -> _Open:
+    """Return the root element of a bounded document without DTD."""
     if len(document) > MAX_BYTES:
-        raise CharacterError(f"{what}: more than {MAX_BYTES} bytes; send shorter documents")
+        raise CharacterError(f"BML: more than {MAX_BYTES} bytes; send shorter documents")
     parser = expat.ParserCreate(namespace_separator="}")
-    builder = _Builder(parser, what)
+    builder = _Builder(parser)
     try:
         parser.Parse(document, True)
     except expat.ExpatError as error:
         message = expat.errors.messages[error.code]
-        raise CharacterError(f"{what}, line {error.lineno}: not XML ({message})") from None
+        raise CharacterError(f"BML, line {error.lineno}: not XML ({message})") from None
     except (UnicodeEncodeError, LookupError, ValueError):
-        raise CharacterError(f"{what}: not XML (its encoding is not known)") from None
+        raise CharacterError("BML: not XML (its encoding is not known)") from None
     return builder.roots[0]
 
 
 class _Builder:
     """Builds elements from the events of a parser."""
 
-    def __init__(self, parser: expat.XMLParserType, what: str) -> None:
+    def __init__(self, parser: expat.XMLParserType) -> None:
         self.roots: list[_Open] = []
         self._open: list[_Open] = []
         self._count = 0
-        self._parser, self._what = parser, what
+        self._parser = parser
         parser.buffer_text = True
         parser.StartElementHandler = self._start
         parser.EndElementHandler = lambda tag: self._open.pop()
@@ -149,14 +157,14 @@ class _Builder:
         self._open.append(element)
 
     def _refuse(self, why: str) -> None:
-        raise CharacterError(f"{self._what}, line {self._parser.CurrentLineNumber}: {why}")
+        raise CharacterError(f"BML, line {self._parser.CurrentLineNumber}: {why}")
 
 
 class _Reader:
     """Makes a block of a `bml` element."""
 
-    def __init__(self, root: _Open) -> None:
-        self._root = root
+    def __init__(self, root: _Open, roots: Collection[str]) -> None:
+        self._root, self._roots = root, roots
         self._behaviours: list[Behaviour] = []
         self._constraints: list[Constraint] = []
         self._ids: set[str] = set()
@@ -186,6 +194,8 @@ class _Reader:
         for element in elements:
             if element.namespace == BML and element.tag == "required":
                 self._read(element.children, required=True)
+            elif element.namespace == BML and element.tag in self._roots:
+                self._read(element.children, required)
             elif element.namespace == BML and element.tag == "constraint":
                 self._read_constraint(element, required)
             else:
