@@ -38,6 +38,7 @@ RESTARTS = 16
 
 _POLISH = JacobianSolver(Damped(), max_steps=20)
 _MAX_EXTENSION = 1 - 1e-9  # of a chain's length, to which a target beyond it is moved
+_FARTHEST_M = 1e100  # of a target; the squares of farther ones overflow
 _NUDGE_RAD = 0.05  # by which a chain that lies on the line to its target is bent
 
 
@@ -92,7 +93,7 @@ def solve(
     start = chains.rest(len(targets)) if start is None else np.asarray(start, float)
     _check(chains, targets, start)
     reach = np.broadcast_to(chains.reach, len(targets))
-    usable = np.isfinite(targets).all(-1) & (reach > columns.TINY)
+    usable = (np.abs(targets) < _FARTHEST_M).all(-1) & (reach > columns.TINY)
     goals = np.where(usable[:, None], targets, 0.0)
     task = Task.of(chains, goals, start, tolerance * reach, limits)
     reachable = _with_reachable_targets(_nudged(task))
@@ -195,12 +196,24 @@ def _made_sure(
         begin = turns[..., left] if copies == 1 else _random_start(part, random)
         again, ends, used = _POLISH(part.starting_from(begin))
         now = columns.length(ends[-1] - part.targets).reshape(-1, copies)
-        best = now.argmin(-1)
+        best = _nearest_solved(part, again, now)
         better = now[np.arange(len(left)), best] < errors[left]
         source = (np.arange(len(left)) * copies + best)[better]
         turns[..., left[better]] = again[..., source]
         points[..., left[better]] = ends[..., source]
         iterations[left] += used.reshape(-1, copies)[np.arange(len(left)), best]
+
+
+def _nearest_solved(task: Task, turns: Array, errors: Array) -> NDArray[np.intp]:
+    """Return which copy of each chain is best, from errors (chains, copies): (chains,).
+
+    Of those that are solved, the one that is nearest to the start; else the one of least error.
+    """
+    likeness = np.abs(np.einsum("jqb,jqb->jb", turns, task.start)).sum(0)
+    cost = np.where(errors <= task.tolerance.reshape(errors.shape), -1.0, errors)
+    nearest = likeness.reshape(errors.shape) / (10.0 * task.joints)
+    best: NDArray[np.intp] = np.where(cost < 0, cost - nearest, cost).argmin(-1)
+    return best
 
 
 def _random_start(task: Task, random: np.random.Generator) -> Array:
