@@ -1,7 +1,8 @@
 """The constraints of a block as equations and orders of sync points."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from characters.behaviour.bml.document import Behaviour, Block, Constraint, SyncReference
 from characters.behaviour.bml.performer import Timing
@@ -56,6 +57,15 @@ class Unmet(Exception):  # noqa: N818 -- a verdict on a document, not a bug
         """Id of the behaviour or the constraint that wants it."""
 
 
+class Contradictory(Exception):  # noqa: N818 -- a verdict on a document, not a bug
+    """Constraints that cannot be met, all that were found at once."""
+
+    def __init__(self, unmet: Sequence[Unmet]) -> None:
+        super().__init__("; ".join(map(str, unmet)))
+        self.unmet = tuple(unmet)
+        """They."""
+
+
 _Place = tuple[Moment | None, float]
 """A sync point, or time 0, and seconds after it."""
 
@@ -69,14 +79,33 @@ class Resolver:
         self._block, self._timings, self._start = block, timings, start
         self._external = external
 
-    def links(self, behaviour: Behaviour) -> Iterator[Link]:
+    def rules(
+        self, behaviours: Iterable[Behaviour], constraints: Iterable[Constraint]
+    ) -> tuple[list[Link], list[Order], list[Unmet]]:
+        """Return all that behaviours and `constraint` elements want, and what names nothing."""
+        links, orders, unmet = list[Link](), list[Order](), list[Unmet]()
+        wants: list[Callable[[], Iterator[Link | Order]]] = [
+            *(partial(self._links, behaviour) for behaviour in behaviours),
+            *(partial(self._rules, constraint) for constraint in constraints),
+        ]
+        for want in wants:
+            try:
+                found = [*want()]
+            except Unmet as error:
+                unmet.append(error)
+                continue
+            links += [rule for rule in found if isinstance(rule, Link)]
+            orders += [rule for rule in found if isinstance(rule, Order)]
+        return links, orders, unmet
+
+    def _links(self, behaviour: Behaviour) -> Iterator[Link]:
         """Yield what the attributes of a behaviour want."""
         for sync, reference in behaviour.syncs.items():
             own = self._place(SyncReference(behaviour.id, sync), behaviour.id)
             other = self._place(reference, behaviour.id)
             yield _link(own, other, behaviour.id)
 
-    def rules(self, constraint: Constraint) -> Iterator[Link | Order]:
+    def _rules(self, constraint: Constraint) -> Iterator[Link | Order]:
         """Yield what a `constraint` wants."""
         places = [self._place(sync, constraint.id) for sync in constraint.syncs]
         if constraint.reference is None:

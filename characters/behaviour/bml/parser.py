@@ -30,6 +30,9 @@ MAX_DEPTH = 32
 MAX_ELEMENTS = 5000
 """Elements of a document that are read."""
 
+MAX_BEHAVIOURS = 200
+"""Behaviours of a block that is read: more are too many to schedule between two frames."""
+
 MAX_OFFSET = 1e6
 """Seconds that a moment may be from another."""
 
@@ -206,6 +209,8 @@ class _Reader:
         if name in self._ids:
             raise _error(element, f'a second behaviour with id "{name}"; give each its own')
         self._ids.add(name)
+        if len(self._behaviours) >= MAX_BEHAVIOURS:
+            raise _error(element, f"more than {MAX_BEHAVIOURS} behaviours; send several blocks")
         text, marks = _speech(element) if element.tag == "speech" else ("", ())
         given = element.attributes.items()
         return Behaviour(

@@ -5,12 +5,12 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from typing import Literal
 
-from characters.behaviour.bml.constraints import External, Link, Order, Resolver, Unmet
+from characters.behaviour.bml.constraints import External, Resolver
 from characters.behaviour.bml.document import Block, Constraint
 from characters.behaviour.bml.feedback import PredictedBehaviour, Prediction
 from characters.behaviour.bml.performer import Scheduled
 from characters.behaviour.bml.planner import Problem, plan
-from characters.behaviour.bml.schedule import Track, rules
+from characters.behaviour.bml.schedule import Track
 
 State = Literal["preplanned", "waiting", "running", "over"]
 
@@ -153,7 +153,10 @@ class Performance:
 
     def replan(self, now: float, external: External) -> None:
         """Find the times of all that has not happened again."""
-        links, orders = self._rules(external)
+        timings = {name: track.timing for name, track in self.tracks.items()}
+        behaviours = [track.behaviour for track in self.tracks.values()]
+        resolver = Resolver(self.block, timings, self.start, external)
+        links, orders, _ = resolver.rules(behaviours, self.constraints)
         facts = {
             name: {
                 index: time
@@ -164,22 +167,6 @@ class Performance:
             for name, track in self.tracks.items()
         }
         moved = frozenset(name for name, track in self.tracks.items() if track.moved)
-        timings = {name: track.timing for name, track in self.tracks.items()}
         problem = Problem(timings, links, orders, self.start, now, facts, moved, strict=False)
         for name, times in plan(problem).items():
             self.tracks[name].times = times
-
-    def _rules(self, external: External) -> tuple[list[Link], list[Order]]:
-        """Return its constraints but those on behaviours that were interrupted."""
-        timings = {name: track.timing for name, track in self.tracks.items()}
-        resolver = Resolver(self.block, timings, self.start, external)
-        links, orders = list[Link](), list[Order]()
-        parts = [([track.behaviour], ()) for track in self.tracks.values()]
-        for behaviours, constraints in [*parts, *(([], (c,)) for c in self.constraints)]:
-            try:
-                more = rules(behaviours, constraints, resolver)
-            except Unmet:
-                continue
-            links += more[0]
-            orders += more[1]
-        return links, orders

@@ -7,10 +7,10 @@ owner, who is then left out: it is what the standard asks for, and no search is 
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from characters.behaviour.bml.constraints import Link, Moment, Order, Unmet
+from characters.behaviour.bml.constraints import Contradictory, Link, Moment, Order, Unmet
 from characters.behaviour.bml.performer import Timing
 from characters.behaviour.bml.spans import TOLERANCE, fits, stretched
 
@@ -44,7 +44,7 @@ class Problem:
     """Behaviours whose `facts` the others follow."""
 
     strict: bool = True
-    """Whether `Unmet` is raised; otherwise what runs goes on as well as it can."""
+    """Whether contradictions are raised; otherwise what runs goes on as well as it can."""
 
 
 @dataclass(eq=False)
@@ -73,8 +73,8 @@ def plan(problem: Problem) -> dict[str, list[float]]:
 
     Raises
     ------
-    Unmet
-        If a constraint cannot be met, and `problem.strict`.
+    Contradictory
+        If constraints cannot be met, and `problem.strict`.
     """
     return _Planner(problem).plan()
 
@@ -98,13 +98,33 @@ class _Planner:
                     self._orders.setdefault(end[0], []).append(order)
 
     def plan(self) -> dict[str, list[float]]:
-        for name in _sequence(self._problem):
-            self._place(name)
-        self._ground_all()
-        if self._problem.strict:
-            self._verify()
+        unmet = [*self._place_all()]
+        if not unmet:
+            try:
+                self._ground_all()
+                if self._problem.strict:
+                    self._verify()
+            except Unmet as error:
+                unmet.append(error)
+        if unmet:
+            raise Contradictory(unmet)
         start = self._problem.start
         return {name: [max(t, start) for t in times] for name, times in self._times.items()}
+
+    def _place_all(self) -> Iterator[Unmet]:
+        """Place all behaviours; yield what cannot be met, as far as it is certain.
+
+        A behaviour that fails after it has moved others may have moved them wrongly: then it is
+        the last that is looked at.
+        """
+        for name in _sequence(self._problem):
+            clusters = {id(self._cluster(anchor)) for anchor in self._anchors(name)}
+            try:
+                self._place(name)
+            except Unmet as unmet:
+                yield unmet
+                if len(clusters) > 1 or unmet.owner != name:
+                    return
 
     def _unmet(self, owner: str, reason: str) -> None:
         if self._problem.strict:

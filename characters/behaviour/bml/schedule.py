@@ -1,9 +1,9 @@
 """Schedule a block: what can be performed of it, and when."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from characters.behaviour.bml.constraints import External, Link, Order, Resolver, Unmet
+from characters.behaviour.bml.constraints import Contradictory, External, Link, Order, Resolver
 from characters.behaviour.bml.document import BML, BMLA, SYNCS, Behaviour, Block, Constraint
 from characters.behaviour.bml.feedback import WarningType
 from characters.behaviour.bml.performer import CannotPerform, Performer, Timing
@@ -107,6 +107,7 @@ class Scheduler:
         self._block, self._external = block, external
         self._behaviours = {behaviour.id: behaviour for behaviour in block.behaviours}
         self._constraints = {constraint.id: constraint for constraint in block.constraints}
+        self._parts: dict[str, Behaviour | Constraint] = {**self._behaviours, **self._constraints}
         self._timings: dict[str, Timing] = {}
         self._failures: list[Failure] = []
         for behaviour in block.behaviours:
@@ -126,14 +127,16 @@ class Scheduler:
         while True:
             try:
                 tracks = self._attempt(start)
-            except Unmet as unmet:
-                self._leave_out(unmet.owner, "IMPOSSIBLE_TO_SCHEDULE", str(unmet))
+            except Contradictory as error:
+                for unmet in error.unmet:
+                    self._leave_out(unmet.owner, "IMPOSSIBLE_TO_SCHEDULE", str(unmet))
                 continue
-            conflict = _conflict(tracks.values(), others)
-            if conflict is None:
+            conflicts = [*_conflicts(tracks.values(), others)]
+            if not conflicts:
                 lead_over(tracks.values(), others, start)
                 return Schedule(tracks, tuple(self._constraints.values()), self._failures)
-            self._leave_out(*conflict)
+            for name, reason in conflicts:
+                self._leave_out(name, "IMPOSSIBLE_TO_SCHEDULE", reason)
 
     def _attempt(self, start: float) -> dict[str, Track]:
         links, orders = self._rules(start)
@@ -152,11 +155,17 @@ class Scheduler:
     def _rules(self, start: float) -> tuple[list[Link], list[Order]]:
         behaviours = [self._behaviours[name] for name in self._timings]
         resolver = Resolver(self._block, self._timings, start, self._external)
-        return rules(behaviours, self._constraints.values(), resolver)
+        links, orders, unmet = resolver.rules(behaviours, self._constraints.values())
+        if unmet:
+            raise Contradictory(unmet)
+        return links, orders
 
     def _leave_out(self, name: str, kind: WarningType, reason: str) -> None:
+        """Leave a behaviour or a constraint out, and constraints on it; once is enough."""
+        part = self._parts.pop(name, None)
+        if part is None:
+            return
         failure = Failure(name, kind, reason)
-        part = self._behaviours.get(name) or self._constraints[name]
         if part.required:
             raise BlockFailed(failure)
         self._failures.append(failure)
@@ -164,23 +173,7 @@ class Scheduler:
         self._constraints.pop(name, None)
         for constraint in list(self._constraints.values()):
             if not constraint.required and _names(constraint, self._block.id, name):
-                del self._constraints[constraint.id]
-
-
-def rules(
-    behaviours: Iterable[Behaviour], constraints: Iterable[Constraint], resolver: Resolver
-) -> tuple[list[Link], list[Order]]:
-    """Return all that behaviours and `constraint` elements want.
-
-    Raises
-    ------
-    Unmet
-        If one names a sync point that is not there.
-    """
-    links = [link for behaviour in behaviours for link in resolver.links(behaviour)]
-    wanted = [rule for constraint in constraints for rule in resolver.rules(constraint)]
-    links += [rule for rule in wanted if isinstance(rule, Link)]
-    return links, [rule for rule in wanted if isinstance(rule, Order)]
+                del self._constraints[constraint.id], self._parts[constraint.id]
 
 
 def lead_over(tracks: Iterable[Track], others: Iterable[Track], now: float) -> None:
@@ -188,7 +181,7 @@ def lead_over(tracks: Iterable[Track], others: Iterable[Track], now: float) -> N
 
     Those that others have taken from already end `now` [s].
     """
-    tracks = list(tracks)
+    tracks = [track for track in tracks if track.timing.occupies]
     for track in tracks:
         for other in [*others, *tracks]:
             if other is track or other.fixed_end or other.over or other.interrupted:
@@ -199,12 +192,12 @@ def lead_over(tracks: Iterable[Track], others: Iterable[Track], now: float) -> N
                 other.times[-1] = min(other.times[-1], end)
 
 
-def _conflict(
-    tracks: Iterable[Track], others: Iterable[Track]
-) -> tuple[str, WarningType, str] | None:
-    """Return what of a block wants something of the body that another behaviour has."""
-    earlier = [other for other in others if not other.over and not other.interrupted]
+def _conflicts(tracks: Iterable[Track], others: Iterable[Track]) -> Iterator[tuple[str, str]]:
+    """Yield what of a block wants something of the body that another behaviour has, and why."""
+    earlier = [o for o in others if o.timing.occupies and not o.over and not o.interrupted]
     for track in tracks:
+        if not track.timing.occupies:
+            continue
         for other in earlier:
             shared = track.timing.occupies & other.timing.occupies
             overlaps = (
@@ -213,10 +206,10 @@ def _conflict(
             )
             if shared and overlaps:
                 what = ", ".join(sorted(shared))
-                reason = f"{other.behaviour.id} has the {what} at that time"
-                return track.behaviour.id, "IMPOSSIBLE_TO_SCHEDULE", reason
-        earlier.append(track)
-    return None
+                yield track.behaviour.id, f"{other.behaviour.id} has the {what} at that time"
+                break
+        else:
+            earlier.append(track)
 
 
 def _timing(behaviour: Behaviour, block: Block, performer: Performer) -> Timing:

@@ -5,7 +5,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from characters.behaviour.bml import BML, Mark, SyncReference, parse
-from characters.behaviour.bml.parser import MAX_BYTES, MAX_DEPTH, MAX_ELEMENTS, reference
+from characters.behaviour.bml.parser import (
+    MAX_BEHAVIOURS,
+    MAX_BYTES,
+    MAX_DEPTH,
+    MAX_ELEMENTS,
+    reference,
+)
 from characters.errors import CharacterError
 from tests.characters.behaviour.bml.suite import block
 
@@ -98,7 +104,8 @@ def test_block_attributes(more, field, value):
         block("<speech id='s'><text>a<sync id='end'/></text></speech>"),
         block(more='composition="LATER"'),
         block("<g>" * MAX_DEPTH + "</g>" * MAX_DEPTH),
-        block("<g/>" * MAX_ELEMENTS),
+        block(f"<gesture>{'<g/>' * MAX_ELEMENTS}</gesture>"),
+        block("<g/>" * (MAX_BEHAVIOURS + 1)),
         block(" " * MAX_BYTES),
         b"\xff\xfe<",
         b'<?xml version="1.0" encoding="none"?><bml id="a"/>',
