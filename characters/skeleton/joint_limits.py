@@ -1,8 +1,4 @@
-"""How far the joints of a body turn: intervals of Euler angles about axes of each joint.
-
-Source of the natural ranges: Kapandji, "The Physiology of the Joints", rounded to five degrees; the
-fingers' are those of a relaxed hand. They are ranges of the motion of people, not of one person.
-"""
+"""How far joints turn: intervals of Euler angles about axes of each joint (Huang, S16)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
