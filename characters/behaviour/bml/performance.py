@@ -9,7 +9,8 @@ from characters.behaviour.bml.constraints import External, Resolver
 from characters.behaviour.bml.document import Block, Constraint
 from characters.behaviour.bml.feedback import PredictedBehaviour, Prediction
 from characters.behaviour.bml.performer import Scheduled
-from characters.behaviour.bml.planner import Problem, plan
+from characters.behaviour.bml.planner import plan
+from characters.behaviour.bml.problem import Problem
 from characters.behaviour.bml.schedule import Track
 
 State = Literal["preplanned", "waiting", "running", "over"]

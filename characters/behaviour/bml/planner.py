@@ -7,44 +7,15 @@ owner, who is then left out: it is what the standard asks for, and no search is 
 """
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 from characters.behaviour.bml.constraints import Contradictory, Link, Moment, Order, Unmet
-from characters.behaviour.bml.performer import Timing
+from characters.behaviour.bml.problem import Problem, check, sequence
 from characters.behaviour.bml.spans import TOLERANCE, fits, stretched
 
 LATENESS = 0.1
 """A sync point that should have been so many seconds ago may be now: the standard's tolerance."""
-
-
-@dataclass(frozen=True)
-class Problem:
-    """What is to be planned."""
-
-    timings: Mapping[str, Timing]
-    """Natural times by behaviour, in the document's order."""
-
-    links: Sequence[Link]
-    """Sync points at a fixed distance."""
-
-    orders: Sequence[Order]
-    """Sync points in an order."""
-
-    start: float
-    """When the block starts: nothing is before [s]."""
-
-    now: float = -math.inf
-    """What has not happened is not before this [s]."""
-
-    facts: Mapping[str, Mapping[int, float]] = field(default_factory=dict)
-    """Times of sync points that have happened or are otherwise known, by behaviour [s]."""
-
-    moved: frozenset[str] = frozenset()
-    """Behaviours whose `facts` the others follow."""
-
-    strict: bool = True
-    """Whether contradictions are raised; otherwise what runs goes on as well as it can."""
 
 
 @dataclass(eq=False)
@@ -103,7 +74,7 @@ class _Planner:
             try:
                 self._ground_all()
                 if self._problem.strict:
-                    self._verify()
+                    check(self._problem, self._times)
             except Unmet as error:
                 unmet.append(error)
         if unmet:
@@ -117,7 +88,7 @@ class _Planner:
         A behaviour that fails after it has moved others may have moved them wrongly: then it is
         the last that is looked at.
         """
-        for name in _sequence(self._problem):
+        for name in sequence(self._problem):
             clusters = {id(self._cluster(anchor)) for anchor in self._anchors(name)}
             try:
                 self._place(name)
@@ -299,7 +270,8 @@ class _Planner:
         return times
 
     def _blamed(self, name: str) -> str:
-        owners = {link.owner for link in self._links[name]}
+        """Return who wants a behaviour where it cannot be: a constraint, or itself."""
+        owners = [link.owner for link in self._links[name]]
         return next((owner for owner in owners if owner not in self._problem.timings), name)
 
     def _point(self, name: str, index: int) -> str:
@@ -374,61 +346,3 @@ class _Planner:
             return False
         shifts[id(later[0])] += late
         return True
-
-    def _verify(self) -> None:
-        """Check all constraints at the end: no constraint is broken unseen."""
-        for link in self._problem.links:
-            a = self._times[link.a[0]][link.a[1]]
-            b = 0.0 if link.b is None else self._times[link.b[0]][link.b[1]]
-            late = link.b is None and a == self._problem.start and b + link.offset < a
-            if not (abs(a - b - link.offset) <= 10 * TOLERANCE or late):
-                raise Unmet(link.owner, "it contradicts another constraint")
-        for order in self._problem.orders:
-            ends = [
-                0.0 if end is None else self._times[end[0]][end[1]]
-                for end in (order.earlier, order.later)
-            ]
-            if not ends[0] <= ends[1] + order.offset + 10 * TOLERANCE:
-                raise Unmet(order.owner, "it contradicts another constraint")
-        for name, times in self._times.items():
-            if times[0] < self._problem.start - 10 * TOLERANCE:
-                raise Unmet(self._blamed(name), "it would start too early")
-
-
-def _sequence(problem: Problem) -> list[str]:
-    """Return behaviours in an order in which those that others refer to come first."""
-    waits: dict[str, list[str]] = {name: [] for name in problem.timings}
-    for link in problem.links:
-        if link.b is not None:
-            a, b = link.a[0], link.b[0]
-            if link.owner in (a, b):
-                waits[link.owner].append(b if link.owner == a else a)
-    sequence: list[str] = []
-    state: dict[str, int] = {}
-
-    def visit(names: Iterable[str]) -> None:
-        stack = [(name, iter(waits[name])) for name in names]
-        while stack:
-            name, others = stack[-1]
-            state.setdefault(name, 1)
-            if state[name] == 2:
-                stack.pop()
-                continue
-            for other in others:
-                if other not in state and other in waits:
-                    stack.append((other, iter(waits[other])))
-                    break
-            else:
-                stack.pop()
-                state[name] = 2
-                sequence.append(name)
-
-    for name in [n for n in problem.timings if n in problem.moved] + list(problem.timings):
-        if name in state:
-            continue
-        if name in problem.moved:
-            state[name] = 2
-            sequence.append(name)
-        else:
-            visit([name])
-    return sequence

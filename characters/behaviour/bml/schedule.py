@@ -7,7 +7,8 @@ from characters.behaviour.bml.constraints import Contradictory, External, Link, 
 from characters.behaviour.bml.document import BML, BMLA, SYNCS, Behaviour, Block, Constraint
 from characters.behaviour.bml.feedback import WarningType
 from characters.behaviour.bml.performer import CannotPerform, Performer, Timing
-from characters.behaviour.bml.planner import Problem, plan
+from characters.behaviour.bml.planner import plan
+from characters.behaviour.bml.problem import Problem
 from characters.behaviour.bml.spans import TOLERANCE
 
 CONTROLS = {
