@@ -3,9 +3,7 @@
 import math
 import re
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass, field
 from typing import Literal
-from xml.parsers import expat
 
 from characters.behaviour.bml.document import (
     BML,
@@ -19,16 +17,8 @@ from characters.behaviour.bml.document import (
     Mark,
     SyncReference,
 )
+from characters.behaviour.bml.xml_elements import OpenElement, read_xml
 from characters.errors import CharacterError
-
-MAX_BYTES = 1 << 20
-"""Size of a document that is read."""
-
-MAX_DEPTH = 32
-"""Elements within elements that are read."""
-
-MAX_ELEMENTS = 5000
-"""Elements of a document that are read."""
 
 MAX_BEHAVIOURS = 200
 """Behaviours of a block that is read: more are too many to schedule between two frames."""
@@ -39,29 +29,9 @@ MAX_OFFSET = 1e6
 _NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 SECONDS = re.compile(rf"\s*[+-]?{_NUMBER}\s*")
 """A number of seconds."""
+
 _REFERENCE = re.compile(rf"\s*(?:([^\s:]+):)?([^\s:]+):([^\s:]+?)\s*(?:([+-])\s*({_NUMBER})\s*)?")
 _COMPOSITION = re.compile(r"(MERGE|REPLACE|APPEND)|APPEND-AFTER\(([^()]*)\)", re.IGNORECASE)
-
-
-@dataclass
-class _Open:
-    """An element whose end has not been read."""
-
-    tag: str
-    namespace: str
-    attributes: dict[str, str]
-    line: int
-    parts: list["str | _Open"] = field(default_factory=list)
-    """Characters and elements inside, in their order."""
-
-    @property
-    def children(self) -> list["_Open"]:
-        return [part for part in self.parts if isinstance(part, _Open)]
-
-    @property
-    def text(self) -> str:
-        """All characters inside."""
-        return "".join(part if isinstance(part, str) else part.text for part in self.parts)
 
 
 def parse(document: str | bytes) -> Block:
@@ -85,7 +55,7 @@ def parse_as(document: str | bytes, roots: Collection[str]) -> Block:
     CharacterError
         As for `parse`.
     """
-    root = _read_xml(document)
+    root = read_xml(document)
     if root.tag not in roots or root.namespace != BML:
         raise _error(root, f"<{root.tag}> is no <{'> or <'.join(roots)}> of namespace {BML}")
     return _Reader(root, roots).block()
@@ -117,56 +87,10 @@ def reference(text: str) -> SyncReference:
     return SyncReference(found[2], found[3], found[1] or "", offset)
 
 
-def _read_xml(document: str | bytes) -> _Open:
-    """Return the root element of a bounded document without DTD."""
-    if len(document) > MAX_BYTES:
-        raise CharacterError(f"BML: more than {MAX_BYTES} bytes; send shorter documents")
-    parser = expat.ParserCreate(namespace_separator="}")
-    builder = _Builder(parser)
-    try:
-        parser.Parse(document, True)
-    except expat.ExpatError as error:
-        message = expat.errors.messages[error.code]
-        raise CharacterError(f"BML, line {error.lineno}: not XML ({message})") from None
-    except (UnicodeEncodeError, LookupError, ValueError):
-        raise CharacterError("BML: not XML (its encoding is not known)") from None
-    return builder.roots[0]
-
-
-class _Builder:
-    """Builds elements from the events of a parser."""
-
-    def __init__(self, parser: expat.XMLParserType) -> None:
-        self.roots: list[_Open] = []
-        self._open: list[_Open] = []
-        self._count = 0
-        self._parser = parser
-        parser.buffer_text = True
-        parser.StartElementHandler = self._start
-        parser.EndElementHandler = lambda tag: self._open.pop()
-        parser.CharacterDataHandler = lambda text: self._open[-1].parts.append(text)
-        parser.StartDoctypeDeclHandler = lambda *_: self._refuse("DTDs and entities are not read")
-
-    def _start(self, name: str, attributes: dict[str, str]) -> None:
-        namespace, _, tag = name.rpartition("}")
-        named = {f"{{{key}" if "}" in key else key: value for key, value in attributes.items()}
-        element = _Open(tag, namespace or BML, named, self._parser.CurrentLineNumber)
-        self._count += 1
-        if self._count > MAX_ELEMENTS:
-            self._refuse(f"more than {MAX_ELEMENTS} elements")
-        if len(self._open) >= MAX_DEPTH:
-            self._refuse(f"more than {MAX_DEPTH} nested elements")
-        (self._open[-1].parts if self._open else self.roots).append(element)
-        self._open.append(element)
-
-    def _refuse(self, why: str) -> None:
-        raise CharacterError(f"BML, line {self._parser.CurrentLineNumber}: {why}")
-
-
 class _Reader:
     """Makes a block of a `bml` element."""
 
-    def __init__(self, root: _Open, roots: Collection[str]) -> None:
+    def __init__(self, root: OpenElement, roots: Collection[str]) -> None:
         self._root, self._roots = root, roots
         self._behaviours: list[Behaviour] = []
         self._constraints: list[Constraint] = []
@@ -193,7 +117,7 @@ class _Reader:
             attributes=given,
         )
 
-    def _read(self, elements: Iterable[_Open], required: bool) -> None:
+    def _read(self, elements: Iterable[OpenElement], required: bool) -> None:
         for element in elements:
             if element.namespace == BML and element.tag == "required":
                 self._read(element.children, required=True)
@@ -204,7 +128,7 @@ class _Reader:
             else:
                 self._behaviours.append(self._behaviour(element, required))
 
-    def _behaviour(self, element: _Open, required: bool) -> Behaviour:
+    def _behaviour(self, element: OpenElement, required: bool) -> Behaviour:
         name = element.attributes.get("id", "").strip() or self._new_id(element.tag)
         if name in self._ids:
             raise _error(element, f'a second behaviour with id "{name}"; give each its own')
@@ -231,7 +155,7 @@ class _Reader:
             number += 1
         return f"{tag}{number}"
 
-    def _read_constraint(self, element: _Open, required: bool) -> None:
+    def _read_constraint(self, element: OpenElement, required: bool) -> None:
         for rule in element.children:
             if rule.tag not in ("synchronize", "before", "after"):
                 raise _error(rule, f"<{rule.tag}> is no synchronize, before or after")
@@ -265,14 +189,14 @@ class _Reader:
         return composition, ()
 
 
-def _speech(element: _Open) -> tuple[str, tuple[Mark, ...]]:
+def _speech(element: OpenElement) -> tuple[str, tuple[Mark, ...]]:
     """Return the text of a speech with single spaces, and its marks."""
     text, marks = "", list[Mark]()
 
-    def add(parts: Iterable[str | _Open]) -> None:
+    def add(parts: Iterable[str | OpenElement]) -> None:
         nonlocal text
         for part in parts:
-            if isinstance(part, _Open):
+            if isinstance(part, OpenElement):
                 if part.tag == "sync" and part.attributes.get("id"):
                     marks.append(Mark(part.attributes["id"].strip(), len(text)))
                 add(part.parts)
@@ -289,14 +213,14 @@ def _speech(element: _Open) -> tuple[str, tuple[Mark, ...]]:
     return text, tuple(Mark(mark.id, min(mark.at, len(text))) for mark in marks)
 
 
-def _check_marks(element: _Open, marks: list[Mark]) -> None:
+def _check_marks(element: OpenElement, marks: list[Mark]) -> None:
     names = [mark.id for mark in marks] + ["start", "end"]
     for name in names:
         if names.count(name) > 1:
             raise _error(element, f'a second sync point "{name}" in a text; give each its own id')
 
 
-def _as_element(element: _Open) -> Element:
+def _as_element(element: OpenElement) -> Element:
     return Element(
         element.tag,
         element.namespace,
@@ -306,7 +230,7 @@ def _as_element(element: _Open) -> Element:
     )
 
 
-def _moment(element: _Open, text: str) -> SyncReference:
+def _moment(element: OpenElement, text: str) -> SyncReference:
     try:
         return reference(text)
     except CharacterError as error:
@@ -317,5 +241,5 @@ def _names(text: str) -> tuple[str, ...]:
     return tuple(text.replace(",", " ").split())
 
 
-def _error(element: _Open, message: str) -> CharacterError:
+def _error(element: OpenElement, message: str) -> CharacterError:
     return CharacterError(f"BML, line {element.line}: {message}")

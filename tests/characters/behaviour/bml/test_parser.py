@@ -5,13 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from characters.behaviour.bml import BML, Mark, SyncReference, parse
-from characters.behaviour.bml.parser import (
-    MAX_BEHAVIOURS,
-    MAX_BYTES,
-    MAX_DEPTH,
-    MAX_ELEMENTS,
-    reference,
-)
+from characters.behaviour.bml.parser import MAX_BEHAVIOURS, reference
+from characters.behaviour.bml.xml_elements import MAX_BYTES, MAX_DEPTH, MAX_ELEMENTS
 from characters.errors import CharacterError
 from tests.characters.behaviour.bml.suite import block
 
