@@ -147,7 +147,10 @@ class Realizer:
         performance.interrupts = tuple(name for name in wanted if name in others)
 
     def _preview(self, performance: Performance) -> None:
-        """Predict a block that does not start yet; what it cannot do is known when it starts."""
+        """Predict a block that does not start yet; what it cannot do is known when it starts.
+
+        It leaves what runs alone: its times are a guess.
+        """
         if performance.state != "preplanned":
             ends = [self._performances[name].end for name in performance.awaits_end]
             ends += [self._performances[name].release for name in performance.awaits_release]
@@ -155,7 +158,7 @@ class Realizer:
         start = performance.start if math.isfinite(performance.start) else self._now
         with suppress(BlockFailed):
             scheduler = Scheduler(performance.block, self._performer, self._external)
-            performance.tracks = scheduler.schedule(start, self._others(performance)).tracks
+            performance.tracks = scheduler.schedule(start, ()).tracks
             self._feedback.append(performance.prediction())
 
     def _schedule(self, performance: Performance, start: float) -> bool:

@@ -190,6 +190,16 @@ def test_a_planned_block_waits_to_be_activated():
     session.check_linked("bml1:n:end", "later:n:start")
 
 
+def test_a_planned_block_leaves_what_runs_alone():
+    session = Session(
+        block("<gesture id='g'/>"),
+        Until(seconds=1.2),
+        block("<gesture id='g'/>", name="later", more='bmla:preplan="true"'),
+    )
+    session.finish()
+    session.check_time("bml1:g:end", 1.5)
+
+
 def test_a_block_activates_others_at_its_start():
     session = Session(
         block("<head id='n'/>", name="later", more='bmla:preplan="true"'),
