@@ -114,6 +114,7 @@ class Reach:
         if inputs.cube is not None:
             self._cube = inputs.cube
             self._gifts.lay_out(inputs.cube[:3, 3])
+            self._gifts.make_way(inputs.cube[:3, 3], now)
         if inputs.clear or controls.shaken:
             self._gifts.scatter(body, now)
         events: tuple[str, ...] = ()

@@ -41,9 +41,12 @@ GIVE_S, REJOICE_S = 0.5, 2.2
 PATIENCE_S = 2.5
 """A hand that is not there after so long takes the thing, or lets it go, from where it is [s]."""
 
-SETTLE_S, HOP_S, HOP_M = 0.25, 0.8, 0.09
+SETTLE_S, HOP_S, HOP_M = 0.25, 0.7, 0.08
 """Time in which a thing comes to its place in a hand or from one [s]; time [s] and height [m] of
-its hop home."""
+its hops."""
+
+UNDER_EDGES = 0.75
+"""A thing this near to the middle of the cube is in its way, in edges of the cube."""
 
 
 @dataclass(frozen=True)
@@ -84,10 +87,10 @@ class _Gift:
         self.hand, self.place = None, place
         self._move = _Move(palm - GRIP, now, SETTLE_S)
 
-    def hop_home(self, palm: Point | None, now: float) -> None:
-        """Let it hop to where it stood first."""
+    def hop(self, place: Point, palm: Point | None, now: float) -> None:
+        """Let it hop to another place."""
         start = self._now_at(now) if palm is None or self.hand is None else palm - GRIP
-        self.hand, self.place = None, self.home
+        self.hand, self.place = None, place
         self._move = _Move(start, now, HOP_S, HOP_M)
 
     def thing(self, now: float) -> Thing:
@@ -107,7 +110,7 @@ class Gifts:
         """With which."""
         self.hand: Side = "right"
         """With which hand."""
-        self._beside = cube_edge / 2 + BESIDE_M
+        self._edge, self._beside = cube_edge, cube_edge / 2 + BESIDE_M
         self._gifts: list[_Gift] = []
         self._since = -math.inf
 
@@ -123,8 +126,17 @@ class Gifts:
         """Let all things hop home."""
         for gift in self._gifts:
             hand = gift.hand
-            gift.hop_home(None if body is None or hand is None else body.palm(hand), now)
+            gift.hop(gift.home, None if body is None or hand is None else body.palm(hand), now)
         self._begin("wait", now)
+
+    def make_way(self, cube: Point, now: float) -> None:
+        """Let the things hop aside on which a cube is put down."""
+        if cube[1] > self._edge:
+            return
+        for gift in self._gifts:
+            distance = math.dist(gift.place[[0, 2]], cube[[0, 2]])
+            if gift.hand is None and distance < UNDER_EDGES * self._edge:
+                gift.hop(self._spot(gift, cube), None, now)
 
     def things(self, now: float) -> tuple[Thing, ...]:
         """Return the things as they are to be drawn."""

@@ -159,3 +159,14 @@ def test_a_shake_lets_all_things_hop_home(play):
         x, z = HOMES[thing.name]
         np.testing.assert_allclose(thing.place, [x, 0.0, z], atol=1e-12)
         assert thing.hand is None
+
+
+def test_a_thing_hops_aside_when_the_cube_is_put_down_on_it(play):
+    x, z = HOMES["flag"]
+    play.gifts.make_way(np.array([x, 0.2, z]), play.now)
+    np.testing.assert_allclose(play.thing("flag").place, [x, 0.0, z])
+    under = np.array([x + 0.01, EDGE / 2, z])
+    for _ in range(round(1.0 / FRAME)):
+        play.gifts.make_way(under, play.now)
+        play.on(FRAME, under, free=False)
+    assert math.dist(play.thing("flag").place[[0, 2]], under[[0, 2]]) > EDGE / 2 * math.sqrt(2)
