@@ -46,7 +46,7 @@ JOINTS = (6, 10)
 
 _NEAR_BASE = 0.25  # of the length of a chain: targets nearer than this are near the base
 _PATH_FRAMES, _PATHS, _FOLLOWED, _STEP_M = 100, 5, 20, 0.01
-_REPEATS, _SINGLES = 3, 30  # of timings, of which the shortest and the middle one count
+_REPEATS, _SINGLES = 5, 30  # of timings, of which the shortest and the middle one count
 
 
 @dataclass(frozen=True)
@@ -233,7 +233,8 @@ def alone_table(figures: Sequence[AloneFigures], count: int) -> Table:
     )
     for heading in ("alone", "joints", "steps", "printed", "one", "printed", "in a batch",
                     "solved", "in limits", "change", "zig-zag", "twist"):  # fmt: skip
-        table.add_column(heading, justify="left" if heading == "alone" else "right")
+        left = heading == "alone"
+        table.add_column(heading, justify="left" if left else "right", no_wrap=left)
     for each in figures:
         steps, milliseconds = PRINTED.get(each.method, {}).get(each.joints, (None, None))
         table.add_row(
@@ -260,7 +261,8 @@ def sure_table(figures: Sequence[SureFigures]) -> Table:
     )
     for heading in ("begun by", "joints", "steps", "in a batch", "solved", "beyond limits",
                     "change", "zig-zag", "twist"):  # fmt: skip
-        table.add_column(heading, justify="left" if heading == "begun by" else "right")
+        left = heading == "begun by"
+        table.add_column(heading, justify="left" if left else "right", no_wrap=left)
     for each in figures:
         table.add_row(
             each.method,

@@ -1,0 +1,213 @@
+"""How the solvers of inverse kinematics do: `python -m tests.bench.ik`.
+
+The tables of `cubeling ik bench`; then for chains of six joints with limits:
+
+oracle
+    `scipy.optimize.least_squares` with bounds on the same problems: share solved, time, and summed
+    turn of the joints. It starts from where our solver starts, once.
+wrists
+    Paths of both wrists in recorded motions, in the frame of the shoulder, with the performer's own
+    bones: how far the elbow of our pose is from the recorded one, for a chain that follows the
+    wrist, and for one that starts from its pose in the first frame each time.
+campaign
+    With `--solves 1000000` that many solves: share solved, not-a-numbers, joints beyond limits.
+
+Exits with 1 if a bar of issue 17 is missed.
+"""
+
+import argparse
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from app.commands.ik import (
+    JOINTS,
+    AloneFigures,
+    SureFigures,
+    alone_table,
+    measure_alone,
+    measure_sure,
+    sure_table,
+)
+from characters.errors import CharacterError
+from characters.ik.solvers.chains import Chains
+from characters.ik.solvers.measures import Problem, arc, joint_change, violations
+from characters.ik.solvers.single import SingleChain
+from characters.ik.solvers.solving import SOLVERS, TOLERANCE, solve
+from characters.retargeting.recording import load_recording
+from characters.skeleton import rotations
+from characters.skeleton.pose import Array
+
+DATA = Path(__file__).parents[3] / "shared" / "data"
+BLOCK = 5000
+MIN_SOLVED, MAX_SINGLE_MS, MAX_BATCH_US, MAX_TWIST_DEG = 0.995, 0.5, 5.0, 5.0
+DEFAULT = "damped"
+
+
+def oracle_table(count: int) -> Table:
+    """Return what scipy finds beside what we find."""
+    from scipy.optimize import least_squares
+
+    problem = Problem.random(6, count, np.random.default_rng(9))
+    limits = problem.chains.limits
+    assert limits is not None
+    begin = np.clip(limits.angles(problem.start[0]), limits.low, limits.high).ravel()
+    bounds = limits.low.ravel() - 1e-12, limits.high.ravel() + 1e-12
+    found = []
+    start = time.perf_counter()
+    for target in problem.targets:
+
+        def miss(angles: Array, target: Array = target) -> Array:
+            local = limits.rotations(angles.reshape(-1, 3))
+            difference: Array = problem.chains.frames(local)[1][-1] - target
+            return difference
+
+        found.append(least_squares(miss, begin, bounds=bounds).x.reshape(-1, 3))
+    theirs_s = time.perf_counter() - start
+    local = limits.rotations(np.array(found))
+    ends = problem.chains.frames(local)[1][:, -1]
+    near = np.linalg.norm(ends - problem.targets, axis=-1) <= TOLERANCE * problem.chains.reach
+    start = time.perf_counter()
+    ours = solve(problem.chains, problem.targets, problem.start)
+    ours_s = time.perf_counter() - start
+    table = Table(title="beside scipy's least_squares with bounds, six joints with limits")
+    for heading in ("", "solved", "each", "change"):
+        table.add_column(heading, justify="right" if heading else "left")
+    for name, solved, seconds, posture in (
+        ("scipy", near, theirs_s, local),
+        (DEFAULT, ours.solved, ours_s, ours.rotations),
+    ):
+        change = joint_change(problem.start, posture)[solved].mean()
+        each = f"{1e3 * seconds / count:.3f} ms"
+        table.add_row(name, f"{solved.mean():.1%}", each, f"{change:.0f}°")
+    return table
+
+
+def arm_paths() -> Iterator[tuple[str, Array, Array]]:
+    """Yield name, elbows and wrists from the shoulder, (frames, 3) [m], of recorded arms."""
+    files = [*sorted((DATA / "bvh").glob("*.bvh")), *sorted((DATA / "cmu-mocap").rglob("*.amc"))]
+    for file in files:
+        try:
+            recording = load_recording(str(file))
+        except CharacterError:
+            continue
+        joints = recording.anatomy.joints
+        frames = recording.clip.poses.globals(recording.skeleton)
+        step = max(round(recording.clip.rate / 30), 1)
+        for side in ("left", "right"):
+            parts = [joints.get(f"{side}{part}") for part in ("UpperArm", "LowerArm", "Hand")]
+            above = -1 if parts[0] is None else recording.skeleton.parents[parts[0]]
+            if None in parts or above < 0:
+                continue
+            shoulder, elbow, wrist = (frames[::step, part, :3, 3] for part in parts)
+            body = frames[::step, above, :3, :3]
+            own = [np.einsum("fji,fj->fi", body, place - shoulder) for place in (elbow, wrist)]
+            yield f"{file.stem} {side}", own[0], own[1]
+
+
+def wrist_table() -> Table:
+    """Return how near the elbows of solved arms are to recorded ones."""
+    table = Table(title="wrist paths of recorded motions: distance of the elbow from the true one")
+    for heading in ("arms", "frames", "wrist, at most", "following: median", "90 %",
+                    "from the first frame: median", "90 %"):  # fmt: skip
+        table.add_column(heading, justify="right")
+    following, anew, misses, arms = [], [], [0.0], 0
+    for _, elbow, wrist in arm_paths():
+        arms += 1
+        upper, lower = elbow[0], wrist[0] - elbow[0]
+        chains = Chains(np.stack([upper, lower]))
+        one, turns = SingleChain(chains), [(0.0, 0.0, 0.0, 1.0)] * 2
+        for place, true in zip(wrist.tolist(), elbow, strict=True):
+            found = one.solve((place[0], place[1], place[2]), turns)
+            turns = found.rotations
+            misses.append(found.error / one.reach)
+            following.append(float(np.linalg.norm(np.array(found.positions[1]) - true)))
+        start = np.tile(rotations.IDENTITY, (len(wrist), 2, 1))
+        points = solve(chains, wrist, start).positions
+        anew += np.linalg.norm(points[:, 1] - elbow, axis=-1).tolist()
+    quantiles = [np.quantile(each, (0.5, 0.9)) for each in (following, anew)] if arms else []
+    cells = [f"{100 * value:.1f} cm" for pair in quantiles for value in pair]
+    table.add_row(f"{arms}", f"{len(following)}", f"{max(misses):.1e} of the arm", *cells)
+    return table
+
+
+def campaign(solves: int, console: Console) -> bool:
+    """Solve many random problems with limits; return whether the bars are met."""
+    solved = bad = beyond = 0
+    start = time.perf_counter()
+    for block in range(-(-solves // BLOCK)):
+        joints = 4 + block % 7
+        problem = Problem.random(joints, BLOCK, np.random.default_rng(block))
+        begin = problem.chains.random(BLOCK, np.random.default_rng([block, 1]))
+        begin = begin if block % 2 else arc(joints, BLOCK)
+        found = solve(problem.chains, problem.targets, begin, seed=block)
+        solved += int(found.solved.sum())
+        bad += int((~np.isfinite(found.rotations)).sum() + (~np.isfinite(found.positions)).sum())
+        beyond += violations(problem.chains, found)
+    total = -(-solves // BLOCK) * BLOCK
+    each = 1e6 * (time.perf_counter() - start) / total
+    console.print(
+        f"campaign: {total} solves of chains of 4 to 10 joints with limits: {solved / total:.4%} "
+        f"solved, {bad} not finite, {beyond} joints beyond limits, {each:.0f} µs each",
+        highlight=False,
+    )
+    return solved >= MIN_SOLVED * total and bad == 0 and beyond == 0
+
+
+def missed(alone: list[AloneFigures], sure: list[SureFigures]) -> list[str]:
+    """Return the bars that are missed, in words."""
+    own = [each for each in alone if each.method == DEFAULT]
+    checks = {
+        f"{MIN_SOLVED:.1%} solved within limits": all(s.solved >= MIN_SOLVED for s in sure),
+        "no joint beyond its limits": all(s.violations == 0 for s in sure),
+        "zig-zag 0 near the base": all(s.zig_zag == 0 for s in sure),
+        f"one chain of six in {MAX_SINGLE_MS} ms": own[0].single_ms <= MAX_SINGLE_MS,
+        f"a chain of a batch in {MAX_BATCH_US} µs": own[0].batch_us <= MAX_BATCH_US,
+        "joints change no more than by CCD": all(
+            each.change_deg <= other.change_deg
+            for each in alone
+            for other in alone
+            if (other.method, other.joints) == ("ccd", each.joints)
+        ),
+        f"twist below {MAX_TWIST_DEG}°/cm by the default": max(
+            *(each.twist_deg for each in own),
+            *(each.twist_deg for each in sure if each.method == DEFAULT),
+        )
+        < MAX_TWIST_DEG,
+    }
+    return [name for name, met in checks.items() if not met]
+
+
+def main() -> int:
+    """Print the tables and return an exit code."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--targets", type=int, default=1000, help="of each row")
+    parser.add_argument("--solves", type=int, default=50_000, help="of the campaign")
+    options = parser.parse_args()
+    console = Console(width=120)
+    alone, sure = [], []
+    for joints in JOINTS:
+        for method in SOLVERS:
+            alone.append(measure_alone(method, joints, options.targets))
+            sure.append(measure_sure(method, joints, options.targets))
+    console.print(alone_table(alone, options.targets))
+    console.print(sure_table(sure))
+    console.print(oracle_table(min(options.targets, 100)))
+    if DATA.is_dir():
+        console.print(wrist_table())
+    else:
+        console.print(f"no recordings at {DATA}: wrists are not measured")
+    met = campaign(options.solves, console)
+    missing = missed(alone, sure)
+    for name in missing:
+        console.print(f"[red]missed:[/] {name}", highlight=False)
+    return int(not met or bool(missing))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
