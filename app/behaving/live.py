@@ -163,6 +163,7 @@ def play_live(
     clock
         The time [s].
     """
+    player.prepare()
     player.settle(SETTLE_S, rate)
     begin = clock()
     frames = 0

@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from pathlib import Path
 
+from app.behaving.player import block_of
 from app.behaving.voice import LineSource, PatientSource, SayText, SilentSource, saying_with
 from app.speaking.voices import open_voice
 from characters import CharacterError
-from characters.behaviour.bml import parse
 from characters.model.files import read_text
 from characters.speech.voices import VoiceError
 
@@ -36,7 +36,7 @@ def open_lines(command: str | None, language: str, kind: MakeSource = PatientSou
 
 
 def read_document(path: Path) -> str:
-    """Return the BML of a file that can be read.
+    """Return the BML or FML of a file that can be read.
 
     Raises
     ------
@@ -45,7 +45,7 @@ def read_document(path: Path) -> str:
     """
     text = read_text(path, MAX_BYTES)
     try:
-        parse(text)
+        block_of(text)
     except CharacterError as error:
         raise CharacterError(f"{path}: {error}") from None
     return text

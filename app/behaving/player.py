@@ -17,12 +17,14 @@ from characters import (
     Animator,
     Character,
     CharacterCommand,
+    CharacterError,
     LocomotionIntent,
     PosedCharacter,
     RootDelta,
 )
-from characters.behaviour.bml import Feedback, Realizer
+from characters.behaviour.bml import Block, BmlWarning, Feedback, Realizer, parse
 from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
+from characters.behaviour.fml import behaviours_of
 from characters.behaviour.gestures.collection import GestureCollection
 from characters.behaviour.performing.character_performer import CharacterPerformer
 from characters.behaviour.performing.performed import Performed, Performing, Saying
@@ -99,6 +101,7 @@ class BehaviourPlayer:
         self._emotion, self._lines = options.emotion, lines
         self._animator = Animator(character, place=RootDelta(), seed=options.seed)
         self._ways = Ways(character)
+        self._refused: list[str] = []
         self._recent: deque[SpokenLine] = deque(maxlen=MAX_RECENT)
         self._eye_height = _eye_height(character)
         places = {"viewer": VIEWER, "cube": CUBE, "left": LEFT, "right": RIGHT}
@@ -118,17 +121,26 @@ class BehaviourPlayer:
         """What keeps the time of the blocks; `perform` gives it one."""
 
     def perform(self, document: str | bytes) -> None:
-        """Accept a document; it counts from the next update on."""
-        self.realizer.perform(document)
+        """Accept a document of BML or FML; it counts from the next update on."""
+        try:
+            self.realizer.perform(block_of(document))
+        except CharacterError as error:
+            self._refused.append(str(error))
 
     def update(self, now: float) -> BehaviourFrame:
         """Advance to a time [s] and return the frame."""
-        feedback = self.realizer.update(now)
+        refused = (BmlWarning("", "PARSING_FAILURE", why, now) for why in self._refused)
+        feedback = (*refused, *self.realizer.update(now))
+        self._refused = []
         retime_speeches(self.realizer, self.who, now)
         performed = self._performer.performed(self.realizer.active(now), now)
         posed = self._animator.update(command_of(performed, self._emotion, self.who))
         self._tell_place(posed)
         return BehaviourFrame(posed, performed, feedback)
+
+    def prepare(self) -> None:
+        """Measure what would make a frame late."""
+        self._ways.measure()
 
     def settle(self, seconds: float, rate: float) -> None:
         """Stand for a time before time 0, in frames of a rate [Hz]: eyes find the viewer."""
@@ -160,6 +172,18 @@ class BehaviourPlayer:
         placed = posed.table_from_character
         self.who.surroundings.move(placed, self._eye_height)
         self._place = RootDelta(float(placed[0, 3]), float(placed[2, 3]), self.who.surroundings.yaw)
+
+
+def block_of(document: str | bytes) -> Block:
+    """Return the block of a document of BML, or of FML by the usual lexicon.
+
+    Raises
+    ------
+    CharacterError
+        If it is none.
+    """
+    is_fml = b"<fml" in document if isinstance(document, bytes) else "<fml" in document
+    return behaviours_of(document) if is_fml else parse(document)
 
 
 def command_of(performed: Performed, emotion: Emotion | None, who: Performing) -> CharacterCommand:

@@ -83,7 +83,7 @@ def perform(
     player
         The character; it has not been used before.
     documents
-        BML.
+        BML or FML.
     rate
         Frames a second.
     together

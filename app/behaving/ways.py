@@ -13,7 +13,7 @@ from characters.locomotion.steering import ARRIVAL_DISTANCE_M
 SPEEDS: dict[Manner, float] = {"walk": 2.0, "run": 4.0}
 """AvatAR's Speed of each manner."""
 
-TRIAL_M, TRIAL_STEP_S, TRIAL_S = 0.5, 1 / 30, 20.0
+TRIAL_M, TRIAL_STEP_S, TRIAL_S = 0.4, 1 / 30, 20.0
 """Way of the trial [m], its time step, and the time after which it is given up [s]."""
 
 TURNING_S_PER_RAD = 0.35
@@ -26,6 +26,11 @@ class Ways:
     def __init__(self, character: Character) -> None:
         self._character = character
         self._measured = lru_cache(maxsize=None)(self._trial)
+
+    def measure(self) -> None:
+        """Measure all that `time` needs, so that no frame waits for it."""
+        for manner in SPEEDS:
+            self._measured(manner)
 
     def time(self, place: RootDelta, target: NDArray[np.float64], manner: Manner) -> float:
         """Return how long a way takes from a place to a target (x, z) on the table [s]."""

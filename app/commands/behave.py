@@ -45,7 +45,8 @@ def _expressivity(name: str, words: str, low: float) -> Any:
 
 def behave(
     files: Annotated[
-        list[Path] | None, typer.Argument(help="Files of BML, performed one after the other.")
+        list[Path] | None,
+        typer.Argument(help="Files of BML or FML, performed one after the other."),
     ] = None,
     output: Annotated[
         Path | None,
@@ -113,7 +114,7 @@ def behave(
         _serve(serve, body, options, first, voice, lang, rate, (pixels, view) if window else None)
         return
     if not files:
-        raise AppError("there is nothing to perform: name a file of BML, or --serve PORT")
+        raise AppError("there is nothing to perform: name a file of BML or FML, or --serve PORT")
     path = chosen_output(output, "behaviour.mp4", "behaviour", OUTPUT_SUFFIXES, overwrite)
     if feedback is not None:
         check_output(feedback, "feedback", (".xml",), overwrite=overwrite)

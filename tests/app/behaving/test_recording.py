@@ -7,7 +7,7 @@ import pytest
 
 from app.behaving.recording import TAIL_S, perform
 from app.sound import SAMPLE_RATE
-from characters.behaviour.bml import BlockProgress, SyncPointProgress
+from characters.behaviour.bml import BlockProgress, BmlWarning, SyncPointProgress
 from characters.control.controllers import default_height
 from characters.skeleton import rotations
 from tests.app.behaving.performances import HUMAN, LateSource, block, player
@@ -98,3 +98,13 @@ def test_the_same_blocks_give_the_same_motion():
     assert one.morphs is not None
     assert other.morphs is not None
     assert np.array_equal(one.morphs, other.morphs)
+
+
+def test_intentions_of_fml_are_performed_and_a_bad_document_is_a_warning():
+    playing = player()
+    playing.perform('<fml id="f"><performative type="agree"/></fml>')
+    playing.perform(b"<bml")
+    shown = playing.update(0.0)
+    assert shown.performed.heads[0].lexeme == "NOD"
+    warnings = [each for each in shown.feedback if isinstance(each, BmlWarning)]
+    assert [each.type for each in warnings] == ["PARSING_FAILURE"]

@@ -84,7 +84,7 @@ def test_a_target_that_is_none_is_one_line(target, document):
 
 
 def test_nothing_to_perform_is_one_line():
-    with pytest.raises(AppError, match="name a file of BML"):
+    with pytest.raises(AppError, match="name a file of BML or FML"):
         behave([])
 
 
