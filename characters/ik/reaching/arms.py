@@ -45,8 +45,8 @@ CONE_AXIS: Vector = (0.45, -0.25, 0.85)
 STRAIGHT_SHARE = 0.9995
 """Extension of a straight arm ÷ its length: the rest keeps its elbow defined."""
 
-_AHEAD: Vector = (0.3, -0.6, 0.75)
-_ELBOW_AHEAD: Vector = (0.0, -0.78, -0.62)
+_AHEAD: Vector = (-0.15, -0.35, 0.85)
+_ELBOW_AHEAD: Vector = (0.0, -0.9, -0.4)
 
 
 @dataclass(frozen=True)
@@ -127,6 +127,9 @@ class BentArm(NamedTuple):
 
     wrist: Vector
     """Where the wrist is [m]."""
+
+    elbow: Vector
+    """Where the elbow is [m]."""
 
 
 def find_arm(skeleton: Skeleton, anatomy: Anatomy, hand: Hand) -> Arm | None:
@@ -221,20 +224,16 @@ def bend(
     moved = multiply(turn, conjugate(arm.rest_turns[0]))
     place = add(shoulder, scaled(aim, distance))
     wrist = subtract(place, rotate(moved, effector.offset))
-    return BentArm(upper, turn, multiply(moved, arm.rest_turns[1]), wrist)
+    elbow = add(shoulder, scaled(along, arm.upper))
+    return BentArm(upper, turn, multiply(moved, arm.rest_turns[1]), wrist, elbow)
 
 
 def bend_to_wrist(
-    arm: Arm,
-    wrist: Effector,
-    shoulder: Vector,
-    reached: BentArm,
-    chest: Quaternion,
-    swivel: float,
+    arm: Arm, wrist: Effector, shoulder: Vector, bent: BentArm, chest: Quaternion, swivel: float
 ) -> BentArm:
     """Return an arm whose wrist and hand stay where they are while its elbow is swivelled."""
-    bent = bend(arm, wrist, shoulder, reached.wrist, chest, swivel)
-    return BentArm(bent.upper, bent.lower, reached.hand, bent.wrist)
+    moved = bend(arm, wrist, shoulder, bent.wrist, chest, swivel)
+    return BentArm(moved.upper, moved.lower, bent.hand, moved.wrist, moved.elbow)
 
 
 def from_axes(along: Vector, hinge: Vector) -> Quaternion:

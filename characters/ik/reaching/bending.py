@@ -4,16 +4,19 @@ import math
 from typing import NamedTuple
 
 from characters.ik.reaching.arms import (
+    SWIVEL_DEG,
     Arm,
     BentArm,
     Effector,
     bend,
+    bend_to_wrist,
     effector_of,
     from_axes,
     scaled,
+    swivel_of,
     to_vector,
 )
-from characters.ik.reaching.targets import NEUTRAL_REACH, HandTarget
+from characters.ik.reaching.targets import HandTarget
 from characters.skeleton.scalar_quaternions import (
     IDENTITY,
     Quaternion,
@@ -38,8 +41,8 @@ POINT_EXTENSION = 0.97
 MAX_WRIST_RAD = math.radians(65.0)
 """How far a wrist bends."""
 
-MAX_FOREARM_TWIST_RAD = math.radians(85.0)
-"""How far a forearm turns the hand about its length."""
+MAX_FOREARM_TWIST_RAD = math.radians(110.0)
+"""How far forearm and upper arm turn the hand about the forearm's length."""
 
 SHOULDER_STRAIN, SHOULDER_POWER = 0.20, 0.22
 """Part of the angle to a place that a collarbone makes for a straight arm, and at full power."""
@@ -51,7 +54,7 @@ SHOULDER_DROP = 0.25
 """Part of its way down that it follows a hand that goes down."""
 
 
-NEUTRAL_SWIVEL = NEUTRAL_REACH.swivel
+NEUTRAL_SWIVEL = math.radians(sum(SWIVEL_DEG) / 2.0)
 """Swivel of the elbow for which the wrist is placed: openness changes the elbow alone [rad]."""
 
 _POINTING_ROUNDS = 2
@@ -125,7 +128,7 @@ def pointed(hand: HandOnItsWay, shoulder: Vector, chest: Quaternion) -> BentArm:
         knuckle = add(bent.wrist, rotate(moved, effector.finger[0]))
         along = rotate(moved, effector.finger[1])
         turn = multiply(between(along, subtract(hand.place, knuckle)), turn)
-    return BentArm(bent.upper, bent.lower, turn, bent.wrist)
+    return bent._replace(hand=turn)
 
 
 def oriented(hand: HandOnItsWay, wrist: Effector, shoulder: Vector, chest: Quaternion) -> BentArm:
@@ -142,7 +145,7 @@ def oriented(hand: HandOnItsWay, wrist: Effector, shoulder: Vector, chest: Quate
     wanted = multiply(turn, conjugate(bent.hand))
     allowed = _allowed(arm, bent, wanted)
     if allowed is wanted and bent.wrist == place:
-        return BentArm(bent.upper, bent.lower, turn, bent.wrist)
+        return bent._replace(hand=turn)
     # The hand turns as far as it can; then it is brought to its place as it is.
     turn = multiply(allowed, bent.hand)
     from_rest = multiply(bent.lower, conjugate(arm.rest_turns[0]))
@@ -150,7 +153,23 @@ def oriented(hand: HandOnItsWay, wrist: Effector, shoulder: Vector, chest: Quate
     again = effector_of(arm, add(arm.wrist, moved))
     held = bend(arm, again, shoulder, hand.place, chest, NEUTRAL_SWIVEL)
     follows = multiply(held.lower, conjugate(bent.lower))
-    return BentArm(held.upper, held.lower, multiply(follows, turn), held.wrist)
+    return held._replace(hand=multiply(follows, turn))
+
+
+def opened(
+    arm: Arm,
+    wrist: Effector,
+    shoulder: Vector,
+    bent: BentArm,
+    chest: Quaternion,
+    openness: float,
+) -> BentArm:
+    """Return an arm with its elbow swivelled by openness, from where it is at an openness of ½."""
+    neutral = swivel_of(arm, shoulder, bent.elbow, bent.wrist, chest)
+    closed, open_ = (math.radians(limit) for limit in SWIVEL_DEG)
+    share = 2.0 * openness - 1.0
+    swivel = neutral + share * (neutral - closed if share < 0.0 else open_ - neutral)
+    return bend_to_wrist(arm, wrist, shoulder, bent, chest, swivel)
 
 
 def twisted(arm: Arm, bent: BentArm) -> BentArm:
@@ -159,15 +178,13 @@ def twisted(arm: Arm, bent: BentArm) -> BentArm:
     turn = multiply(bent.hand, conjugate(natural))
     if arm.rigid:
         twist, _ = _twist_and_swing(turn, _forearm(arm, bent))
-        return BentArm(
-            bent.upper, multiply(twist, bent.lower), multiply(twist, natural), bent.wrist
-        )
+        return bent._replace(lower=multiply(twist, bent.lower), hand=multiply(twist, natural))
     if turn[3] * turn[3] > 1.0 - 1e-9:
         return bent
     axis = _forearm(arm, bent)
     twist, _ = _twist_and_swing(turn, axis)
     half = normalize((twist[0], twist[1], twist[2], twist[3] + 1.0))
-    return BentArm(bent.upper, multiply(half, bent.lower), bent.hand, bent.wrist)
+    return bent._replace(lower=multiply(half, bent.lower))
 
 
 def natural_hand(arm: Arm, bent: BentArm) -> Quaternion:

@@ -1,11 +1,9 @@
 """Where hands are to be, and how a body reaches."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from characters.ik.reaching.arms import SWIVEL_DEG
 from characters.skeleton.pose import Array
 
 ReachKind = Literal["reach", "touch", "point", "grasp"]
@@ -51,12 +49,6 @@ class ReachStyle:
 
     power: float = 0.0
     """How much shoulders and torso join in, 0…1."""
-
-    @property
-    def swivel(self) -> float:
-        """Swivel of the elbow outward [rad]."""
-        low, high = SWIVEL_DEG
-        return math.radians(low + (high - low) * self.openness)
 
 
 NEUTRAL_REACH = ReachStyle()

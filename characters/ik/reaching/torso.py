@@ -30,14 +30,17 @@ from characters.skeleton.scalar_quaternions import (
 MAX_LEAN_RAD = math.radians(35.0)
 """How far a torso leans ahead; less to its side, and little back."""
 
+LEAN_SHARE = 0.55
+"""Lean ÷ the angle to a place from the torso's length: further on a lean gains ever less."""
+
 MAX_TURN_RAD = math.radians(60.0)
 """How far a torso turns about its length."""
 
 EASY_EXTENSION = 0.86
 """Extension of an arm ÷ its length up to which the torso stays as it is."""
 
-POWER_EXTENSION = 0.12
-"""By how much full power lowers that extension."""
+POWER_SHARE = 0.3
+"""Part of its turn and lean that full power adds for a stretched arm without need."""
 
 TURN_SHARE = 0.45
 """Turn of the torso ÷ the angle to a place, from where its hand is at home."""
@@ -51,10 +54,13 @@ OPEN_TURN = 0.25
 FOUR_LEGS = 0.4
 """What a torso that carries legs does of all that ÷ what that of a person does."""
 
+LEAST_GAIN = 0.06
+"""Gain of reach ÷ length of the arm over which a torso moves though it gains nothing."""
+
 _BEHIND_RAD = math.radians(40.0)
 _FOLLOWING_RAD = math.radians(40.0)
+_LEAST_EXTENSION = EASY_EXTENSION - 2.0 * LEAST_GAIN
 _ROUNDS = 12
-_SAME_SHARE = 1e-4
 
 
 @dataclass(frozen=True)
@@ -129,12 +135,13 @@ def turn_torso(
     if not torso.places:
         return TorsoTurn((0.0, 0.0, 0.0), _beyond(torso, reaching, (0.0, 0.0, 0.0), power))
     turn, lean = _directions(torso, reaching)
-    easy = EASY_EXTENSION - POWER_EXTENSION * power
-    whole = add(turn, lean)
-    effort = max(_effort(torso, each, whole, easy) for each in reaching)
+    efforts = [_effort(torso, each, turn, lean) for each in reaching]
+    effort, share = (max(values) for values in zip(*efforts, strict=True))
+    if power > 0.0:
+        share += (1.0 - share) * POWER_SHARE * power * max(map(_strain, reaching))
     # An open posture turns by itself, the less the more it has to turn anyway.
-    share = effort + (1.0 - effort) * OPEN_TURN * openness
-    turned = add(scaled(turn, share), scaled(lean, effort))
+    open_turn = (1.0 - share) ** 2 * OPEN_TURN * openness
+    turned = add(_turned(turn, lean, share), scaled(turn, open_turn))
     if effort >= 1.0:
         effort = max(effort, _beyond(torso, reaching, turned, power))
     return TorsoTurn(turned, effort)
@@ -163,7 +170,7 @@ def _directions(torso: PlacedTorso, reaching: Sequence[Reaching]) -> tuple[Vecto
     size = length(axis)
     angle = math.atan2(size, dot(length_of, to_place))
     most = MAX_LEAN_RAD * torso.limits * (0.64 + 0.36 * math.cos(azimuth))
-    lean = min(most, angle, 1.5 * (math.pi - angle)) / max(size, 1e-9)
+    lean = min(most, LEAN_SHARE * angle, 1.5 * (math.pi - angle)) / max(size, 1e-9)
     up = rotate(torso.facing, (0.0, turn, 0.0))
     return up, (axis[0] * lean, axis[1] * lean, axis[2] * lean)
 
@@ -185,69 +192,68 @@ def _azimuth(torso: PlacedTorso, target: Vector, sign: float) -> tuple[float, fl
 def _turn(azimuth: float, sign: float, limits: float) -> float:
     """Return how far a torso turns to a place at most [rad], to its left."""
     turn = TURN_SHARE * (azimuth - sign * HOME_RAD)
-    turn = min(max(turn, -MAX_TURN_RAD), MAX_TURN_RAD) * limits
+    turn = min(max(turn, -MAX_TURN_RAD), MAX_TURN_RAD) * limits * limits
     # Behind the other side there is a cut between a turn to the left and one to the right.
     cut = (math.pi - abs(azimuth - sign * _BEHIND_RAD)) / _BEHIND_RAD
     cut = min(max(cut, 0.0), 1.0)
     return turn * cut * cut * (3.0 - 2.0 * cut)
 
 
-def _effort(torso: PlacedTorso, each: Reaching, whole: Vector, easy: float) -> float:
-    """Return the share of its whole turn with which an arm gets to its place, 0…1."""
-    aim = subtract(each.target, each.shoulder)
-    size = easy * (each.arm.upper + each.fore)
-    share = 0.0
-    if dot(aim, aim) > size * size:
-        share = _share_for_distance(torso, each, whole, easy)
-    if share < 1.0 and _turned_away(torso, each, IDENTITY):
-        share = _share_for_direction(torso, each, whole, share)
-    return share
+def _turned(turn: Vector, lean: Vector, share: float) -> Vector:
+    """Return a share, 0…1, of turn and lean: the turn goes first, and ends softly.
 
-
-def _share_for_distance(torso: PlacedTorso, each: Reaching, whole: Vector, easy: float) -> float:
-    """Return the share of a whole turn for which an arm is as long as it is stretched then.
-
-    The way of the shoulder is nearly a parabola: it is followed at its ends and its middle, and
-    Newton's method finds the share.
+    So the last of it is all lean, which always gains length.
     """
-    place, target, size = each.shoulder, each.target, each.arm.upper + each.fore
-    x0, y0, z0 = subtract(target, place)
-    x1, y1, z1 = subtract(target, torso.carried(torso.step(scaled(whole, 0.5)), place))
-    x2, y2, z2 = subtract(target, torso.carried(torso.step(whole), place))
-    if x2 * x2 + y2 * y2 + z2 * z2 >= size * size:
-        return 1.0
-    ax, ay, az = 2.0 * (x0 + x2) - 4.0 * x1, 2.0 * (y0 + y2) - 4.0 * y1, 2.0 * (z0 + z2) - 4.0 * z1
-    bx, by, bz = x2 - x0 - ax, y2 - y0 - ay, z2 - z0 - az
-    low, high, share, slack = 0.0, 1.0, 0.5, size * (1.0 - easy)
-    for _ in range(_ROUNDS):
-        x, y, z = (
-            (ax * share + bx) * share + x0,
-            (ay * share + by) * share + y0,
-            (az * share + bz) * share + z0,
-        )
-        left = 1.0 - share
-        stretched = size - slack * left * left
-        lack = x * x + y * y + z * z - stretched * stretched
-        along = x * (2 * ax * share + bx) + y * (2 * ay * share + by) + z * (2 * az * share + bz)
-        slope = 2.0 * (along - 2.0 * stretched * slack * left)
-        low, high = (share, high) if lack > 0.0 else (low, share)
-        before = share
-        share = share - lack / slope if slope < 0.0 else low
-        if not low < share < high:
-            share = 0.5 * (low + high)
-        if abs(share - before) < _SAME_SHARE:
-            break
-    return share
+    return add(scaled(turn, share * (2.0 - share)), scaled(lean, share))
 
 
-def _share_for_direction(torso: PlacedTorso, each: Reaching, whole: Vector, low: float) -> float:
-    """Return the share of a whole turn, at least `low`, that brings a place before a shoulder."""
+def _effort(torso: PlacedTorso, each: Reaching, turn: Vector, lean: Vector) -> tuple[float, float]:
+    """Return the effort to get an arm to its place, and the share of turn and lean, 0…1."""
+    full = each.arm.upper + each.fore
+    far = length(subtract(each.target, each.shoulder))
+    effort = share = 0.0
+    if far > _LEAST_EXTENSION * full:
+        effort, share = _stretched(torso, each, turn, lean, far)
+    if share < 1.0 and _turned_away(torso, each, IDENTITY):
+        share = _share_for_direction(torso, each, turn, lean, share)
+        effort = max(effort, share)
+    return effort, share
+
+
+def _stretched(
+    torso: PlacedTorso, each: Reaching, turn: Vector, lean: Vector, far: float
+) -> tuple[float, float]:
+    """Return the effort for a place `far` away [m], and the share of turn and lean.
+
+    At an effort e the arm lacks slack · (1 − e)² of its length: its elbow straightens linearly with
+    e, where it would snap without a torso. What the arm does not gain, the torso does.
+    """
+    full = each.arm.upper + each.fore
+    there = torso.carried(torso.step(add(turn, lean)), each.shoulder)
+    at_end = far - length(subtract(each.target, there))
+    gain = max(at_end, LEAST_GAIN * full)
+    slack = min((1.0 - EASY_EXTENSION) * full, gain)
+    effort = 1.0 - (full + at_end - far) / (slack + gain)
+    effort = min(max(effort, 0.0), 1.0)
+    return effort, effort - slack / gain * effort * (1.0 - effort)
+
+
+def _strain(each: Reaching) -> float:
+    """Return how far an arm is stretched before the torso moves: 0 up to its half … 1."""
+    far = length(subtract(each.target, each.shoulder)) / (each.arm.upper + each.fore)
+    return min(max(2.0 * far - 1.0, 0.0), 1.0)
+
+
+def _share_for_direction(
+    torso: PlacedTorso, each: Reaching, turn: Vector, lean: Vector, low: float
+) -> float:
+    """Return the share, at least `low`, that brings a place before a shoulder."""
     high = 1.0
-    if _turned_away(torso, each, torso.step(whole)):
+    if _turned_away(torso, each, torso.step(add(turn, lean))):
         return high
     for _ in range(_ROUNDS):
         middle = 0.5 * (low + high)
-        away = _turned_away(torso, each, torso.step(scaled(whole, middle)))
+        away = _turned_away(torso, each, torso.step(_turned(turn, lean, middle)))
         low, high = (middle, high) if away else (low, middle)
     return high
 

@@ -31,6 +31,7 @@ from characters.ik.reaching.arms import (
 from characters.ik.reaching.bending import (
     NEUTRAL_SWIVEL,
     HandOnItsWay,
+    opened,
     oriented,
     passive_shoulder,
     pointed,
@@ -184,15 +185,17 @@ class UpperBody:
         frames = self._frames(pose, whole_arms=holds)
         torso = self._placed(frames)
         hands = [self._started(frames, arm, target, style) for arm, target in wanted]
-        turned, effort = self._torso_turn(torso, hands, style)
-        local, step = pose.rotations.copy(), torso.step(turned)
-        self._turn_trunk(local, frames, step)
-        whole = from_rotation_vector(turned)
-        chest = multiply(whole, torso.chest)
-        for hand in hands:
-            shoulder = torso.carried(step, hand.shoulder)
-            bent = self._bent(hand, shoulder, chest, style.swivel)
-            self._write(local, frames, hand, bent, whole)
+        neutral = ReachStyle(power=style.power)
+        turned, effort = self._torso_turn(torso, hands, neutral)
+        bent = [self._bent(hand, torso, turned) for hand in hands]
+        if style.openness != neutral.openness:
+            turned, _ = self._torso_turn(torso, hands, style)
+            for place, (hand, arm) in enumerate(zip(hands, bent, strict=True)):
+                bent[place] = self._opened(hand, torso, turned, arm, style.openness)
+        local, whole = pose.rotations.copy(), from_rotation_vector(turned)
+        self._turn_trunk(local, frames, torso.step(turned))
+        for hand, arm in zip(hands, bent, strict=True):
+            self._write(local, frames, hand, arm, whole)
         if holds:
             self._hold(local, frames, torso, hands[0], turned)
         return ReachedPose(Pose(pose.translations, local, pose.scales, pose.morphs), effort)
@@ -300,23 +303,29 @@ class UpperBody:
             rows.append(multiply(conjugate(above), multiply(step, frames.turns[joint])))
         local[self._order[self._trunk]] = rows
 
-    def _bent(
-        self, hand: HandOnItsWay, shoulder: Vector, chest: Quaternion, swivel: float
-    ) -> BentArm:
-        """Return the arm of a hand: where it goes by a neutral elbow, then the elbow it has."""
+    def _bent(self, hand: HandOnItsWay, torso: PlacedTorso, turned: Vector) -> BentArm:
+        """Return the arm of a hand after a turn of the torso, with a neutral elbow."""
         arm, target = hand.arm, hand.target
-        wrist = self._wrists[arm.hand.side]
+        shoulder = torso.carried(torso.step(turned), hand.shoulder)
+        chest = torso.chest_after(turned)
         if target.kind == "point":
-            bent = pointed(hand, shoulder, chest)
-        elif target.palm is None and target.fingers is None:
-            bent = bend(arm, hand.effector, shoulder, hand.place, chest, NEUTRAL_SWIVEL)
-            if swivel == NEUTRAL_SWIVEL:
-                return bent
-        else:
-            bent = oriented(hand, wrist, shoulder, chest)
-        if swivel != NEUTRAL_SWIVEL:
-            bent = bend_to_wrist(arm, wrist, shoulder, bent, chest, swivel)
-        return twisted(arm, bent)
+            return twisted(arm, pointed(hand, shoulder, chest))
+        if target.palm is None and target.fingers is None:
+            return bend(arm, hand.effector, shoulder, hand.place, chest, NEUTRAL_SWIVEL)
+        return twisted(arm, oriented(hand, self._wrists[arm.hand.side], shoulder, chest))
+
+    def _opened(
+        self,
+        hand: HandOnItsWay,
+        torso: PlacedTorso,
+        turned: Vector,
+        bent: BentArm,
+        openness: float,
+    ) -> BentArm:
+        """Return an arm whose hand stays while torso and elbow go where openness has them."""
+        shoulder = torso.carried(torso.step(turned), hand.shoulder)
+        wrist, chest = self._wrists[hand.arm.hand.side], torso.chest_after(turned)
+        return twisted(hand.arm, opened(hand.arm, wrist, shoulder, bent, chest, openness))
 
     def _write(
         self,
@@ -358,7 +367,7 @@ class UpperBody:
         _, upper, lower, paw = (self._number.get(joint, -1) for joint in arm.joints)
         shoulder = torso.carried(torso.step(turned), places[upper])
         wrist = self._wrists[arm.hand.side]
-        now = BentArm(turns[upper], turns[lower], turns[paw], places[paw])
+        now = BentArm(turns[upper], turns[lower], turns[paw], places[paw], places[lower])
         swivel = swivel_of(arm, places[upper], places[lower], places[paw], torso.chest)
         bent = bend_to_wrist(arm, wrist, shoulder, now, torso.chest_after(turned), swivel)
         still = HandTarget(places[paw])
