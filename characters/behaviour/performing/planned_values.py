@@ -44,17 +44,12 @@ class PlannedValues:
     """
 
     def __init__(self, size: int) -> None:
-        self._plan: Hashable = None
+        self._plan: Hashable = ()
         self._now: float | None = None
-        self._shown = self._before = np.zeros(size)
+        self._zeros = self._shown = self._before = np.zeros(size)
         self._step = 0.0
         self._decay: OffsetDecay | None = None
         self._changed = 0.0
-
-    @property
-    def active(self) -> bool:
-        """Whether a change of plans is still to be seen."""
-        return self._decay is not None
 
     def update(self, plan: Hashable, values: Callable[[float], Array], now: float) -> Array:
         """Return the values to show at a time [s], (size,).
@@ -62,11 +57,15 @@ class PlannedValues:
         Parameters
         ----------
         plan
-            What tells one plan from another.
+            What tells one plan from another; () for a plan of zeros.
         values
             Returns the values of the present plan at a time, (size,).
         """
         last = now if self._now is None else self._now
+        if plan == self._plan == () and self._decay is None:
+            self._now, self._step = now, now - last
+            self._shown = self._before = self._zeros
+            return self._zeros
         if plan != self._plan:
             self._plan = plan
             self._change(values, last)

@@ -75,12 +75,12 @@ def test_a_voice_that_is_late_does_not_make_the_body_jump():
     def steps(ready_at):
         lines = LateSource()
         performing = player(lines=lines)
-        performing.settle(1.0, 50.0)
+        performing.settle(1.0, 25.0)
         performing.perform(block(behaviours))
         turns = []
-        for number in range(200):
-            lines.ready = number / 50.0 >= ready_at
-            frame = performing.update(number / 50.0)
+        for number in range(90):
+            lines.ready = number / 25.0 >= ready_at
+            frame = performing.update(number / 25.0)
             turns.append(frame.posed.pose.rotations)
         stacked = np.stack(turns)
         moved = rotations.multiply(rotations.conjugate(stacked[:-1]), stacked[1:])

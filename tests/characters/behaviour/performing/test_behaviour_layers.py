@@ -24,7 +24,7 @@ from characters.ik.legs import find_legs, find_paws
 from characters.skeleton import rotations
 
 HUMAN, VLEO = Character.load("human"), Character.load("vleo")
-RATE = 50.0
+RATE = 30.0
 LAYERS = (FootLockLayer, StanceLayer, GazeLayer, FaceShiftLayer)
 
 
@@ -123,9 +123,9 @@ def test_eyes_alone_look_or_the_head_too_or_the_trunk():
     def yaws(influence):
         gaze = GazeIntent("g", np.array([0.3, 0.15, 0.2]), Times(0.0, 0.5), influence)
         _, poses = played(
-            HUMAN, lambda _: BehaviourIntent(gazes=(gaze,)), 2.0, (StanceLayer, GazeLayer)
+            HUMAN, lambda _: BehaviourIntent(gazes=(gaze,)), 1.5, (StanceLayer, GazeLayer)
         )
-        _, rest = played(HUMAN, lambda _: None, 2.0, (StanceLayer, GazeLayer))
+        _, rest = played(HUMAN, lambda _: None, 1.5, (StanceLayer, GazeLayer))
         found = []
         for part in ("chest", "head"):
             joint = HUMAN.anatomy.joint(part)
