@@ -114,11 +114,13 @@ def import_gesture(
     recording: Annotated[
         str, typer.Argument(help="A .bvh, .amc or .glb#CLIP file.", show_default=False)
     ],
-    start: Annotated[float, typer.Option("--from", help="Where the stroke begins [s].")] = 0.0,
+    start: Annotated[float, typer.Option("--from", help="Where it starts, in seconds.")] = 0.0,
     end: Annotated[
         float,
         typer.Option(
-            "--to", help="Where it ends [s]; default: the recording's end.", show_default=False
+            "--to",
+            help="Where it ends, in seconds; default: the recording's end.",
+            show_default=False,
         ),
     ] = float("inf"),
     output: Annotated[

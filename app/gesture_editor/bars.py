@@ -1,6 +1,7 @@
 """The bar at the top, and the one above the time line."""
 
 from dataclasses import replace
+from pathlib import Path
 
 from app.gesture_editor.document import GestureDocument
 from app.gesture_editor.edits import (
@@ -12,6 +13,7 @@ from app.gesture_editor.edits import (
     performers,
     remove_key,
 )
+from app.gesture_editor.fields import TextField
 from app.gesture_editor.state import (
     Action,
     EditorState,
@@ -31,7 +33,6 @@ from app.gesture_editor.widgets import (
     Button,
     Label,
     Rect,
-    TextField,
     Widget,
     button_row,
 )
@@ -76,7 +77,7 @@ def upper_bar(state: EditorState) -> list[Widget]:
             Button(label.lower(), rect, label, action, enabled, chosen=chosen, primary=primary)
         )
         left += width + (12.0 if label in ("Save as", "Redo", "Sectors") else 4.0)
-    options = tuple((name, name) for name in state.characters)
+    options = tuple((name, Path(name).stem) for name in state.characters)
     rect = (left + 8, top, 1268.0 - left - 8, height)
     return [*widgets, *button_row("character", rect, options, (state.character,), _with_character)]
 

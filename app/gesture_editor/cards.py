@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from app.gesture_editor.edits import change_place, gesture_name
+from app.gesture_editor.fields import TextField
 from app.gesture_editor.state import (
     Action,
     CardName,
@@ -28,7 +29,6 @@ from app.gesture_editor.widgets import (
     Rect,
     Scrim,
     Sheet,
-    TextField,
     Widget,
     button_row,
 )

@@ -55,7 +55,7 @@ def change_key(document: GestureDocument, **fields: Any) -> GestureDocument:
 def change_place(document: GestureDocument, **fields: Any) -> GestureDocument:
     """Change where the selected hand is; without a selected key, add one there.
 
-    A hand that is put into a sector leaves what it touched.
+    A hand that is put into a sector leaves what it touched, and goes to the middle of the sector.
     """
     if document.hand_row is None:
         return document
@@ -63,8 +63,13 @@ def change_place(document: GestureDocument, **fields: Any) -> GestureDocument:
         document = add_key(document, 0.0)
     key = document.hand_key
     assert key is not None, "a key was added"
-    left = {} if "contact" in fields else {"contact": "", "offset": (0.0, 0.0, 0.0)}
-    return change_key(document, place=replace(key.place, **{**left, **fields}))
+    if "contact" not in fields:
+        x, y, z = (
+            0.0 if axis in fields else old
+            for axis, old in zip("xyz", key.place.offset, strict=True)
+        )
+        fields = {**fields, "contact": "", "offset": (x, y, z)}
+    return change_key(document, place=replace(key.place, **fields))
 
 
 def add_key(document: GestureDocument, at: float) -> GestureDocument:
@@ -150,7 +155,7 @@ def performed_by(document: GestureDocument, choice: str) -> GestureDocument:
     Hands that had no part get the keys of the one that had.
     """
     gesture = document.gesture
-    keys = gesture.right or gesture.left
+    keys = (gesture.left or gesture.right) if choice == "left" else gesture.right or gesture.left
     if choice == "either":
         document = change_gesture(document, one_handed=True, right=keys, left=())
     elif choice == "both":

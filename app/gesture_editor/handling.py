@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from app.gesture_editor import bars, cards
 from app.gesture_editor.document import ROWS
 from app.gesture_editor.edits import change_gesture, gesture_name, move_key, move_sector, neighbour
+from app.gesture_editor.fields import TextField
 from app.gesture_editor.layout import widget_at, widget_named
 from app.gesture_editor.state import (
     Action,
@@ -19,8 +20,7 @@ from app.gesture_editor.state import (
     unless_unsaved,
     with_text,
 )
-from app.gesture_editor.time_line import key_shown
-from app.gesture_editor.widgets import TextField
+from app.gesture_editor.time_line_parts import key_shown
 
 MAX_TEXT = 300
 """Letters that a text field takes."""

@@ -1,13 +1,23 @@
 """The panel at the right: the selected key, and how the gesture is performed."""
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Any
 
+from app.gesture_editor.body_panel import (
+    BUTTON,
+    COLUMN,
+    LEFT,
+    MIDDLE,
+    RIGHT,
+    body_sliders,
+    expressivity_sliders,
+)
 from app.gesture_editor.document import GestureDocument
-from app.gesture_editor.edits import change_expressivity, change_key, change_place, move_key
+from app.gesture_editor.edits import change_key, change_place, move_key
+from app.gesture_editor.fields import Slider
 from app.gesture_editor.space_map import SpaceMap
 from app.gesture_editor.state import EditorState, edited
-from app.gesture_editor.time_line import ROW_NAMES
+from app.gesture_editor.time_line_parts import ROW_NAMES
 from app.gesture_editor.widgets import (
     LARGE,
     NORMAL,
@@ -16,49 +26,12 @@ from app.gesture_editor.widgets import (
     Button,
     Label,
     Rect,
-    Sheet,
-    Slider,
     Widget,
     button_row,
 )
 from app.gesture_editor.words import DIRECTION_NAMES, PATH_NAMES, combined
-from app.ui.palette import RULE
-from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
-from characters.behaviour.gestures.gesture import SECTORS_Z, BodyKey, HandKey
+from characters.behaviour.gestures.gesture import SECTORS_Z, HandKey
 from characters.ik.reaching.hand_shapes import HAND_SHAPES
-
-LEFT, MIDDLE, RIGHT = 756.0, 1016.0, 1264.0
-"""Left edges of the two columns, and the right edge of the second."""
-
-COLUMN = RIGHT - MIDDLE
-"""Width of a column."""
-
-BUTTON = 24.0
-"""Height of a small button."""
-
-EXPRESSIVITY_TOP = 444.0
-"""Where the sliders of expressivity begin."""
-
-PARAMETERS = (
-    ("spatial", "Spatial extent", -1.0),
-    ("openness", "Openness", 0.0),
-    ("power", "Power", 0.0),
-    ("fluidity", "Fluidity", -1.0),
-    ("bias", "Bias", -1.0),
-    ("tension", "Tension", -1.0),
-)
-"""Field of `GestureExpressivity`, its name, and its least value; the greatest is 1."""
-
-BODY_LIMITS: dict[str, tuple[str, float]] = {
-    "lean_deg": ("Lean forward", 45.0),
-    "side_deg": ("Lean to its left", 30.0),
-    "turn_deg": ("Turn to its left", 45.0),
-    "shrug": ("Shrug", 1.0),
-    "nod_deg": ("Head down", 45.0),
-    "tilt_deg": ("Head to its left", 30.0),
-    "shake_deg": ("Head turns left", 60.0),
-}
-"""Fields of `BodyKey` with their names and greatest values; the least is the opposite."""
 
 MAX_RADIUS, MAX_TURNS = 0.6, 8.0
 """Greatest amplitude of a path, over the length of the arm, and most turns."""
@@ -68,13 +41,13 @@ def inspector(state: EditorState) -> list[Widget]:
     """Return the widgets of the panel."""
     document = state.document
     if document.body_key is not None:
-        widgets = _body(document.body_key)
+        widgets = body_sliders(document.body_key)
     elif document.row == "body":
         words = ("Add a key to lean, turn,", "shrug or nod with the stroke.")
         widgets = _hint(LEFT, words)
     else:
         widgets = [*_place(document), *_shape(document)]
-    return [*_heading(document), *widgets, *_expressivity(document.gesture.expressivity)]
+    return [*_heading(document), *widgets, *expressivity_sliders(document.gesture.expressivity)]
 
 
 def _heading(document: GestureDocument) -> list[Widget]:
@@ -189,7 +162,7 @@ def _path(key: HandKey) -> list[Widget]:
 
         return change
 
-    wide = (RIGHT - LEFT - 62 - 16) / 3
+    wide = (RIGHT - LEFT - 62 - 24) / 3
     widgets: list[Widget] = [
         Label("path", (LEFT, 397.0, 56.0, 0.0), "Path here", SMALL, SUBTLE),
         *button_row(
@@ -214,7 +187,7 @@ def _path(key: HandKey) -> list[Widget]:
         Label("radius", (LEFT, 425.0, 56.0, 0.0), "Radius", SMALL, SUBTLE),
     ]
     for axis, words in enumerate(("outward", "up", "forward")):
-        rect: Rect = (LEFT + 62 + axis * (wide + 8), 408.0, wide, BUTTON)
+        rect: Rect = (LEFT + 62 + axis * (wide + 12), 408.0, wide, BUTTON)
         low = -MAX_RADIUS
         widgets.append(
             Slider(
@@ -240,71 +213,6 @@ def _with_path(state: EditorState, path: str) -> EditorState:
         return _changed(state, path=path)
     radius = {"circle": (0.15, 0.15, 0.0), "wave": (0.2, 0.0, 0.0)}.get(path, (0.0, 0.15, 0.0))
     return _changed(state, path=path, radius=radius)
-
-
-def _body(key: BodyKey) -> list[Widget]:
-    """Return the sliders of trunk, shoulders and head."""
-    widgets: list[Widget] = []
-    names = [field.name for field in fields(BodyKey) if field.name in BODY_LIMITS]
-    for number, name in enumerate(names):
-        words, high = BODY_LIMITS[name]
-        rect: Rect = (LEFT, 104.0 + 34 * number, RIGHT - LEFT, BUTTON)
-        degrees = name.endswith("_deg")
-        widgets.append(
-            Slider(
-                name,
-                rect,
-                words,
-                getattr(key, name),
-                -high if degrees else 0.0,
-                high,
-                lambda state, value, name=name: _changed(state, **{name: value}),  # type: ignore[misc]
-                "°" if degrees else "",
-                1.0 if degrees else 0.05,
-                label_width=126.0,
-            )
-        )
-    return widgets
-
-
-def _expressivity(now: GestureExpressivity) -> list[Widget]:
-    """Return the six parameters, and what makes them neutral."""
-
-    def neutral(state: EditorState) -> EditorState:
-        gesture = replace(state.document.gesture, expressivity=NEUTRAL)
-        return edited(state, replace(state.document, gesture=gesture))
-
-    top = EXPRESSIVITY_TOP
-    widgets: list[Widget] = [
-        Sheet("rule", (LEFT, top - 4, RIGHT - LEFT, 1.5), RULE, 0.7),
-        Label("expressivity", (LEFT, top + 20, 200.0, 0.0), "Expressivity", NORMAL + 1.5),
-        Button(
-            "neutral",
-            (RIGHT - 70, top + 4, 70.0, BUTTON),
-            "neutral",
-            neutral,
-            enabled=now != NEUTRAL,
-            size=SMALL,
-        ),
-    ]
-    for number, (name, words, low) in enumerate(PARAMETERS):
-        left = (LEFT, MIDDLE)[number // 3]
-        rect: Rect = (left, top + 32 + 26 * (number % 3), COLUMN - 6 * (number < 3), BUTTON)
-        widgets.append(
-            Slider(
-                name,
-                rect,
-                words,
-                getattr(now, name),
-                low,
-                1.0,
-                lambda state, value, name=name: edited(  # type: ignore[misc]
-                    state, change_expressivity(state.document, name, value)
-                ),
-                label_width=92.0,
-            )
-        )
-    return widgets
 
 
 def _hint(left: float, lines: tuple[str, ...]) -> list[Widget]:

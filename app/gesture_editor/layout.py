@@ -9,7 +9,8 @@ from app.gesture_editor.bars import lower_bar, upper_bar
 from app.gesture_editor.cards import HEIGHT, WIDTH, card
 from app.gesture_editor.inspector import inspector
 from app.gesture_editor.state import EditorState
-from app.gesture_editor.time_line import KeyMark, draw_playhead, time_line
+from app.gesture_editor.time_line import draw_playhead, time_line
+from app.gesture_editor.time_line_parts import KeyMark
 from app.gesture_editor.widgets import (
     CARD,
     SMALL,
@@ -122,4 +123,4 @@ def _message(canvas: Canvas, state: EditorState) -> None:
     pill: Rect = (left + (width - wide) / 2 - 16, top + 10, wide + 32, 32.0)
     rounded(canvas, pill, 16, ANGRY if state.alarming else INK)
     label: Rect = (pill[0] + 16, pill[1] + 21, wide + 1, 0.0)
-    Label("message", label, state.message, SMALL + 1, CARD).draw(canvas, Look())
+    Label("message", label, state.message, SMALL + 1, CARD, "middle").draw(canvas, Look())

@@ -33,13 +33,10 @@ LEAD_S = 0.5
 PAUSE_S = 0.6
 """Time that it stands between two performances [s]."""
 
-STEP_S, LONG_STEP_S = 1 / 30, 0.1
+STEP_S, LONG_STEP_S = 1 / 30, 0.2
 """Steps of the animator up to a time that is shown [s]: the last ones, and those before."""
 
-MAX_STEP_S = 0.2
-"""A time that is so far ahead is one step away, at most [s]."""
-
-EXACT_S = 0.3
+EXACT_S = 0.1
 """How long before a time that is shown the steps are short [s]."""
 
 HEADROOM = 0.12
@@ -125,7 +122,7 @@ class Preview:
         another performance, are played from the start.
         """
         ahead = time - self._time
-        if performance != self._performance or not -1e-9 <= ahead <= MAX_STEP_S:
+        if performance != self._performance or not -1e-9 <= ahead <= LONG_STEP_S:
             self._performance = performance
             self._animator = self._new_animator(performance.character)
             self._play(performance, -LEAD_S, time)

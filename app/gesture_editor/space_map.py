@@ -64,7 +64,7 @@ class SpaceMap(Widget):
             if number:
                 edge = top + number * high
                 canvas.line([[left, edge], [left + width, edge]], RULE, 1.2)
-        self._hand(canvas, wide, high)
+        self._hand(canvas)
 
     def press(self, state: EditorState, x: float, y: float) -> EditorState:
         """Put the hand into the sector under the mouse."""
@@ -93,7 +93,7 @@ class SpaceMap(Widget):
         cell = (x - wide / 2 + 1, y - high / 2 + 1, wide - 2, high - 2)
         rounded(canvas, cell, 5, between(CARD, ACCENT, 0.35))
 
-    def _hand(self, canvas: Canvas, wide: float, high: float) -> None:
+    def _hand(self, canvas: Canvas) -> None:
         if self.place is None or self.place.contact:
             return
         x, y = self.center(self.place.x, self.place.y)

@@ -3,13 +3,14 @@
 from collections.abc import Iterator
 from pathlib import Path
 
+from app.gesture_editor.fields import Slider
 from app.gesture_editor.handling import KeyPressed, Moved, Pressed, Released, Typed
 from app.gesture_editor.layout import widget_named
 from app.gesture_editor.session import EditorSession
 from app.gesture_editor.space_map import SpaceMap
 from app.gesture_editor.time_line import time_axis
 from app.gesture_editor.timing import phase_spans, time_of
-from app.gesture_editor.widgets import Slider, Widget
+from app.gesture_editor.widgets import Widget
 from app.ui.contact_sheets import save
 from characters.rendering import create_context
 
@@ -62,6 +63,13 @@ class Hand:
         for letter in text:
             self.session.send(Typed(letter))
         self.session.send(KeyPressed("Enter"))
+
+    def open(self, name: str) -> None:
+        """Open a gesture of the library."""
+        self.click("open")
+        for letter in name:
+            self.session.send(Typed(letter))
+        self.click(f"open:{name}")
 
     def go_to(self, time: float) -> None:
         """Put the preview to a time [s]."""

@@ -1,4 +1,4 @@
-"""Buttons, sliders and text fields: pure, drawn on a canvas, events in, state out.
+"""Labels, sheets and buttons: pure, drawn on a canvas, events in, state out.
 
 A widget is made anew for every state. It is known by its name, so that it can be held.
 """
@@ -82,9 +82,16 @@ class Label(Widget):
     """Words; (x, y) of the rectangle is the left end of the baseline, or another end of it."""
 
     words: str
+    """What is written."""
+
     size: float = NORMAL
+    """Of the letters, in units of the canvas."""
+
     color: Color = INK
+    """Of the letters."""
+
     align: str = "left"
+    """Which part of the words is at that part of the width: "left", "middle" or "right"."""
 
     def draw(self, canvas: Canvas, look: Look) -> None:
         """Write the words, smaller if they do not fit into the width."""
@@ -98,12 +105,17 @@ class Sheet(Widget):
     """A background with round corners."""
 
     color: Color = PAPER
+    """What it is filled with."""
+
     radius: float = 14.0
+    """Of its corners, in units of the canvas."""
+
     catches: bool = False
+    """Whether it keeps the mouse from what is below."""
 
     @property
     def takes_mouse(self) -> bool:
-        """Whether it keeps the mouse from what is below."""
+        """Whether it catches it."""
         return self.catches
 
     def draw(self, canvas: Canvas, look: Look) -> None:
@@ -116,6 +128,7 @@ class Scrim(Widget):
     """What darkens the window below a card; a click on it closes the card."""
 
     action: Action
+    """Closes the card."""
 
     @property
     def takes_mouse(self) -> bool:
@@ -137,11 +150,22 @@ class Button(Widget):
     """A button; it acts when it is released."""
 
     label: str
+    """What is written on it."""
+
     action: Action
+    """What it does."""
+
     enabled: bool = True
+    """Whether it does it now."""
+
     chosen: bool = False
+    """Whether it stands for what is chosen at present."""
+
     primary: bool = False
+    """Whether it is what one probably wants."""
+
     size: float = NORMAL
+    """Of the letters, in units of the canvas."""
 
     @property
     def takes_mouse(self) -> bool:
@@ -172,95 +196,6 @@ class Button(Widget):
         if self.chosen or self.primary:
             return between(ACCENT, INK, 0.2 * (look.hovered + look.held)), PAPER
         return between(CARD, ACCENT, 0.14 * (look.hovered + look.held)), INK
-
-
-@dataclass(frozen=True)
-class Slider(Widget):
-    """A number that is dragged; its name is to the left, its value to the right."""
-
-    label: str
-    value: float
-    low: float
-    high: float
-    change: Callable[[EditorState, float], EditorState]
-    unit: str = ""
-    step: float = 0.05
-    label_width: float = 84.0
-    value_width: float = 46.0
-
-    @property
-    def takes_mouse(self) -> bool:
-        """Always."""
-        return True
-
-    @property
-    def track(self) -> tuple[float, float]:
-        """Left and right end of the track."""
-        left, _, width, _ = self.rect
-        return left + self.label_width + 8, left + width - self.value_width - 8
-
-    def draw(self, canvas: Canvas, look: Look) -> None:
-        """Draw name, track, knob and value."""
-        left, top, width, height = self.rect
-        middle, (start, end) = top + height / 2, self.track
-        size = fitting(self.label, NORMAL, self.label_width)
-        canvas.text(left, middle + 5, self.label, size, INK)
-        share = min(max((self.value - self.low) / (self.high - self.low), 0.0), 1.0)
-        zero = min(max(-self.low / (self.high - self.low), 0.0), 1.0)
-        knob, origin = (start + each * (end - start) for each in (share, zero))
-        canvas.line([[start, middle], [end, middle]], RULE, 5)
-        canvas.line([[origin, middle], [knob, middle]], between(PAPER, ACCENT, 0.65), 5)
-        canvas.disc(knob, middle, 8.5 if look.hovered or look.held else 7.5, ACCENT)
-        canvas.disc(knob, middle, 4.0, CARD)
-        words = f"{self.value:.4g}{self.unit}"
-        canvas.text(left + width, middle + 5, words, SMALL, SUBTLE, "right")
-
-    def press(self, state: EditorState, x: float, y: float) -> EditorState:
-        """Put the knob under the mouse, unless it is on the name."""
-        return self.drag(state, x, y) if x > self.track[0] - 12 else state
-
-    def drag(self, state: EditorState, x: float, y: float) -> EditorState:
-        """Move the knob, in steps."""
-        start, end = self.track
-        share = min(max((x - start) / (end - start), 0.0), 1.0)
-        return self._set(state, self.low + share * (self.high - self.low))
-
-    def _set(self, state: EditorState, value: float) -> EditorState:
-        return self.change(state, round(round(value / self.step) * self.step, 4))
-
-
-@dataclass(frozen=True)
-class TextField(Widget):
-    """A line of text; a click lets it take what is typed."""
-
-    text: str
-    hint: str
-    focused: bool
-
-    @property
-    def takes_mouse(self) -> bool:
-        """Always."""
-        return True
-
-    def draw(self, canvas: Canvas, look: Look) -> None:
-        """Draw the end of the text that fits, and a caret."""
-        left, top, width, height = self.rect
-        edge = ACCENT if self.focused else between(RULE, INK, 0.25 * look.hovered)
-        rounded(canvas, self.rect, 8, edge)
-        rounded(canvas, (left + 1.5, top + 1.5, width - 3, height - 3), 7, CARD)
-        shown = self.text
-        while text_width(shown, NORMAL) > width - 24:
-            shown = shown[1:]
-        baseline = top + height / 2 + 5
-        if not shown:
-            canvas.text(
-                left + 11, baseline, self.hint, fitting(self.hint, NORMAL, width - 22), QUIET
-            )
-        else:
-            canvas.text(left + 11, baseline, shown, NORMAL, INK)
-        if self.focused:
-            x = left + 12 + (text_width(shown, NORMAL) if shown else 0.0)
-            canvas.line([[x, top + 7], [x, top + height - 7]], ACCENT, 1.6)
 
 
 def rounded(canvas: Canvas, rect: Rect, radius: float, color: Color) -> None:

@@ -12,7 +12,7 @@ from app.gesture_editor.state import EditorState, committed, edited, redo, undo
 from app.gesture_editor.timing import duration, nearest_moment, phase_spans, stroke_for
 from characters.behaviour.gestures.checking import check_gesture
 from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.gestures.gesture import SECTORS_X, SECTORS_Y, HandKey
+from characters.behaviour.gestures.gesture import SECTORS_X, SECTORS_Y, HandKey, Place
 
 shares = st.floats(-0.5, 1.5)
 seconds = st.floats(-1.0, 20.0)
@@ -95,6 +95,21 @@ def test_a_sector_ends_a_contact():
     away = edits.change_place(touching, x="XP", y="YCC")
     assert away.hand_key is not None
     assert (away.hand_key.place.x, away.hand_key.place.contact) == ("XP", "")
+
+
+def test_an_offset_stays_along_the_axes_that_do_not_change():
+    placed = replace(HandKey(0.0), place=Place("XC", "YCC", "ZMiddle", (0.1, 0.2, 0.3)))
+    document = GestureDocument(replace(EMPTY.gesture, right=(placed,)))
+    farther = edits.change_place(document, z="ZFar").hand_key
+    assert farther is not None
+    assert farther.place == Place("XC", "YCC", "ZFar", (0.1, 0.2, 0.0))
+
+
+def test_each_hand_alone_keeps_its_own_keys():
+    gesture = replace(EMPTY.gesture, right=(HandKey(0.0),), left=(HandKey(0.5),))
+    both = GestureDocument(gesture)
+    assert edits.performed_by(both, "left").gesture.left == gesture.left
+    assert edits.performed_by(both, "right").gesture.right == gesture.right
 
 
 def test_a_left_key_makes_a_gesture_two_handed():

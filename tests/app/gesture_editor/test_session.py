@@ -8,7 +8,7 @@ import pytest
 from app.gesture_editor.handling import Dropped, KeyPressed, Moved, Pressed, Released
 from app.gesture_editor.preview import Performance, Preview
 from app.gesture_editor.session import KEEP_INTERVAL_S, EditorSession
-from app.gesture_editor.tour import Hand, draw_tour, from_empty_to_saved
+from app.gesture_editor.tour import Hand, draw_tour
 from characters import Character, Clip, Pose
 from characters.behaviour.gestures.collection import GestureCollection
 from characters.behaviour.gestures.files import load_gesture
@@ -28,33 +28,27 @@ def hand_height(preview: Preview, performance: Performance, time: float) -> floa
 
 
 def test_a_gesture_is_made_from_empty_to_saved(opened, tmp_path):
-    session = opened()
-    assert len(list(from_empty_to_saved(session))) == 7
+    pictures = draw_tour(tmp_path, tmp_path / "gestures")
+    assert len(pictures) == 7
+    assert all(path.stat().st_size > 20_000 for path in pictures)
     saved = load_gesture(tmp_path / "gestures" / "big_hello.toml")
-    assert saved == session.state.document.gesture
     assert saved.name == "BIG_HELLO"
     assert saved.one_handed
     assert saved.expressivity.power == 0.5
     assert [key.path for key in saved.right] == ["line", "wave"]
-    assert not session.state.changed
-    assert "BIG_HELLO" in session.state.names
-    again = opened("big hello")
-    assert again.state.document.gesture == saved
+    again = opened("big hello").state
+    assert again.document.gesture == saved
+    assert not again.changed
+    assert "BIG_HELLO" in again.names
 
 
-def test_pictures_of_the_tour_are_drawn(context, tmp_path):
-    paths = draw_tour(tmp_path, tmp_path / "gestures")
-    assert len(paths) == 7
-    assert all(path.stat().st_size > 20_000 for path in paths)
-
-
-@pytest.mark.parametrize("name", GestureCollection.bundled().names)
-def test_every_gesture_of_the_library_survives_the_editor(name, opened, tmp_path):
-    session = opened(name)
-    session.send(KeyPressed("S", control=True))
-    assert load_gesture(tmp_path / "gestures" / f"{name.lower()}.toml") == (
-        GestureCollection.bundled().get(name)
-    )
+def test_every_gesture_of_the_library_survives_the_editor(opened, tmp_path):
+    session, library = opened(), GestureCollection.bundled()
+    for gesture in library:
+        Hand(session).open(gesture.name)
+        session.send(KeyPressed("S", control=True))
+        saved = load_gesture(tmp_path / "gestures" / f"{gesture.name.lower()}.toml")
+        assert saved == session.state.document.gesture == gesture
 
 
 def test_the_preview_shows_what_is_edited(opened):
@@ -108,10 +102,9 @@ def test_the_picture_has_the_size_of_the_window(opened, scale):
 
 
 def test_a_folder_that_cannot_be_written_loses_nothing(opened, tmp_path):
-    session = opened()
-    for _ in from_empty_to_saved(session):
-        pass
+    session = opened("WAVE")
     Hand(session).click("shape:fist")
+    (tmp_path / "gestures").mkdir()
     (tmp_path / "gestures").rename(tmp_path / "elsewhere")
     (tmp_path / "gestures").write_text("not a folder")
     before = session.state.document
