@@ -138,7 +138,7 @@ class Playground:
         self.scenario, self.cube, self.character = scenario, cube, character
         self._tracker = CubeTracker(cube, self.intrinsics)
         self._gestures = CubeGestures(cube)
-        self._animator, self._parts = animator, BodyParts.of(character)
+        self._animator, self._parts = animator, BodyParts.of(character, animator.scale)
         self._posed: PosedCharacter | None = None
         self._body: Body | None = None
         self._attention = Attention(self._look, cube.edge)
@@ -169,7 +169,7 @@ class Playground:
         if missing:
             raise AppError(f"{character.name} cannot {' or '.join(missing)}")
         self.character, self._animator = character, animator
-        self._parts, self._body = BodyParts.of(character), None
+        self._parts, self._body = BodyParts.of(character, animator.scale), None
 
     def look_through(self, intrinsics: Intrinsics) -> None:
         """Take another camera; `play` must follow, as the table is another one in its picture."""

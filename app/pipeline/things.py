@@ -19,6 +19,15 @@ Point = NDArray[np.float64]
 Side = Literal["left", "right"]
 """One of two hands."""
 
+CLEARANCE_M = 0.006
+"""Between the front of the body and what it stands before, if it reaches so far [m]."""
+
+COMFORTABLE = 0.7
+"""Effort with which it takes a thing: it leans, but not as far as it can."""
+
+FINGERS_M, PAW_M = 0.012, 0.03
+"""How near fingers are that touch something, and a paw, which is broad and under a muzzle [m]."""
+
 GRIP = np.array([0.0, GRIP_M, 0.0])
 """Where a hand holds a thing, from its foot [m]."""
 
@@ -48,23 +57,47 @@ class BodyParts:
     chest: Point
     """The middle of its chest at rest, (3,) in the character frame [m]."""
 
+    touching: float
+    """A hand this near to something touches it [m on the table]."""
+
+    stand: float
+    """How far from a thing it stands that it takes [m on the table]."""
+
     @staticmethod
-    def of(character: Character) -> "BodyParts":
-        """Return the parts of a character; one without arms has no hands."""
+    def of(character: Character, scale: float) -> "BodyParts":
+        """Return the parts of a character, which is `scale` times as large on the table.
+
+        One without arms has no hands.
+        """
         skeleton, anatomy = character.skeleton, character.anatomy
         rest = skeleton.rest.globals(skeleton)
         hands: dict[Side, tuple[int, Point]] = {}
+        touching = FINGERS_M
         sides: tuple[Side, Side] = ("left", "right")
         for side in sides:
             hand = find_hand(skeleton, anatomy, side)
             if hand is not None:
                 placed = rest[hand.joint]
+                touching = FINGERS_M if hand.fingers else PAW_M
                 tip = placed[:3, 3] + hand.length * hand.axes[0]
                 points = np.stack([hand.palm, tip]) - placed[:3, 3]
                 hands[side] = hand.joint, points @ np.linalg.inv(placed[:3, :3]).T
         joint = anatomy.joint("chest") or anatomy.joint("spine")
         chest = np.array([0.0, 0.6 * character.height, 0.0])
-        return BodyParts(hands, chest if joint is None else rest[joint, :3, 3])
+        if joint is not None:
+            chest = rest[joint, :3, 3]
+        return BodyParts(hands, chest, touching, _stand_distance(character, scale))
+
+
+def _stand_distance(character: Character, scale: float) -> float:
+    """Return how far from a thing a character stands [m]: as near as it needs to reach the grip."""
+    distance = character.length * scale / 2 + CLEARANCE_M
+    placed = np.diag([scale, scale, scale, 1.0])
+    distances = np.arange(distance, 0.4 * distance, -0.005).tolist()
+    for each in distances if character.upper_body.arms else ():
+        if reach_effort(character, placed, GRIP + [0.0, 0.0, each]) < COMFORTABLE:
+            return float(each)
+    return distance
 
 
 @dataclass(frozen=True)

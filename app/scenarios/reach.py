@@ -17,7 +17,6 @@ from app.scenarios.reach_places import (
     gap,
     nearest_point_of_cube,
     out_of,
-    stand_distance,
     way_to,
 )
 from characters import ActionIntent, CharacterCommand, LocomotionIntent, PosedCharacter, RootDelta
@@ -29,10 +28,7 @@ LOOK_FOR_S = 15.0
 REST_S = 1.2
 """A cube that has rested for so long gets its things [s]."""
 
-TOUCHING_M = 0.012
-"""A hand this near to the cube touches it [m]."""
-
-WALK_SPEED, SPEED_PER_M, MAX_SPEED = 2.0, 6.0, 4.0
+WALK_SPEED, SPEED_PER_M, MAX_SPEED = 2.0, 6.0, 3.0
 """AvatAR's Speed near its goal, by how much it is greater for each metre to go, and at most."""
 
 NO_HANDS_EFFORT = 3.0
@@ -148,7 +144,7 @@ class Reach:
             events = self._catching.update(prospect)
         free = self._is_free(controls)
         gifts, centre = self._gifts, prospect.cube
-        stand = gifts.stand_point(body.place, centre, stand_distance(inputs.body_length))
+        stand = gifts.stand_point(body.place, centre, body.parts.stand)
         there = stand is not None and gap(body.place, stand, 0.0) <= ARRIVED_M
         events += gifts.update(prospect.now, centre, body, free=free, there=there)
         doing = self._doing(free)
@@ -188,12 +184,12 @@ def _prospect(
 ) -> Prospect:
     """Return what the character knows about the cube at its last place, (4, 4)."""
     touch = nearest_point_of_cube(cube, edge, body.chest)
-    away = gap(body.place, touch, stand_distance(inputs.body_length))
+    away = gap(body.place, touch, body.parts.stand)
     effort = body.effort(touch)
     if not body.has_hands:  # it is content to be there
         near = away <= ARRIVED_M and cube[1, 3] < body.height
         effort = 0.0 if near else NO_HANDS_EFFORT
-    touching = not body.has_hands or body.hand_distance(touch) < TOUCHING_M
+    touching = not body.has_hands or body.hand_distance(touch) < body.parts.touching
     return Prospect(
         now=controls.timestamp,
         seen=inputs.cube is not None,
@@ -212,7 +208,7 @@ def _going(scene: Scene, body: Body, inputs: Inputs, edge: float) -> LocomotionI
     if scene.stand is not None:
         target = around(here, way_to(here, scene.stand, 0.0, walks=walks), scene.cube)
     elif scene.doing == "come":
-        target = way_to(here, scene.touch, stand_distance(inputs.body_length), walks=walks)
+        target = way_to(here, scene.touch, body.parts.stand, walks=walks)
     elif scene.doing in STAYING and (aside := out_of(here, scene.cube, edge)) is not None:
         target = way_to(here, aside, 0.0, walks=walks)
     else:

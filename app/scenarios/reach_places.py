@@ -10,9 +10,6 @@ from characters.locomotion.steering import ARRIVAL_DISTANCE_M
 
 Point = NDArray[np.float64]
 
-CLEARANCE_M = 0.006
-"""Between the front of the body and what it stands before [m]."""
-
 AVOIDED_M = 0.075
 """It walks round the centre of the cube at this distance, if it is in the way [m]."""
 
@@ -38,11 +35,6 @@ def nearest_point_of_cube(table_from_cube: Point, edge: float, point: Point) -> 
     rotation, centre = table_from_cube[:3, :3], table_from_cube[:3, 3]
     inside = np.clip((point - centre) @ rotation, -edge / 2, edge / 2)
     return np.asarray(centre + rotation @ inside)
-
-
-def stand_distance(body_length: float) -> float:
-    """Return how far from a thing a character stands that takes it [m]."""
-    return body_length / 2 + CLEARANCE_M
 
 
 def gap(here: Point, goal: Point, distance: float) -> float:

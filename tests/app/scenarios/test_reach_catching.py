@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.scenarios.reach_catching import (
@@ -122,6 +122,7 @@ def test_nothing_flickers_where_the_cube_is_at_the_limit_of_its_reach(play):
     assert changes <= 4
 
 
+@settings(max_examples=30)
 @given(
     st.lists(
         st.tuples(
