@@ -56,15 +56,15 @@ def test_a_misspelt_name_is_corrected(run):
         run("show", "WAEV")
 
 
-@pytest.fixture
-def recording(tmp_path):
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory):
     """The robot claps: a clip made by the layer that performs gestures."""
     robot = Character.load("robot")
     preview = Preview(None)
     performance = Performance(GestureCollection.bundled().get("CLAP"), "right", "robot")
     times = np.arange(0.0, performance.cycle, 1 / 30)
     poses = [preview.pose(performance, float(time)).pose for time in times]
-    path = tmp_path / "claps.glb"
+    path = tmp_path_factory.mktemp("recordings") / "claps.glb"
     clip = Clip("clap", 30.0, Pose.of_frames(poses), loop=False)
     Character("claps", robot.skeleton, {"clap": clip}, robot.meshes, morphs=robot.morphs).save(path)
     return path

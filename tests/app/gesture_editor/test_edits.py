@@ -41,7 +41,7 @@ EDITS = st.one_of(
 )
 
 
-@given(st.lists(EDITS, max_size=25))
+@given(st.lists(EDITS, max_size=15))
 def test_after_any_edits_a_gesture_can_be_performed(steps):
     document = edits.change_gesture(EMPTY, name="ANY")
     for step in steps:
