@@ -23,7 +23,7 @@ class CyclicCoordinateDescent:
     def __call__(self, task: Task) -> Solved:
         """Return rotations within the limits."""
 
-        def sweep(number: int, state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
+        def sweep(state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
             turns, index = state
             part = task.select(index.astype(np.intp))
             turns = turns.copy()

@@ -45,13 +45,10 @@ def cross(a: Array, b: Array) -> Array:
     """Return the cross products of vectors."""
     ax, ay, az = a[..., 0, :], a[..., 1, :], a[..., 2, :]
     bx, by, bz = b[..., 0, :], b[..., 1, :], b[..., 2, :]
-    x = ay * bz - az * by
-    product = np.empty((*x.shape[:-1], 3, x.shape[-1]))
-    product[..., 0, :], product[..., 1, :], product[..., 2, :] = (
-        x,
-        az * bx - ax * bz,
-        ax * by - ay * bx,
-    )
+    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    np.subtract(ay * bz, az * by, out=product[..., 0, :])
+    np.subtract(az * bx, ax * bz, out=product[..., 1, :])
+    np.subtract(ax * by, ay * bx, out=product[..., 2, :])
     return product
 
 
@@ -124,13 +121,6 @@ def between(start: Array, end: Array) -> Array:
         q[..., :3, :] = np.where(opposite[..., None, :], across, q[..., :3, :])
         q[..., 3, :] = np.where(opposite, 0.0, q[..., 3, :])
     return normalize(q)
-
-
-def about(axis: int, angle: Array) -> Array:
-    """Return the rotations about axis 0, 1 or 2 by angles (…, batch) [rad]."""
-    q = np.zeros((*angle.shape[:-1], 4, angle.shape[-1]))
-    q[..., axis, :], q[..., 3, :] = np.sin(angle / 2), np.cos(angle / 2)
-    return q
 
 
 def from_euler(angles: Array) -> Array:

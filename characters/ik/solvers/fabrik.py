@@ -23,7 +23,7 @@ class Fabrik:
         (moved, *_), used = until_done(self._pass, state, self.max_iterations)
         return moved, used
 
-    def _pass(self, number: int, state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
+    def _pass(self, state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
         points, lengths, targets, tolerance = state
         points = points.copy()
         points[-1] = targets

@@ -67,7 +67,7 @@ class JacobianMover:
         (moved, *_), used = until_done(self._step, state, self.max_steps)
         return moved, used
 
-    def _step(self, number: int, state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
+    def _step(self, state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
         points, targets, tolerance = state
         arms = points[-1] - points[:-1]
         pull = self.rule(_ball_gram(arms), targets - points[-1])
@@ -107,7 +107,7 @@ def _with_limits(
     least = np.full(task.count, np.inf)
     state = angles, angles, least, task.offsets, task.targets, task.tolerance
 
-    def step(number: int, state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
+    def step(state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
         angles, best, least, offsets, targets, tolerance = state
         axes, points = _axes(task.links, angles, offsets)
         error = targets - points[-1]

@@ -58,7 +58,7 @@ class PositionalSolver:
         return oriented(task, frames, start, points), points, total
 
     def _with_limits(self, task: Task) -> Solved:
-        def one_round(number: int, state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
+        def one_round(state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
             turns, index, used, best, least = state
             part = task.select(index.astype(np.intp))
             frames, before = part.frames(turns)

@@ -60,7 +60,7 @@ class MassSprings:
         (moved, *_), steps = until_done(self._step, state, self.max_steps)
         return moved, steps
 
-    def _step(self, number: int, state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
+    def _step(self, state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
         points, before, lengths, targets, rest = state
         bones = np.diff(points, axis=0)
         now = columns.length(bones)

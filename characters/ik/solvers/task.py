@@ -205,12 +205,12 @@ Arrays = tuple[Array, ...]
 
 
 def until_done(
-    step: Callable[[int, Arrays], tuple[Arrays, NDArray[np.bool_]]], state: Arrays, most: int
+    step: Callable[[Arrays], tuple[Arrays, NDArray[np.bool_]]], state: Arrays, most: int
 ) -> tuple[Arrays, NDArray[np.intp]]:
     """Repeat a step, for each chain until it is done, at most so often; return states and counts.
 
-    `step` takes the number of the step and the state of what is left; it returns the next state and
-    which chains are done. Those take no part in later steps.
+    `step` takes the state of what is left; it returns the next state and which chains are done.
+    Those take no part in later steps.
     """
     count = state[0].shape[-1]
     counts = np.full(count, most, np.intp)
@@ -218,7 +218,7 @@ def until_done(
     left = np.arange(count)
     waiting = np.ones(count, bool)
     for number in range(most):
-        state, done = step(number, state)
+        state, done = step(state)
         done &= waiting
         if done.any():
             which = left[done]
