@@ -156,20 +156,33 @@ def oriented(hand: HandOnItsWay, wrist: Effector, shoulder: Vector, chest: Quate
     return held._replace(hand=multiply(follows, turn))
 
 
+class Bearer(NamedTuple):
+    """What bears an arm after a turn of the torso."""
+
+    shoulder: Vector
+    """Where the upper arm begins [m]."""
+
+    chest: Quaternion
+    """Rotation of the chest from its rest."""
+
+
 def opened(
-    arm: Arm,
-    wrist: Effector,
-    shoulder: Vector,
-    bent: BentArm,
-    chest: Quaternion,
-    openness: float,
+    arm: Arm, wrist: Effector, bent: BentArm, before: Bearer, after: Bearer, openness: float
 ) -> BentArm:
-    """Return an arm with its elbow swivelled by openness, from where it is at an openness of ½."""
-    neutral = swivel_of(arm, shoulder, bent.elbow, bent.wrist, chest)
+    """Return an arm with its elbow swivelled by openness, from where it is at an openness of ½.
+
+    The wrist and the hand stay as they are, though the torso turns as well.
+    """
+    neutral = swivel_of(arm, before.shoulder, bent.elbow, bent.wrist, before.chest)
     closed, open_ = (math.radians(limit) for limit in SWIVEL_DEG)
     share = 2.0 * openness - 1.0
     swivel = neutral + share * (neutral - closed if share < 0.0 else open_ - neutral)
-    return bend_to_wrist(arm, wrist, shoulder, bent, chest, swivel)
+    old = bend_to_wrist(arm, wrist, before.shoulder, bent, before.chest, neutral)
+    new = bend_to_wrist(arm, wrist, after.shoulder, bent, after.chest, swivel)
+    # Bones keep how they were turned about their length.
+    upper = multiply(multiply(new.upper, conjugate(old.upper)), bent.upper)
+    lower = multiply(multiply(new.lower, conjugate(old.lower)), bent.lower)
+    return new._replace(upper=upper, lower=lower)
 
 
 def twisted(arm: Arm, bent: BentArm) -> BentArm:

@@ -30,6 +30,7 @@ from characters.ik.reaching.arms import (
 )
 from characters.ik.reaching.bending import (
     NEUTRAL_SWIVEL,
+    Bearer,
     HandOnItsWay,
     opened,
     oriented,
@@ -187,11 +188,13 @@ class UpperBody:
         hands = [self._started(frames, arm, target, style) for arm, target in wanted]
         neutral = ReachStyle(power=style.power)
         turned, effort = self._torso_turn(torso, hands, neutral)
-        bent = [self._bent(hand, torso, turned) for hand in hands]
+        bearers = [_bearer(torso, hand, turned) for hand in hands]
+        bent = [self._bent(*each) for each in zip(hands, bearers, strict=True)]
         if style.openness != neutral.openness:
             turned, _ = self._torso_turn(torso, hands, style)
-            for place, (hand, arm) in enumerate(zip(hands, bent, strict=True)):
-                bent[place] = self._opened(hand, torso, turned, arm, style.openness)
+            for place, (hand, arm, before) in enumerate(zip(hands, bent, bearers, strict=True)):
+                wrist, after = self._wrists[hand.arm.hand.side], _bearer(torso, hand, turned)
+                bent[place] = opened(hand.arm, wrist, arm, before, after, style.openness)
         local, whole = pose.rotations.copy(), from_rotation_vector(turned)
         self._turn_trunk(local, frames, torso.step(turned))
         for hand, arm in zip(hands, bent, strict=True):
@@ -303,29 +306,16 @@ class UpperBody:
             rows.append(multiply(conjugate(above), multiply(step, frames.turns[joint])))
         local[self._order[self._trunk]] = rows
 
-    def _bent(self, hand: HandOnItsWay, torso: PlacedTorso, turned: Vector) -> BentArm:
-        """Return the arm of a hand after a turn of the torso, with a neutral elbow."""
+    def _bent(self, hand: HandOnItsWay, bearer: Bearer) -> BentArm:
+        """Return the arm of a hand with a neutral elbow."""
         arm, target = hand.arm, hand.target
-        shoulder = torso.carried(torso.step(turned), hand.shoulder)
-        chest = torso.chest_after(turned)
         if target.kind == "point":
-            return twisted(arm, pointed(hand, shoulder, chest))
+            return twisted(arm, pointed(hand, *bearer))
         if target.palm is None and target.fingers is None:
-            return bend(arm, hand.effector, shoulder, hand.place, chest, NEUTRAL_SWIVEL)
-        return twisted(arm, oriented(hand, self._wrists[arm.hand.side], shoulder, chest))
-
-    def _opened(
-        self,
-        hand: HandOnItsWay,
-        torso: PlacedTorso,
-        turned: Vector,
-        bent: BentArm,
-        openness: float,
-    ) -> BentArm:
-        """Return an arm whose hand stays while torso and elbow go where openness has them."""
-        shoulder = torso.carried(torso.step(turned), hand.shoulder)
-        wrist, chest = self._wrists[hand.arm.hand.side], torso.chest_after(turned)
-        return twisted(hand.arm, opened(hand.arm, wrist, shoulder, bent, chest, openness))
+            return bend(
+                arm, hand.effector, bearer.shoulder, hand.place, bearer.chest, NEUTRAL_SWIVEL
+            )
+        return twisted(arm, oriented(hand, self._wrists[arm.hand.side], *bearer))
 
     def _write(
         self,
@@ -405,6 +395,12 @@ def _turn_for(
     turns = [follow_torso(torso, hand.place, hand.arm.sign) for hand in hands]
     x, y, z = (sum(axis) / len(turns) for axis in zip(*turns, strict=True))
     return (x, y, z), 0.0
+
+
+def _bearer(torso: PlacedTorso, hand: HandOnItsWay, turned: Vector) -> Bearer:
+    """Return what bears the arm of a hand after a turn of the torso."""
+    shoulder = torso.carried(torso.step(turned), hand.shoulder)
+    return Bearer(shoulder, torso.chest_after(turned))
 
 
 def _trunk(skeleton: Skeleton, anatomy: Anatomy, arms: Mapping[str, Arm]) -> list[int]:
