@@ -1,7 +1,6 @@
 """Where the hand of a character touches its body: forehead, chin, hip, the other hand."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -60,47 +59,41 @@ CONTACTS: Mapping[str, Contact] = {
 """What a `Place` may touch."""
 
 
-@dataclass(frozen=True, eq=False)
 class BodySurface:
-    """Places on the surface of a character, for either hand."""
+    """Places on the surface of a character in a posture, for either hand.
 
-    joints: Mapping[tuple[str, bool], int]
-    """The joint that carries each contact, of the left hand if true."""
+    Directions are those of the character in the posture. Without a mesh, places are at joints.
+    """
 
-    points: Mapping[tuple[str, bool], Array]
-    """Where it is, (3,) in the frame of its joint [m]."""
-
-    @staticmethod
-    def of(
-        skeleton: Skeleton, anatomy: Anatomy, meshes: Sequence[Mesh], pose: Pose
-    ) -> "BodySurface":
-        """Return the contacts of a character, with directions as in an upright pose.
-
-        Without a mesh they are at the joints.
-        """
-        frames = pose.globals(skeleton)
-        owned = _vertices_by_joint(meshes, frames)
-        joints, points = {}, {}
-        for name, contact in CONTACTS.items():
-            for left in (False, True):
-                joint = anatomy.joint(_part(contact.part, left))
-                if joint is None:
-                    continue
-                side = 1.0 if left else -1.0
-                towards = np.array([side * contact.outward, contact.up, contact.forward])
-                place = _surface(owned[joint], frames[joint, :3, 3], towards)
-                joints[name, left] = joint
-                points[name, left] = (np.linalg.inv(frames[joint]) @ [*place, 1.0])[:3]
-        return BodySurface(joints, points)
+    def __init__(
+        self, skeleton: Skeleton, anatomy: Anatomy, meshes: Sequence[Mesh], posture: Pose
+    ) -> None:
+        self._anatomy = anatomy
+        self._meshes = meshes
+        self._frames = posture.globals(skeleton)
+        self._points: dict[tuple[str, bool], Array] = {}
 
     def place(self, contact: str, left: bool, character_from_joint: Array) -> Array | None:
-        """Return where a contact is, (3,) in the character frame [m]; None if it has none."""
-        joint = self.joints.get((contact, left))
+        """Return where a contact of a hand is in a pose, (3,) in the character frame [m].
+
+        None if the body has no such part.
+        """
+        joint = self._anatomy.joint(_part(CONTACTS[contact].part, left))
         if joint is None:
             return None
-        frame = character_from_joint[joint]
-        place: Array = frame[:3, :3] @ self.points[contact, left] + frame[:3, 3]
+        if (contact, left) not in self._points:
+            self._points[contact, left] = self._point(CONTACTS[contact], left, joint)
+        place: Array = (character_from_joint[joint] @ self._points[contact, left])[:3]
         return place
+
+    def _point(self, contact: Contact, left: bool, joint: int) -> Array:
+        """Return where a contact is in the frame of its joint, (4,)."""
+        vertices = _vertices_of(joint, self._meshes, self._frames)
+        towards = np.array([contact.outward, contact.up, contact.forward])
+        towards[0] *= 1.0 if left else -1.0
+        frame = self._frames[joint]
+        point: Array = np.linalg.pinv(frame) @ [*_surface(vertices, frame[:3, 3], towards), 1.0]
+        return point
 
 
 def _part(part: str, left: bool) -> str:
@@ -108,17 +101,15 @@ def _part(part: str, left: bool) -> str:
     return part.replace("own", own).replace("other", other)
 
 
-def _vertices_by_joint(meshes: Sequence[Mesh], frames: Array) -> list[Array]:
-    """Return the vertices that each joint moves most, in a pose of its frames, (n, 3) each."""
-    places, strongest = [np.zeros((0, 3))], [np.zeros(0, int)]
+def _vertices_of(joint: int, meshes: Sequence[Mesh], frames: Array) -> Array:
+    """Return the vertices that a joint moves most, in a pose of its frames, (n, 3)."""
+    places = [np.zeros((0, 3))]
     for mesh in meshes:
         column = mesh.weights.argmax(axis=1)[:, None]
-        joint = np.take_along_axis(mesh.joints, column, axis=1)[:, 0].astype(int)
-        posed = (frames @ mesh.inverse_bind)[joint]
-        places.append(np.einsum("nij,nj->ni", posed[:, :3, :3], mesh.positions) + posed[:, :3, 3])
-        strongest.append(joint)
-    number, place = np.concatenate(strongest), np.concatenate(places)
-    return [place[number == joint] for joint in range(len(frames))]
+        own = np.take_along_axis(mesh.joints, column, axis=1)[:, 0] == joint
+        posed = frames[joint] @ mesh.inverse_bind[joint]
+        places.append(mesh.positions[own] @ posed[:3, :3].T + posed[:3, 3])
+    return np.concatenate(places)
 
 
 def _surface(vertices: Array, joint: Array, towards: Array) -> Array:

@@ -11,6 +11,7 @@ from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,7 @@ from characters.behaviour.gestures.tracks import (
     hand_track,
     one_period,
     sided,
+    smooth,
 )
 from characters.behaviour.gestures.trunk import TrunkTurns, body_track, chest_part
 from characters.behaviour.intents import Hand
@@ -53,6 +55,9 @@ STRETCHED_ON_FOUR = 0.8
 
 NEGLIGIBLE = 1e-6
 """Sine of half an angle below which a joint of the trunk is not turned."""
+
+FLIP_RAD = math.radians(60.0)
+"""A joint that turns so far from one of the dense postures to the next flips [rad]."""
 
 CHARACTERS = 8
 """Characters whose bodies are kept for their next animator."""
@@ -107,7 +112,7 @@ class Performer:
         if sitting is not None:
             posture = sitting.sit_up(posture, 1.0)
         body = UpperBody.of(skeleton, anatomy)
-        surface = BodySurface.of(skeleton, anatomy, character.meshes, posture)
+        surface = BodySurface(skeleton, anatomy, character.meshes, posture)
         joints = {}
         for side, arm in body.arms.items():
             collarbone, upper, *_ = arm.joints
@@ -197,6 +202,7 @@ class _Planner:
         poses = np.stack([self._posture(frame).rotations for frame in frames])
         for side, track in self.tracks.items():
             self._overshoot(poses, times, side, track)
+            self._steady(poses, times, side)
         held = [self.performer.arms[side] for side in self.tracks]
         arms = np.concatenate([np.zeros(0, np.intp), *held])
         trunk = np.setdiff1d(self.performer.trunk.joints, arms)
@@ -311,6 +317,24 @@ class _Planner:
             )
             mixed = np.einsum("s,sji->ji", weights, turns)
             pose.rotations[postures[0].joints] = rotations.normalize(mixed)
+
+    def _steady(self, poses: Array, times: Array, side: str) -> None:
+        """Turn joints that flip from posture to posture from one key of the gesture to the next.
+
+        A paw that cannot face as it is asked to is turned as far as it goes, to either side.
+        """
+        joints = self.performer.arms[side]
+        turns = poses[:, joints]
+        cosines = np.abs(np.vecdot(turns[1:], turns[:-1]))
+        flipping = joints[(cosines < math.cos(FLIP_RAD / 2.0)).any(axis=0)]
+        if not len(flipping):
+            return
+        keys = np.searchsorted(times, [key.at for key in self.keys[side]])
+        for start, end in pairwise(keys.tolist()):
+            share = (times[start : end + 1] - times[start]) / (times[end] - times[start])
+            poses[start : end + 1, flipping] = rotations.slerp(
+                poses[start, flipping], poses[end, flipping], smooth(share)[:, None]
+            )
 
     def _overshoot(self, poses: Array, times: Array, side: str, track: HandTrack) -> None:
         """Turn the arm beyond its keys where power lets it."""

@@ -13,8 +13,8 @@ RETURN_SHARE = 0.4
 MIN_PHASE_S = 1e-4
 """Phases that are shorter count as this long [s]."""
 
-PREPARED, STROKE, STROKE_END, RELAX, GONE = 1.0, 2.0, 3.0, 4.0, 5.0
-"""Phases, after 0.0, the start: ready, start and end of the stroke, relax, and end."""
+PREPARED, STROKE_END, GONE = 1.0, 2.0, 3.0
+"""Phases, after 0.0, the start: the stroke lies between the first two; hands hold still there."""
 
 
 @dataclass(frozen=True)
@@ -92,17 +92,17 @@ def natural_times(gesture: SymbolicGesture, start: float = 0.0) -> StrokeTimes:
 
 
 def phase_at(times: StrokeTimes, now: float, apex: float, retraction: float) -> float:
-    """Return how far a gesture is at a time: 0 before it … 5 after it, 2…3 in its stroke.
+    """Return how far a gesture is at a time: 0 before it … 3 after it, 1…2 in its stroke.
 
     `apex` is the share of the stroke at `times.stroke`; `retraction` is how long it takes [s] if
     its end is not known. A gesture whose `relax` is not known stays at the end of its stroke.
     """
     knots = [times.start, times.ready, times.stroke_start, times.stroke, times.stroke_end]
-    phases = [0.0, PREPARED, STROKE, STROKE + apex, STROKE_END]
+    phases = [0.0, PREPARED, PREPARED, PREPARED + apex, STROKE_END]
     if times.relax is not None:
         end = times.relax + retraction if times.end is None else times.end
         knots += [times.relax, end]
-        phases += [RELAX, GONE]
+        phases += [STROKE_END, GONE]
     ascending: list[float] = []
     for knot in knots:  # a phase of no length, or out of order, gets the least length
         known = knot if knot == knot else ascending[-1]

@@ -1,5 +1,6 @@
 """Symbolic gestures: `CharacterCommand.behaviour.gestures`."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,8 +11,7 @@ from characters.behaviour.gestures.planning import Performer
 from characters.behaviour.gestures.timing import (
     GONE,
     PREPARED,
-    RELAX,
-    STROKE,
+    STROKE_END,
     apex_share,
     phase_at,
 )
@@ -28,8 +28,14 @@ FADE_S = 0.3
 RETIME_S = 0.25
 """How long a gesture takes to catch up with times that have changed, at most [s]."""
 
-MIN_RETIME_S = 0.03
-"""And at least [s]: its apex is late if its new time is now."""
+MIN_RETIME_S = 0.1
+"""And at least [s]: an apex that is moved to a nearer time than that is late."""
+
+COAST_S = 0.1
+"""How long a gesture takes to stop and wait whose times have moved away, at most [s]."""
+
+STEP_S = 1e-3
+"""Time over which the speed of a phase is measured [s]."""
 
 ON_TIME_S = 0.05
 """A gesture that is first heard of so long after its start need not join in: a frame [s]."""
@@ -57,7 +63,9 @@ class PerformedGesture:
     present: float
     """How far it has joined in, 0…1."""
 
-    _late: float = 0.0
+    _ahead: float = 0.0
+    _speed: float = 0.0
+    _coast: float = 0.0
     _since: float = 0.0
     _settled: float = 0.0
 
@@ -71,23 +79,42 @@ class PerformedGesture:
         )
 
     def retime(self, intent: GestureIntent, now: float) -> None:
-        """Follow new times from where it is; it has caught up before the next stroke."""
-        if intent.times != self.intent.times:
-            before = self.phase(now)
-            self.intent = intent
-            self._late = before - self._phase(intent.times, now)
-            stroke = intent.times.stroke
-            left = stroke - now if stroke > now else RETIME_S
-            self._since = now
-            self._settled = now + max(min(left, RETIME_S), MIN_RETIME_S)
+        """Follow new times from where it is.
+
+        It hurries to what is sooner than it was, and has caught up at the stroke; it waits for what
+        is later, and does not go back.
+        """
+        if intent.times == self.intent.times:
+            return
+        before = self.phase(now)
+        self._speed = (before - self.phase(now - STEP_S)) / STEP_S
+        self.intent = intent
+        self._ahead = before - self._phase(intent.times, now)
+        # Half of what is left of its phase, so that it waits before the apex and not after it.
+        apex = PREPARED + self._apex
+        limit = apex if PREPARED <= before < apex else math.floor(before) + 1.0
+        self._coast = min(max(self._speed, 0.0) * COAST_S, 0.5 * (limit - before))
+        stroke = intent.times.stroke
+        left = stroke - now if stroke > now else RETIME_S
+        self._since = now
+        self._settled = now + max(min(left, RETIME_S), MIN_RETIME_S)
 
     def phase(self, now: float) -> float:
         """Return how far it is, as `phase_at`."""
         phase = self._phase(self.intent.times, now)
-        if self._late and now < self._settled:
+        if self._ahead < 0.0 and now < self._settled:
             rest = (self._settled - now) / (self._settled - self._since)
-            phase += self._late * rest * rest
+            return phase + self._ahead * rest
+        if self._ahead > 0.0:
+            phase = max(phase, self._waiting(now))
         return phase
+
+    def _waiting(self, now: float) -> float:
+        """Return where it comes to a stop, smoothly, to wait for its new times."""
+        start = self._phase(self.intent.times, self._since) + self._ahead
+        if self._coast <= 0.0:
+            return start
+        return start - self._coast * math.expm1((self._since - now) * self._speed / self._coast)
 
     def _phase(self, times: StrokeTimes, now: float) -> float:
         return phase_at(times, now, self._apex, self.intent.gesture.retraction)
@@ -101,10 +128,10 @@ class PerformedGesture:
         if phase < PREPARED:
             weight = eased(_smooth(phase), self._style)
             weight = min(weight, 1.0) if self._touches else weight
-        elif phase > RELAX:
+        elif phase > STROKE_END:
             weight = _smooth(GONE - phase)
         weight *= share * _smooth(self.present)
-        return self._motion.over(pose, min(max(phase - STROKE, 0.0), 1.0), weight)
+        return self._motion.over(pose, min(max(phase - PREPARED, 0.0), 1.0), weight)
 
 
 class GestureLayer:

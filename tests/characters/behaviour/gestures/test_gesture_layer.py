@@ -1,0 +1,190 @@
+"""Gestures in the frames of an animator: on time, without jumps, with the free hand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from characters import ActionIntent, Animator, Character, CharacterCommand
+from characters.behaviour.gestures.collection import GestureCollection
+from characters.behaviour.gestures.gesture import HandKey, Place, SymbolicGesture
+from characters.behaviour.gestures.planning import Performer
+from characters.behaviour.gestures.timing import natural_times, phase_at
+from characters.behaviour.intents import BehaviourIntent, GestureIntent, ReachIntent, Times
+from characters.control.layers.gestures import GestureLayer
+from characters.control.layers.sitting_up import SittingUpLayer
+
+RATE = 30.0
+MAX_STEP_DEG = 25.0
+"""Turn of a joint in a frame that is no jump: a fast wave."""
+
+HURRIED_STEP_DEG = 45.0
+"""The same if the stroke is asked for 0.3 s sooner and at once: it is there 0.1 s later."""
+
+LOW, HIGH = Place("XC", "YLowerC", "ZMiddle"), Place("XP", "YUpperP", "ZMiddle")
+LIFT = SymbolicGesture(
+    "LIFT",
+    right=(
+        HandKey(0.0, LOW, "flat", "in", "forward"),
+        HandKey(0.5, HIGH, "flat", "in", "forward"),
+        HandKey(1.0, LOW, "flat", "in", "forward"),
+    ),
+    one_handed=True,
+    apex=0.5,
+)
+
+
+@pytest.fixture(scope="module")
+def human():
+    return Character.load("human")
+
+
+@pytest.fixture(scope="module")
+def performer(human):
+    return Performer.of(human)
+
+
+def _play(character, behaviour_at, end, **kw):
+    """Return the poses of an animator without idle life."""
+    animator = Animator(character, layers=(SittingUpLayer, GestureLayer))
+    times = np.arange(0.0, end, 1.0 / RATE)
+    return times, [
+        animator.update(CharacterCommand(float(t), behaviour=behaviour_at(float(t)), **kw)).pose
+        for t in times
+    ]
+
+
+def _asked(gesture, times, hand="right", key="g", start=-1.0, end=99.0):
+    def at(now):
+        intent = GestureIntent(key, gesture, times, hand)
+        return BehaviourIntent((intent,)) if start <= now < end else None
+
+    return at
+
+
+def _largest_step(poses):
+    turns = np.array([pose.rotations for pose in poses])
+    cosines = np.abs((turns[1:] * turns[:-1]).sum(axis=-1))
+    return np.degrees(2.0 * np.arccos(np.clip(cosines, 0.0, 1.0))).max()
+
+
+def _heights(performer, poses, side="right"):
+    return np.array([performer.body.palm(pose, side)[1] for pose in poses])
+
+
+def test_the_apex_is_at_the_time_of_the_stroke(human, performer):
+    times = replace(natural_times(LIFT, 0.5), stroke_start=1.4, stroke=2.0, stroke_end=2.3)
+    times = replace(times, relax=2.6, end=3.2)
+    shown, poses = _play(human, _asked(LIFT, times), 3.5)
+    heights = _heights(performer, poses)
+    assert shown[heights.argmax()] == pytest.approx(2.0, abs=1.0 / RATE)
+    held = heights[(shown >= 1.05) & (shown <= 1.4)]
+    assert np.ptp(held) < 0.01
+    assert _largest_step(poses) < MAX_STEP_DEG
+
+
+def test_hands_start_from_the_pose_below_and_return_to_it(human):
+    _, poses = _play(human, _asked(LIFT, natural_times(LIFT, 0.5)), 2.6)
+    _, bare = _play(human, lambda now: None, 2.6)
+    for frame in (0, 14, -1):
+        assert poses[frame].rotations == pytest.approx(bare[frame].rotations, abs=1e-9)
+    assert np.abs(poses[30].rotations - bare[30].rotations).max() > 0.1
+
+
+@pytest.mark.parametrize("shift", [-0.3, -0.1, 0.2, 1.0])
+@pytest.mark.parametrize("when", [0.7, 1.2, 1.6])
+def test_new_times_are_followed_without_a_jump(human, performer, shift, when):
+    before = natural_times(LIFT, 0.5)
+    moved = [
+        getattr(before, name) + shift for name in ("ready", "stroke_start", "stroke", "stroke_end")
+    ]
+    ready, start, stroke, end = (max(each, when) for each in moved)
+    after = replace(before, ready=ready, stroke_start=start, stroke=stroke, stroke_end=end)
+    after = replace(after, relax=end + 0.2, end=end + 0.8)
+
+    def asked(now):
+        return BehaviourIntent((GestureIntent("g", LIFT, before if now < when else after),))
+
+    shown, poses = _play(human, asked, end + 1.0)
+    hurried = shift < 0.0 and stroke - when < 0.3
+    assert _largest_step(poses) < (HURRIED_STEP_DEG if hurried else MAX_STEP_DEG)
+    if stroke > when + 0.1 and when < before.stroke - 0.1:
+        peak = shown[_heights(performer, poses).argmax()]
+        assert peak == pytest.approx(stroke, abs=1.01 / RATE)
+
+
+def test_one_that_is_left_out_fades(human):
+    times = natural_times(LIFT, 0.3)
+    shown, poses = _play(human, _asked(LIFT, times, end=1.2), 2.0)
+    _, bare = _play(human, lambda now: None, 2.0)
+    assert _largest_step(poses) < MAX_STEP_DEG
+    gone = int(np.searchsorted(shown, 1.2 + 0.35))
+    assert poses[gone].rotations == pytest.approx(bare[gone].rotations, abs=1e-9)
+
+
+def test_one_that_is_heard_of_late_joins_in(human):
+    times = natural_times(LIFT, 0.0)
+    _, poses = _play(human, _asked(LIFT, times, start=0.6), 1.5)
+    assert _largest_step(poses) < MAX_STEP_DEG
+
+
+def test_without_an_end_the_stroke_is_held(human, performer):
+    times = replace(natural_times(LIFT, 0.2), relax=None, end=None)
+    shown, poses = _play(human, _asked(LIFT, times), 6.0)
+    held = _heights(performer, poses)[shown > times.stroke_end + 0.1]
+    assert np.ptp(held) < 0.02
+
+
+@pytest.mark.parametrize(
+    ("hand", "moves"), [("left", "left"), ("right", "right"), ("both", "both")]
+)
+def test_either_hand_performs_a_one_handed_gesture(human, performer, hand, moves):
+    _, poses = _play(human, _asked(LIFT, natural_times(LIFT, 0.2), hand), 1.5)
+    for side in ("left", "right"):
+        lifted = np.ptp(_heights(performer, poses, side)) > 0.2
+        assert lifted == (moves in (side, "both"))
+
+
+def test_the_nearest_hand_is_the_one_that_is_free(human, performer):
+    reach = ReachIntent("r", np.array([0.0, 0.1, 0.1]), Times(0.0, 0.5), hand="right")
+    gesture = GestureIntent("g", LIFT, natural_times(LIFT, 0.2), "nearest")
+    _, poses = _play(human, lambda now: BehaviourIntent((gesture,), (reach,)), 1.5)
+    assert np.ptp(_heights(performer, poses, "left")) > 0.2
+    assert np.ptp(_heights(performer, poses, "right")) < 0.1
+
+
+def test_hands_are_not_free_in_an_action(human):
+    times = natural_times(LIFT, 0.5)
+    acting = ActionIntent("cheer")
+    _, poses = _play(human, _asked(LIFT, times), 1.5, action=acting)
+    _, bare = _play(human, lambda now: None, 1.5, action=acting)
+    assert poses[-1].rotations == pytest.approx(bare[-1].rotations, abs=0.01)
+
+
+def test_two_gestures_of_two_hands_are_performed_at_once(human, performer):
+    first = GestureIntent("a", LIFT, natural_times(LIFT, 0.2), "right")
+    second = GestureIntent("b", LIFT, natural_times(LIFT, 0.4), "left")
+    _, poses = _play(human, lambda now: BehaviourIntent((first, second)), 2.0)
+    for side in ("left", "right"):
+        assert np.ptp(_heights(performer, poses, side)) > 0.2
+
+
+@pytest.mark.parametrize("name", ["human", "vleo", "robot"])
+@pytest.mark.parametrize("gesture", ["CLAP", "WAVE", "THINK", "BOW", "FIST_PUMP"])
+def test_gestures_have_no_jumps_on_any_character(name, gesture):
+    symbolic = GestureCollection.bundled().get(gesture)
+    times = natural_times(symbolic, 0.5)
+    _, poses = _play(Character.load(name), _asked(symbolic, times), (times.end or 0.0) + 0.3)
+    assert _largest_step(poses) < 45.0
+
+
+def test_a_character_without_arms_goes_on(actor):
+    with pytest.warns(match="without its right arm"):
+        _, poses = _play(actor, _asked(LIFT, natural_times(LIFT, 0.1)), 1.0)
+    assert all(np.isfinite(pose.rotations).all() for pose in poses)
+
+
+def test_phases_without_length_are_passed():
+    times = replace(natural_times(LIFT, 1.0), ready=1.0, stroke_start=1.0)
+    assert phase_at(times, 0.99, 0.5, 0.6) == 0.0
+    assert phase_at(times, 1.0 + 1e-3, 0.5, 0.6) >= 1.0
