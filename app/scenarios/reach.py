@@ -142,7 +142,7 @@ class Reach:
             self._catching.look(prospect)
         else:
             events = self._catching.update(prospect)
-        free = self._is_free(controls)
+        free = body.has_hands and self._is_free(controls)
         gifts, centre = self._gifts, prospect.cube
         stand = gifts.stand_point(body.place, centre, body.parts.stand)
         there = stand is not None and gap(body.place, stand, 0.0) <= ARRIVED_M

@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.pipeline.things import GRIP, Body, Side, Thing
+from app.scenarios.reach_gift import Gift
 
 Point = NDArray[np.float64]
 
@@ -41,63 +41,8 @@ GIVE_S, REJOICE_S = 0.5, 2.2
 PATIENCE_S = 2.5
 """A hand that is not there after so long takes the thing, or lets it go, from where it is [s]."""
 
-SETTLE_S, HOP_S, HOP_M = 0.25, 0.7, 0.08
-"""Time in which a thing comes to its place in a hand or from one [s]; time [s] and height [m] of
-its hops."""
-
 UNDER_EDGES = 0.75
 """A thing this near to the middle of the cube is in its way, in edges of the cube."""
-
-
-@dataclass(frozen=True)
-class _Move:
-    """The way of a thing from one place to another."""
-
-    start: Point  # (3,) [m]
-    since: float  # [s]
-    seconds: float
-    height: float = 0.0  # of the arc [m]
-
-    def at(self, end: Point, now: float) -> Point:
-        """Return where it is, on its way to its end."""
-        share = min(max((now - self.since) / self.seconds, 0.0), 1.0)
-        share = share * share * (3.0 - 2.0 * share)
-        place = self.start + share * (end - self.start)
-        place[1] += 4.0 * self.height * share * (1.0 - share)
-        return place
-
-
-class _Gift:
-    """A thing with its history."""
-
-    def __init__(self, name: str, home: Point) -> None:
-        self.name, self.home = name, home
-        self.place = home
-        self.hand: Side | None = None
-        self._move = _Move(home, -math.inf, 1.0)
-
-    def taken(self, hand: Side, palm: Point, now: float) -> None:
-        """Let a hand have it from now on."""
-        start = self._now_at(now) + GRIP - palm
-        self.hand, self.place = hand, np.zeros(3)
-        self._move = _Move(start, now, SETTLE_S)
-
-    def put(self, place: Point, palm: Point, now: float) -> None:
-        """Let it go, to stand at a place."""
-        self.hand, self.place = None, place
-        self._move = _Move(palm - GRIP, now, SETTLE_S)
-
-    def hop(self, place: Point, palm: Point | None, now: float) -> None:
-        """Let it hop to another place."""
-        start = self._now_at(now) if palm is None or self.hand is None else palm - GRIP
-        self.hand, self.place = None, place
-        self._move = _Move(start, now, HOP_S, HOP_M)
-
-    def thing(self, now: float) -> Thing:
-        return Thing(self.name, self._now_at(now), self.hand)
-
-    def _now_at(self, now: float) -> Point:
-        return self._move.at(self.place, now)
 
 
 class Gifts:
@@ -106,19 +51,19 @@ class Gifts:
     def __init__(self, cube_edge: float) -> None:
         self.doing: Doing = "wait"
         """What it does."""
-        self.gift: _Gift | None = None
+        self.gift: Gift | None = None
         """With which."""
         self.hand: Side = "right"
         """With which hand."""
         self._edge, self._beside = cube_edge, cube_edge / 2 + BESIDE_M
-        self._gifts: list[_Gift] = []
+        self._gifts: list[Gift] = []
         self._since = -math.inf
 
     def lay_out(self, cube: Point) -> None:
         """Put the things on the table about a cube, if they are not there yet."""
         if not self._gifts:
             self._gifts = [
-                _Gift(name, np.array([cube[0] + x, 0.0, cube[2] + z]))
+                Gift(name, np.array([cube[0] + x, 0.0, cube[2] + z]))
                 for name, (x, z) in HOMES.items()
             ]
 
@@ -236,13 +181,13 @@ class Gifts:
     def _at_hand(self, palm: Point, target: Point, now: float) -> bool:
         return math.dist(palm, target) < AT_HAND_M or now - self._since > PATIENCE_S
 
-    def _away(self, cube: Point) -> list[_Gift]:
+    def _away(self, cube: Point) -> list[Gift]:
         """Return the things that are not beside the cube."""
         return [
             each for each in self._gifts if math.dist(each.place, self._spot(each, cube)) > AWAY_M
         ]
 
-    def _spot(self, gift: _Gift, cube: Point) -> Point:
+    def _spot(self, gift: Gift, cube: Point) -> Point:
         angle = SIDES_RAD[gift.name]
         return np.array(
             [
