@@ -10,8 +10,11 @@ from characters.speech.speech import Utterance, Word
 LETTER_S, WORD_S = 0.06, 0.06
 """Time of a letter, and what each word takes besides [s]: about 170 words a minute."""
 
-PAUSE_S = {",": 0.2, ";": 0.3, ":": 0.3, ".": 0.5, "!": 0.5, "?": 0.5}
-"""Pause after a word that ends so [s]."""
+PAUSE_S = {",": 0.15, ";": 0.25, ":": 0.25, ".": 0.35, "!": 0.35, "?": 0.35}
+"""Pause after a word that ends so [s], unless it is the last one."""
+
+SHORTEST_S = 0.1
+"""Time of a speech without words [s]."""
 
 MAX_LETTERS = 5000
 """Longer texts are refused."""
@@ -83,7 +86,7 @@ def estimated(text: str) -> Utterance:
     """Return an utterance with the words of a text at times that a voice might take.
 
     >>> estimated("No, never.").words
-    (Word(text='No,', start=0.0, end=0.18, offset=0), Word(text='never.', start=0.38, end=0.74, offset=4))
+    (Word(text='No,', start=0.0, end=0.18, offset=0), Word(text='never.', start=0.33, end=0.69, offset=4))
     """  # noqa: E501
     words, at, offset = list[Word](), 0.0, 0
     for word in text.split():
@@ -92,7 +95,7 @@ def estimated(text: str) -> Utterance:
         end = at + WORD_S + LETTER_S * letters
         words.append(Word(word, round(at, 6), round(end, 6), offset))
         at, offset = end + PAUSE_S.get(word[-1], 0.0), offset + len(word)
-    return Utterance(text, "", max(at, 0.1), tuple(words))
+    return Utterance(text, "", words[-1].end if words else SHORTEST_S, tuple(words))
 
 
 def mark_time(utterance: Utterance, at: int) -> float:
