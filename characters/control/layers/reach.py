@@ -143,9 +143,11 @@ class NearestHand:
         self._chosen[intent.key] = min(self.shoulders, key=cost)
         return self._chosen[intent.key]
 
-    def forget(self, keys: set[str]) -> None:
-        """Forget all choices but those for some keys."""
-        self._chosen = {key: side for key, side in self._chosen.items() if key in keys}
+    def forget(self, intents: Sequence[ReachIntent]) -> None:
+        """Forget all choices but those for some intents."""
+        if self._chosen:
+            keys = {intent.key for intent in intents}
+            self._chosen = {key: side for key, side in self._chosen.items() if key in keys}
 
 
 class ReachLayer:
@@ -197,13 +199,15 @@ class ReachLayer:
         """Yield what each hand is to do and where; of two for one hand the later one counts."""
         now = context.command.timestamp
         taken: list[str] = []
-        self._nearest.forget({intent.key for intent in reaches})
         current = [
             each
             for each in reaches
             if each.times.start <= now and (each.times.end is None or now < each.times.end)
         ]
-        for intent in sorted(current, key=lambda each: each.hand == "nearest"):
+        if any(each.hand == "nearest" for each in current):
+            current.sort(key=lambda each: each.hand == "nearest")
+        self._nearest.forget(reaches)
+        for intent in current:
             place = self._place(intent, context)
             if intent.hand == "nearest":
                 sides = [self._nearest.choose(intent, place, taken)]

@@ -1,10 +1,11 @@
 """The surface of a standing body, to keep the places of hands out of it."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
-from characters.skeleton.scalar_quaternions import Vector, dot, subtract
+from characters.ik.reaching.arms import scaled
+from characters.skeleton.scalar_quaternions import Vector, add, dot, length, subtract
 
 _ROUNDS = 2
 
@@ -19,6 +20,15 @@ class BodySurface:
     clearance: float
     """How far from them a hand stays [m]."""
 
+    @cached_property
+    def _spheres(self) -> list[tuple[Vector, float]]:
+        """A sphere about each capsule and its clearance: middle and squared radius [m, m²]."""
+        spheres = []
+        for start, end, radius in self.capsules:
+            reach = 0.5 * length(subtract(end, start)) + radius + self.clearance
+            spheres.append((scaled(add(start, end), 0.5), reach * reach))
+        return spheres
+
     def outside(self, place: Vector) -> Vector:
         """Return a place; one in the body is moved out by the shortest way.
 
@@ -29,8 +39,11 @@ class BodySurface:
         """
         for _ in range(_ROUNDS):  # out of one capsule may be into its neighbour
             before = place
-            for start, end, radius in self.capsules:
-                place = _pushed(place, start, end, radius + self.clearance)
+            for capsule, (middle, square) in zip(self.capsules, self._spheres, strict=True):
+                away = subtract(place, middle)
+                if dot(away, away) < square:
+                    start, end, radius = capsule
+                    place = _pushed(place, start, end, radius + self.clearance)
             if place == before:
                 break
         return place
@@ -39,14 +52,11 @@ class BodySurface:
 def _pushed(place: Vector, start: Vector, end: Vector, radius: float) -> Vector:
     axis, offset = subtract(end, start), subtract(place, start)
     along = min(max(dot(offset, axis) / max(dot(axis, axis), 1e-12), 0.0), 1.0)
-    x, y, z = (o - along * a for o, a in zip(offset, axis, strict=True))
-    square = x * x + y * y + z * z
-    if square >= radius * radius:
+    nearest = add(start, scaled(axis, along))
+    away = subtract(place, nearest)
+    size = length(away)
+    if size >= radius:
         return place
-    size = math.sqrt(square)
     if size < 1e-9:
-        (x, y, z), size = (0.0, 0.0, 1.0), 1.0
-    scale = radius / size
-    nearest = (s + along * a for s, a in zip(start, axis, strict=True))
-    px, py, pz = nearest
-    return px + x * scale, py + y * scale, pz + z * scale
+        away, size = (0.0, 0.0, 1.0), 1.0
+    return add(nearest, scaled(away, radius / size))

@@ -8,7 +8,6 @@ snaps.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from characters.ik.reaching.arms import CONE_RAD, Arm, clamped_aim, cone_axis, scaled
@@ -63,8 +62,7 @@ _LEAST_EXTENSION = EASY_EXTENSION - 2.0 * LEAST_GAIN
 _ROUNDS = 12
 
 
-@dataclass(frozen=True)
-class PlacedTorso:
+class PlacedTorso(NamedTuple):
     """A torso in one pose, in the character frame."""
 
     places: Sequence[Vector]
@@ -117,8 +115,7 @@ class Reaching(NamedTuple):
     """Where to [m]."""
 
 
-@dataclass(frozen=True)
-class TorsoTurn:
+class TorsoTurn(NamedTuple):
     """What a torso does for a place."""
 
     turned: Vector
@@ -135,8 +132,10 @@ def turn_torso(
     if not torso.places:
         return TorsoTurn((0.0, 0.0, 0.0), _beyond(torso, reaching, (0.0, 0.0, 0.0), power))
     turn, lean = _directions(torso, reaching)
-    efforts = [_effort(torso, each, turn, lean) for each in reaching]
-    effort, share = (max(values) for values in zip(*efforts, strict=True))
+    effort, share = _effort(torso, reaching[0], turn, lean)
+    for each in reaching[1:]:
+        other = _effort(torso, each, turn, lean)
+        effort, share = max(effort, other[0]), max(share, other[1])
     if power > 0.0:
         share += (1.0 - share) * POWER_SHARE * power * max(map(_strain, reaching))
     # An open posture turns by itself, the less the more it has to turn anyway.

@@ -7,7 +7,6 @@ bend; elbows swivel by openness; hands turn as they are asked to.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -86,8 +85,7 @@ class Frames(NamedTuple):
     """[m]."""
 
 
-@dataclass(frozen=True)
-class ReachedPose:
+class ReachedPose(NamedTuple):
     """A pose that reaches, and what it took."""
 
     pose: Pose
@@ -133,6 +131,7 @@ class UpperBody:
         self._rest = [to_quaternion(turn) for turn in turns_of(rest[order, :3, :3])]
         self._sizes = _scales_above(rest, self._order, skeleton)
         self._trunk = [number[joint] for joint in trunk]
+        self._trunk_joints = np.array(trunk, np.intp)
         self._pelvis = self._parents[self._trunk[0]] if self._trunk else -1
         self._written = {
             side: np.array([*arm.joints[1:], *(j for j in arm.joints[:1] if j >= 0)], np.intp)
@@ -145,7 +144,7 @@ class UpperBody:
     @cached_property
     def joints(self) -> NDArray[np.intp]:
         """All joints that it turns: torso, arms and fingers."""
-        moved = [*self._order[self._trunk]]
+        moved = [*self._trunk_joints]
         for arm in self.arms.values():
             moved += [joint for joint in arm.joints if joint >= 0]
             moved += [joint for finger in arm.hand.fingers.values() for joint in finger]
@@ -186,11 +185,12 @@ class UpperBody:
         frames = self._frames(pose, whole_arms=holds)
         torso = self._placed(frames)
         hands = [self._started(frames, arm, target, style) for arm, target in wanted]
-        neutral = ReachStyle(power=style.power)
+        swivelled = style.openness != NEUTRAL_REACH.openness
+        neutral = ReachStyle(power=style.power) if swivelled else style
         turned, effort = self._torso_turn(torso, hands, neutral)
         bearers = [_bearer(torso, hand, turned) for hand in hands]
         bent = [self._bent(*each) for each in zip(hands, bearers, strict=True)]
-        if style.openness != neutral.openness:
+        if swivelled:
             turned, _ = self._torso_turn(torso, hands, style)
             for place, (hand, arm, before) in enumerate(zip(hands, bent, bearers, strict=True)):
                 wrist, after = self._wrists[hand.arm.hand.side], _bearer(torso, hand, turned)
@@ -245,13 +245,13 @@ class UpperBody:
         return Frames(turns, places)
 
     def _placed(self, frames: Frames) -> PlacedTorso:
-        firsts = [frames.places[first] for first in self._first]
-        x, y, z = (sum(axis) / len(firsts) for axis in zip(*firsts, strict=True))
+        x, y, z = frames.places[self._first[0]]
+        ox, oy, oz = frames.places[self._first[-1]]
         return PlacedTorso(
             [frames.places[joint] for joint in self._trunk],
             self._from_rest(frames, self._pelvis),
             self._from_rest(frames, self._chest),
-            (x, y, z),
+            (0.5 * (x + ox), 0.5 * (y + oy), 0.5 * (z + oz)),
             FOUR_LEGS if self._four_legs else 1.0,
         )
 
@@ -283,18 +283,17 @@ class UpperBody:
         self, torso: PlacedTorso, hands: Sequence[HandOnItsWay], style: ReachStyle
     ) -> tuple[Vector, float]:
         """Return the turn of the torso for one or two hands, each as far as its weight goes."""
+        if len(hands) == 1:
+            turned, effort = _turn_for(torso, hands, style)
+            return scaled(turned, hands[0].target.weight), effort
         single = [_turn_for(torso, [hand], style) for hand in hands]
         effort = max(effort for _, effort in single)
-        if len(hands) == 1:
-            return scaled(single[0][0], hands[0].target.weight), effort
         one, other = (hand.target.weight for hand in hands)
         both, together = _turn_for(torso, hands, style)
         shares = (one * (1.0 - other), other * (1.0 - one), one * other)
-        x, y, z = (
-            sum(share * part for share, part in zip(shares, parts, strict=True))
-            for parts in zip(single[0][0], single[1][0], both, strict=True)
-        )
-        return (x, y, z), max(effort, together)
+        turns = (single[0][0], single[1][0], both)
+        first, second, third = (scaled(*each) for each in zip(turns, shares, strict=True))
+        return add(first, add(second, third)), max(effort, together)
 
     def _turn_trunk(self, local: Array, frames: Frames, step: Quaternion) -> None:
         if not self._trunk:
@@ -304,7 +303,7 @@ class UpperBody:
             parent = self._parents[joint]
             above = frames.turns[parent] if parent >= 0 else IDENTITY
             rows.append(multiply(conjugate(above), multiply(step, frames.turns[joint])))
-        local[self._order[self._trunk]] = rows
+        local[self._trunk_joints] = rows
 
     def _bent(self, hand: HandOnItsWay, bearer: Bearer) -> BentArm:
         """Return the arm of a hand with a neutral elbow."""
