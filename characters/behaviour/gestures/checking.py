@@ -9,7 +9,7 @@ from itertools import pairwise
 from characters.behaviour.expressivity import GestureExpressivity
 from characters.behaviour.gestures.contacts import CONTACTS
 from characters.behaviour.gestures.directions import DIRECTIONS, across
-from characters.behaviour.gestures.gesture import (
+from characters.behaviour.symbolic_gesture import (
     SECTORS_X,
     SECTORS_Y,
     SECTORS_Z,

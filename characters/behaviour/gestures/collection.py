@@ -7,7 +7,7 @@ from importlib import resources
 from pathlib import Path
 
 from characters.behaviour.gestures.files import SUFFIX, load_gesture, save_gesture
-from characters.behaviour.gestures.gesture import SymbolicGesture
+from characters.behaviour.symbolic_gesture import SymbolicGesture
 from characters.errors import CharacterError
 
 

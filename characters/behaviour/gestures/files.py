@@ -26,7 +26,7 @@ import msgspec
 
 from characters.behaviour.expressivity import GestureExpressivity
 from characters.behaviour.gestures.checking import check_gesture, check_known
-from characters.behaviour.gestures.gesture import BodyKey, HandKey, Place, SymbolicGesture
+from characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
 from characters.errors import CharacterError
 from characters.model.files import read_text
 

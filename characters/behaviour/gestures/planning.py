@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
 from characters.behaviour.gestures.contacts import OTHER_HAND, BodySurface
 from characters.behaviour.gestures.gathering import KeyFrame, gather
-from characters.behaviour.gestures.gesture import BodyKey, HandKey, SymbolicGesture
 from characters.behaviour.gestures.motion import GestureMotion
 from characters.behaviour.gestures.space import GestureSpace
 from characters.behaviour.gestures.timing import Repeats, stroke_length
@@ -35,6 +34,7 @@ from characters.behaviour.gestures.tracks import (
 )
 from characters.behaviour.gestures.trunk import TrunkTurns, body_track, chest_part
 from characters.behaviour.intents import Hand
+from characters.behaviour.symbolic_gesture import BodyKey, HandKey, SymbolicGesture
 from characters.errors import CharacterWarning
 from characters.ik.reaching import HandTarget, ReachStyle, UpperBody
 from characters.ik.sitting_up import SittingUp
@@ -100,11 +100,12 @@ class Performer:
         for kept in _KEPT:
             if kept.character.skeleton is character.skeleton:
                 return kept
-        _KEPT.append(Performer._measured(character))
+        _KEPT.append(Performer.measured(character))
         return _KEPT[-1]
 
     @staticmethod
-    def _measured(character: Character) -> "Performer":
+    def measured(character: Character) -> "Performer":
+        """Return what a character gestures with, anew."""
         skeleton, anatomy = character.skeleton, character.anatomy
         idle = idle_clips(character.clips)
         posture = idle[0].sample(0.0) if idle else skeleton.rest

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.behaviour.gestures.directions import words_of
-from characters.behaviour.gestures.gesture import BodyKey, HandKey, Place, SymbolicGesture
 from characters.behaviour.gestures.planning import SIDES, arm_length
 from characters.behaviour.gestures.space import GestureSpace
 from characters.behaviour.gestures.trunk import chest_part
+from characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
 from characters.errors import CharacterError
 from characters.ik.reaching import HAND_SHAPES, UpperBody
 from characters.motion.clip import Clip

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from characters.behaviour.gestures.gesture import SECTORS_X, SECTORS_Y, SECTORS_Z, Place, Vector3
+from characters.behaviour.symbolic_gesture import SECTORS_X, SECTORS_Y, SECTORS_Z, Place, Vector3
 from characters.skeleton.pose import Array
 
 REFERENCE_ARM_M = 0.55

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from characters.behaviour.gestures.gesture import HandKey
+from characters.behaviour.symbolic_gesture import HandKey
 from characters.skeleton.pose import Array
 
 SAMPLES_PER_TURN = 8

@@ -11,12 +11,12 @@ from characters.behaviour.expressivity import GestureExpressivity
 from characters.behaviour.gestures.directions import direction
 from characters.behaviour.gestures.easing import eased
 from characters.behaviour.gestures.gathering import PartKeys
-from characters.behaviour.gestures.gesture import BodyKey, HandKey, SymbolicGesture
 from characters.behaviour.gestures.space import GestureSpace
 from characters.behaviour.gestures.splines import TcbSpline
 from characters.behaviour.gestures.targeting import PathFormula, ramped, samples
 from characters.behaviour.gestures.timing import Repeats
 from characters.behaviour.intents import Hand
+from characters.behaviour.symbolic_gesture import BodyKey, HandKey, SymbolicGesture
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array
 from characters.skeleton.scalar_quaternions import cross

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from characters.behaviour.expressivity import GestureExpressivity
 from characters.behaviour.gestures.gathering import PartKeys
-from characters.behaviour.gestures.gesture import BodyKey
 from characters.behaviour.gestures.splines import TcbSpline
+from characters.behaviour.symbolic_gesture import BodyKey
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Pose, Skeleton

@@ -8,7 +8,7 @@ from characters import CharacterError
 from characters.behaviour.expressivity import GestureExpressivity
 from characters.behaviour.gestures.collection import GestureCollection
 from characters.behaviour.gestures.files import load_gesture, save_gesture
-from characters.behaviour.gestures.gesture import (
+from characters.behaviour.symbolic_gesture import (
     SECTORS_X,
     SECTORS_Y,
     SECTORS_Z,

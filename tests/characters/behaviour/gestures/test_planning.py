@@ -9,9 +9,9 @@ import pytest
 from characters import Character, CharacterWarning
 from characters.behaviour.expressivity import GestureExpressivity
 from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.gestures.gesture import BodyKey, HandKey, Place, SymbolicGesture
 from characters.behaviour.gestures.planning import Performer
 from characters.behaviour.gestures.timing import apex_share
+from characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
 from characters.skeleton import rotations
 
 NAMES = ("human", "vleo", "robot")

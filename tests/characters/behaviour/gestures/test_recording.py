@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from characters import Character, CharacterError, Clip, Pose
-from characters.behaviour.gestures.gesture import BodyKey, HandKey, Place, SymbolicGesture
 from characters.behaviour.gestures.planning import Performer
 from characters.behaviour.gestures.recording import gesture_from_recording, polyline
+from characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
 
 KEYS = (
     HandKey(0.0, Place("XP", "YUpperP", "ZMiddle"), "flat", "forward", "up"),
