@@ -49,14 +49,14 @@ def reached(body: Body, side: str, where: Array, style: ReachStyle | None = None
 def test_a_hand_is_within_a_centimetre_of_all_that_it_can_reach(name: str, side: str) -> None:
     body, seed = bundled(name), np.random.default_rng(5)
     within = 0
-    for _ in range(150):
+    for _ in range(80):
         direction = seed.normal(size=3) * [1.0, 1.0, 0.5] + [0.0, 0.0, 0.8]
         where = target(body, side, direction, seed.uniform(0.45, 1.3))
         found = body.upper.reached(body.rest, **hand(side, HandTarget(where)))
         if found.effort < 1.0:
             within += 1
             assert body.person_mm(body.palm(side, found.pose) - where) < 10.0
-    assert within > 75
+    assert within > 40
 
 
 def test_a_torso_stays_upright_for_what_is_near() -> None:
@@ -188,7 +188,7 @@ def test_no_joint_jumps_while_a_place_moves_smoothly(name: str) -> None:
 
     Where torso and arm are stretched, the last of the reach is gained by turns that are faster.
     """
-    body, step = bundled(name), 0.003
+    body, step = bundled(name), 0.005
     size = body.reach_of("left")
     rates: list[float] = []
     at_the_end: list[float] = []
