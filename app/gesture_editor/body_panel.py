@@ -8,7 +8,7 @@ from app.gesture_editor.state import EditorState, edited
 from app.gesture_editor.widgets import NORMAL, SMALL, Button, Label, Rect, Sheet, Widget
 from app.ui.palette import RULE
 from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
-from characters.behaviour.gestures.gesture import BodyKey
+from characters.behaviour.symbolic_gesture import BodyKey
 
 LEFT, MIDDLE, RIGHT = 756.0, 1016.0, 1264.0
 """Left edges of the panel's two columns, and the right edge of the second."""

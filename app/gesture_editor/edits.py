@@ -5,7 +5,7 @@ from itertools import pairwise
 from typing import Any, Literal
 
 from app.gesture_editor.document import GestureDocument, Key, Row
-from characters.behaviour.gestures.gesture import (
+from characters.behaviour.symbolic_gesture import (
     SECTORS_X,
     SECTORS_Y,
     BodyKey,

@@ -30,7 +30,7 @@ from app.gesture_editor.widgets import (
     button_row,
 )
 from app.gesture_editor.words import DIRECTION_NAMES, PATH_NAMES, combined
-from characters.behaviour.gestures.gesture import SECTORS_Z, HandKey
+from characters.behaviour.symbolic_gesture import SECTORS_Z, HandKey
 from characters.ik.reaching.hand_shapes import HAND_SHAPES
 
 MAX_RADIUS, MAX_TURNS = 0.6, 8.0

@@ -11,10 +11,10 @@ from app.gesture_editor.document import GestureDocument, moves
 from app.gesture_editor.space_overlay import ShownSpace
 from app.gesture_editor.timing import duration
 from characters import Animator, Character, CharacterCommand, PosedCharacter
-from characters.behaviour.gestures.gesture import SymbolicGesture
 from characters.behaviour.gestures.planning import Performer
 from characters.behaviour.gestures.timing import natural_times
 from characters.behaviour.intents import BehaviourIntent, GestureIntent, Hand
+from characters.behaviour.symbolic_gesture import SymbolicGesture
 from characters.control.controllers.in_place import InPlaceController
 from characters.control.layers import LayerFactory, layers_of
 from characters.control.layers.gestures import GestureLayer

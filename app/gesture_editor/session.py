@@ -27,7 +27,7 @@ from app.gesture_editor.state import (
 )
 from app.gesture_editor.store import GestureStore
 from characters import Character
-from characters.behaviour.gestures.gesture import SymbolicGesture
+from characters.behaviour.symbolic_gesture import SymbolicGesture
 from characters.errors import CharacterError
 
 KEEP_INTERVAL_S = 2.0

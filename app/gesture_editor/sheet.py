@@ -7,7 +7,7 @@ from pathlib import Path
 from app.gesture_editor.preview import Performance, Preview
 from app.gesture_editor.timing import phase_at, phase_spans, time_of
 from app.ui.contact_sheets import frame_sheet, save
-from characters.behaviour.gestures.gesture import SymbolicGesture
+from characters.behaviour.symbolic_gesture import SymbolicGesture
 from characters.rendering import create_context
 
 CELL_PX = 300, 320

@@ -9,7 +9,7 @@ from app.gesture_editor.state import EditorState
 from app.gesture_editor.widgets import ACCENT, CARD, SUBTLE, Look, Widget, rounded
 from app.ui.canvas import Canvas
 from app.ui.palette import INK, PAPER, RULE, between
-from characters.behaviour.gestures.gesture import SECTORS_X, SECTORS_Y, Place
+from characters.behaviour.symbolic_gesture import SECTORS_X, SECTORS_Y, Place
 
 LABEL_WIDTH, LABEL_HEIGHT = 62.0, 18.0
 """Room for the names of rows, to the left, and of columns, above."""

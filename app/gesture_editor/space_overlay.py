@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.gesture_editor.widgets import ACCENT
-from characters.behaviour.gestures.gesture import Place
 from characters.behaviour.gestures.space import (
     CENTRES_X_CM,
     CENTRES_Y_CM,
@@ -18,6 +17,7 @@ from characters.behaviour.gestures.space import (
     REFERENCE_ARM_M,
     GestureSpace,
 )
+from characters.behaviour.symbolic_gesture import Place
 from characters.rendering.portrait_camera import PortraitCamera
 
 Array = NDArray[np.float64]

@@ -8,7 +8,7 @@ from app.gesture_editor.document import moves
 from app.output_path import short_path
 from characters.behaviour.gestures.collection import GestureCollection, gestures_in
 from characters.behaviour.gestures.files import load_gesture, save_gesture
-from characters.behaviour.gestures.gesture import SymbolicGesture
+from characters.behaviour.symbolic_gesture import SymbolicGesture
 from characters.errors import CharacterError
 
 RECOVERY_FILE = ".unsaved.toml"

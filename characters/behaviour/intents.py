@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
-from characters.behaviour.gestures.gesture import SymbolicGesture
+from characters.behaviour.symbolic_gesture import SymbolicGesture
 
 Hand = Literal["left", "right", "both", "nearest"]
 """Which hand; "nearest" chooses by the target, or by what is free."""

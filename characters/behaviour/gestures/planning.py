@@ -1,57 +1,41 @@
 """From a symbolic gesture to key postures of one character (Huang 2013, sections 8.4 to 8.7).
 
-Targeting and gathering give key frames of hands and body; the trunk is turned, the gesture space
-turns with it, and the upper body reaches for its places. All of it happens once, when a gesture
-begins; its frames are interpolated.
+Targeting and gathering give key frames of hands and body, `KeyPostures` the postures. It happens
+once for a gesture, a few postures a frame while the hands are on their way to the first one.
 """
 
 import math
 import warnings
 from collections import deque
-from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
-from characters.behaviour.gestures.contacts import OTHER_HAND, BodySurface
+from characters.behaviour.gestures.body import SIDES, GestureBody
+from characters.behaviour.gestures.contacts import OTHER_HAND
 from characters.behaviour.gestures.gathering import KeyFrame, gather
 from characters.behaviour.gestures.motion import GestureMotion
+from characters.behaviour.gestures.postures import KeyPostures
 from characters.behaviour.gestures.space import GestureSpace
 from characters.behaviour.gestures.timing import Repeats, stroke_length
 from characters.behaviour.gestures.tracks import (
-    ORIENTATION,
     POSITION,
-    SHAPES,
     HandTrack,
     hand_track,
     one_period,
     sided,
     smooth,
 )
-from characters.behaviour.gestures.trunk import TrunkTurns, body_track, chest_part
+from characters.behaviour.gestures.trunk import body_track
 from characters.behaviour.intents import Hand
 from characters.behaviour.symbolic_gesture import BodyKey, HandKey, SymbolicGesture
 from characters.errors import CharacterWarning
-from characters.ik.reaching import HandTarget, ReachStyle, UpperBody
-from characters.ik.sitting_up import SittingUp
+from characters.ik.reaching import ReachStyle
 from characters.model.character import Character
-from characters.model.standing import idle_clips
 from characters.skeleton import rotations
-from characters.skeleton.masks import subtree
-from characters.skeleton.pose import Array, Pose
-
-SIDES = {"left": True, "right": False}
-"""Sides of hands, and whether they are left."""
-
-EASY, STRETCHED = 0.75, 0.95
-"""Distances of a wrist from its shoulder ÷ the arm's length: as asked for below, never above."""
-
-STRETCHED_ON_FOUR = 0.8
-"""The same for front legs, whose trunk would else stretch after them."""
+from characters.skeleton.pose import Array
 
 NEGLIGIBLE = 1e-6
 """Sine of half an angle below which a joint of the trunk is not turned."""
@@ -66,33 +50,8 @@ PLANS = 64
 """Plans that are kept for when a gesture comes again."""
 
 
-@dataclass(frozen=True, eq=False)
-class Performer:
-    """The body of a character, as far as gestures need it."""
-
-    character: Character
-    """Who."""
-
-    posture: Pose
-    """How it stands while it gestures; a four-legged one sits up."""
-
-    body: UpperBody
-    """Its arms."""
-
-    trunk: TrunkTurns
-    """Its trunk, shoulders and head."""
-
-    surface: BodySurface
-    """Where it can be touched."""
-
-    space: GestureSpace
-    """Its gesture space in the posture."""
-
-    chest: int
-    """The joint that carries the gesture space."""
-
-    arms: Mapping[str, NDArray[np.intp]]
-    """Joints of collarbone, arm, hand and fingers by side."""
+class Performer(GestureBody):
+    """A body that plans gestures."""
 
     @staticmethod
     def of(character: Character) -> "Performer":
@@ -103,76 +62,56 @@ class Performer:
         _KEPT.append(Performer.measured(character))
         return _KEPT[-1]
 
-    @staticmethod
-    def measured(character: Character) -> "Performer":
-        """Return what a character gestures with, anew."""
-        skeleton, anatomy = character.skeleton, character.anatomy
-        idle = idle_clips(character.clips)
-        posture = idle[0].sample(0.0) if idle else skeleton.rest
-        sitting = SittingUp.of(skeleton, anatomy)
-        if sitting is not None:
-            posture = sitting.sit_up(posture, 1.0)
-        body = UpperBody.of(skeleton, anatomy)
-        surface = BodySurface(skeleton, anatomy, character.meshes, posture)
-        joints = {}
-        for side, arm in body.arms.items():
-            collarbone, upper, *_ = arm.joints
-            below = subtree(skeleton, upper)
-            joints[side] = np.array([*([collarbone] if collarbone >= 0 else []), *below], np.intp)
-        chest = anatomy.joint(chest_part(anatomy)) if "hips" in anatomy.joints else None
-        return Performer(
-            character,
-            posture,
-            body,
-            TrunkTurns.of(skeleton, anatomy, posture),
-            surface,
-            _space(character, posture, body),
-            0 if chest is None else chest,
-            joints,
-        )
-
     def plan(
         self,
         gesture: SymbolicGesture,
         hand: Hand = "right",
         expressivity: GestureExpressivity = NEUTRAL,
     ) -> GestureMotion:
-        """Return the stroke of a gesture as this body performs it.
+        """Return the strokes of a gesture as this body performs it.
 
         Without the arms that it needs, the rest of the body performs it, with a
         `CharacterWarning`.
         """
-        return _plan(self, gesture, hand, expressivity)
+        return self.planning(gesture, hand, expressivity).motion
+
+    def planning(
+        self,
+        gesture: SymbolicGesture,
+        hand: Hand = "right",
+        expressivity: GestureExpressivity = NEUTRAL,
+    ) -> "GesturePlanning":
+        """Return the same, to be planned from frame to frame."""
+        return _planning(self, gesture, hand, expressivity)
 
 
 _KEPT: deque[Performer] = deque(maxlen=CHARACTERS)
 
 
 @lru_cache(maxsize=PLANS)
-def _plan(
+def _planning(
     performer: Performer, gesture: SymbolicGesture, hand: Hand, expressivity: GestureExpressivity
-) -> GestureMotion:
-    return _Planner(performer, gesture, hand, expressivity).motion()
+) -> "GesturePlanning":
+    return GesturePlanning(performer, gesture, hand, expressivity)
 
 
-class _Planner:
+class GesturePlanning:
     """Plans one gesture of one body."""
 
     def __init__(
         self,
-        performer: Performer,
+        performer: GestureBody,
         gesture: SymbolicGesture,
         hand: Hand,
         expressivity: GestureExpressivity,
     ) -> None:
         self.performer = performer
-        self._turned_postures: dict[bytes, tuple[Pose, Array]] = {}
-        self._four_legs = performer.character.anatomy.kind == "quadruped"
         self.expressivity = expressivity
         self.duration = stroke_length(gesture)
-        self.style = ReachStyle(
-            min(max(expressivity.openness, 0.0), 1.0), min(max(expressivity.power, 0.0), 1.0)
+        openness, power = (
+            min(max(value, 0.0), 1.0) for value in (expressivity.openness, expressivity.power)
         )
+        self._postures = KeyPostures(performer, ReachStyle(openness, power))
         space = performer.space
         self.space = GestureSpace(np.zeros(3), space.arm, expressivity.spatial)
         shown, mirrored = sided(gesture, hand)
@@ -189,21 +128,35 @@ class _Planner:
                 CharacterWarning,
                 stacklevel=4,
             )
-        upright = performer.posture.globals(performer.character.skeleton)[performer.chest]
-        self.joint_from_chest = np.linalg.inv(upright)
         self.tracks = self._hand_tracks()
+        self._shapes = {side: track.shapes for side, track in self.tracks.items()}
+        parts = {side: track.keys for side, track in self.tracks.items()}
+        self._frames: list[KeyFrame] = gather(parts | {"body": self.body})
+        self._poses: list[Array] = []
 
+    def advance(self, count: int) -> None:
+        """Make some more of the postures, if there are any left to make."""
+        done = len(self._poses)
+        for frame in self._frames[done : done + count]:
+            self._poses.append(self._postures.posture(frame, self._shapes).rotations)
+
+    @cached_property
+    def opening(self) -> GestureMotion:
+        """The first posture, held."""
+        self.advance(1 - len(self._poses))
+        return self._motion(np.zeros(1), np.stack(self._poses[:1]))
+
+    @cached_property
     def motion(self) -> GestureMotion:
-        """Return the key postures."""
-        parts = {side: track.keys for side, track in self.tracks.items()} | {"body": self.body}
-        frames = gather(parts)
-        if len(frames) == 1:  # a pose that is held
-            frames = [KeyFrame(time, frames[0].parts) for time in (0.0, 1.0)]
-        times = np.array([frame.time for frame in frames])
-        poses = np.stack([self._posture(frame).rotations for frame in frames])
+        """All postures."""
+        self.advance(len(self._frames))
+        times, poses = np.array([frame.time for frame in self._frames]), np.stack(self._poses)
         for side, track in self.tracks.items():
             self._overshoot(poses, times, side, track)
             self._steady(poses, times, side)
+        return self._motion(times, poses)
+
+    def _motion(self, times: Array, poses: Array) -> GestureMotion:
         held = [self.performer.arms[side] for side in self.tracks]
         arms = np.concatenate([np.zeros(0, np.intp), *held])
         trunk = np.setdiff1d(self.performer.trunk.joints, arms)
@@ -246,78 +199,14 @@ class _Planner:
             met: Array = np.zeros(3) if other is None else other.keys.between(key.at)[POSITION]
             return met + offset
         if key.place.contact:
-            _, posed = self._turned(self.body.between(key.at))
+            _, posed = self._postures.turned(self.body.between(key.at))
             place = self.performer.surface.place(key.place.contact, left, posed)
             if place is not None:
-                turn, chest = self._chest(posed)
+                turn, chest = self._postures.chest(posed)
                 touched: Array = (place - chest) @ turn
                 size = 1.0 + self.space.spatial  # the body is as large as ever
                 return touched + (offset / size if size > 0.0 else 0.0)
         return self.space.point(key.place, left)
-
-    def _turned(self, row: Array) -> tuple[Pose, Array]:
-        """Return the posture with trunk and head turned by a row of the body's track.
-
-        With it comes `character_from_joint` of all joints, (joints, 4, 4).
-        """
-        key = row.tobytes()
-        if key not in self._turned_postures:
-            pose = self.performer.trunk.turned(self.performer.posture, row)
-            self._turned_postures[key] = pose, pose.globals(self.performer.character.skeleton)
-        return self._turned_postures[key]
-
-    def _chest(self, posed: Array) -> tuple[Array, Array]:
-        """Return how the chest is turned from its posture, (3, 3), and the space's middle, (3,)."""
-        moved = posed[self.performer.chest] @ self.joint_from_chest
-        turn = moved[:3, :3]
-        return turn, turn @ self.performer.space.chest + moved[:3, 3]
-
-    def _posture(self, frame: KeyFrame) -> Pose:
-        """Return the whole body at a key frame."""
-        pose, posed = self._turned(frame.parts["body"])
-        turn, chest = self._chest(posed)
-        targets = {}
-        for side in self.tracks:
-            row = frame.parts[side]
-            hand = turn @ rotations.to_matrix(rotations.normalize(row[ORIENTATION]))
-            fingers, palm = hand[:, 0], hand[:, 2]
-            place = self._within_reach(turn @ row[POSITION] + chest, fingers, side, posed)
-            targets[side] = HandTarget(place, "reach", palm, fingers)
-        if targets:
-            pose = self.performer.body.reach(
-                pose, targets.get("left"), targets.get("right"), self.style
-            )  # a new pose, whose fingers may be bent
-        for side, track in self.tracks.items():
-            self._shape(pose, side, track.shapes, frame.parts[side][SHAPES])
-        return pose
-
-    def _within_reach(self, place: Array, fingers: Array, side: str, posed: Array) -> Array:
-        """Return where a palm is to be, so that the wrist is not too far from its shoulder, (3,).
-
-        Who gestures shows where something is and need not get there: what is out of reach is
-        compressed into the last part of the way, and the torso leans only a little.
-        """
-        arm = self.performer.body.arms[side]
-        palm = float(np.linalg.norm(np.subtract(arm.hand.palm, arm.wrist)))
-        offset = place - palm * fingers - posed[arm.joints[1], :3, 3]
-        distance = float(np.linalg.norm(offset)) / (arm.upper + arm.fore)
-        most = STRETCHED_ON_FOUR if self._four_legs else STRETCHED
-        beyond = (distance - EASY) / (most - EASY)
-        if beyond <= 0.0:
-            return place
-        taken = EASY + (most - EASY) * -math.expm1(-beyond)
-        nearer: Array = place - offset * (1.0 - taken / distance)
-        return nearer
-
-    def _shape(self, pose: Pose, side: str, shapes: tuple[str, ...], weights: Array) -> None:
-        """Bend the fingers of a pose of our own."""
-        postures = [self.performer.body.shapes.posture(side, shape) for shape in shapes]
-        if len(postures[0].joints):
-            turns = rotations.align(
-                np.stack([each.rotations for each in postures]), postures[0].rotations
-            )
-            mixed = np.einsum("s,sji->ji", weights, turns)
-            pose.rotations[postures[0].joints] = rotations.normalize(mixed)
 
     def _steady(self, poses: Array, times: Array, side: str) -> None:
         """Turn joints that flip from posture to posture from one key of the gesture to the next.
@@ -348,18 +237,3 @@ class _Planner:
             shares = np.interp(times[frames], [*over.times, over.end], [*over.shares, 0.0])
             beyond = rotations.from_rotation_vector(way * shares[:, None, None])
             poses[np.ix_(frames, joints)] = rotations.multiply(last, beyond)
-
-
-def _space(character: Character, posture: Pose, body: UpperBody) -> GestureSpace:
-    """Return the gesture space of a body in a posture; without arms, one of usual size."""
-    if not body.arms:
-        height = character.height
-        return GestureSpace(np.array([0.0, 0.6 * height, 0.0]), 0.3 * height)
-    posed = posture.globals(character.skeleton)
-    shoulders = posed[[each.joints[1] for each in body.arms.values()], :3, 3].mean(0)
-    return GestureSpace.about(shoulders, arm_length(body))
-
-
-def arm_length(body: UpperBody) -> float:
-    """Return the mean length of its arms, shoulder to wrist [m]."""
-    return float(np.mean([each.upper + each.fore for each in body.arms.values()]))

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from characters.behaviour.gestures.body import SIDES, arm_length
 from characters.behaviour.gestures.directions import words_of
-from characters.behaviour.gestures.planning import SIDES, arm_length
 from characters.behaviour.gestures.space import GestureSpace
 from characters.behaviour.gestures.trunk import chest_part
 from characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture

@@ -12,7 +12,6 @@ from characters.behaviour.bml import (
     Timing,
     elastic,
 )
-from characters.behaviour.gestures.gesture import SymbolicGesture
 from characters.behaviour.intents import GestureIntent, PostureIntent, StrokeTimes, Times
 from characters.behaviour.performing.hand_kinds import held
 from characters.behaviour.performing.performed import (
@@ -24,6 +23,7 @@ from characters.behaviour.performing.performed import (
     shift_times_of,
     times_of,
 )
+from characters.behaviour.symbolic_gesture import SymbolicGesture
 
 POSTURE_SPANS_S = (0.9, 1.5, 0.9)
 """Times between the sync points of a posture [s]."""

@@ -10,7 +10,6 @@ from characters.behaviour.bml import (
     Timing,
     elastic,
 )
-from characters.behaviour.gestures.gesture import SymbolicGesture
 from characters.behaviour.intents import GestureIntent, Hand, ReachIntent
 from characters.behaviour.performing.performed import (
     Performed,
@@ -18,6 +17,7 @@ from characters.behaviour.performing.performed import (
     stroke_times_of,
     times_of,
 )
+from characters.behaviour.symbolic_gesture import SymbolicGesture
 
 HANDS: dict[str, Hand] = {
     "LEFT_HAND": "left",

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
 from characters.behaviour.gestures.easing import eased
-from characters.behaviour.gestures.gesture import SymbolicGesture
 from characters.behaviour.gestures.planning import Performer
 from characters.behaviour.gestures.timing import (
     GONE,
@@ -16,6 +15,7 @@ from characters.behaviour.gestures.timing import (
     phase_at,
 )
 from characters.behaviour.intents import BehaviourIntent, GestureIntent, Hand, StrokeTimes
+from characters.behaviour.symbolic_gesture import SymbolicGesture
 from characters.control.layers.layer import FrameContext
 from characters.control.layers.sitting_up import STANDING_REST
 from characters.model.character import Character
@@ -33,6 +33,9 @@ MIN_RETIME_S = 0.1
 
 COAST_S = 0.1
 """How long a gesture takes to stop and wait whose times have moved away, at most [s]."""
+
+POSTURES_PER_FRAME = 2
+"""Key postures that are planned in each frame of a preparation."""
 
 STEP_S = 1e-3
 """Time over which the speed of a phase is measured [s]."""
@@ -72,7 +75,7 @@ class PerformedGesture:
     def __post_init__(self) -> None:
         gesture, style = self.intent.gesture, self.intent.expressivity
         self._style = gesture.expressivity if style == NEUTRAL else style
-        self._motion = self.performer.plan(gesture, self.hand, self._style)
+        self._planning = self.performer.planning(gesture, self.hand, self._style)
         self._apex = apex_share(gesture)
         self._touches = any(
             keys and keys[0].place.contact for keys in (gesture.right, gesture.left)
@@ -124,14 +127,16 @@ class PerformedGesture:
         phase = self.phase(now)
         if not 0.0 < phase < GONE:
             return pose
-        weight = 1.0
-        if phase < PREPARED:
+        weight, prepares = 1.0, phase < PREPARED
+        if prepares:
+            self._planning.advance(POSTURES_PER_FRAME)
             weight = eased(_smooth(phase), self._style)
             weight = min(weight, 1.0) if self._touches else weight
         elif phase > STROKE_END:
             weight = _smooth(GONE - phase)
         weight *= share * _smooth(self.present)
-        return self._motion.over(pose, min(max(phase - PREPARED, 0.0), 1.0), weight)
+        motion = self._planning.opening if prepares else self._planning.motion
+        return motion.over(pose, min(max(phase - PREPARED, 0.0), 1.0), weight)
 
 
 class GestureLayer:

@@ -5,11 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from characters import Character, CharacterWarning
 from characters.behaviour.expressivity import GestureExpressivity
 from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.gestures.planning import Performer
+from characters.behaviour.gestures.planning import GesturePlanning, Performer
 from characters.behaviour.gestures.timing import apex_share
 from characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
 from characters.skeleton import rotations
@@ -202,3 +204,24 @@ def test_a_frame_takes_less_than_a_millisecond(performers):
         motion.over(performer.posture, 0.37, 0.5)
         spans.append(time.perf_counter() - start)
     assert min(spans) < 1e-3
+
+
+def test_a_plan_made_bit_by_bit_is_the_plan_made_at_once(performers):
+    wave = GestureCollection.bundled().get("WAVE")
+    style = GestureExpressivity(spatial=0.123)
+    planning = performers["human"].planning(wave, "right", style)
+    opening = planning.opening.sample(0.0).rotations
+    for _ in range(4):
+        planning.advance(2)
+    again = GesturePlanning(performers["human"], wave, "right", style)
+    assert planning.motion.arm_turns == pytest.approx(again.motion.arm_turns)
+    assert opening == pytest.approx(again.motion.sample(0.0).rotations, abs=1e-9)
+
+
+@given(st.lists(st.floats(-1.0, 1.0), min_size=6, max_size=6))
+@settings(max_examples=25)
+def test_every_style_gives_finite_postures(performers, values):
+    style = GestureExpressivity(*values)
+    motion = performers["human"].plan(SWING, "both", style)
+    assert np.isfinite(motion.arm_turns).all()
+    assert np.isfinite(motion.sample(0.4).rotations).all()

@@ -9,11 +9,11 @@ from characters import Character
 from characters.behaviour.bml import BmlWarning, Realizer, parse
 from characters.behaviour.expressivity import GestureExpressivity
 from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.gestures.gesture import HandKey, SymbolicGesture
 from characters.behaviour.performing.character_performer import CharacterPerformer
 from characters.behaviour.performing.performed import CUBELING, Performing
 from characters.behaviour.performing.speech_kind import estimated, retime_speeches
 from characters.behaviour.performing.surroundings import Surroundings
+from characters.behaviour.symbolic_gesture import HandKey, SymbolicGesture
 from characters.speech.speech import Utterance, Word
 
 WAVE = SymbolicGesture(
