@@ -19,7 +19,7 @@ from app.gesture_editor.timing import duration, phase_spans
 from app.ui.display import has_display
 from characters import Character
 from characters.behaviour.gestures.files import SUFFIX, save_gesture
-from characters.behaviour.gestures.gesture import BodyKey, HandKey, SymbolicGesture
+from characters.behaviour.symbolic_gesture import BodyKey, HandKey, SymbolicGesture
 
 SHEET_SUFFIXES = (".png", ".jpg")
 

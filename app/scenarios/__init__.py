@@ -13,9 +13,10 @@ from app.scenarios.companion import Companion
 from app.scenarios.follow import Follow
 from app.scenarios.mood import MoodController
 from app.scenarios.presence import Presence
+from app.scenarios.reach import Reach
 from app.scenarios.sketch import Sketch
 
-_BUNDLED: tuple[type[Scenario], ...] = (Follow, Sketch, Companion)
+_BUNDLED: tuple[type[Scenario], ...] = (Follow, Sketch, Companion, Reach)
 SCENARIOS |= {scenario.name: scenario for scenario in _BUNDLED}
 
 __all__ = [
@@ -28,6 +29,7 @@ __all__ = [
     "MoodController",
     "Outcome",
     "Presence",
+    "Reach",
     "Scenario",
     "ScenarioSettings",
     "Sketch",

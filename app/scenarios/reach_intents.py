@@ -5,7 +5,6 @@ from functools import cache
 from typing import Any, Generic, TypeVar
 
 from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.gestures.gesture import SymbolicGesture
 from characters.behaviour.intents import (
     GazeIntent,
     GestureIntent,
@@ -14,6 +13,7 @@ from characters.behaviour.intents import (
     StrokeTimes,
     Times,
 )
+from characters.behaviour.symbolic_gesture import SymbolicGesture
 
 Intent = TypeVar("Intent", ReachIntent, GestureIntent, HeadIntent, GazeIntent)
 

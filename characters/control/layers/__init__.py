@@ -8,6 +8,7 @@ from characters.control.layers.gaze import GazeLayer
 from characters.control.layers.gestures import GestureLayer
 from characters.control.layers.layer import FrameContext, LayerFactory
 from characters.control.layers.posture import PostureLayer
+from characters.control.layers.reach import ReachLayer
 from characters.control.layers.sitting_up import SittingUpLayer
 from characters.control.layers.speech import SpeechLayer
 from characters.control.layers.upper_body import DependentJointsLayer, SelfCollisionLayer
@@ -26,8 +27,9 @@ LIVELINESS_LAYERS: tuple[LayerFactory, ...] = (
     FaceShiftLayer,
     FaceLayer,
     BreathLayer,
+    ReachLayer,
 )
-"""What makes it look alive: it speaks, gestures, sways, looks, blinks, breathes and feels."""
+"""What makes it look alive: it speaks, gestures, looks, feels, breathes and reaches."""
 
 DEFAULT_LAYERS: tuple[LayerFactory, ...] = (*FOOT_LAYERS, *LIVELINESS_LAYERS)
 """The layers of every character."""

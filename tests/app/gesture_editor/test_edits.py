@@ -12,7 +12,7 @@ from app.gesture_editor.state import EditorState, committed, edited, redo, undo
 from app.gesture_editor.timing import duration, nearest_moment, phase_spans, stroke_for
 from characters.behaviour.gestures.checking import check_gesture
 from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.gestures.gesture import SECTORS_X, SECTORS_Y, HandKey, Place
+from characters.behaviour.symbolic_gesture import SECTORS_X, SECTORS_Y, HandKey, Place
 
 shares = st.floats(-0.5, 1.5)
 seconds = st.floats(-1.0, 20.0)

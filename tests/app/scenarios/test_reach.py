@@ -15,20 +15,8 @@ from app.scenarios.reach_gifts import AT_HAND_M
 from app.scenarios.reach_intents import LEAVE_S, Ongoing, bundled_gesture, gesture_times, left
 from characters import Animator, Character
 from characters.behaviour.intents import ReachIntent, Times
-from characters.control.layers import layers_of
-from characters.control.layers.gaze import GazeLayer
-from characters.control.layers.reach import ReachLayer
 from characters.rendering.toys import TOYS, toy
 from tracking import CubeModel
-
-
-def with_reaching(character):
-    """Return the layers of a character, with that of reaching before the gaze."""
-    given = layers_of(character)
-    if ReachLayer in given:
-        return given
-    gaze = given.index(GazeLayer)
-    return (*given[:gaze], ReachLayer, *given[gaze:])
 
 
 class Play:
@@ -38,9 +26,7 @@ class Play:
         self.hand = hand
         self.character = Character.load(name)
         self.reach = Reach(CubeModel.load("locomotion"), ScenarioSettings())
-        self.animator = Animator(
-            self.character, place=self.reach.start, layers=with_reaching(self.character)
-        )
+        self.animator = Animator(self.character, place=self.reach.start)
         self.parts = BodyParts.of(self.character, self.animator.scale)
         self.body: Any = None
         self.events: list[str] = []
