@@ -1,7 +1,7 @@
 """Files and collections of gestures."""
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from characters import CharacterError
@@ -46,6 +46,7 @@ def _ordered(keys):
     return tuple(times[at] for at in sorted(times))
 
 
+@settings(max_examples=40)
 @given(
     st.text(st.characters(codec="utf-8", exclude_categories=("C", "Z")), min_size=1, max_size=20),
     st.text(max_size=30),
