@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
+from characters.behaviour.expressivity import NEUTRAL
 from characters.behaviour.gestures.easing import eased
 from characters.behaviour.gestures.planning import Performer
 from characters.behaviour.gestures.timing import (
@@ -15,7 +15,6 @@ from characters.behaviour.gestures.timing import (
     phase_at,
 )
 from characters.behaviour.intents import BehaviourIntent, GestureIntent, Hand, StrokeTimes
-from characters.behaviour.symbolic_gesture import SymbolicGesture
 from characters.control.layers.layer import FrameContext
 from characters.control.layers.sitting_up import STANDING_REST
 from characters.model.character import Character
@@ -50,7 +49,7 @@ FREE_LAG_S = 0.15
 """Lag with which hands become free, and are taken [s]."""
 
 
-@dataclass
+@dataclass(eq=False)
 class PerformedGesture:
     """One gesture that is performed, from its first frame to its last."""
 
@@ -79,6 +78,16 @@ class PerformedGesture:
         self._apex = apex_share(gesture)
         self._touches = any(
             keys and keys[0].place.contact for keys in (gesture.right, gesture.left)
+        )
+
+    def performs(self, intent: GestureIntent) -> bool:
+        """Return whether an intent asks for it, at whatever times."""
+        own = self.intent
+        return intent is own or (
+            intent.key == own.key
+            and intent.hand == own.hand
+            and (intent.gesture is own.gesture or intent.gesture == own.gesture)
+            and intent.expressivity == own.expressivity
         )
 
     def retime(self, intent: GestureIntent, now: float) -> None:
@@ -165,18 +174,20 @@ class GestureLayer:
 
     def _follow(self, asked: BehaviourIntent, now: float, elapsed: float) -> None:
         """Begin what is new, re-time what has changed, and let go what is left out."""
-        known = {_identity(each.intent): each for each in self._active}
+        known = list(self._active)
         going: list[PerformedGesture] = []
         for intent in asked.gestures:
-            each = known.pop(_identity(intent), None)
+            each = next((each for each in known if each.performs(intent)), None)
             if each is None:
-                each = self._begin(intent, now, [*going, *known.values()], asked)
+                each = self._begin(intent, now, [*going, *known], asked)
+            else:
+                known.remove(each)
             each.retime(intent, now)
             each.present = min(each.present + elapsed / FADE_S, 1.0)
             going.append(each)
-        for each in known.values():
+        for each in known:
             each.present -= elapsed / FADE_S
-        left = [each for each in known.values() if each.present > 0.0 and each.phase(now) < GONE]
+        left = [each for each in known if each.present > 0.0 and each.phase(now) < GONE]
         self._active = [*left, *going]
 
     def _begin(
@@ -191,11 +202,6 @@ class GestureLayer:
             hand = _free_hand(others, asked)
         on_time = now <= intent.times.start + ON_TIME_S
         return PerformedGesture(intent, hand, self._performer, 1.0 if on_time else 0.0)
-
-
-def _identity(intent: GestureIntent) -> tuple[str, SymbolicGesture, Hand, GestureExpressivity]:
-    """Return what makes a gesture the same as in the frame before, whatever its times."""
-    return intent.key, intent.gesture, intent.hand, intent.expressivity
 
 
 def _free_hand(others: Sequence[PerformedGesture], asked: BehaviourIntent) -> Hand:
