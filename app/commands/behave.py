@@ -102,7 +102,7 @@ def behave(
     rate: Annotated[float, typer.Option(help="Frames a second.", min=1.0, max=120.0)] = 25.0,
     seed: Annotated[int, typer.Option(help="Of blinks and sway.")] = 0,
 ) -> None:
-    """Let a character perform blocks of BML: speech, gestures, gaze, postures, ways.
+    """Let a character perform blocks of BML: speech, gestures, gaze, postures, walking.
 
     Example: [cyan]cubeling behave hello.bml -o hello.mp4[/]
     """

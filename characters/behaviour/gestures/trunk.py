@@ -124,8 +124,9 @@ class TrunkTurns:
 
 
 def chest_part(anatomy: Anatomy) -> str:
-    """Return the name of the uppermost part of the trunk."""
-    return next(part for part in ("upperChest", "chest", "spine", "hips") if part in anatomy.joints)
+    """Return the name of the uppermost part of the trunk; that of the hips if there is none."""
+    parts = ("upperChest", "chest", "spine")
+    return next((part for part in parts if part in anatomy.joints), "hips")
 
 
 def _line(skeleton: Skeleton, end: int | None, start: int | None) -> NDArray[np.intp]:

@@ -40,10 +40,11 @@ class PlannedValues:
     """Values that a plan gives for each time; another plan takes over without a jump.
 
     The difference of the old plan's values from the new one's, and of their rates, decays in
-    `BLEND_S` (Bollo, "Inertialization", 2018). `size` is the number of values.
+    `blend` seconds (Bollo, "Inertialization", 2018). `size` is the number of values.
     """
 
-    def __init__(self, size: int) -> None:
+    def __init__(self, size: int, blend: float = BLEND_S) -> None:
+        self._blend = blend
         self._plan: Hashable = ()
         self._now: float | None = None
         self._zeros = self._shown = self._before = np.zeros(size)
@@ -88,4 +89,4 @@ class PlannedValues:
             velocity = (offset - earlier) / self._step
         self._decay, self._changed = None, last
         if np.abs(offset).max(initial=0.0) > 1e-9 or np.abs(velocity).max(initial=0.0) > 1e-9:
-            self._decay = OffsetDecay(offset, velocity, BLEND_S)
+            self._decay = OffsetDecay(offset, velocity, self._blend)

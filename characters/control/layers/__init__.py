@@ -18,18 +18,18 @@ FOOT_LAYERS: tuple[LayerFactory, ...] = (FootLockLayer,)
 """What a character needs besides its clips."""
 
 LIVELINESS_LAYERS: tuple[LayerFactory, ...] = (
+    SpeechLayer,
     SittingUpLayer,
     StanceLayer,
-    SpeechLayer,
     GestureLayer,
     PostureLayer,
+    ReachLayer,
     GazeLayer,
     FaceShiftLayer,
     FaceLayer,
     BreathLayer,
-    ReachLayer,
 )
-"""What makes it look alive: it speaks, gestures, looks, feels, breathes and reaches."""
+"""What makes it look alive: it speaks, gestures, reaches, looks, feels and breathes."""
 
 DEFAULT_LAYERS: tuple[LayerFactory, ...] = (*FOOT_LAYERS, *LIVELINESS_LAYERS)
 """The layers of every character."""

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.behaviour.intents import ReachIntent, Times
+from characters.behaviour.performing.planned_values import PlannedValues
 from characters.body.capsules import fitted_capsules
 from characters.control.layers.layer import FrameContext
 from characters.errors import CharacterError
@@ -31,9 +32,6 @@ JOIN_S = 0.3
 
 RELAX_S = 0.6
 """How long it takes to go if its end is not known [s]."""
-
-MAX_WEIGHT_RATE = 6.0
-"""Bound of the change of a hand's weight when its times change [1/s]."""
 
 MAX_TARGET_SPEED = 3.0
 """Speed of a place that a hand follows, in body heights a second: what is faster is a jump."""
@@ -72,6 +70,7 @@ class ReachingHand:
 
     _joined: tuple[float, float] = (0.0, 0.0)
     _left: tuple[float, float] | None = None
+    _weights: PlannedValues = field(default_factory=lambda: PlannedValues(1, FADE_S))
 
     def follow(self, intent: ReachIntent, place: Vector, now: float, step: float) -> None:
         """Go on with an intent, or begin it; its place moves at most `step` [m] without a jump."""
@@ -91,21 +90,22 @@ class ReachingHand:
         if self._left is None:
             self._left = now, self.weight
 
-    def advance(self, now: float, elapsed: float) -> None:
-        """Bring its weight to a time [s]."""
+    def advance(self, now: float) -> None:
+        """Bring its weight to a time [s]; it changes smoothly when its times do."""
         if self.intent is None:
             return
-        if self._left is not None:
-            since, weight = self._left
-            self.weight = weight * (1.0 - ease((now - since) / FADE_S, "gonio"))
-            if self.weight <= 0.0:
-                self.intent, self._left = None, None
-            return
-        change = self._asked(self.intent.times, now) - self.weight
-        bound = MAX_WEIGHT_RATE * elapsed
-        self.weight += min(max(change, -bound), bound)
+        times, left = self.intent.times, self._left
+        plan = (times, self._joined) if left is None else left
+        asked = self._weights.update(plan, lambda time: np.array([self._asked(times, time)]), now)
+        self.weight = min(max(float(asked[0]), 0.0), 1.0)
+        if left is not None and now >= left[0] + FADE_S:
+            self.weight, self.intent, self._left = 0.0, None, None
+            self._weights = PlannedValues(1, FADE_S)
 
     def _asked(self, times: Times, now: float) -> float:
+        if self._left is not None:
+            since, weight = self._left
+            return weight * (1.0 - ease((now - since) / FADE_S, "gonio"))
         since, before = self._joined
         begin, ready = max(times.start, since), times.ready
         if since > times.start:  # it joins in late, or comes from another place
@@ -190,7 +190,7 @@ class ReachLayer:
                 hand.follow(*asked[side], now, step)
             else:
                 hand.leave(now)
-            hand.advance(now, context.elapsed)
+            hand.advance(now)
         return self._performed(pose, context)
 
     def _assigned(

@@ -211,3 +211,14 @@ def test_a_place_that_is_not_finite_is_refused_in_one_line() -> None:
     wrong = ReachIntent("cube", np.array([0.0, np.nan, 0.0]), Times(0.0, 0.1))
     with pytest.raises(CharacterError, match=r"reach 'cube' at 0.0 s: its target .* is not finite"):
         played(lambda _: [wrong], 0.1)
+
+
+def test_a_place_that_is_to_be_reached_later_gives_no_jump() -> None:
+    place = (-0.2, 0.55, 0.25)
+
+    def peak(later: float) -> float:
+        frames = played(lambda now: [intent(place, 0.1, 0.7 if now < 0.4 else later)], 2.5)
+        turns = np.stack([posed.pose.rotations for posed in frames])
+        return float(np.abs(np.diff(turns, 2, axis=0)).max())
+
+    assert peak(1.5) < 5.0 * peak(0.7)
