@@ -3,6 +3,7 @@
 Every picture is a moment of a bundled recording, as the program shows it, or a page that it prints.
 """
 
+import shutil
 import tempfile
 from contextlib import ExitStack
 from pathlib import Path
@@ -13,7 +14,11 @@ import glfw
 import numpy as np
 from rich.console import Console
 
+from app.behaving.opening import open_lines
+from app.behaving.player import BehaviourOptions, BehaviourPlayer
+from app.behaving.recording import perform
 from app.commands.mood import plot
+from app.gesture_editor.tour import draw_tour
 from app.latency.pattern import draw_pattern
 from app.pipeline.playground import Playground
 from app.pipeline.step import RobotView, Step
@@ -26,13 +31,16 @@ from app.ui.calibration.coach import ANIMATION_PERIOD_S, CoachView
 from app.ui.calibration.coach_lines import write_coverage
 from app.ui.calibration.session import Advice, CalibrationSession, Picture
 from app.ui.card_layout import CardLayout
+from app.ui.gesture_sheets import draw_library, draw_settings
 from app.ui.overlay import overlay, virtual_robot_side
 from app.ui.panels import PANELS
 from app.ui.playback.layer import PlaybackLayer
 from app.ui.playback.status import Mark, Position, SessionStatus
 from app.ui.virtual_robot import VirtualRobot
 from app.ui.window import Window
+from characters import Character
 from characters.rendering import create_context
+from characters.rendering.portrait import PortraitRenderer
 from tools.offscreen import no_display_needed
 from tracking import CubeModel, open_source, write_sheet
 from tracking.calibration import CubeFinder
@@ -195,6 +203,49 @@ def draw_moods() -> None:
         plot(session, FOLDER / "mood-robot.svg", True)
 
 
+BEHAVIOUR_TIMES_S = (0.4, 0.8, 1.6, 2.0, 2.8, 3.6, 4.0, 4.4)
+"""When the block of BML in docs/behaviour.md is shown [s]."""
+
+BEHAVIOUR_CELL_PX = 180, 230
+"""Size of each of these pictures [px]."""
+
+
+def draw_behaviour() -> None:
+    """Let two characters perform the block of BML in docs/behaviour.md."""
+    page = (FOLDER.parent / "behaviour.md").read_text("utf-8")
+    block = page.split("```xml\n")[1].split("```")[0]
+    rows = []
+    with ExitStack() as closing:
+        context = create_context()
+        closing.callback(context.release)
+        renderer = PortraitRenderer(context, BEHAVIOUR_CELL_PX)
+        closing.callback(renderer.release)
+        for name in ("human", "vleo"):
+            body = Character.load(name)
+            lines = open_lines(None, "en")
+            closing.callback(lines.close)
+            clip = perform(BehaviourPlayer(body, lines, BehaviourOptions()), [block], 25.0).clip
+            focus = np.array([0.0, 0.5 * body.height, 0.0]), 0.62 * body.height
+            poses = [clip.poses[round(time * clip.rate)] for time in BEHAVIOUR_TIMES_S]
+            shown = [renderer.portrait(body, pose, azimuth=0.3, focus=focus) for pose in poses]
+            rows.append(np.hstack(shown))
+    quality = (cv2.IMWRITE_JPEG_QUALITY, 88)
+    cv2.imwrite(str(FOLDER / "behave.jpg"), np.vstack(rows), quality)
+
+
+EDITOR_STEP = 5
+"""The step of the tour through the gesture editor that is shown."""
+
+
+def draw_gestures() -> None:
+    """Draw the library of gestures, one of them in five settings, and the editor."""
+    draw_library(FOLDER / "gestures.jpg")
+    draw_settings(FOLDER / "gesture-settings.jpg")
+    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as own:
+        shown = draw_tour(Path(folder), Path(own))[EDITOR_STEP - 1]
+        shutil.copyfile(shown, FOLDER / "gesture-editor.png")
+
+
 if __name__ == "__main__":
     FOLDER.mkdir(parents=True, exist_ok=True)
     for recording, pictures in MOMENTS_S.items():
@@ -204,3 +255,5 @@ if __name__ == "__main__":
     draw_calibration()
     draw_pattern_of_latency()
     draw_moods()
+    draw_gestures()
+    draw_behaviour()

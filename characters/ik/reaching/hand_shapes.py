@@ -58,6 +58,7 @@ HAND_SHAPES: Mapping[str, HandShape] = {
     "claw": HandShape((5.0, 65.0, 45.0), (0.55, 0.65, 0.5), 35.0, 12.0),
     "spread": HandShape(_FLAT, (0.45, 0.9, 0.05), 0.0, 14.0),
     "grasp": HandShape((35.0, 35.0, 20.0), (0.6, 0.3, 0.75), 15.0, 6.0),
+    "three": HandShape(_FOLDED, (0.1, 1.0, 0.0), 0.0, 14.0, index_deg=_FLAT, middle_deg=_FLAT),
     "victory": HandShape(_FOLDED, _OVER_FINGERS, 35.0, 14.0, index_deg=_FLAT, middle_deg=_FLAT),
 }
 """The shapes by name."""
