@@ -52,6 +52,7 @@ MOMENTS_S: dict[str, dict[str, float]] = {
     "companion": {"kiss": 12.2, "window": 18.0, "shout": 27.3},
     "follow": {"walk": 6.2, "run": 12.6},
     "sketch": {"path": 22.6},
+    "reach": {"stretch": 2.5, "give": 12.3},
 }
 """For every recording, the pictures taken from it and their times [s]."""
 
