@@ -18,17 +18,19 @@ test: .venv/ready-dev  ## run the whole test suite on all cores
 	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
 
 # The campaigns run for longer than a test suite may take, over random faults in virtual time.
-campaign: .venv/ready-dev  ## a million exchanges with robots, what the checksum misses, a day without growth, an afternoon of key presses
+campaign: .venv/ready-dev  ## a million exchanges with robots, what the checksum misses, a day without growth, an afternoon of key presses, 10⁵ blocks of BML
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e6
 	$(BIN)/python -m tests.campaigns.crc
 	$(BIN)/python -m tests.campaigns.soak --hours 24
 	$(BIN)/python -m tests.campaigns.afternoon
+	$(BIN)/python -m tests.campaigns.behaviour
 
 campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e5
 	$(BIN)/python -m tests.campaigns.crc --random 1.2e5 --trials 1e6
 	$(BIN)/python -m tests.campaigns.soak --hours 2.4
 	$(BIN)/python -m tests.campaigns.afternoon --scenes "every key" "record and replay"
+	$(BIN)/python -m tests.campaigns.behaviour --blocks 10000
 
 check: .venv/ready-dev  ## check formatting, lint, the floors of the rooms, and types
 	$(BIN)/ruff format --check .
@@ -60,6 +62,10 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.gestures
 	$(BIN)/python -m tests.bench.face
 	$(BIN)/python -m tests.bench.speaking
+	$(BIN)/python -m tests.bench.ik
+	$(BIN)/python -m tests.bench.reach
+	$(BIN)/python -m tests.bench.symbolic_gestures
+	$(BIN)/python -m tests.bench.bml
 	$(BIN)/python -m tests.bench.picture
 	$(BIN)/python -m tests.bench.panels
 	$(BIN)/python -m tests.bench.looks
