@@ -118,10 +118,6 @@ class HeadIntent:
     repeats: int = 1
     """How many times to and fro."""
 
-    stays: bool = False
-    """Whether the head remains so afterwards, as in a shift."""
-
-
 @dataclass(frozen=True)
 class FaceIntent:
     """An expression or action units: BML's `face`, `faceLexeme`, `faceFacs` and `faceShift`."""

@@ -1,6 +1,7 @@
 """Hands that reach for places, touch, grasp and point: `CharacterCommand.behaviour.reaches`."""
 
 import math
+from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -166,14 +167,9 @@ class ReachLayer:
         self._switched = 0.0
         if not self._hands:
             return
-        clips = idle_clips(character.clips)
-        standing = clips[0].poses[0] if clips else character.skeleton.rest
-        self._surface = surface_of(character, standing)
-        placed = standing.globals(character.skeleton)[:, :3, 3]
-        shoulders: dict[str, Vector] = {
-            side: tuple(placed[arm.joints[1]].tolist()) for side, arm in self._body.arms.items()
-        }
-        self._nearest = NearestHand(self._body, shoulders)
+        standing = StandingBody.of(character)
+        self._surface = standing.surface
+        self._nearest = NearestHand(self._body, standing.shoulders)
         self._openness, self._power = 0.5, 0.0
 
     def update(self, pose: Pose, context: FrameContext) -> Pose:
@@ -285,6 +281,40 @@ class ReachLayer:
                 pose = replace(pose, rotations=local)
         self._shown = pose.rotations[joints]
         return pose
+
+
+@dataclass(frozen=True, eq=False)
+class StandingBody:
+    """A character as it stands: what its hands stay out of, and where its arms begin."""
+
+    character: Character
+    """Whose body."""
+
+    surface: BodySurface
+    """Its trunk and head."""
+
+    shoulders: dict[str, Vector]
+    """Where its arms begin, in the character frame [m]."""
+
+    @staticmethod
+    def of(character: Character) -> "StandingBody":
+        """Return that of a character; the last few characters' are kept."""
+        for kept in _KEPT:
+            own = kept.character
+            if own.skeleton is character.skeleton and own.meshes is character.meshes:
+                return kept
+        clips = idle_clips(character.clips)
+        standing = clips[0].poses[0] if clips else character.skeleton.rest
+        placed = standing.globals(character.skeleton)[:, :3, 3]
+        shoulders: dict[str, Vector] = {
+            side: tuple(placed[arm.joints[1]].tolist())
+            for side, arm in character.upper_body.arms.items()
+        }
+        _KEPT.append(StandingBody(character, surface_of(character, standing), shoulders))
+        return _KEPT[-1]
+
+
+_KEPT: deque[StandingBody] = deque(maxlen=8)
 
 
 def surface_of(character: Character, standing: Pose) -> BodySurface:
