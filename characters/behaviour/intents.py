@@ -118,6 +118,7 @@ class HeadIntent:
     repeats: int = 1
     """How many times to and fro."""
 
+
 @dataclass(frozen=True)
 class FaceIntent:
     """An expression or action units: BML's `face`, `faceLexeme`, `faceFacs` and `faceShift`."""
