@@ -1,6 +1,5 @@
 """A video of a performance of blocks, with sound."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -8,9 +7,13 @@ from numpy.typing import NDArray
 
 from app.behaving.camera import FollowingCamera
 from app.behaving.recording import BehaviourRecording
-from app.speaking.performance import AZIMUTH_RAD, ELEVATION_RAD, View
-from app.ui.canvas import PICTURE_HEIGHT
-from app.ui.subtitles import draw_subtitle, subtitle
+from app.speaking.performance import (
+    AZIMUTH_RAD,
+    ELEVATION_RAD,
+    View,
+    put_subtitle,
+    sound_blocks,
+)
 from app.ui.video_file import VideoFile
 from characters import Character
 from characters.control.command import SpeechIntent
@@ -39,7 +42,7 @@ def write_video(
     renderer = PortraitRenderer(context, size)
     camera = FollowingCamera(character, view)
     try:
-        with VideoFile(path, size, clip.rate, _blocks(recording.sound())) as video:
+        with VideoFile(path, size, clip.rate, sound_blocks(recording.sound())) as video:
             for number in range(len(clip)):
                 now = number / clip.rate
                 pose = clip.poses[number]
@@ -58,26 +61,7 @@ def write_video(
         context.release()
 
 
-def _blocks(samples: NDArray[np.float32]) -> Callable[[int], NDArray[np.float32]]:
-    """Return what gives stereo sound block by block, (count, 2), and silence at the end."""
-    at = 0
-
-    def following(count: int) -> NDArray[np.float32]:
-        nonlocal at
-        block = np.zeros((count, 2), np.float32)
-        part = samples[at : at + count]
-        block[: len(part)] = part
-        at += count
-        return block
-
-    return following
-
-
 def _subtitle(picture: NDArray[np.uint8], recording: BehaviourRecording, now: float) -> None:
-    height, width = picture.shape[:2]
-    scale = height / PICTURE_HEIGHT
     for speech in recording.speeches.values():
         if speech.start <= now <= speech.heard_until:
-            said = subtitle(SpeechIntent(speech.line.utterance, speech.start), now)
-            if said:
-                draw_subtitle(said, width / scale, scale, beside=0.0).blend_over(picture)
+            put_subtitle(picture, SpeechIntent(speech.line.utterance, speech.start), now)

@@ -8,8 +8,6 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from affect import Emotion
-from affect.words import WORD_PLACES
 from app.behaving.live import NoOutput, Output, WindowOutput, play_live
 from app.behaving.opening import open_lines, read_document
 from app.behaving.player import BehaviourOptions, BehaviourPlayer, target_of
@@ -19,7 +17,7 @@ from app.behaving.video import write_video
 from app.behaving.voice import ThreadedSource
 from app.commands.output import OverwriteOption, chosen_output
 from app.commands.session.play import VoiceOption
-from app.commands.session.preference_options import size_of
+from app.commands.session.preference_options import emotion_of, size_of
 from app.errors import AppError
 from app.output_path import check_output
 from app.speaking.performance import View
@@ -107,7 +105,7 @@ def behave(
     Example: [cyan]cubeling behave hello.bml -o hello.mp4[/]
     """
     how = GestureExpressivity(spatial, openness, fluidity, bias, tension, power)
-    options = BehaviourOptions(how, _emotion(emotion), seed, _targets(target or []))
+    options = BehaviourOptions(how, emotion_of(emotion), seed, _targets(target or []))
     body, pixels = with_root_joint(Character.load(character)), size_of(size)
     if serve is not None:
         first = [read_document(file) for file in files or []]
@@ -207,15 +205,6 @@ def _report(console: Console, path: Path, done: BehaviourRecording, problem: str
         f"{blocks} block{'s' if blocks != 1 else ''}",
         soft_wrap=True,
     )
-
-
-def _emotion(word: str) -> Emotion | None:
-    """Return the emotion of a word; None for ""."""
-    if not word:
-        return None
-    if word not in WORD_PLACES:
-        raise AppError(f"no emotion is called '{word}': choose one of {', '.join(WORD_PLACES)}")
-    return Emotion(*WORD_PLACES[word], word)
 
 
 def _targets(texts: list[str]) -> dict[str, Any]:

@@ -41,7 +41,7 @@ PRINTED: dict[str, dict[int, tuple[float, float]]] = {
 }
 """Table 7.1 of Huang: iterations and milliseconds of each method, by the number of joints."""
 
-JOINTS = (6, 10)
+CHAIN_SIZES = (6, 10)
 """Joints of the chains of the tables."""
 
 _NEAR_BASE = 0.25  # of the length of a chain: targets nearer than this are near the base
@@ -302,7 +302,7 @@ def bench(
     console = Console()
     alone, sure = [], []
     with console.status("solving") as status:
-        for joints in JOINTS:
+        for joints in CHAIN_SIZES:
             for method in SOLVERS:
                 status.update(f"{method}, {joints} joints")
                 alone.append(measure_alone(method, joints, targets, seed))

@@ -9,10 +9,9 @@ from rich.console import Console
 from rich.markup import escape
 
 from affect import Emotion
-from affect.words import WORD_PLACES
 from app.commands.output import OverwriteOption, chosen_output
 from app.commands.session.play import VoiceOption
-from app.commands.session.preference_options import size_of
+from app.commands.session.preference_options import emotion_of, size_of
 from app.errors import AppError
 from app.output_path import check_output
 from app.pipeline.spoken_line import SpokenLine
@@ -168,7 +167,7 @@ def speak(
     body = with_root_joint(Character.load(character))
     if gestures is not None:
         body = replace(body, gestures=gestures_for(gestures, body.skeleton, character))
-    feels, pixels = _emotion(emotion), size_of(size)
+    feels, pixels = emotion_of(emotion), size_of(size)
     if live:
         if not has_display():
             raise AppError("there is no display here: --live needs a window")
@@ -218,15 +217,6 @@ def _heard(audio: Path, tagged: TaggedText, language: str, command: str | None) 
         return replace(recording, phones=phones)
     with open_voice(command) as voice:
         return align(recording, tagged.text, voice, language)
-
-
-def _emotion(word: str) -> Emotion | None:
-    """Return the emotion of a word; None for ""."""
-    if not word:
-        return None
-    if word not in WORD_PLACES:
-        raise AppError(f"no emotion is called '{word}': choose one of {', '.join(WORD_PLACES)}")
-    return Emotion(*WORD_PLACES[word], word)
 
 
 def _check_gestures(tagged: TaggedText, character: Character) -> None:

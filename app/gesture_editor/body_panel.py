@@ -16,7 +16,7 @@ LEFT, MIDDLE, RIGHT = 756.0, 1016.0, 1264.0
 COLUMN = RIGHT - MIDDLE
 """Width of a column."""
 
-BUTTON = 24.0
+BUTTON_PX = 24.0
 """Height of a small button."""
 
 EXPRESSIVITY_TOP = 444.0
@@ -48,7 +48,7 @@ def body_sliders(key: BodyKey) -> list[Widget]:
     """Return the sliders of trunk, shoulders and head."""
     widgets: list[Widget] = []
     for number, (name, (words, high)) in enumerate(BODY_LIMITS.items()):
-        rect: Rect = (LEFT, 104.0 + 34 * number, RIGHT - LEFT, BUTTON)
+        rect: Rect = (LEFT, 104.0 + 34 * number, RIGHT - LEFT, BUTTON_PX)
         degrees = name.endswith("_deg")
         widgets.append(
             Slider(
@@ -82,7 +82,7 @@ def expressivity_sliders(now: GestureExpressivity) -> list[Widget]:
         Label("expressivity", (LEFT, top + 20, 200.0, 0.0), "Expressivity", NORMAL + 1.5),
         Button(
             "neutral",
-            (RIGHT - 70, top + 4, 70.0, BUTTON),
+            (RIGHT - 70, top + 4, 70.0, BUTTON_PX),
             "neutral",
             neutral,
             enabled=now != NEUTRAL,
@@ -91,7 +91,12 @@ def expressivity_sliders(now: GestureExpressivity) -> list[Widget]:
     ]
     for number, (name, words, low) in enumerate(PARAMETERS):
         left = (LEFT, MIDDLE)[number // 3]
-        rect: Rect = (left, top + 32 + 26 * (number % 3), COLUMN - 6 * (number < 3), BUTTON)
+        rect: Rect = (
+            left,
+            top + 32 + 26 * (number % 3),
+            COLUMN - 6 * (number < 3),
+            BUTTON_PX,
+        )
         widgets.append(
             Slider(
                 name,

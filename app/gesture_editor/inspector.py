@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 from app.gesture_editor.body_panel import (
-    BUTTON,
+    BUTTON_PX,
     COLUMN,
     LEFT,
     MIDDLE,
@@ -59,7 +59,7 @@ def _heading(document: GestureDocument) -> list[Widget]:
         widgets.append(
             Slider(
                 "at",
-                (MIDDLE, 66.0, COLUMN, BUTTON),
+                (MIDDLE, 66.0, COLUMN, BUTTON_PX),
                 "Time in stroke",
                 at,
                 0.0,
@@ -90,11 +90,11 @@ def _place(document: GestureDocument) -> list[Widget]:
     return [
         SpaceMap("map", (LEFT, 94.0, wide, 218.0), place, left, to_sector),
         Label("z", (LEFT, 337.0, 56.0, 0.0), "Distance", SMALL, SUBTLE),
-        *button_row("z", (LEFT + 62, 320.0, wide - 62, BUTTON), options, chosen, to_depth),
+        *button_row("z", (LEFT + 62, 320.0, wide - 62, BUTTON_PX), options, chosen, to_depth),
         Label("touches", (LEFT, 365.0, 56.0, 0.0), "Touches", SMALL, SUBTLE),
         Button(
             "contact",
-            (LEFT + 62, 348.0, wide - 62, BUTTON),
+            (LEFT + 62, 348.0, wide - 62, BUTTON_PX),
             touched,
             lambda state: replace(state, card="contact"),
             enabled=key is not None,
@@ -114,7 +114,7 @@ def _shape(document: GestureDocument) -> list[Widget]:
         Label("shape", (MIDDLE, 108.0, COLUMN, 0.0), "Hand shape", SMALL, SUBTLE),
         *button_row(
             "shape",
-            (MIDDLE, 114.0, COLUMN, BUTTON),
+            (MIDDLE, 114.0, COLUMN, BUTTON_PX),
             shapes,
             (key.shape,),
             lambda state, value: _changed(state, shape=value),
@@ -134,7 +134,7 @@ def _directions(field: str, words: str, top: float, key: HandKey) -> list[Widget
         old = "" if present is None else str(getattr(present, field))
         return _changed(state, **{field: combined(old, value, added=state.shift)})
 
-    rect: Rect = (MIDDLE, top + 6, COLUMN, BUTTON)
+    rect: Rect = (MIDDLE, top + 6, COLUMN, BUTTON_PX)
     chosen = tuple(str(getattr(key, field)).split("-"))
     return [
         Label(f"{field} label", (MIDDLE, top, COLUMN, 0.0), words, SMALL, SUBTLE),
@@ -167,14 +167,14 @@ def _path(key: HandKey) -> list[Widget]:
         Label("path", (LEFT, 397.0, 56.0, 0.0), "Path here", SMALL, SUBTLE),
         *button_row(
             "path",
-            (LEFT + 62, 380.0, 246.0, BUTTON),
+            (LEFT + 62, 380.0, 246.0, BUTTON_PX),
             PATH_NAMES,
             (key.path,),
             _with_path,
         ),
         Slider(
             "turns",
-            (LEFT + 326, 380.0, RIGHT - LEFT - 326, BUTTON),
+            (LEFT + 326, 380.0, RIGHT - LEFT - 326, BUTTON_PX),
             "Turns",
             key.turns,
             0.0,
@@ -187,7 +187,7 @@ def _path(key: HandKey) -> list[Widget]:
         Label("radius", (LEFT, 425.0, 56.0, 0.0), "Radius", SMALL, SUBTLE),
     ]
     for axis, words in enumerate(("outward", "up", "forward")):
-        rect: Rect = (LEFT + 62 + axis * (wide + 12), 408.0, wide, BUTTON)
+        rect: Rect = (LEFT + 62 + axis * (wide + 12), 408.0, wide, BUTTON_PX)
         low = -MAX_RADIUS
         widgets.append(
             Slider(

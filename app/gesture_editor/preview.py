@@ -39,7 +39,7 @@ STEP_S, LONG_STEP_S = 1 / 30, 0.2
 EXACT_S = 0.1
 """How long before a time that is shown the steps are short [s]."""
 
-HEADROOM = 0.12
+HEADROOM_SHARE = 0.12
 """What the picture shows above a character, for raised hands, over its height."""
 
 ELEVATION_RAD = 0.12
@@ -163,7 +163,7 @@ class Preview:
             posed = self._new_animator(name).update(CharacterCommand(0.0))
             extent, sitting = CharacterExtent(character), self._performer(name).posture
             points = np.concatenate([extent.points(pose) for pose in (posed.pose, sitting)])
-            top = points[:, 1].max() + HEADROOM * np.ptp(points[:, 1])
+            top = points[:, 1].max() + HEADROOM_SHARE * np.ptp(points[:, 1])
             points = np.concatenate([points, [[0.0, top, 0.0]]])
             placed = posed.table_from_character
             table = points @ placed[:3, :3].T + placed[:3, 3]

@@ -1,6 +1,6 @@
 """Labels, sheets and buttons: pure, drawn on a canvas, events in, state out.
 
-A widget is made anew for every state. It is known by its name, so that it can be held.
+Every state makes new widgets. A widget is known by its name, so that it can be held.
 """
 
 from collections.abc import Callable

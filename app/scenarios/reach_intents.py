@@ -24,7 +24,7 @@ LEAVE_S = 0.5
 class Ongoing(Generic[Intent]):
     """Intents of one kind, of which the scenario wants at most one at a time.
 
-    One that is wanted again, by its key, keeps its times and takes its other fields anew: its
+    One that is wanted again, by its key, keeps its times and takes its other fields from now: its
     target may move. One that is no longer wanted ends within `LEAVE_S`, while the next one begins.
     """
 

@@ -80,17 +80,31 @@ def sound_track(line: SpokenLine) -> Callable[[int], NDArray[np.float32]]:
     """Return what gives the stereo sound of a performance block by block, (count, 2)."""
     lead = np.zeros(round(LEAD_S * SAMPLE_RATE))
     samples = np.concatenate([lead, at_sample_rate(line)]).astype(np.float32)
+    return sound_blocks(samples[:, None])
+
+
+def sound_blocks(samples: NDArray[np.float32]) -> Callable[[int], NDArray[np.float32]]:
+    """Return what gives sound, (n, 1) or (n, 2), in stereo blocks, and silence at the end."""
     at = 0
 
     def following(count: int) -> NDArray[np.float32]:
         nonlocal at
         block = np.zeros((count, 2), np.float32)
         part = samples[at : at + count]
-        block[: len(part)] = part[:, None]
+        block[: len(part)] = part
         at += count
         return block
 
     return following
+
+
+def put_subtitle(picture: NDArray[np.uint8], speech: SpeechIntent, now: float) -> None:
+    """Write what is being said at a time [s] over a picture."""
+    said = subtitle(speech, now)
+    if said:
+        height, width = picture.shape[:2]
+        scale = height / PICTURE_HEIGHT
+        draw_subtitle(said, width / scale, scale, beside=0.0).blend_over(picture)
 
 
 def write_video(
@@ -114,7 +128,6 @@ def write_video(
     renderer = PortraitRenderer(context, size)
     focus = framed(character, clip.poses[0], view)
     speech = SpeechIntent(line.utterance, LEAD_S)
-    scale = size[1] / PICTURE_HEIGHT
     try:
         with VideoFile(path, size, clip.rate, sound_track(line)) as video:
             for number in range(len(clip)):
@@ -126,9 +139,8 @@ def write_video(
                     elevation=ELEVATION_RAD,
                     focus=focus,
                 )
-                said = subtitle(speech, now) if subtitles and now >= LEAD_S else ""
-                if said:
-                    draw_subtitle(said, size[0] / scale, scale, beside=0.0).blend_over(picture)
+                if subtitles and now >= LEAD_S:
+                    put_subtitle(picture, speech, now)
                 video.write(picture, now)
     finally:
         renderer.release()

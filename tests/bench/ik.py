@@ -26,7 +26,7 @@ from rich.console import Console
 from rich.table import Table
 
 from app.commands.ik import (
-    JOINTS,
+    CHAIN_SIZES,
     AloneFigures,
     SureFigures,
     alone_table,
@@ -116,7 +116,7 @@ def wrist_table() -> Table:
     for heading in ("arms", "frames", "wrist, at most", "following: median", "90 %",
                     "from the first frame: median", "90 %"):  # fmt: skip
         table.add_column(heading, justify="right")
-    following, anew, misses, arms = [], [], [0.0], 0
+    following, restarted, misses, arms = [], [], [0.0], 0
     for _, elbow, wrist in arm_paths():
         arms += 1
         upper, lower = elbow[0], wrist[0] - elbow[0]
@@ -129,8 +129,8 @@ def wrist_table() -> Table:
             following.append(float(np.linalg.norm(np.array(found.positions[1]) - true)))
         start = np.tile(rotations.IDENTITY, (len(wrist), 2, 1))
         points = solve(chains, wrist, start).positions
-        anew += np.linalg.norm(points[:, 1] - elbow, axis=-1).tolist()
-    quantiles = [np.quantile(each, (0.5, 0.9)) for each in (following, anew)] if arms else []
+        restarted += np.linalg.norm(points[:, 1] - elbow, axis=-1).tolist()
+    quantiles = [np.quantile(each, (0.5, 0.9)) for each in (following, restarted)] if arms else []
     cells = [f"{100 * value:.1f} cm" for pair in quantiles for value in pair]
     table.add_row(f"{arms}", f"{len(following)}", f"{max(misses):.1e} of the arm", *cells)
     return table
@@ -191,7 +191,7 @@ def main() -> int:
     options = parser.parse_args()
     console = Console(width=120)
     alone, sure = [], []
-    for joints in JOINTS:
+    for joints in CHAIN_SIZES:
         for method in SOLVERS:
             alone.append(measure_alone(method, joints, options.targets))
             sure.append(measure_sure(method, joints, options.targets))

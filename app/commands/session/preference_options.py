@@ -9,6 +9,8 @@ from typing import Annotated, Any
 
 import typer
 
+from affect import Emotion
+from affect.words import WORD_PLACES
 from app.errors import AppError
 from app.preferences import PreferenceStore
 from app.session import SessionOptions
@@ -61,6 +63,15 @@ def size_of(text: str) -> tuple[int, int]:
     if not (width.isdecimal() and height.isdecimal()):
         raise AppError(f"a window's size is given as 1280x720, not as '{text}'")
     return int(width), int(height)
+
+
+def emotion_of(word: str) -> Emotion | None:
+    """Return the emotion of a word, None for ""; raises AppError."""
+    if not word:
+        return None
+    if word not in WORD_PLACES:
+        raise AppError(f"no emotion is called '{word}': choose one of {', '.join(WORD_PLACES)}")
+    return Emotion(*WORD_PLACES[word], word)
 
 
 FLAGS: dict[str, Flag] = {

@@ -86,7 +86,7 @@ class Realizer:
     def retime(self, block: str, behaviour: str, sync: str, time: float) -> None:
         """Move a sync point that has not happened, and what depends on it, in all blocks.
 
-        A block that has not started is scheduled again when it does: its performer is asked anew.
+        A block that has not started is scheduled again when it does: its performer is asked again.
 
         Parameters
         ----------
