@@ -10,6 +10,7 @@ import numpy as np
 
 from characters.errors import CharacterError
 from characters.ik.reaching.upper_body import UpperBody
+from characters.model.facing import turned_ahead
 from characters.model.mesh import Mesh
 from characters.model.sidecar import read_sidecar
 from characters.model.speaking import gestures_beside
@@ -173,8 +174,9 @@ def _with_sidecar(character: Character, path: Path) -> Character:
         semantics={**character.semantics, **sidecar.joints},
         plan=sidecar.plan,
         body_layers=sidecar.body_layers,
-        gestures=gestures_beside(path, character.skeleton),
     )
+    skeleton, clips = turned_ahead(found.skeleton, found.anatomy, found.clips)
+    found = replace(found, skeleton=skeleton, clips=clips, gestures=gestures_beside(path, skeleton))
     recordings = recordings_beside(path, found.skeleton)
     if not recordings:
         return found

@@ -8,6 +8,7 @@ import numpy as np
 from characters.errors import CharacterError
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import SIDES, Anatomy
+from characters.skeleton.facing import common_from_skeleton
 from characters.skeleton.pose import Array, Skeleton
 
 _STANDING_HEIGHT = (-0.02, 0.12)  # of the lowest joint of a standing rest pose, in body sizes
@@ -51,25 +52,8 @@ class Rig:
 
     @cached_property
     def common_from_skeleton(self) -> Array:
-        """The rotation (4,) from the skeleton's axes to the common ones, by quarter turns.
-
-        A file may face along any axis at rest; hips, limbs and head tell which one.
-        """
-        positions = self.skeleton.rest.globals(self.skeleton)[:, :3, 3]
-        left, right = self._side_centre(positions, "left"), self._side_centre(positions, "right")
-        legs = [positions[leg.end] for leg in self.legs]
-        trunk_joints = map(self.anatomy.joint, ("hips", "head"))
-        trunk = [positions[joint] for joint in trunk_joints if joint is not None]
-        if not legs or left is None or right is None:
-            return rotations.IDENTITY
-        up = _nearest_axis(np.mean(trunk, axis=0) - np.mean(legs, axis=0))
-        across = left - right
-        across = _nearest_axis(across - up * float(across @ up))
-        return rotations.from_matrix(np.stack([across, up, np.cross(across, up)]))
-
-    def _side_centre(self, positions: Array, side: str) -> Array | None:
-        joints = [j for part, j in self.anatomy.joints.items() if part.startswith(side)]
-        return positions[joints].mean(0) if joints else None
+        """The rotation (4,) from the skeleton's axes to the common ones, by quarter turns."""
+        return common_from_skeleton(self.skeleton, self.anatomy)
 
     @cached_property
     def rest_rotations(self) -> Array:
@@ -187,11 +171,3 @@ def global_rotations(placements: Array) -> Array:
     matrices = placements[..., :3, :3]
     lengths = np.linalg.norm(matrices, axis=-2, keepdims=True)
     return rotations.from_matrix(matrices / np.where(lengths > 0, lengths, 1.0))
-
-
-def _nearest_axis(direction: Array) -> Array:
-    """Return the one of ±x, ±y, ±z that is nearest to a direction."""
-    axis = np.zeros(3)
-    number = int(np.abs(direction).argmax())
-    axis[number] = np.sign(direction[number]) or 1.0
-    return axis
