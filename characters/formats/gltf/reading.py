@@ -58,12 +58,12 @@ def load_motion(path: Path, options: MotionOptions) -> Performance:
 
 @contextmanager
 def _open(path: Path) -> Iterator[GltfFile]:
-    """Open a file, turned to face +z; errors while it is read name it in one line."""
+    """Open a file; errors while it is read name it in one line."""
     try:
         file = open_gltf(path)
         if path.suffix.lower() == ".vrm" and vrm.read_humanoid(file) is None:
             raise DamagedFileError("contains no VRM; call it .glb if it is glTF")
-        yield vrm.facing_plus_z(file)
+        yield file
     except DamagedFileError as error:
         # Names from the file may contain line breaks; the message is one line.
         reason = " ".join(str(error).split())

@@ -1,7 +1,7 @@
 """VRM: the body parts and facial expressions of a humanoid in a glTF.
 
-Supports VRM 1.0 (extension VRMC_vrm) and 0.x (extension VRM), whose characters face −z. Materials
-are read from their glTF part; spring bones, constraints and first-person settings are not read.
+Supports VRM 1.0 (extension VRMC_vrm) and 0.x (extension VRM). Materials are read from their glTF
+part; spring bones, constraints and first-person settings are not read.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -57,18 +57,6 @@ def read_humanoid(file: GltfFile) -> VrmHumanoid | None:
         with error_context("VRM"):
             return _humanoid_0(file, extensions["VRM"])
     return None
-
-
-def facing_plus_z(file: GltfFile) -> GltfFile:
-    """Return a VRM 0.x, which faces −z, with a root node that turns it; another file as it is."""
-    extensions = file.document.get("extensions", {})
-    if "VRM" not in extensions or "VRMC_vrm" in extensions:
-        return file
-    nodes = file.all("nodes")
-    children = {child for node in nodes for child in node.get("children", ())}
-    roots = [number for number in range(len(nodes)) if number not in children]
-    turn = {"name": "facing", "rotation": [0.0, 1.0, 0.0, 0.0], "children": roots}
-    return replace(file, document=file.document | {"nodes": [*nodes, turn]})
 
 
 def mixed_expressions(
