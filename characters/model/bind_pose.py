@@ -1,9 +1,11 @@
 """The pose in which the skin of a character was bound.
 
 Files often rest in the first frame of a clip, in mid-stride, while their skins are bound to the
-pose in which the body was modelled, upright on its feet.
+pose in which the body was modelled, upright on its feet. Only the turns of that pose are taken:
+skins may be bound to bones of other lengths, in other units, and each in a frame of its own.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -11,11 +13,12 @@ from numpy.typing import NDArray
 
 from characters.model.character import Character
 from characters.skeleton import rotations
+from characters.skeleton.anatomy import SIDES
 from characters.skeleton.pose import Array, Pose, Skeleton
 
 _IDENTITY_TOLERANCE = 1e-5
-_MAX_REST_DISTANCE = 0.01  # body sizes; a skin bound closer to the rest pose is bound there
-_MIN_RESCALING = 1.25  # smaller ratios of size come from the pose, larger ones from the unit
+_MAX_REST_DISTANCE = 0.01  # body sizes; a bind pose closer to the rest pose is the rest pose
+_MIN_JOINTS = 3  # fewer do not show the axes of a skin
 
 
 def bind_placements(character: Character) -> tuple[Array, NDArray[np.bool_]]:
@@ -26,61 +29,122 @@ def bind_placements(character: Character) -> tuple[Array, NDArray[np.bool_]]:
     """
     skeleton = character.skeleton
     placements, bound = skeleton.rest.globals(skeleton).copy(), np.zeros(len(skeleton), bool)
-    for mesh in character.meshes:
-        used = np.unique(mesh.joints[mesh.weights > 0])
-        rigid = np.abs(mesh.inverse_bind[used] - np.eye(4)).max((1, 2)) <= _IDENTITY_TOLERANCE
-        used = used[~rigid]
-        placements[used], bound[used] = np.linalg.inv(mesh.inverse_bind[used]), True
+    for used, found in _skins(character):
+        new = used[~bound[used]]
+        placements[new], bound[new] = found[~bound[used]], True
     return placements, bound
 
 
+def _skins(character: Character) -> Iterator[tuple[NDArray[np.intp], Array]]:
+    """Yield the joints of each skin and the placements that they were bound in, largest first."""
+    skins: dict[bytes, tuple[Array, set[int]]] = {}
+    for mesh in character.meshes:
+        used = np.unique(mesh.joints[mesh.weights > 0])
+        rigid = np.abs(mesh.inverse_bind[used] - np.eye(4)).max((1, 2)) <= _IDENTITY_TOLERANCE
+        key = mesh.inverse_bind.tobytes()
+        skins.setdefault(key, (mesh.inverse_bind, set()))[1].update(used[~rigid].tolist())
+    for inverse_bind, joints in sorted(skins.values(), key=lambda skin: -len(skin[1])):
+        invertible = [j for j in sorted(joints) if abs(np.linalg.det(inverse_bind[j])) > 0]
+        placements = np.linalg.inv(inverse_bind[invertible])
+        yield np.array(invertible, np.intp), np.asarray(placements, np.float64)
+
+
 def with_bind_pose(character: Character) -> Skeleton:
-    """Return the skeleton of a character with the bind pose of its skin as rest pose."""
+    """Return the skeleton with the turns of the bind pose at rest; bones keep their lengths."""
     skeleton = character.skeleton
     rest = skeleton.rest.globals(skeleton)
-    placements, bound = bind_placements(character)
-    size = float(np.ptp(rest[:, :3, 3], axis=0).max()) or 1.0
-    distances = np.linalg.norm(placements[:, :3, 3] - rest[:, :3, 3], axis=-1)
-    if bound.sum() < 3 or distances.max() < _MAX_REST_DISTANCE * size:
+    turns, bound = _bound_turns(character, rest)
+    if not bound.any():
         return skeleton
-    placements[bound] = _aligned(placements[bound], rest[bound])
-    for joint, parent in enumerate(skeleton.parents):
-        if not bound[joint] and parent >= 0:
-            placements[joint] = placements[parent] @ np.linalg.inv(rest[parent]) @ rest[joint]
-    return replace(skeleton, rest=_local_pose(placements, skeleton))
+    pose = replace(skeleton.rest, rotations=_local_turns(turns, bound, skeleton))
+    pose = _with_feet_at_shins(pose, character)
+    size = float(np.ptp(rest[:, :3, 3], axis=0).max()) or 1.0
+    distances = np.linalg.norm((pose.globals(skeleton) - rest)[:, :3, 3], axis=-1)
+    if distances[bound].max() < _MAX_REST_DISTANCE * size:
+        return skeleton
+    return replace(skeleton, rest=_standing(pose, character, bound))
 
 
-def _aligned(bound: Array, rest: Array) -> Array:
-    """Return placements (n, 4, 4) in the axes, unit and position of the rest pose.
+def _bound_turns(character: Character, rest: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Return the turns (joints, 4) of the bind pose in the rest pose's axes, and which are known.
 
-    Some exporters write skins in the axes and units of the modelling program; the axes differ by
-    quarter turns.
+    A skin has axes of its own. Those of the largest one differ from the rest pose's by quarter
+    turns; the others show theirs by a joint that they share with a larger one.
     """
-    rest_points, bound_points = (at[:, :3, 3] - at[:, :3, 3].mean(0) for at in (rest, bound))
-    left, _, right = np.linalg.svd(rest_points.T @ bound_points)
-    turn = left @ np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))]) @ right
+    turns, bound = np.tile(rotations.IDENTITY, (len(rest), 1)), np.zeros(len(rest), bool)
+    for used, placements in _skins(character):
+        own, shared = _turns(placements), np.flatnonzero(bound[used])
+        if shared.size:
+            first = shared[0]
+            axes = rotations.multiply(turns[used[first]], rotations.conjugate(own[first]))
+        elif len(used) >= _MIN_JOINTS:
+            axes = _axes(own, _turns(rest[used]))
+        else:
+            continue
+        new = ~bound[used]
+        turns[used[new]], bound[used] = rotations.multiply(axes, own[new]), True
+    return turns, bound
+
+
+def _axes(own: Array, rest: Array) -> Array:
+    """Return the rotation (4,) by quarter turns from a skin's axes to those of the rest pose.
+
+    Limbs are bent at rest, but to either side; most joints together show the axes.
+    """
+    turn = rotations.to_matrix(rotations.multiply(rest, rotations.conjugate(own))).mean(0)
     quarter_turns = np.zeros((3, 3))
     for _ in range(3):  # the greatest entry first, then those of the other rows and columns
         row, column = np.unravel_index(np.abs(turn).argmax(), turn.shape)
         quarter_turns[row, column] = np.sign(turn[row, column])
         turn[row], turn[:, column] = 0.0, 0.0
-    scale = float(np.sqrt(np.square(rest_points).sum() / np.square(bound_points).sum()))
-    scale = 1.0 if 1 / _MIN_RESCALING < scale < _MIN_RESCALING else scale
-    frame = np.eye(4)
-    frame[:3, :3] = scale * quarter_turns
-    aligned = np.asarray(frame @ bound, float)
-    # The feet stand on the ground of the rest pose, the body is centred.
-    aligned[:, 0, 3] -= np.median(aligned[:, 0, 3])
-    aligned[:, 1, 3] += rest[:, 1, 3].min() - aligned[:, 1, 3].min()
-    return aligned
+    quarter_turns[row, column] *= np.linalg.det(quarter_turns)  # no mirror
+    return rotations.from_matrix(quarter_turns)
 
 
-def _local_pose(placements: Array, skeleton: Skeleton) -> Pose:
-    """Return the pose with these global placements, (joints, 4, 4)."""
-    parents = np.array(skeleton.parents)
-    above = np.where(parents[:, None, None] >= 0, placements[parents], np.eye(4))
-    local = np.linalg.inv(above) @ placements
-    sizes = np.linalg.norm(local[:, :3, :3], axis=1)
-    turns = rotations.from_matrix(local[:, :3, :3] / np.where(sizes > 0, sizes, 1.0)[:, None])
-    scales = None if np.allclose(sizes, 1.0, atol=1e-4) else sizes
-    return Pose(local[:, :3, 3].copy(), turns, scales)
+def _turns(placements: Array) -> Array:
+    """Return the rotations (n, 4) of placements (n, 4, 4) without their scale."""
+    sizes = np.linalg.norm(placements[:, :3, :3], axis=1, keepdims=True)
+    return rotations.from_matrix(placements[:, :3, :3] / np.where(sizes > 0, sizes, 1.0))
+
+
+def _local_turns(turns: Array, bound: NDArray[np.bool_], skeleton: Skeleton) -> Array:
+    """Return local rotations (joints, 4) from global ones; unbound joints keep theirs."""
+    local, world = skeleton.rest.rotations.copy(), turns.copy()
+    for joint, parent in enumerate(skeleton.parents):
+        above = world[parent] if parent >= 0 else rotations.IDENTITY
+        if bound[joint]:
+            local[joint] = rotations.multiply(rotations.conjugate(above), turns[joint])
+        else:
+            world[joint] = rotations.multiply(above, local[joint])
+    return local
+
+
+def _with_feet_at_shins(pose: Pose, character: Character) -> Pose:
+    """Return a pose whose feet are where shins end, if inverse kinematics has them elsewhere."""
+    skeleton, joints = character.skeleton, character.anatomy.joints
+    rest = skeleton.rest.globals(skeleton)
+    pose = replace(pose, translations=pose.translations.copy())
+    for side in (side + front for front in ("", "Front") for side in SIDES):
+        shin, foot = joints.get(side + "LowerLeg"), joints.get(side + "Foot")
+        if shin is None or foot is None or shin in skeleton.with_ancestors([foot]):
+            continue
+        placements, above = pose.globals(skeleton), skeleton.parents[foot]
+        ankle = placements[shin] @ np.linalg.inv(rest[shin]) @ rest[foot, :, 3]
+        local = np.linalg.inv(placements[above]) @ ankle if above >= 0 else ankle
+        pose.translations[foot] = local[:3]
+    return pose
+
+
+def _standing(pose: Pose, character: Character, bound: NDArray[np.bool_]) -> Pose:
+    """Return a pose that stands on the ground of the rest pose, its middle at x = 0."""
+    skeleton, parents = character.skeleton, np.array(character.skeleton.parents)
+    rest, now = (each.globals(skeleton)[bound, :3, 3] for each in (skeleton.rest, pose))
+    middle = (now[:, 0].min() + now[:, 0].max()) / 2
+    shift = np.array([-middle, rest[:, 1].min() - now[:, 1].min(), 0.0])
+    placements = pose.globals(skeleton)
+    pose = replace(pose, translations=pose.translations.copy())
+    # A root on the ground stays; what it carries moves.
+    for joint in np.flatnonzero((parents == 0) if skeleton.has_root_motion else (parents < 0)):
+        above = placements[parents[joint], :3, :3] if parents[joint] >= 0 else np.eye(3)
+        pose.translations[joint] += np.linalg.solve(above, shift)
+    return pose
