@@ -12,8 +12,9 @@ from characters.errors import CharacterError
 from characters.ik.reaching.upper_body import UpperBody
 from characters.model.facing import turned_ahead
 from characters.model.mesh import Mesh
-from characters.model.sidecar import read_sidecar
+from characters.model.sidecar import Sidecar, read_sidecar
 from characters.model.speaking import gestures_beside
+from characters.model.springs import SpringBone
 from characters.model.standing import StandingFactory, recordings_beside, standing_factory
 from characters.motion.clip import Clip
 from characters.motion.motion import StandingMotion
@@ -56,6 +57,9 @@ class Character:
 
     body_layers: tuple[str, ...] = ()
     """What its sidecar file asks for besides the layers of all characters."""
+
+    springs: tuple[SpringBone, ...] = ()
+    """Joints that swing after the body: those of its file and of its sidecar file."""
 
     standing: StandingFactory | None = None
     """Makes the motion that it stands with from a seed; None for its idle clip."""
@@ -174,6 +178,7 @@ def _with_sidecar(character: Character, path: Path) -> Character:
         semantics={**character.semantics, **sidecar.joints},
         plan=sidecar.plan,
         body_layers=sidecar.body_layers,
+        springs=_springs(character, sidecar),
     )
     skeleton, clips = turned_ahead(found.skeleton, found.anatomy, found.clips)
     found = replace(found, skeleton=skeleton, clips=clips, gestures=gestures_beside(path, skeleton))
@@ -182,6 +187,15 @@ def _with_sidecar(character: Character, path: Path) -> Character:
         return found
     standing = standing_factory(found.skeleton, found.anatomy, found.clips, recordings)
     return replace(found, standing=standing)
+
+
+def _springs(character: Character, sidecar: Sidecar) -> tuple[SpringBone, ...]:
+    """Return the spring bones of a character; those of its sidecar file replace its own."""
+    bones = {bone.joint: bone for bone in character.springs}
+    for group in sidecar.springs:
+        for bone in group.bones(character.skeleton, character.meshes):
+            bones[bone.joint] = bone
+    return tuple(bones.values())
 
 
 def skin(

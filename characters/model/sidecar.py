@@ -1,4 +1,4 @@
-"""The sidecar file of a character, `fox.toml` for `fox.glb`: body parts, motion plans, layers."""
+"""The sidecar file of a character, `fox.toml` for `fox.glb`: parts, motions, layers, springs."""
 
 import difflib
 import os
@@ -10,12 +10,15 @@ from typing import Any
 
 from characters.errors import CharacterError
 from characters.model.files import read_file
+from characters.model.springs import SpringGroup, read_spring_groups
 from characters.motion.trees.plan import Plan
 from characters.motion.trees.reading import PLAN_TABLES, read_plan
 from characters.skeleton.anatomy import BODY_PARTS
 
 _MAX_BYTES = 1_000_000  # larger files are not written by hand
 
+
+_TABLES = ("joints", "body", "springs", *PLAN_TABLES)
 
 BODY_LAYERS = ("dependent_joints", "self_collision")
 """Layers that the table [body] switches on; `characters.control.layers` makes them."""
@@ -34,6 +37,9 @@ class Sidecar:
     body_layers: tuple[str, ...]
     """Which of `BODY_LAYERS` it has."""
 
+    springs: tuple[SpringGroup, ...] = ()
+    """Joints that swing after the body."""
+
 
 def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
     """Return what the file of a character says; one that does not exist is empty.
@@ -42,8 +48,8 @@ def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
     """
     document = _document(path)
     for key in document:
-        if key not in ("joints", "body", *PLAN_TABLES):
-            tables = ", ".join(("joints", "body", *PLAN_TABLES))
+        if key not in _TABLES:
+            tables = ", ".join(_TABLES)
             raise CharacterError(f"{path}: [{key}] is not a known table; there are {tables}")
     joints = document.get("joints", {})
     if not isinstance(joints, dict) or not all(isinstance(j, str) for j in joints.values()):
@@ -59,7 +65,8 @@ def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
             known = " and ".join(f"{each} = true" for each in BODY_LAYERS)
             raise CharacterError(f"{path}: body.{name}: the table [body] may have {known}")
     layers = tuple(name for name in BODY_LAYERS if body.get(name))
-    return Sidecar(joints, read_plan(document, str(path), clips), layers)
+    plan = read_plan(document, str(path), clips)
+    return Sidecar(joints, plan, layers, read_spring_groups(document, str(path)))
 
 
 def _document(path: Path) -> dict[str, Any]:

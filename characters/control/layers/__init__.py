@@ -11,6 +11,7 @@ from characters.control.layers.posture import PostureLayer
 from characters.control.layers.reach import ReachLayer
 from characters.control.layers.sitting_up import SittingUpLayer
 from characters.control.layers.speech import SpeechLayer
+from characters.control.layers.springs import SpringLayer
 from characters.control.layers.upper_body import DependentJointsLayer, SelfCollisionLayer
 from characters.model.character import Character
 
@@ -42,12 +43,16 @@ BODY_LAYERS: dict[str, LayerFactory] = {
 
 
 def layers_of(character: Character) -> tuple[LayerFactory, ...]:
-    """Return the layers of an `Animator` by default: what an action moves along comes first."""
+    """Return the layers of an `Animator` by default.
+
+    What an action moves along comes first, what swings after the body comes last.
+    """
     asked = {name: (BODY_LAYERS[name],) for name in character.body_layers}
     return (
         *asked.get("dependent_joints", ()),
         *DEFAULT_LAYERS,
         *asked.get("self_collision", ()),
+        *((SpringLayer,) if character.springs else ()),
     )
 
 
@@ -60,5 +65,6 @@ __all__ = [
     "FrameContext",
     "LayerFactory",
     "SpeechLayer",
+    "SpringLayer",
     "layers_of",
 ]

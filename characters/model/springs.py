@@ -1,0 +1,249 @@
+"""Spring bones: joints such as hair and ears, that swing after the body.
+
+They are stated by VRM files, or by the table [springs] of the sidecar file of any character.
+"""
+
+import difflib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from characters.errors import CharacterError
+from characters.model.mesh import Mesh
+from characters.skeleton.pose import Array, Skeleton
+
+Point = tuple[float, float, float]
+"""A position or direction [m]."""
+
+LEAF_LENGTH_M = 0.07
+"""Length of a bone without children, as in VRM 0.x [m]."""
+
+SIDECAR_WIND = 0.3
+"""What the characters of sidecar files feel of the wind that their own speed makes; 1 as in VRM."""
+
+
+@dataclass(frozen=True)
+class SpringCollider:
+    """A sphere or capsule that the tails of spring bones do not enter."""
+
+    joint: int
+    """The joint that carries it."""
+
+    start: Point
+    """Centre of the sphere, or one end of the capsule's axis, in the joint's frame [m]."""
+
+    end: Point
+    """The other end of the axis; that of a sphere is the same."""
+
+    radius: float
+    """Its radius [m]."""
+
+
+@dataclass(frozen=True)
+class SpringBone:
+    """A joint that swings; its numbers are those of VRM's spring bones."""
+
+    joint: int
+    """The joint that turns."""
+
+    tail: Point
+    """The end of its bone, whose movement is simulated, in the joint's frame [m]."""
+
+    stiffness: float = 1.0
+    """How fast the tail is pulled back to where the pose has it [m/s per 1/60 s]."""
+
+    drag: float = 0.4
+    """Part of its speed that the tail loses in 1/60 s, 0…1."""
+
+    gravity: Point = (0.0, 0.0, 0.0)
+    """A constant pull in the world, like the stiffness [m/s per 1/60 s]."""
+
+    radius: float = 0.0
+    """Radius of the sphere about the tail that hits colliders [m]."""
+
+    colliders: tuple[SpringCollider, ...] = ()
+    """What the tail does not enter."""
+
+    center: int | None = None
+    """The joint relative to which it has inertia; None for the world."""
+
+    wind: float = 1.0
+    """Part of the character's speed over the table that drags at the tail, 0…1."""
+
+
+@dataclass(frozen=True)
+class SpringGroup:
+    """Spring bones that a sidecar file states, by the names of joints."""
+
+    place: str
+    """Where it is written, for messages."""
+
+    joints: tuple[str, ...]
+    """Joints that swing, together with all that hangs on them."""
+
+    stiffness: float
+    """As in `SpringBone`."""
+
+    drag: float
+    """As in `SpringBone`."""
+
+    gravity: float
+    """Strength of the pull downwards, as in `SpringBone`."""
+
+    radius: float
+    """As in `SpringBone` [m]."""
+
+    wind: float
+    """As in `SpringBone`."""
+
+    colliders: tuple[tuple[str, Point, Point, float], ...]
+    """Joint, start, end and radius of each collider, as in `SpringCollider`."""
+
+    def bones(self, skeleton: Skeleton, meshes: Sequence[Mesh]) -> list[SpringBone]:
+        """Return its spring bones.
+
+        Raises
+        ------
+        CharacterError
+            If it names joints that the skeleton does not have.
+        """
+        swinging = {_joint(skeleton, name, self.place) for name in self.joints}
+        for joint, parent in enumerate(skeleton.parents):
+            if parent in swinging:
+                swinging.add(joint)
+        colliders = tuple(
+            SpringCollider(_joint(skeleton, name, self.place), start, end, radius)
+            for name, start, end, radius in self.colliders
+        )
+        return [
+            SpringBone(
+                joint,
+                tail_of(skeleton, joint, meshes),
+                self.stiffness,
+                self.drag,
+                (0.0, -self.gravity, 0.0),
+                self.radius,
+                colliders,
+                wind=self.wind,
+            )
+            for joint in sorted(swinging)
+        ]
+
+
+def tail_of(skeleton: Skeleton, joint: int, meshes: Sequence[Mesh] = ()) -> Point:
+    """Return the end of a joint's bone in its frame: the origin of its first child.
+
+    Without a child it is the middle of the vertices that the joint moves, if `meshes` are given;
+    else it goes on in the direction in which the joint lies from its parent.
+    """
+    children = [child for child, parent in enumerate(skeleton.parents) if parent == joint]
+    ends = [skeleton.rest.translations[child] for child in children]
+    if not children:
+        ends = _middle_of_vertices(joint, meshes)
+    for end in ends:
+        if np.linalg.norm(end) > 1e-4:
+            return _point(end)
+    along = skeleton.rest.translations[joint]
+    length = float(np.linalg.norm(along))
+    return _point(along * LEAF_LENGTH_M / length) if length > 1e-6 else (0.0, LEAF_LENGTH_M, 0.0)
+
+
+def _middle_of_vertices(joint: int, meshes: Sequence[Mesh]) -> list[Array]:
+    """Return the weighted mean of the vertices that a joint moves, in its frame, if there is any.
+
+    The bind pose tells where they are in it.
+    """
+    total, weight = np.zeros(3), 0.0
+    for mesh in meshes:
+        weights = np.where(mesh.joints == joint, mesh.weights, 0.0).sum(axis=1)
+        placed = (
+            mesh.positions @ mesh.inverse_bind[joint, :3, :3].T + mesh.inverse_bind[joint, :3, 3]
+        )
+        total += weights @ placed
+        weight += float(weights.sum())
+    return [total / weight] if weight > 0 else []
+
+
+def read_spring_groups(document: Mapping[str, Any], source: str) -> tuple[SpringGroup, ...]:
+    """Return the groups in the table [springs] of a parsed sidecar file.
+
+    Raises
+    ------
+    CharacterError
+        If a part of it is invalid; `source` names the file in the message.
+    """
+    tables = document.get("springs", {})
+    if not isinstance(tables, dict) or not all(isinstance(t, dict) for t in tables.values()):
+        raise CharacterError(f"{source}: springs: write tables such as [springs.hair]")
+    return tuple(_group(table, f"{source}: springs.{name}") for name, table in tables.items())
+
+
+_NUMBERS = {
+    "stiffness": (1.0, 0.0, 1000.0),
+    "drag": (0.4, 0.0, 1.0),
+    "gravity": (0.0, -1000.0, 1000.0),
+    "radius": (0.0, 0.0, 1000.0),
+    "wind": (SIDECAR_WIND, 0.0, 1.0),
+}
+"""Default, least and greatest value of the numbers of a group."""
+
+
+def _group(table: Mapping[str, Any], place: str) -> SpringGroup:
+    _check_keys(table, ("joints", "colliders", *_NUMBERS), place)
+    joints = table.get("joints")
+    if not isinstance(joints, list) or not joints or not all(isinstance(j, str) for j in joints):
+        raise CharacterError(f'{place}.joints: write joints = ["name of a joint", …]')
+    colliders = table.get("colliders", [])
+    if not isinstance(colliders, list) or not all(isinstance(c, dict) for c in colliders):
+        raise CharacterError(f"{place}.colliders: write a list of tables")
+    numbers = {
+        name: _number(table.get(name, default), low, high, f"{place}.{name}")
+        for name, (default, low, high) in _NUMBERS.items()
+    }
+    read = tuple(_collider(each, f"{place}.colliders[{n}]") for n, each in enumerate(colliders))
+    return SpringGroup(place, tuple(joints), **numbers, colliders=read)
+
+
+def _collider(table: Mapping[str, Any], place: str) -> tuple[str, Point, Point, float]:
+    _check_keys(table, ("joint", "offset", "tail", "radius"), place)
+    joint = table.get("joint")
+    if not isinstance(joint, str):
+        raise CharacterError(f'{place}.joint: write joint = "name of a joint"')
+    start = _vector(table.get("offset", [0.0, 0.0, 0.0]), f"{place}.offset")
+    end = _vector(table.get("tail", list(start)), f"{place}.tail")
+    return joint, start, end, _number(table.get("radius"), 0.0, 1000.0, f"{place}.radius")
+
+
+def _check_keys(table: Mapping[str, Any], known: Sequence[str], place: str) -> None:
+    for key in table:
+        if key not in known:
+            raise CharacterError(f"{place}.{key} is not known; there are {', '.join(known)}")
+
+
+def _number(value: object, low: float, high: float, place: str) -> float:
+    valid = isinstance(value, int | float) and not isinstance(value, bool)
+    if not valid or not low <= value <= high:  # type: ignore[operator]
+        raise CharacterError(f"{place}: {value!r:.40} is not a number of {low:g} to {high:g}")
+    return float(value)  # type: ignore[arg-type]
+
+
+def _vector(value: object, place: str) -> Point:
+    if not isinstance(value, list) or len(value) != 3:
+        raise CharacterError(f"{place}: {value!r:.40} is not a list of three numbers")
+    x, y, z = (_number(each, -1000.0, 1000.0, place) for each in value)
+    return x, y, z
+
+
+def _joint(skeleton: Skeleton, name: str, place: str) -> int:
+    if name in skeleton.names:
+        return skeleton.names.index(name)
+    near = difflib.get_close_matches(name, skeleton.names, 1)
+    hint = f"; did you mean {near[0]!r}?" if near else f"; there are {', '.join(skeleton.names)}"
+    raise CharacterError(f"{place}: no joint {name!r}{hint}")
+
+
+def _point(vector: Array) -> Point:
+    x, y, z = (float(value) for value in vector)
+    return x, y, z

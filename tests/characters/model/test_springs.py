@@ -1,0 +1,97 @@
+"""The table [springs] of a character's sidecar file."""
+
+import numpy as np
+import pytest
+
+from characters import Animator, Character, CharacterCommand, CharacterError, RootDelta
+from characters.control.command import LocomotionIntent
+from characters.control.layers import SpringLayer, layers_of
+
+
+@pytest.fixture
+def beside(tmp_path):
+    """Loads Vleo with a text beside it."""
+    vleo = Character.load("vleo")
+    vleo.save(tmp_path / "vleo.glb")
+
+    def load(text):
+        (tmp_path / "vleo.toml").write_text(text)
+        return Character.load(tmp_path / "vleo.glb")
+
+    return load
+
+
+def test_named_joints_and_what_hangs_on_them_swing(beside):
+    character = beside(
+        """
+        [springs.tail]
+        joints = ["tail3"]
+        stiffness = 2.0
+        gravity = 0.5
+        colliders = [{ joint = "hips", offset = [0, 0, 0.1], radius = 0.2 }]
+
+        [springs.ears]
+        joints = ["LeftEye"]
+        """
+    )
+    names = [character.skeleton.names[bone.joint] for bone in character.springs]
+    assert names == ["tail3", "tail4", "tail5", "LeftEye"]
+    first, *_, leaf, eye = character.springs
+    child = character.skeleton.index("tail4")
+    assert first.tail == pytest.approx(character.skeleton.rest.translations[child])
+    assert first.stiffness == 2.0
+    assert first.gravity == (0.0, -0.5, 0.0)
+    assert first.colliders[0].joint == character.skeleton.index("hips")
+    assert first.colliders[0].start == first.colliders[0].end == (0.0, 0.0, 0.1)
+    assert 0.001 < np.linalg.norm(leaf.tail) < 0.3  # the middle of the skin that it moves
+    assert eye.stiffness == 1.0
+    assert eye.drag == 0.4
+
+
+def test_only_characters_with_spring_bones_have_the_layer(beside):
+    assert SpringLayer not in layers_of(Character.load("vleo"))
+    assert layers_of(beside('[springs.tail]\njoints = ["tail3"]'))[-1] is SpringLayer
+
+
+def test_a_tail_follows_later_than_the_body_turns(beside):
+    swinging = beside('[springs.tail]\njoints = ["tail3"]\nstiffness = 0.3')
+    tail = swinging.skeleton.index("tail3")
+    others = [joint for joint in range(len(swinging.skeleton)) if not tail <= joint < tail + 3]
+    animator, plain = (Animator(each, place=RootDelta()) for each in (swinging, beside("")))
+    angles = []
+    for frame in range(90):
+        going = LocomotionIntent(facing=np.array([1.0, 0.0]))
+        asked = CharacterCommand(frame / 30, locomotion=going)
+        one, other = (each.update(asked).pose.rotations for each in (animator, plain))
+        angles.append(2 * np.degrees(np.arccos(min(abs(np.dot(one[tail], other[tail])), 1.0))))
+        assert np.array_equal(one[others], other[others])
+    assert max(angles) > 3.0
+    assert np.isfinite(angles).all()
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("springs = 1", "springs: write tables such as"),
+        ("[springs]\njoints = ['tail1']", "springs: write tables such as"),
+        ("[springs.tail]", r"springs\.tail\.joints: write joints = "),
+        ("[springs.tail]\njoints = ['tail9']", "no joint 'tail9'; did you mean 'tail[1-5]'"),
+        ("[springs.tail]\njoints = ['tail1']\nstifness = 1", r"stifness is not known; there are"),
+        ("[springs.tail]\njoints = ['tail1']\ndrag = 2", r"drag: 2 is not a number of 0 to 1"),
+        ("[springs.tail]\njoints = ['tail1']\ndrag = nan", "drag: nan is not a number of 0 to 1"),
+        (
+            "[springs.tail]\njoints = ['tail1']\ncolliders = [{joint = 'hips'}]",
+            r"colliders\[0\]\.radius: None is not a number",
+        ),
+        (
+            "[springs.tail]\njoints = ['tail1']\ncolliders = [{joint = 'hip', radius = 1}]",
+            "no joint 'hip'; did you mean 'hips'",
+        ),
+        ("[spring.tail]\njoints = ['tail1']", r"\[spring\] is not a known table; .*springs"),
+    ],
+)
+def test_a_wrong_table_is_refused_in_one_line(beside, text, reason):
+    with pytest.raises(CharacterError, match=reason) as error:
+        beside(text)
+    assert "vleo.toml" in str(error.value)
+    assert "\n" not in str(error.value)
