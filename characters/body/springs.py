@@ -17,7 +17,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.springs import SpringBone, SpringCollider
+from characters.body.spring_contacts import Contacts, with_length
+from characters.model.springs import SpringBone
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose, Skeleton
 
@@ -39,11 +40,8 @@ class _Placed:
     """Where the bones are in the pose; those of the first level hang on what does not swing."""
 
     frames: Array
-    """Rotations, (bones, 3, 3): of the first level in the world, of others in the frame of the
-    spring bone above."""
-
-    heads: Array
-    """Where the joints are, (bones, 3) [m], in the same frames."""
+    """(bones, 3, 5): rotation, origin [m] and direction of each bone. They are those of the first
+    level in the world, of others in the frame of the spring bone above."""
 
     tails: Array
     """Ends of the bones in the world, (bones, 3) [m]."""
@@ -52,7 +50,7 @@ class _Placed:
     """Of the bones, (bones, 1) [m]."""
 
     centers: Array
-    """World placements of the centres, (bones, 4, 4); any matrix for bones without one."""
+    """Rotations and origins of the centres in the world, (bones, 3, 4) [m]; any for none."""
 
     colliders: Array
     """Both ends of the colliders' axes in the world, (colliders, 2, 3) [m]."""
@@ -61,23 +59,25 @@ class _Placed:
     """Where the character stands, (3,) [m]."""
 
     def carried(self, matrices: Array, first: slice) -> "_Placed":
-        """Return the bones moved rigidly by a matrix each, (bones, 4, 4)."""
-        frames, heads = self.frames.copy(), self.heads.copy()
+        """Return the bones moved rigidly by a matrix each, (bones, 3, 4)."""
+        frames = self.frames.copy()
         frames[first] = matrices[first, :3, :3] @ frames[first]
-        heads[first] = _moved(matrices[first], heads[first])
-        return replace(self, frames=frames, heads=heads, tails=_moved(matrices, self.tails))
+        frames[first, :, 3] += matrices[first, :3, 3]
+        return replace(self, frames=frames, tails=_moved(matrices, self.tails))
 
     def between(self, before: "_Placed", share: float, first: slice) -> "_Placed":
         """Return the bones with their first level on its way from an earlier placement."""
         if share >= 1.0:
             return self
-        frames, heads = self.frames.copy(), self.heads.copy()
+        frames = self.frames.copy()
         mixed = before.frames[first] + share * (frames[first] - before.frames[first])
         # One Newton step of the polar decomposition makes the mixture a rotation again.
-        frames[first] = 1.5 * mixed - 0.5 * mixed @ mixed.swapaxes(1, 2) @ mixed
-        heads[first] = before.heads[first] + share * (heads[first] - before.heads[first])
+        turns = mixed[..., :3]
+        grown = turns.swapaxes(1, 2) @ mixed[..., [0, 1, 2, 4]]
+        mixed[..., [0, 1, 2, 4]] = 1.5 * mixed[..., [0, 1, 2, 4]] - 0.5 * turns @ grown
+        frames[first] = mixed
         colliders = before.colliders + share * (self.colliders - before.colliders)
-        return replace(self, frames=frames, heads=heads, colliders=colliders)
+        return replace(self, frames=frames, colliders=colliders)
 
 
 class SpringBody:
@@ -104,8 +104,11 @@ class SpringBody:
         self._roots: _Indices = np.arange(len(bones))
         for level in self._levels[1:]:
             self._roots[level] = self._roots[self._parents[level]]
-        self._offsets = _rows([bone.tail for bone in bones])
-        self._axes = self._offsets / np.linalg.norm(self._offsets, axis=1, keepdims=True)
+        offsets = _rows([bone.tail for bone in bones])
+        self._offsets = offsets[:, :, None]
+        self._lengths = np.linalg.norm(offsets, axis=1, keepdims=True)
+        self._axes = offsets / self._lengths
+        self._half_turns = _half_turns(self._axes)
         self._stiffness = _rows([bone.stiffness for bone in bones])
         self._kept = 1.0 - _rows([bone.drag for bone in bones])
         self._gravity = _rows([bone.gravity for bone in bones])
@@ -114,16 +117,16 @@ class SpringBody:
         self._has_center = np.array(centers) >= 0
         shapes = list(dict.fromkeys(each for bone in bones for each in bone.colliders))
         self._shapes = np.array([[shape.start, shape.end] for shape in shapes]).reshape(-1, 2, 3)
-        self._contacts = [_Contacts.of(bones[level], shapes) for level in self._levels]
+        self._contacts = [Contacts.of(bones[level], shapes) for level in self._levels]
         carriers = [shape.joint for shape in shapes]
         self._part = _SkeletonPart.of(skeleton, [*self._joints.tolist(), *carriers, *centers])
-        # The last joint of the part stands for "none".
         self._own, self._carriers, self._centers = (
             self._part.places(joints) for joints in (self._joints.tolist(), carriers, centers)
         )
         self._last: _Placed | None = None
         self._now = self._before = np.zeros((0, 3))  # tails in the world, after the last two steps
         self._step = 1.0  # length of the last step [1 / REFERENCE_RATE]
+        self._factors: tuple[float, tuple[Array, Array, Array]] | None = None  # of a length
 
     def update(self, pose: Pose, world_from_character: Array, elapsed: float) -> Pose:
         """Advance by a time [s] and return the pose with its spring bones swung.
@@ -146,56 +149,61 @@ class SpringBody:
         self._last = placed
         steps = max(math.ceil(elapsed * REFERENCE_RATE - 1e-6), 1)
         air = (placed.place - before.place) / steps * self._stillness
+        length = elapsed * REFERENCE_RATE / steps
         for number in range(1, steps + 1):
             on_its_way = placed.between(before, number / steps, self._levels[0])
-            directions = self._advance(on_its_way, elapsed * REFERENCE_RATE / steps, air)
+            directions = self._advance(on_its_way, length, air)
         turned = pose.rotations.copy()
-        turned[self._joints] = rotations.multiply(
-            turned[self._joints], rotations.between(self._axes, directions)
-        )
+        turned[self._joints] = rotations.multiply(turned[self._joints], self._turns(directions))
         return Pose(pose.translations, turned, pose.scales, pose.morphs)
+
+    def _turns(self, directions: Array) -> Array:
+        """Return the smallest rotations of the bones' axes to directions, (bones, 4)."""
+        halves: Array = (self._half_turns @ directions[:, :, None])[..., 0]
+        halves[:, 3] += 1.0
+        if halves[:, 3].min() < 1e-9:  # any axis across will do
+            return rotations.between(self._axes, directions)
+        halves /= np.sqrt(2.0 * halves[:, 3:])
+        return halves
 
     def _placed(self, pose: Pose, world_from_character: Array) -> _Placed:
         """Return where the pose has the bones."""
         world_from_joint = world_from_character @ self._part.globals(pose)
         own = world_from_joint[self._own]
-        linear, heads = own[:, :3, :3], own[:, :3, 3]
-        reach = (linear @ self._offsets[:, :, None])[..., 0]
-        frames = linear
+        turns, heads = own[:, :3, :3], own[:, :3, 3]
+        reach = (turns @ self._offsets)[..., 0]
+        lengths = self._lengths
+        centers = world_from_joint[self._centers, :3]
         if pose.scales is not None:
-            frames = linear / np.maximum(np.linalg.norm(linear, axis=1, keepdims=True), 1e-9)
-        tails, first = heads + reach, self._levels[0].stop
+            turns, centers[..., :3] = _unscaled(turns), _unscaled(centers[..., :3])
+            lengths = np.maximum(np.linalg.norm(reach, axis=1, keepdims=True), 1e-9)
+        frames = np.empty((len(own), 3, 5))
+        frames[..., :3], frames[..., 3], frames[..., 4] = turns, heads, reach / lengths
+        first = self._levels[0].stop
         if first < len(frames):
             above = self._parents[first:]
-            back = frames[above].swapaxes(1, 2)
-            inner = (back @ (heads[first:] - heads[above])[:, :, None])[..., 0]
-            heads = np.concatenate([heads[:first], inner])
-            frames = np.concatenate([frames[:first], back @ frames[first:]])
+            frames[first:, :, 3] -= heads[above]
+            frames[first:] = turns[above].swapaxes(1, 2) @ frames[first:]
         ends = _moved(world_from_joint[self._carriers, None], self._shapes)
-        lengths = np.sqrt(np.einsum("ni,ni->n", reach, reach))[:, None]
-        centers = world_from_joint[self._centers]
-        return _Placed(
-            frames, heads, tails, lengths, centers, ends, world_from_character[:3, 3].copy()
-        )
+        place = world_from_character[:3, 3].copy()
+        return _Placed(frames, heads + reach, lengths, centers, ends, place)
 
     def _carried(self, before: _Placed, now: _Placed, elapsed: float) -> _Placed:
         """Carry along what does not swing, tails included; return the earlier placement then."""
         first = self._levels[0]
         if self._has_center.any():
-            moves = now.centers @ np.linalg.inv(before.centers)
+            moves = _moves(before.centers, now.centers)
             before = self._moved_along(before, moves, self._has_center)
         jumps = np.linalg.norm(now.tails - before.tails, axis=1) > MAX_TAIL_SPEED * elapsed
         if jumps.any():
             chains = np.isin(self._roots, self._roots[jumps])
-            moves = _rigid(now.frames[first], now.heads[first]) @ np.linalg.inv(
-                _rigid(before.frames[first], before.heads[first])
-            )
+            moves = _moves(before.frames[first], now.frames[first])
             before = self._moved_along(before, moves[self._roots], chains)
             before = replace(before, place=now.place)
         return before
 
     def _moved_along(self, before: _Placed, moves: Array, which: NDArray[np.bool_]) -> _Placed:
-        matrices = np.where(which[:, None, None], moves, np.eye(4))
+        matrices = np.where(which[:, None, None], moves, np.eye(3, 4))
         self._now, self._before = _moved(matrices, self._now), _moved(matrices, self._before)
         return before.carried(matrices, self._levels[0])
 
@@ -205,34 +213,46 @@ class SpringBody:
         `air` is how far the air about each tail moves meanwhile. The directions, (bones, 3), are
         in the frames of the joints in the pose.
         """
-        kept = self._kept**length
-        lost = 1.0 - self._kept
-        gained = np.where(lost > 1e-9, (1.0 - kept) / np.maximum(lost, 1e-9), length)
-        gained = gained * length / REFERENCE_RATE
+        kept, falling, pulled = self._step_factors(length)
         drift = (self._now - self._before) * (length / self._step)
-        free = self._now + air + (drift - air) * kept + self._gravity * gained
-        pulled = self._stiffness * gained
+        free = self._now + air + (drift - air) * kept + falling
         tails, directions = np.empty_like(free), np.empty_like(free)
-        turned, heads = np.empty_like(placed.frames), np.empty_like(free)
+        # Rotations and origins of the swung bones, (bones, 3, 4).
+        swung = np.empty((len(free), 3, 4))
         for number, level in enumerate(self._levels):
-            frames, origins, axes = placed.frames[level], placed.heads[level], self._axes[level]
+            frames, lengths = placed.frames[level], placed.lengths[level]
             if number:
-                above = self._parents[level]
-                origins = heads[above] + (turned[above] @ origins[:, :, None])[..., 0]
-                frames = turned[above] @ frames
-            lengths = placed.lengths[level]
-            rest = (frames @ axes[:, :, None])[..., 0]
-            way = _with_length(free[level] + pulled[level] * rest - origins, lengths)
-            way = self._contacts[number].pushed_out(way, origins, lengths, placed.colliders)
+                above = swung[self._parents[level]]
+                frames = above[..., :3] @ frames
+                frames[..., 3] += above[..., 3]
+            turns, origins, rest = frames[..., :3], frames[..., 3], frames[..., 4]
+            way = with_length(free[level] + pulled[level] * rest - origins, lengths)
+            contacts = self._contacts[number]
+            if contacts is not None:
+                way = contacts.pushed_out(way, origins, lengths, placed.colliders)
             aimed = way / lengths
-            heads[level], tails[level] = origins, origins + way
-            inner = directions[level] = (aimed[:, None] @ frames)[:, 0]
+            tails[level] = origins + way
+            inner = directions[level] = (aimed[:, None] @ turns)[:, 0]
             if number + 1 < len(self._levels):
-                turned[level] = _swung(frames, axes, inner, rest, aimed)
+                swung[level, :, :3] = _swung(turns, self._axes[level], inner, rest, aimed)
+                swung[level, :, 3] = origins
         if length > 0.0:
             self._before, self._step = self._now, length
         self._now = tails
         return directions
+
+    def _step_factors(self, length: float) -> tuple[Array, Array, Array]:
+        """Return the part of the speed that is kept, and the ways by gravity and stiffness [m].
+
+        They are (bones, 1), (bones, 3) and (bones, 1) for a step [1 / REFERENCE_RATE].
+        """
+        if self._factors is None or self._factors[0] != length:
+            lost = 1.0 - self._kept
+            kept = self._kept**length
+            gained = np.where(lost > 1e-9, (1.0 - kept) / np.maximum(lost, 1e-9), length)
+            gained = gained * length / REFERENCE_RATE
+            self._factors = length, (kept, self._gravity * gained, self._stiffness * gained)
+        return self._factors[1]
 
 
 @dataclass(frozen=True)
@@ -265,67 +285,6 @@ class _SkeletonPart:
         return own.globals(self.skeleton)
 
 
-@dataclass(frozen=True)
-class _Contacts:
-    """Which bones of a level hit which colliders."""
-
-    bones: _Indices
-    """A bone of the level for each pair, (pairs,)."""
-
-    colliders: _Indices
-    """A collider for each pair, (pairs,)."""
-
-    reach: Array
-    """The least distance of the tail to the axis of the collider, (pairs,) [m]."""
-
-    turns: tuple[slice, ...]
-    """Pairs that are treated together: no bone is in one of them twice."""
-
-    @staticmethod
-    def of(bones: Sequence[SpringBone], shapes: Sequence[SpringCollider]) -> "_Contacts":
-        pairs = sorted(
-            (turn, number, shapes.index(shape), bone.radius + shape.radius)
-            for number, bone in enumerate(bones)
-            for turn, shape in enumerate(bone.colliders)
-        )
-        turns = [turn for turn, *_ in pairs]
-        return _Contacts(
-            np.array([number for _, number, _, _ in pairs], np.intp),
-            np.array([shape for _, _, shape, _ in pairs], np.intp),
-            np.array([reach for *_, reach in pairs]),
-            tuple(
-                slice(turns.index(turn), turns.index(turn) + turns.count(turn))
-                for turn in sorted(set(turns))
-            ),
-        )
-
-    def pushed_out(self, way: Array, origins: Array, lengths: Array, ends: Array) -> Array:
-        """Return the ways from joints to tails, (bones, 3), with the tails out of colliders."""
-        if not len(self.bones):
-            return way
-        tails = (origins + way)[self.bones]
-        if (self._distances(slice(None), tails, ends)[1] >= self.reach).all():
-            return way
-        way = way.copy()
-        for turn in self.turns:
-            bones = self.bones[turn]
-            heads = origins[bones]
-            away, distances = self._distances(turn, heads + way[bones], ends)
-            depth = np.maximum(self.reach[turn] - distances, 0.0)[:, None]
-            pushed = way[bones] + away * (depth / np.maximum(distances, 1e-9)[:, None])
-            way[bones] = np.where(depth > 0, _with_length(pushed, lengths[bones]), way[bones])
-        return way
-
-    def _distances(self, which: slice, tails: Array, ends: Array) -> tuple[Array, Array]:
-        """Return the ways from the axes of colliders to tails, (pairs, 3), and their lengths."""
-        start, end = ends[self.colliders[which], 0], ends[self.colliders[which], 1]
-        along, away = end - start, tails - start
-        squared = np.einsum("ni,ni->n", along, along)
-        shares = np.einsum("ni,ni->n", away, along) / np.maximum(squared, 1e-18)
-        away -= np.clip(shares, 0.0, 1.0)[:, None] * along
-        return away, np.sqrt(np.einsum("ni,ni->n", away, away))
-
-
 def _swung(frames: Array, axes: Array, inner: Array, rest: Array, aimed: Array) -> Array:
     """Return frames, (bones, 3, 3), turned by the smallest angle from `rest` to `aimed`.
 
@@ -339,23 +298,32 @@ def _swung(frames: Array, axes: Array, inner: Array, rest: Array, aimed: Array) 
     return turned
 
 
-def _with_length(vectors: Array, lengths: Array) -> Array:
-    """Return vectors (n, 3) with these lengths (n, 1)."""
-    squared = np.einsum("ni,ni->n", vectors, vectors)[:, None]
-    scaled: Array = vectors * (lengths / np.sqrt(np.maximum(squared, 1e-18)))
-    return scaled
-
-
 def _moved(matrices: Array, points: Array) -> Array:
-    """Return points (…, 3) after matrices (…, 4, 4)."""
+    """Return points (…, 3) after matrices (…, 3 or 4, 4)."""
     moved: Array = (matrices[..., :3, :3] @ points[..., None])[..., 0] + matrices[..., :3, 3]
     return moved
 
 
-def _rigid(frames: Array, origins: Array) -> Array:
-    """Return the matrices (n, 4, 4) of frames (n, 3, 3) at origins (n, 3)."""
-    matrices = np.tile(np.eye(4), (len(frames), 1, 1))
-    matrices[:, :3, :3], matrices[:, :3, 3] = frames, origins
+def _unscaled(matrices: Array) -> Array:
+    """Return matrices (n, 3, 3) with columns of length one, as far as they have any."""
+    unit: Array = matrices / np.maximum(np.linalg.norm(matrices, axis=1, keepdims=True), 1e-9)
+    return unit
+
+
+def _moves(before: Array, after: Array) -> Array:
+    """Return the rigid moves (n, 3, 4) from rotations and origins (n, 3, 4 or 5) to others."""
+    moves = np.empty((len(before), 3, 4))
+    moves[..., :3] = after[..., :3] @ before[..., :3].swapaxes(1, 2)
+    moves[..., 3] = after[..., 3] - (moves[..., :3] @ before[..., 3, None])[..., 0]
+    return moves
+
+
+def _half_turns(axes: Array) -> Array:
+    """Return matrices (n, 4, 3) whose products with directions b are a × b and a · b."""
+    matrices = np.empty((len(axes), 4, 3))
+    for column, unit in enumerate(np.eye(3)):
+        matrices[:, :3, column] = rotations.cross(axes, unit)
+    matrices[:, 3] = axes
     return matrices
 
 
