@@ -17,6 +17,7 @@ class DamagedFileError(ValueError):
 
 _INVALID_DATA = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError, struct.error)
 TEXT, REAL, COUNT, FLAG = "text", "a number", "a count", "true or false"
+INTEGER = "a whole number"  # also an index that may be −1 for none, as VRM exporters write
 _NUMBER_LISTS = {n: f"{n} numbers" for n in (2, 3, 4, 16)}
 _ANY_NUMBER_LIST = "numbers"
 
@@ -35,6 +36,12 @@ _TEXTURE = {
 }
 _BINDS = {"index!": COUNT, "weight!": REAL}
 _EXPRESSION = {"morphTargetBinds": [{"node!": "nodes"} | _BINDS]}
+_XYZ = {"x": REAL, "y": REAL, "z": REAL}
+_SPHERE = {"offset": _NUMBER_LISTS[3], "radius": REAL}
+_SPRING = {"stiffness": REAL, "gravityPower": REAL, "dragForce": REAL, "hitRadius": REAL}
+_CONSTRAINT = {"source!": "nodes", "weight": REAL}
+_RANGE = {"inputMaxValue": REAL, "outputScale": REAL}
+_RANGE_0 = {"xRange": REAL, "yRange": REAL}
 _SPARSE_PART = {"bufferView!": "bufferViews", "byteOffset": COUNT}
 
 SCHEMA: Json = {
@@ -50,6 +57,15 @@ SCHEMA: Json = {
             "scale": _NUMBER_LISTS[3],
             "matrix": _NUMBER_LISTS[16],
             "weights": _ANY_NUMBER_LIST,
+            "extensions": {
+                "VRMC_node_constraint": {
+                    "constraint!": {
+                        "roll": _CONSTRAINT | {"rollAxis!": TEXT},
+                        "aim": _CONSTRAINT | {"aimAxis!": TEXT},
+                        "rotation": _CONSTRAINT,
+                    }
+                }
+            },
         }
     ],
     "skins": [{"joints!": ["nodes"], "inverseBindMatrices": "accessors"}],
@@ -105,7 +121,15 @@ SCHEMA: Json = {
             "alphaMode": TEXT,
             "alphaCutoff": REAL,
             "doubleSided": FLAG,
-            "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": REAL}},
+            "extensions": {
+                "KHR_materials_emissive_strength": {"emissiveStrength": REAL},
+                "VRMC_materials_mtoon": {
+                    "shadeColorFactor": _NUMBER_LISTS[3],
+                    "shadeMultiplyTexture": _TEXTURE,
+                    "shadingShiftFactor": REAL,
+                    "shadingToonyFactor": REAL,
+                },
+            },
         }
     ],
     "animations": [
@@ -121,6 +145,34 @@ SCHEMA: Json = {
             "specVersion": TEXT,
             "humanoid": {"humanBones": {"*": {"node!": "nodes"}}},
             "expressions": {"preset": {"*": _EXPRESSION}, "custom": {"*": _EXPRESSION}},
+            "lookAt": {
+                "type": TEXT,
+                "rangeMapHorizontalInner": _RANGE,
+                "rangeMapHorizontalOuter": _RANGE,
+                "rangeMapVerticalDown": _RANGE,
+                "rangeMapVerticalUp": _RANGE,
+            },
+        },
+        "VRMC_springBone": {
+            "colliders": [
+                {
+                    "node!": INTEGER,
+                    "shape!": {
+                        "sphere": _SPHERE,
+                        "capsule": _SPHERE | {"tail": _NUMBER_LISTS[3]},
+                    },
+                }
+            ],
+            "colliderGroups": [{"colliders": [INTEGER]}],
+            "springs": [
+                {
+                    "joints": [
+                        {"node!": "nodes", "gravityDir": _NUMBER_LISTS[3]} | _SPRING,
+                    ],
+                    "colliderGroups": [INTEGER],
+                    "center": INTEGER,
+                }
+            ],
         },
         "VRM": {
             "humanoid": {"humanBones": [{"bone!": TEXT, "node!": "nodes"}]},
@@ -129,6 +181,38 @@ SCHEMA: Json = {
                     {"name": TEXT, "presetName": TEXT, "binds": [{"mesh!": "meshes"} | _BINDS]}
                 ]
             },
+            "firstPerson": {
+                "lookAtTypeName": TEXT,
+                "lookAtHorizontalInner": _RANGE_0,
+                "lookAtHorizontalOuter": _RANGE_0,
+                "lookAtVerticalDown": _RANGE_0,
+                "lookAtVerticalUp": _RANGE_0,
+            },
+            "secondaryAnimation": {
+                "boneGroups": [
+                    {
+                        "stiffiness": REAL,  # spelt like this in VRM 0.x
+                        "gravityPower": REAL,
+                        "gravityDir": _XYZ,
+                        "dragForce": REAL,
+                        "hitRadius": REAL,
+                        "center": INTEGER,
+                        "bones": [INTEGER],
+                        "colliderGroups": [INTEGER],
+                    }
+                ],
+                "colliderGroups": [
+                    {"node": INTEGER, "colliders": [{"offset": _XYZ, "radius": REAL}]}
+                ],
+            },
+            "materialProperties": [
+                {
+                    "shader": TEXT,
+                    "floatProperties": {"_ShadeShift": REAL, "_ShadeToony": REAL},
+                    "vectorProperties": {"_ShadeColor": _ANY_NUMBER_LIST},
+                    "textureProperties": {"_ShadeTexture": INTEGER},
+                }
+            ],
         },
     },
 }
@@ -210,6 +294,7 @@ def _are_reals(value: object, count: int | None = None) -> bool:
 _VALUE_CHECKS: dict[str, Callable[[object], bool]] = {
     TEXT: lambda value: isinstance(value, str),
     FLAG: lambda value: isinstance(value, bool),
+    INTEGER: lambda value: type(value) is int,
     COUNT: lambda value: type(value) is int and value >= 0,
     REAL: _is_real,
     _ANY_NUMBER_LIST: _are_reals,

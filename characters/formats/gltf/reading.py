@@ -1,6 +1,6 @@
 """Reading characters and motions from glTF 2.0: .glb, .gltf with its files, or .vrm."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +13,7 @@ from characters.formats.gltf.file import GltfFile, open_gltf
 from characters.formats.gltf.meshes import read_meshes
 from characters.formats.gltf.morphs import read_morph_table
 from characters.formats.gltf.nodes import NodeTree, read_node_tree
+from characters.formats.gltf.vrm_springs import read_springs
 from characters.formats.loading import MotionOptions, Performance
 from characters.model.character import Character
 from characters.model.mesh import Mesh
@@ -22,7 +23,8 @@ from characters.skeleton.pose import Array, Skeleton
 def load_character(path: Path) -> Character:
     """Read a character: a skinned one, or one of animated rigid parts."""
     with _open(path) as file:
-        tree, humanoid = _read_joints(file)
+        springs = read_springs(file)
+        tree, humanoid = _read_joints(file, springs.nodes)
         table = read_morph_table(file, tree)
         parts = read_meshes(file, tree, table)
         if not parts:
@@ -36,6 +38,7 @@ def load_character(path: Path) -> Character:
             meshes=tuple(mesh for _, mesh in parts),
             morphs=table.names,
             semantics={part: joint for part, joint in semantics if joint in names},
+            springs=springs.bones(tree),
         )
         return character if humanoid is None else _as_humanoid(character, humanoid, parts, tree)
 
@@ -71,10 +74,12 @@ def _open(path: Path) -> Iterator[GltfFile]:
         raise CharacterError(f"{path}: {reason}{advice}") from error
 
 
-def _read_joints(file: GltfFile) -> tuple[NodeTree, vrm.VrmHumanoid | None]:
+def _read_joints(
+    file: GltfFile, extra_joints: Collection[int] = ()
+) -> tuple[NodeTree, vrm.VrmHumanoid | None]:
     """Return the skeleton, and its VRM data if there are any."""
     humanoid = vrm.read_humanoid(file)
-    joints = set(() if humanoid is None else humanoid.bones.values())
+    joints = set(extra_joints) | set(() if humanoid is None else humanoid.bones.values())
     if not any(skin["joints"] for skin in file.all("skins")):
         # Rigid parts, or motions exported without a model: animated nodes are joints.
         joints |= {
