@@ -10,6 +10,7 @@ import numpy as np
 
 from characters.errors import CharacterError
 from characters.ik.reaching.upper_body import UpperBody
+from characters.model.constraints import JointConstraint
 from characters.model.facing import turned_ahead
 from characters.model.mesh import Mesh
 from characters.model.sidecar import Sidecar, read_sidecar
@@ -60,6 +61,9 @@ class Character:
 
     springs: tuple[SpringBone, ...] = ()
     """Joints that swing after the body: those of its file and of its sidecar file."""
+
+    constraints: tuple[JointConstraint, ...] = ()
+    """Joints that turn as others do."""
 
     standing: StandingFactory | None = None
     """Makes the motion that it stands with from a seed; None for its idle clip."""

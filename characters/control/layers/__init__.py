@@ -2,6 +2,7 @@
 
 from characters.control.layers.behaviour import FaceShiftLayer, StanceLayer
 from characters.control.layers.breath import BreathLayer
+from characters.control.layers.constraints import ConstraintLayer
 from characters.control.layers.face import FaceLayer
 from characters.control.layers.foot_lock import FootLockLayer
 from characters.control.layers.gaze import GazeLayer
@@ -45,13 +46,14 @@ BODY_LAYERS: dict[str, LayerFactory] = {
 def layers_of(character: Character) -> tuple[LayerFactory, ...]:
     """Return the layers of an `Animator` by default.
 
-    What an action moves along comes first, what swings after the body comes last.
+    What an action moves along comes first; last come joints that follow others, and what swings.
     """
     asked = {name: (BODY_LAYERS[name],) for name in character.body_layers}
     return (
         *asked.get("dependent_joints", ()),
         *DEFAULT_LAYERS,
         *asked.get("self_collision", ()),
+        *((ConstraintLayer,) if character.constraints else ()),
         *((SpringLayer,) if character.springs else ()),
     )
 
@@ -61,6 +63,7 @@ __all__ = [
     "DEFAULT_LAYERS",
     "FOOT_LAYERS",
     "LIVELINESS_LAYERS",
+    "ConstraintLayer",
     "FootLockLayer",
     "FrameContext",
     "LayerFactory",

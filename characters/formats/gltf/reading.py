@@ -13,6 +13,7 @@ from characters.formats.gltf.file import GltfFile, open_gltf
 from characters.formats.gltf.meshes import read_meshes
 from characters.formats.gltf.morphs import read_morph_table
 from characters.formats.gltf.nodes import NodeTree, read_node_tree
+from characters.formats.gltf.vrm_constraints import read_constraints
 from characters.formats.gltf.vrm_springs import read_springs
 from characters.formats.loading import MotionOptions, Performance
 from characters.model.character import Character
@@ -23,8 +24,8 @@ from characters.skeleton.pose import Array, Skeleton
 def load_character(path: Path) -> Character:
     """Read a character: a skinned one, or one of animated rigid parts."""
     with _open(path) as file:
-        springs = read_springs(file)
-        tree, humanoid = _read_joints(file, springs.nodes)
+        springs, constraints = read_springs(file), read_constraints(file)
+        tree, humanoid = _read_joints(file, springs.nodes | constraints.nodes)
         table = read_morph_table(file, tree)
         parts = read_meshes(file, tree, table)
         if not parts:
@@ -39,6 +40,7 @@ def load_character(path: Path) -> Character:
             morphs=table.names,
             semantics={part: joint for part, joint in semantics if joint in names},
             springs=springs.bones(tree),
+            constraints=constraints.of_joints(tree),
         )
         return character if humanoid is None else _as_humanoid(character, humanoid, parts, tree)
 

@@ -1,0 +1,62 @@
+"""Constraints: joints that turn as others do, such as the twist bones of arms."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from characters.errors import CharacterError
+from characters.model.springs import Point
+from characters.skeleton.pose import Skeleton
+
+ConstraintKind = Literal["roll", "aim", "rotation"]
+"""Turns about an axis as the source does; points with an axis to it; turns as it does."""
+
+
+@dataclass(frozen=True)
+class JointConstraint:
+    """What another joint makes one do, as in the extension VRMC_node_constraint of glTF."""
+
+    kind: ConstraintKind
+    """What it does."""
+
+    joint: int
+    """The joint that is turned."""
+
+    source: int
+    """The joint that it follows."""
+
+    axis: Point = (0.0, 0.0, 0.0)
+    """Unit vector in the joint's frame, about which it rolls or with which it aims."""
+
+    weight: float = 1.0
+    """Part of the way from its rest pose, 0…1."""
+
+
+def constraint_levels(
+    skeleton: Skeleton, constraints: Sequence[JointConstraint]
+) -> list[list[JointConstraint]]:
+    """Return constraints by the order in which they must be applied: those together that may be.
+
+    Raises
+    ------
+    CharacterError
+        If joints follow each other in a circle.
+    """
+    waiting, levels = list(constraints), []
+    while waiting:
+        pending = {each.joint for each in waiting}
+        ready = [each for each in waiting if not _followed(skeleton, each) & pending]
+        if not ready:
+            names = ", ".join(skeleton.names[joint] for joint in sorted(pending))
+            raise CharacterError(f"constraints of {names} follow each other; remove one of them")
+        levels.append(ready)
+        waiting = [each for each in waiting if each not in ready]
+    return levels
+
+
+def _followed(skeleton: Skeleton, constraint: JointConstraint) -> set[int]:
+    """Return the joints whose turns a constraint needs."""
+    if constraint.kind != "aim":
+        return {constraint.source}
+    followed = set(skeleton.with_ancestors([constraint.source, constraint.joint]))
+    return followed - {constraint.joint}
