@@ -7,9 +7,14 @@ Guitton and Volle, "Gaze control in humans", 1987).
 """
 
 import math
+from collections.abc import Sequence
+
+import numpy as np
 
 from characters.body.eye_range import range_share, within_range
+from characters.body.gaze_morphs import GazeMorphs, range_parts
 from characters.body.head_joints import HeadJoints, middle
+from characters.model.look_at import LookAt
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Pose, Skeleton
 from characters.skeleton.scalar_quaternions import (
@@ -36,11 +41,36 @@ _AHEAD: Vector = (0.0, 0.0, 1.0)
 
 
 class Gaze:
-    """Turns neck, head and eyes of one character."""
+    """Turns neck, head and eyes of one character.
 
-    def __init__(self, skeleton: Skeleton, anatomy: Anatomy) -> None:
+    Parameters
+    ----------
+    skeleton, anatomy
+        Its joints.
+    morphs
+        Names of its morphs: without joints of eyes it looks about by those that do.
+    look_at
+        How its eyes follow, if its file says so.
+    """
+
+    def __init__(
+        self,
+        skeleton: Skeleton,
+        anatomy: Anatomy,
+        morphs: Sequence[str] = (),
+        look_at: LookAt | None = None,
+    ) -> None:
         head = anatomy.joint("head")
         self._joints = None if head is None else HeadJoints(skeleton, anatomy, head)
+        has_eyes = self._joints is not None and bool(self._joints.eyes)
+        by_morphs = not has_eyes or (look_at is not None and look_at.by == "expression")
+        self._morphs = GazeMorphs.of(morphs) if by_morphs else None
+        self._morph_count = len(morphs)
+        # What is stated for joints does not hold for morphs.
+        fits = look_at is not None and (look_at.by == "expression") == (self._morphs is not None)
+        self._look_at = look_at if fits else None
+        if self._joints is not None and look_at is not None and look_at.eye_offset is not None:
+            self._joints.eye_offset = look_at.eye_offset
         self._yaw = self._pitch = self._yaw_speed = self._pitch_speed = 0.0
         self.shift = 0.0
         """Angle by which the target moved in the last update [rad]."""
@@ -104,14 +134,19 @@ class Gaze:
             besides = from_rotation_vector(rotate(joints.body, (x, y, z)))
             both = multiply(besides, from_rotation_vector(self._turned))
             self._turned = to_rotation_vector(both)
-        local = pose.rotations.copy()
+        local, weights = pose.rotations.copy(), pose.morphs
         joints.turn_head(local, self._turned)
+        share = 1.0
         if aim is None:
-            self._turn_eyes(joints, local, None, 1.0, elapsed)
+            point = None
         else:
-            left = aim[0] - held[0] - turn[0], aim[1] - held[1] - turn[1]
-            self._turn_eyes(joints, local, point, range_share(*left), elapsed)
-        return Pose(pose.translations, local, pose.scales, pose.morphs)
+            share = range_share(aim[0] - held[0] - turn[0], aim[1] - held[1] - turn[1])
+        if self._morphs is None:
+            self._turn_eyes(joints, local, point, share, elapsed)
+        else:
+            weights = np.zeros(self._morph_count) if weights is None else weights.copy()
+            self._morphs.look(weights, *self._morph_parts(joints, point, share, elapsed))
+        return Pose(pose.translations, local, pose.scales, weights)
 
     def _aimed(self, joints: HeadJoints, point: Vector | None) -> tuple[float, float] | None:
         """Return yaw and pitch of a point relative to the chest; None if it is ignored."""
@@ -148,13 +183,37 @@ class Gaze:
             target = (0.0, 0.0)
             if point is not None:
                 asked = _angles(rotate(back, subtract(point, places[number])))
-                yaw, pitch = within_range(*asked, share)
+                if self._look_at is None:
+                    yaw, pitch = within_range(*asked, share)
+                else:
+                    yaw, pitch = self._look_at.mapped(*asked, "right" if number else "left")
                 target = yaw - held[0], pitch - held[1]
             before = self._eye_turns[number]
             yaw, pitch = (w + (b - w) * kept for w, b in zip(target, before, strict=True))
             self._eye_turns[number] = yaw, pitch
             turn = _turn_between(held, (held[0] + yaw, held[1] + pitch))
             joints.turn(local, eye, rotate(joints.head.facing, turn))
+
+    def _morph_parts(
+        self, joints: HeadJoints, point: Vector | None, share: float, elapsed: float
+    ) -> tuple[float, float]:
+        """Return how far both eyes look to the left and up in the turned head, 1 a whole morph.
+
+        Without a point they go back to the middle.
+        """
+        target = (0.0, 0.0)
+        if point is not None:
+            back = conjugate(multiply(from_rotation_vector(self._turned), joints.head.facing))
+            way = subtract(point, middle(joints.eye_places(self._turned)))
+            asked = _angles(rotate(back, way))
+            if self._look_at is None:
+                target = range_parts(*within_range(*asked, share))
+            else:
+                target = self._look_at.mapped(*asked)
+        kept = math.exp(-elapsed / EYE_LAG_S)
+        yaw, pitch = (w + (b - w) * kept for w, b in zip(target, self._eye_turns[0], strict=True))
+        self._eye_turns[0] = yaw, pitch
+        return yaw, pitch
 
 
 def _head_turn(

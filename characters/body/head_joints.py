@@ -75,6 +75,8 @@ class HeadJoints:
         self._four_legs = anatomy.kind == "quadruped"
         self.eyes = [self._joints[places[joint]] for joint in eyes]
         """The left and the right eye; none, one or both."""
+        self.eye_offset: Vector = (0.0, 0.0, 0.0)
+        """Where the eyes are in the head's frame if they have no joints [m]."""
 
     @property
     def body(self) -> Quaternion:
@@ -111,9 +113,10 @@ class HeadJoints:
             turn = from_rotation_vector((part * x, part * y, part * z))
             place = add(place, rotate(turn, subtract(above.place, below.place)))
         whole = from_rotation_vector(turned)
+        if not self.eyes:
+            return [add(place, rotate(whole, rotate(self.head.turn, self.eye_offset)))]
         return [
-            add(place, rotate(whole, subtract(eye.place, self.head.place)))
-            for eye in self.eyes or [self.head]
+            add(place, rotate(whole, subtract(eye.place, self.head.place))) for eye in self.eyes
         ]
 
     def turn_head(self, local: Array, turned: Vector) -> None:

@@ -12,6 +12,7 @@ from characters.errors import CharacterError
 from characters.ik.reaching.upper_body import UpperBody
 from characters.model.constraints import JointConstraint
 from characters.model.facing import turned_ahead
+from characters.model.look_at import LookAt
 from characters.model.mesh import Mesh
 from characters.model.sidecar import Sidecar, read_sidecar
 from characters.model.speaking import gestures_beside
@@ -64,6 +65,9 @@ class Character:
 
     constraints: tuple[JointConstraint, ...] = ()
     """Joints that turn as others do."""
+
+    look_at: LookAt | None = None
+    """How its eyes follow a point; None for as far as people's eyes do."""
 
     standing: StandingFactory | None = None
     """Makes the motion that it stands with from a seed; None for its idle clip."""

@@ -19,7 +19,9 @@ class GazeLayer:
     """Turns head and eyes to the point that the command names, nods and shakes the head."""
 
     def __init__(self, character: Character, seed: int = 0) -> None:
-        self._gaze = Gaze(character.skeleton, character.anatomy)
+        self._gaze = Gaze(
+            character.skeleton, character.anatomy, character.morphs, character.look_at
+        )
         self._movements = PlannedValues(3)
 
     def update(self, pose: Pose, context: FrameContext) -> Pose:

@@ -147,6 +147,7 @@ SCHEMA: Json = {
             "expressions": {"preset": {"*": _EXPRESSION}, "custom": {"*": _EXPRESSION}},
             "lookAt": {
                 "type": TEXT,
+                "offsetFromHeadBone": _NUMBER_LISTS[3],
                 "rangeMapHorizontalInner": _RANGE,
                 "rangeMapHorizontalOuter": _RANGE,
                 "rangeMapVerticalDown": _RANGE,
@@ -183,6 +184,7 @@ SCHEMA: Json = {
             },
             "firstPerson": {
                 "lookAtTypeName": TEXT,
+                "firstPersonBoneOffset": _XYZ,
                 "lookAtHorizontalInner": _RANGE_0,
                 "lookAtHorizontalOuter": _RANGE_0,
                 "lookAtVerticalDown": _RANGE_0,

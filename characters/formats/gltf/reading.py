@@ -14,6 +14,7 @@ from characters.formats.gltf.meshes import read_meshes
 from characters.formats.gltf.morphs import read_morph_table
 from characters.formats.gltf.nodes import NodeTree, read_node_tree
 from characters.formats.gltf.vrm_constraints import read_constraints
+from characters.formats.gltf.vrm_look_at import read_look_at
 from characters.formats.gltf.vrm_springs import read_springs
 from characters.formats.loading import MotionOptions, Performance
 from characters.model.character import Character
@@ -41,6 +42,7 @@ def load_character(path: Path) -> Character:
             semantics={part: joint for part, joint in semantics if joint in names},
             springs=springs.bones(tree),
             constraints=constraints.of_joints(tree),
+            look_at=read_look_at(file),
         )
         return character if humanoid is None else _as_humanoid(character, humanoid, parts, tree)
 

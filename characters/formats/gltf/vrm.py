@@ -1,7 +1,7 @@
 """VRM: the body parts and facial expressions of a humanoid in a glTF.
 
-Supports VRM 1.0 (extension VRMC_vrm) and 0.x (extension VRM). Materials are read from their glTF
-part; spring bones, constraints and first-person settings are not read.
+Supports VRM 1.0 (extension VRMC_vrm) and 0.x (extension VRM). Spring bones, constraints and how eyes
+follow a point are in `vrm_springs`, `vrm_constraints` and `vrm_look_at`.
 """
 
 from collections.abc import Iterable, Mapping, Sequence

@@ -169,3 +169,52 @@ def test_an_invalid_vrm_is_refused(tmp_path, extension, reason):
 def test_a_vrm_without_its_extension_is_refused(tmp_path):
     with pytest.raises(CharacterError, match=r"contains no VRM; call it \.glb"):
         load(tmp_path, build_arm().bytes())
+
+
+@pytest.mark.parametrize("version", [1, 0])
+def test_vrm_states_how_eyes_follow_a_point(tmp_path, version):
+    if version:
+        ranges = {"inputMaxValue": 45, "outputScale": 0.5}
+        content = {
+            "specVersion": "1.0",
+            "lookAt": {
+                "type": "expression",
+                "offsetFromHeadBone": [0, 0.06, 0.01],
+                "rangeMapHorizontalOuter": ranges,
+            },
+        }
+    else:
+        content = {
+            "firstPerson": {
+                "lookAtTypeName": "BlendShape",
+                "firstPersonBoneOffset": {"x": 0, "y": 0.06, "z": -0.01},
+                "lookAtHorizontalOuter": {"xRange": 45, "yRange": 0.5},
+            }
+        }
+    build = build_arm()
+    build.document["extensions"] = {"VRMC_vrm" if version else "VRM": content}
+    look_at = load(tmp_path, build.bytes()).look_at
+    assert look_at.by == "expression"
+    assert look_at.eye_offset == (0, 0.06, 0.01)
+    assert look_at.mapped(np.radians(18), np.radians(9)) == pytest.approx((0.2, 0.1))
+
+
+@pytest.mark.parametrize(
+    ("extension", "content"),
+    [
+        ("VRMC_vrm", {"specVersion": "1.0", "lookAt": {"type": "bone"}}),
+        ("VRM", {"firstPerson": {"lookAtTypeName": "Bone", "lookAtVerticalUp": {"xRange": 90}}}),
+    ],
+)
+def test_joints_of_eyes_turn_by_10_of_90_degrees_unless_it_is_stated(tmp_path, extension, content):
+    build = build_arm()
+    build.document["extensions"] = {extension: content}
+    look_at = load(tmp_path, build.bytes()).look_at
+    turns = look_at.mapped(np.radians(45), np.radians(180), "left")
+    assert np.degrees(turns) == pytest.approx([5.0, 10.0])
+
+
+def test_a_vrm_that_says_nothing_of_its_eyes_looks_as_people_do(tmp_path):
+    build = build_arm()
+    build.document["extensions"] = {"VRM": {"firstPerson": {}}}
+    assert load(tmp_path, build.bytes()).look_at is None
