@@ -7,6 +7,26 @@ from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
+class ToonShading:
+    """The shading of MToon, VRM's toon shader: two colours instead of light and dark."""
+
+    color: tuple[float, float, float]
+    """Linear RGB of what the light does not reach, multiplied by the texture below."""
+
+    texture: NDArray[np.uint8] | None = None
+    """Colour of the shade, (height, width, 3) sRGB, or None."""
+
+    shift: float = 0.0
+    """What is added to the cosine between normal and light: above 0, more is lit."""
+
+    toony: float = 0.9
+    """0 for a soft transition from one colour to the other … 1 for an edge."""
+
+    evenness: float = 0.9
+    """0 for ambient light by direction … 1 for the same from everywhere."""
+
+
+@dataclass(frozen=True)
 class Material:
     """The part of glTF's metallic-roughness material that is drawn."""
 
@@ -41,10 +61,18 @@ class Material:
     double_sided: bool = False
     """Whether back faces are drawn."""
 
+    toon: ToonShading | None = None
+    """Its shading if it is MToon's; metalness and roughness do not count then."""
+
     @property
     def textures(self) -> tuple[NDArray[np.uint8] | None, ...]:
-        """Textures of base colour, of metalness and roughness, and of normals."""
-        return self.base_color_texture, self.metallic_roughness_texture, self.normal_texture
+        """Textures of base colour, of metalness and roughness, of normals, and of toon shade."""
+        return (
+            self.base_color_texture,
+            self.metallic_roughness_texture,
+            self.normal_texture,
+            None if self.toon is None else self.toon.texture,
+        )
 
 
 @dataclass(frozen=True)

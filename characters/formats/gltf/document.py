@@ -128,6 +128,7 @@ SCHEMA: Json = {
                     "shadeMultiplyTexture": _TEXTURE,
                     "shadingShiftFactor": REAL,
                     "shadingToonyFactor": REAL,
+                    "giEqualizationFactor": REAL,
                 },
             },
         }
@@ -210,7 +211,11 @@ SCHEMA: Json = {
             "materialProperties": [
                 {
                     "shader": TEXT,
-                    "floatProperties": {"_ShadeShift": REAL, "_ShadeToony": REAL},
+                    "floatProperties": {
+                        "_ShadeShift": REAL,
+                        "_ShadeToony": REAL,
+                        "_IndirectLightIntensity": REAL,
+                    },
                     "vectorProperties": {"_ShadeColor": _ANY_NUMBER_LIST},
                     "textureProperties": {"_ShadeTexture": INTEGER},
                 }

@@ -6,7 +6,7 @@ Images are measured before they are decoded, and written as PNG.
 import io
 import math
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 from PIL import UnidentifiedImageError
 
 from characters.errors import CharacterWarning
+from characters.formats.gltf import mtoon
 from characters.formats.gltf.buffer import GlbBuilder
 from characters.formats.gltf.document import DamagedFileError, Json, error_context, label
 from characters.formats.gltf.file import GltfFile
-from characters.model.mesh import Material
+from characters.model.mesh import Material, ToonShading
 from characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
@@ -101,18 +102,21 @@ def read_materials(file: GltfFile) -> list[MappedMaterial]:
     for number, material in enumerate(file.all("materials")):
         name = label("material", number, material)
         with error_context(name):
-            materials.append(_material(material, images, f"{file.path}: {name}"))
+            toon = mtoon.extension_of(file, number, material)
+            materials.append(_material(material, toon, images, f"{file.path}: {name}"))
     return materials
 
 
-def _material(material: Json, images: _ImageDecoder, where: str) -> MappedMaterial:
+def _material(
+    material: Json, toon: Json | None, images: _ImageDecoder, where: str
+) -> MappedMaterial:
     pbr = material.get("pbrMetallicRoughness", {})
-    unlit = "KHR_materials_unlit" in material.get("extensions", {})
+    unlit = toon is None and "KHR_materials_unlit" in material.get("extensions", {})
+    diffuse = unlit or toon is not None
     color, surface = pbr.get("baseColorTexture"), pbr.get("metallicRoughnessTexture")
-    bumps = material.get("normalTexture")
-    if unlit:
-        surface = bumps = None
-    textures = [texture for texture in (color, surface, bumps) if texture]
+    bumps, shade = material.get("normalTexture"), (toon or {}).get("shadeMultiplyTexture")
+    surface, bumps = None if diffuse else surface, None if unlit else bumps
+    textures = [texture for texture in (color, surface, bumps, shade) if texture]
     mapping = _mapping(textures[0]) if textures else (0, None)
     if any(not _same(_mapping(texture), mapping) for texture in textures):
         # A mesh has one set of coordinates: that of its first texture.
@@ -121,15 +125,15 @@ def _material(material: Json, images: _ImageDecoder, where: str) -> MappedMateri
             CharacterWarning,
             stacklevel=2,
         )
-        color, surface, bumps = (
-            t if t and _same(_mapping(t), mapping) else None for t in (color, surface, bumps)
+        color, surface, bumps, shade = (
+            t if t and _same(_mapping(t), mapping) else None for t in (color, surface, bumps, shade)
         )
     factor = [float(c) for c in pbr.get("baseColorFactor", (1, 1, 1, 1))]
     return MappedMaterial(
         Material(
             base_color=(factor[0], factor[1], factor[2], factor[3]),
-            metallic=0.0 if unlit else float(pbr.get("metallicFactor", 1.0)),
-            roughness=1.0 if unlit else float(pbr.get("roughnessFactor", 1.0)),
+            metallic=0.0 if diffuse else float(pbr.get("metallicFactor", 1.0)),
+            roughness=1.0 if diffuse else float(pbr.get("roughnessFactor", 1.0)),
             base_color_texture=images.texture(color["index"], "RGBA") if color else None,
             metallic_roughness_texture=images.texture(surface["index"], "RGB") if surface else None,
             normal_texture=images.texture(bumps["index"], "RGB") if bumps else None,
@@ -137,9 +141,15 @@ def _material(material: Json, images: _ImageDecoder, where: str) -> MappedMateri
             emissive=_emission(material, images),
             alpha_cutoff=_cutoff(material),
             double_sided=bool(material.get("doubleSided", False)),
+            toon=None if toon is None else _toon_shading(toon, shade, images),
         ),
         *mapping,
     )
+
+
+def _toon_shading(toon: Json, texture: Json | None, images: _ImageDecoder) -> ToonShading:
+    image = images.texture(texture["index"], "RGB") if texture else None
+    return replace(mtoon.shading(toon), texture=image)
 
 
 def _mapping(texture: Json) -> tuple[int, Array | None]:
@@ -216,6 +226,10 @@ class MaterialWriter:
         if material.normal_texture is not None:
             scale = {"scale": material.normal_scale}
             item["normalTexture"] = self._texture(material.normal_texture) | scale
+        if material.toon is not None:
+            image = material.toon.texture
+            shade = None if image is None else self._texture(image)
+            self._extend(item, mtoon.EXTENSION, mtoon.written(material.toon, shade))
         if any(material.emissive):
             self._set_emission(item, material.emissive)
         if material.alpha_cutoff is not None:
@@ -228,8 +242,13 @@ class MaterialWriter:
         item["emissiveFactor"] = [part / brightest for part in emission]
         if brightest > 1.0:
             name = "KHR_materials_emissive_strength"
-            item["extensions"] = {name: {"emissiveStrength": brightest}}
-            self._builder.document["extensionsUsed"] = [name]
+            self._extend(item, name, {"emissiveStrength": brightest})
+
+    def _extend(self, item: Json, name: str, content: Json) -> None:
+        item.setdefault("extensions", {})[name] = content
+        used = self._builder.document.setdefault("extensionsUsed", [])
+        if name not in used:
+            used.append(name)
 
     def _texture(self, image: Image) -> dict[str, int]:
         """Return a reference to the texture of an image."""

@@ -1,7 +1,7 @@
 """VRM: the body parts and facial expressions of a humanoid in a glTF.
 
-Supports VRM 1.0 (extension VRMC_vrm) and 0.x (extension VRM). Spring bones, constraints and how eyes
-follow a point are in `vrm_springs`, `vrm_constraints` and `vrm_look_at`.
+Supports VRM 1.0 (extension VRMC_vrm) and 0.x (extension VRM). Spring bones, constraints, how eyes
+follow a point, and materials are in `vrm_springs`, `vrm_constraints`, `vrm_look_at` and `mtoon`.
 """
 
 from collections.abc import Iterable, Mapping, Sequence

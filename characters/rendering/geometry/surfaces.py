@@ -14,8 +14,10 @@ from characters.rendering.programs import ShaderPrograms, set_uniforms
 GL_SRGB8_ALPHA8 = 0x8C43
 """OpenGL's texture format that is decoded from sRGB when it is sampled."""
 
-TEXTURE_UNITS = {"base_texture": 0, "surface_map": 1, "bump_map": 2}
-"""Texture units of a material's base colour, roughness and metalness, and normals."""
+TEXTURE_UNITS = {"base_texture": 0, "surface_map": 1, "bump_map": 2, "shade_map": 3}
+"""Texture units of a material's base colour, roughness and metalness, normals, and toon shade."""
+
+_COLOR_UNITS = (TEXTURE_UNITS["base_texture"], TEXTURE_UNITS["shade_map"])  # the others are linear
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ class SurfaceBuffers:
         for material, count in vertices.materials:
             features = surface_features(material)
             textures = tuple(
-                (unit, self._texture(image, srgb=unit == TEXTURE_UNITS["base_texture"]))
+                (unit, self._texture(image, srgb=unit in _COLOR_UNITS))
                 for unit, image in enumerate(material.textures)
                 if image is not None
             )
@@ -89,15 +91,13 @@ class SurfaceBuffers:
         """Return all triangles with the program for some features."""
         if features not in self._arrays:
             program = surface_program(self._programs, features)
-            colors = (
-                (self._colors, "4f 2f", "color", "uv")
-                if "uv" in program
-                else (self._colors, "4f 8x", "color")
-            )
-            skinned = (self._skinned, "3f 3f", "position", "normal")
-            self._arrays[features] = self._context.vertex_array(
-                program, [skinned, colors], self._indices
-            )
+            content: list[tuple[object, ...]] = [(self._skinned, "3f 3f", "position", "normal")]
+            # The compiler leaves out attributes that a surface does not use.
+            used = [name for name in ("color", "uv") if name in program]
+            if used:
+                color, uv = "4f" if "color" in used else "16x", "2f" if "uv" in used else "8x"
+                content.append((self._colors, f"{color} {uv}", *used))
+            self._arrays[features] = self._context.vertex_array(program, content, self._indices)
         return self._arrays[features]
 
     def _texture(self, image: NDArray[np.uint8], srgb: bool) -> moderngl.Texture:
@@ -131,17 +131,20 @@ def surface_features(material: Material) -> frozenset[str]:
     """Return what a material has beyond one colour, one roughness and one metalness.
 
     TEXTURED: a texture of the base colour; SURFACE: one of roughness and metalness; BUMPS: a normal
-    map; GLOW: emitted light; CUTOFF: holes where alpha is low. The shaders test these names.
+    map; GLOW: emitted light; CUTOFF: holes where alpha is low; TOON: MToon's shading; SHADE: its
+    texture. The shaders test these names.
 
     >>> sorted(surface_features(Material(emissive=(0.0, 0.2, 0.0), alpha_cutoff=0.5)))
     ['CUTOFF', 'GLOW']
     """
     has = {
         "TEXTURED": material.base_color_texture is not None,
-        "SURFACE": material.metallic_roughness_texture is not None,
+        "SURFACE": material.metallic_roughness_texture is not None and material.toon is None,
         "BUMPS": material.normal_texture is not None and material.normal_scale != 0.0,
         "GLOW": any(material.emissive),
         "CUTOFF": material.alpha_cutoff is not None,
+        "TOON": material.toon is not None,
+        "SHADE": material.toon is not None and material.toon.texture is not None,
     }
     return frozenset(feature for feature, present in has.items() if present)
 
@@ -152,7 +155,7 @@ def surface_program(programs: ShaderPrograms, features: frozenset[str]) -> moder
     Each set of features is a program of its own: software rendering samples a texture even where a
     condition excludes it, and a plain surface must not pay for the features of others.
     """
-    mapped = {"MAPPED"} if features & {"TEXTURED", "SURFACE", "BUMPS"} else set()
+    mapped = {"MAPPED"} if features & {"TEXTURED", "SURFACE", "BUMPS", "SHADE"} else set()
     program = programs.load("character", "character", *sorted(features | mapped))
     set_uniforms(program, **TEXTURE_UNITS)
     return program

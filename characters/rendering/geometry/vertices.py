@@ -204,7 +204,11 @@ def _or_default(
 def _material_key(material: Material) -> tuple[object, ...]:
     """Return a key that two materials share if they look the same; textures by identity."""
     rest = replace(
-        material, base_color_texture=None, metallic_roughness_texture=None, normal_texture=None
+        material,
+        base_color_texture=None,
+        metallic_roughness_texture=None,
+        normal_texture=None,
+        toon=None if material.toon is None else replace(material.toon, texture=None),
     )
     return (rest, *(id(texture) for texture in material.textures))
 

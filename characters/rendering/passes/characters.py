@@ -59,6 +59,14 @@ class CharacterPass(RenderPass):
                         bump_scale=material.normal_scale,
                         glow=material.emissive,
                     )
+                if material.toon is not None:
+                    set_uniforms(
+                        program,
+                        shade_color=material.toon.color,
+                        shade_shift=material.toon.shift,
+                        toony=material.toon.toony,
+                        evenness=material.toon.evenness,
+                    )
                 for unit, texture in part.textures:
                     texture.use(unit)
                 (context.disable if material.double_sided else context.enable)(moderngl.CULL_FACE)

@@ -27,6 +27,15 @@ in vec3 place;
 #ifdef GLOW
 uniform vec3 glow;
 #endif
+#ifdef TOON
+uniform vec3 shade_color;
+uniform float shade_shift;
+uniform float toony;
+uniform float evenness;
+#endif
+#ifdef SHADE
+uniform sampler2D shade_map;
+#endif
 #ifdef CUTOFF
 uniform float opacity;
 uniform float cutoff;
@@ -68,7 +77,11 @@ vec3 bumped(vec3 n) {
 #endif
 
 void main() {
+#ifdef TOON
+    vec3 albedo = base_color;  // MToon ignores colours of vertices
+#else
     vec3 albedo = base_color * tint;
+#endif
 #ifdef TEXTURED
     vec4 painted = texture(base_texture, where);
     albedo *= painted.rgb;
@@ -101,12 +114,24 @@ void main() {
     // Skin, cloth and plastic scatter light around the terminator: a wrap of a quarter.
     float wrapped = max((nl + 0.25) / 1.25, 0.0);
     float up = 0.5 + 0.5 * n.y;
+#ifdef TOON
+    up = mix(up, 0.5, evenness);
+#endif
     // Near the feet, the character occludes the table, and the table the character.
     float near = clamp(above, 0.0, 1.0);
     near *= 2.0 - near;
     float open = mix(0.45 + 0.45 * up, 1.0, near);
     vec3 around = mix(ground * (0.55 + 0.45 * near), sky, up) * open;
 
+#ifdef TOON
+    // The specification VRMC_materials_mtoon 1.0, "Lighting" and "Global Illumination".
+    vec3 shade = shade_color;
+#ifdef SHADE
+    shade *= texture(shade_map, where).rgb;
+#endif
+    float lit = clamp((nl + shade_shift + 1.0 - toony) / max(2.0 - 2.0 * toony, 1e-3), 0.0, 1.0);
+    vec3 light = mix(shade, albedo, lit) * key + albedo * around;
+#else
     // GGX with the visibility term of B. Karis, "Optimizing PBR for mobile", 2015. The half vector is
     // h = (v + l) / |v + l| and (v·h)² = |v + l|² / 4, which leaves one division and no root.
     float a = max(rough * rough, 0.02), a2 = a * a;
@@ -121,6 +146,7 @@ void main() {
     vec3 light = albedo * (1.0 - metal) * (key * wrapped + around)
                + key * f0 * min(highlight, 6.0) * clamp(nl * 4.0, 0.0, 1.0)
                + mirror * around;
+#endif
 #ifdef GLOW
     light += glow;
 #endif

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters.model.mesh import Material, Mesh
+from characters.model.mesh import Material, Mesh, ToonShading
 from characters.rendering import SceneCharacter
 from characters.rendering.geometry.surfaces import surface_features
 from characters.rendering.geometry.vertices import CharacterVertices
+from characters.rendering.light import TO_LIGHT
 
 RED = Material(base_color=(0.6, 0.1, 0.08, 1.0), roughness=0.5)
 
@@ -129,3 +130,55 @@ def test_materials_with_different_textures_are_drawn_separately(tile):
     one, other = replace(RED, normal_texture=bumps), replace(RED, normal_texture=bumps.copy())
     meshes = [tile(material).meshes[0] for material in (one, other, one)]
     assert len(CharacterVertices.of(meshes).materials) == 2
+
+
+SHADE = (0.3, 0.05, 0.2)
+ALONG = np.cross(TO_LIGHT, [0.0, 0.0, 1.0]) / np.linalg.norm(np.cross(TO_LIGHT, [0.0, 0.0, 1.0]))
+
+
+def toon(color=SHADE, **changes):
+    """RED in MToon's shading, with ambient light that is the same from everywhere."""
+    return replace(RED, toon=ToonShading(color, **{"evenness": 1.0} | changes))
+
+
+def at_cosine(cosine):
+    """A normal at this cosine to the light."""
+    return tuple(cosine * TO_LIGHT + np.sqrt(1.0 - cosine**2) * ALONG)
+
+
+def test_toon_shading_has_one_colour_for_what_is_lit_and_one_for_the_shade(shown, tile):
+    plain = [shown(tile(toon(RED.base_color[:3]), at_cosine(c))) for c in (0.9, 0.2, -0.2, -0.9)]
+    assert all(np.abs(each - plain[0]).max() <= 1 for each in plain)
+    lit, also_lit, shaded, also_shaded = (
+        shown(tile(toon(), at_cosine(c))) for c in (0.9, 0.2, -0.2, -0.9)
+    )
+    assert np.abs(lit - plain[0]).max() <= 1
+    assert np.abs(also_lit - lit).max() <= 1
+    assert np.abs(also_shaded - shaded).max() <= 1
+    assert np.abs(shaded - lit).max() > 20
+
+
+@pytest.mark.parametrize(
+    ("cosine", "shift", "toony", "share"),
+    [(0.0, 0.0, 0.9, 0.5), (0.3, -0.3, 0.9, 0.5), (0.2, 0.0, 0.2, 0.625), (-0.5, 0.2, 0.0, 0.35)],
+)
+def test_toon_shading_changes_linearly_about_its_edge(shown, tile, cosine, shift, toony, share):
+    mixed = tuple(
+        share * lit + (1.0 - share) * dark
+        for lit, dark in zip(RED.base_color[:3], SHADE, strict=True)
+    )
+    found = shown(tile(toon(shift=shift, toony=toony), at_cosine(cosine)))
+    expected = shown(tile(toon(mixed), at_cosine(-0.9)))
+    assert np.abs(found - expected).max() <= 1
+
+
+def test_a_texture_multiplies_the_shade_colour_and_colours_of_vertices_do_not(shown, tile):
+    shaded = at_cosine(-0.9)
+    mapped = tile(toon(texture=even(128, 255, 188)), shaded)
+    linear = [((value / 255 + 0.055) / 1.055) ** 2.4 for value in (128, 255, 188)]
+    expected = tile(toon(tuple(np.multiply(SHADE, linear))), shaded)
+    assert np.abs(shown(mapped) - shown(expected)).max() <= 2
+    assert np.abs(shown(mapped) - shown(tile(toon(), shaded))).max() > 5
+    (mesh,) = expected.meshes
+    tinted = replace(mesh, colors=mesh.colors * np.array([0.5, 0.2, 0.1, 1.0], np.float32))
+    assert np.array_equal(shown(replace(expected, meshes=(tinted,))), shown(expected))
