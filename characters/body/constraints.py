@@ -49,8 +49,8 @@ class ConstrainedJoints:
         self._groups = [
             _Group(
                 kind,
-                np.array([each.joint for each in same], np.intp),
-                np.array([each.source for each in same], np.intp),
+                np.array([skeleton.index(each.joint) for each in same], np.intp),
+                np.array([skeleton.index(each.source) for each in same], np.intp),
                 np.array([each.axis for each in same]),
                 np.array([each.weight for each in same]),
             )

@@ -92,11 +92,13 @@ class SpringBody:
     """
 
     def __init__(self, skeleton: Skeleton, bones: Sequence[SpringBone]) -> None:
-        depths = _depths(skeleton, {bone.joint for bone in bones})
-        bones = sorted(bones, key=lambda bone: (depths[bone.joint], bone.joint))
-        self._joints: _Indices = np.array([bone.joint for bone in bones], np.intp)
+        joint_of = {name: joint for joint, name in enumerate(skeleton.names)}
+        depths = _depths(skeleton, {joint_of[bone.joint] for bone in bones})
+        order = sorted((depths[joint_of[bone.joint]], joint_of[bone.joint], bone) for bone in bones)
+        bones = [bone for _, _, bone in order]
+        self._joints: _Indices = np.array([joint for _, joint, _ in order], np.intp)
         self._parents = _parents(skeleton, self._joints)
-        levels = [depths[bone.joint] for bone in bones]
+        levels = [depth for depth, _, _ in order]
         self._levels = [
             slice(levels.index(level), levels.index(level) + levels.count(level))
             for level in sorted(set(levels))
@@ -113,12 +115,12 @@ class SpringBody:
         self._kept = 1.0 - _rows([bone.drag for bone in bones])
         self._gravity = _rows([bone.gravity for bone in bones])
         self._stillness = 1.0 - _rows([bone.wind for bone in bones])
-        centers = [-1 if bone.center is None else bone.center for bone in bones]
+        centers = [-1 if bone.center is None else joint_of[bone.center] for bone in bones]
         self._has_center = np.array(centers) >= 0
         shapes = list(dict.fromkeys(each for bone in bones for each in bone.colliders))
         self._shapes = np.array([[shape.start, shape.end] for shape in shapes]).reshape(-1, 2, 3)
         self._contacts = [Contacts.of(bones[level], shapes) for level in self._levels]
-        carriers = [shape.joint for shape in shapes]
+        carriers = [joint_of[shape.joint] for shape in shapes]
         self._part = _SkeletonPart.of(skeleton, [*self._joints.tolist(), *carriers, *centers])
         self._own, self._carriers, self._centers = (
             self._part.places(joints) for joints in (self._joints.tolist(), carriers, centers)

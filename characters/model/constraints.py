@@ -1,7 +1,7 @@
 """Constraints: joints that turn as others do, such as the twist bones of arms."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from characters.errors import CharacterError
@@ -19,17 +19,22 @@ class JointConstraint:
     kind: ConstraintKind
     """What it does."""
 
-    joint: int
-    """The joint that is turned."""
+    joint: str
+    """Name of the joint that is turned."""
 
-    source: int
-    """The joint that it follows."""
+    source: str
+    """Name of the joint that it follows."""
 
     axis: Point = (0.0, 0.0, 0.0)
     """Unit vector in the joint's frame, about which it rolls or with which it aims."""
 
     weight: float = 1.0
     """Part of the way from its rest pose, 0…1."""
+
+    def renamed(self, names: Mapping[str, str]) -> "JointConstraint":
+        """Return it for joints with new names, given by their old ones."""
+        joint, source = (names.get(name, name) for name in (self.joint, self.source))
+        return replace(self, joint=joint, source=source)
 
 
 def constraint_levels(
@@ -47,16 +52,17 @@ def constraint_levels(
         pending = {each.joint for each in waiting}
         ready = [each for each in waiting if not _followed(skeleton, each) & pending]
         if not ready:
-            names = ", ".join(skeleton.names[joint] for joint in sorted(pending))
+            names = ", ".join(sorted(pending))
             raise CharacterError(f"constraints of {names} follow each other; remove one of them")
         levels.append(ready)
         waiting = [each for each in waiting if each not in ready]
     return levels
 
 
-def _followed(skeleton: Skeleton, constraint: JointConstraint) -> set[int]:
+def _followed(skeleton: Skeleton, constraint: JointConstraint) -> set[str]:
     """Return the joints whose turns a constraint needs."""
     if constraint.kind != "aim":
         return {constraint.source}
-    followed = set(skeleton.with_ancestors([constraint.source, constraint.joint]))
+    ends = [skeleton.index(name) for name in (constraint.source, constraint.joint)]
+    followed = {skeleton.names[joint] for joint in skeleton.with_ancestors(ends)}
     return followed - {constraint.joint}

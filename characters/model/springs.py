@@ -5,7 +5,7 @@ They are stated by VRM files, or by the table [springs] of the sidecar file of a
 
 import difflib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -28,8 +28,8 @@ SIDECAR_WIND = 0.3
 class SpringCollider:
     """A sphere or capsule that the tails of spring bones do not enter."""
 
-    joint: int
-    """The joint that carries it."""
+    joint: str
+    """Name of the joint that carries it."""
 
     start: Point
     """Centre of the sphere, or one end of the capsule's axis, in the joint's frame [m]."""
@@ -45,8 +45,8 @@ class SpringCollider:
 class SpringBone:
     """A joint that swings; its numbers are those of VRM's spring bones."""
 
-    joint: int
-    """The joint that turns."""
+    joint: str
+    """Name of the joint that turns."""
 
     tail: Point
     """The end of its bone, whose movement is simulated, in the joint's frame [m]."""
@@ -66,11 +66,22 @@ class SpringBone:
     colliders: tuple[SpringCollider, ...] = ()
     """What the tail does not enter."""
 
-    center: int | None = None
-    """The joint relative to which it has inertia; None for the world."""
+    center: str | None = None
+    """Name of the joint relative to which it has inertia; None for the world."""
 
     wind: float = 1.0
     """Part of the character's speed over the table that drags at the tail, 0…1."""
+
+    def renamed(self, names: Mapping[str, str]) -> "SpringBone":
+        """Return it for joints with new names, given by their old ones."""
+        return replace(
+            self,
+            joint=names.get(self.joint, self.joint),
+            center=None if self.center is None else names.get(self.center, self.center),
+            colliders=tuple(
+                replace(each, joint=names.get(each.joint, each.joint)) for each in self.colliders
+            ),
+        )
 
 
 @dataclass(frozen=True)
@@ -114,12 +125,12 @@ class SpringGroup:
             if parent in swinging:
                 swinging.add(joint)
         colliders = tuple(
-            SpringCollider(_joint(skeleton, name, self.place), start, end, radius)
+            SpringCollider(skeleton.names[_joint(skeleton, name, self.place)], start, end, radius)
             for name, start, end, radius in self.colliders
         )
         return [
             SpringBone(
-                joint,
+                skeleton.names[joint],
                 tail_of(skeleton, joint, meshes),
                 self.stiffness,
                 self.drag,

@@ -66,6 +66,8 @@ def with_root_joint(character: Character) -> Character:
         clips=clips,
         meshes=meshes,
         semantics=semantics,
+        springs=tuple(bone.renamed(renamed) for bone in character.springs),
+        constraints=tuple(each.renamed(renamed) for each in character.constraints),
     )
 
 

@@ -19,6 +19,7 @@ _INVALID_DATA = (ArithmeticError, AttributeError, LookupError, TypeError, ValueE
 TEXT, REAL, COUNT, FLAG = "text", "a number", "a count", "true or false"
 INTEGER = "a whole number"  # also an index that may be −1 for none, as VRM exporters write
 _NUMBER_LISTS = {n: f"{n} numbers" for n in (2, 3, 4, 16)}
+VECTOR = _NUMBER_LISTS[3]
 _ANY_NUMBER_LIST = "numbers"
 
 _TEXTURE = {
@@ -237,6 +238,11 @@ def parse(text: bytes) -> Json:
         if key in document:
             _check(document[key], kind, key, sizes)
     return document
+
+
+def check(value: object, schema: Json, place: str) -> None:
+    """Refuse a value that is not an object as a schema says; see `SCHEMA`."""
+    _check(value, schema, place, {})
 
 
 @contextmanager

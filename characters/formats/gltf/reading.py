@@ -10,6 +10,7 @@ from characters.formats.gltf import vrm
 from characters.formats.gltf.animations import read_clips
 from characters.formats.gltf.document import DamagedFileError
 from characters.formats.gltf.file import GltfFile, open_gltf
+from characters.formats.gltf.followers import EXTRA, with_followers
 from characters.formats.gltf.meshes import read_meshes
 from characters.formats.gltf.morphs import read_morph_table
 from characters.formats.gltf.nodes import NodeTree, read_node_tree
@@ -44,6 +45,9 @@ def load_character(path: Path) -> Character:
             constraints=constraints.of_joints(tree),
             look_at=read_look_at(file),
         )
+        extra = file.scene_extra(EXTRA)
+        if extra is not None:
+            character = with_followers(character, extra)
         return character if humanoid is None else _as_humanoid(character, humanoid, parts, tree)
 
 

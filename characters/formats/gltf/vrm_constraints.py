@@ -1,11 +1,13 @@
 """Constraints of nodes: the extension VRMC_node_constraint of VRM 1.0."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
 
 from characters.formats.gltf.document import DamagedFileError, Json, error_context, label
 from characters.formats.gltf.file import GltfFile
 from characters.formats.gltf.nodes import NodeTree
-from characters.model.constraints import JointConstraint, constraint_levels
+from characters.model.constraints import ConstraintKind, JointConstraint, constraint_levels
 from characters.model.springs import Point
 
 _AXES: dict[str, Point] = {
@@ -21,24 +23,37 @@ _AXES: dict[str, Point] = {
 }
 
 
+_AXIS_OF: dict[ConstraintKind, str] = {"roll": "rollAxis", "aim": "aimAxis", "rotation": ""}
+"""Member with the axis of each kind."""
+
+
+class _NodeConstraint(NamedTuple):
+    """A constraint of a node; source is the number of a node, the rest as in `JointConstraint`."""
+
+    kind: ConstraintKind
+    source: int
+    axis: Point
+    weight: float
+
+
 @dataclass(frozen=True)
 class VrmConstraints:
     """The constraints of a file."""
 
-    constraints: tuple[JointConstraint, ...] = ()
-    """They name nodes instead of joints."""
+    constraints: Mapping[int, _NodeConstraint]
+    """Constraint by number of the node that it turns."""
 
     @property
     def nodes(self) -> set[int]:
         """All nodes that they name; they must be joints."""
-        return {node for each in self.constraints for node in (each.joint, each.source)}
+        return set(self.constraints) | {each.source for each in self.constraints.values()}
 
     def of_joints(self, tree: NodeTree) -> tuple[JointConstraint, ...]:
         """Return them for the joints of a skeleton; refuse circles."""
-        joint_of = tree.joint_of_node
+        name_of = {node: tree.skeleton.names[joint] for node, joint in tree.joint_of_node.items()}
         found = tuple(
-            replace(each, joint=joint_of[each.joint], source=joint_of[each.source])
-            for each in self.constraints
+            JointConstraint(each.kind, name_of[node], name_of[each.source], each.axis, each.weight)
+            for node, each in self.constraints.items()
         )
         with error_context("VRMC_node_constraint"):
             constraint_levels(tree.skeleton, found)
@@ -47,25 +62,22 @@ class VrmConstraints:
 
 def read_constraints(file: GltfFile) -> VrmConstraints:
     """Return the constraints of a file; none without them."""
-    found = []
+    found: dict[int, _NodeConstraint] = {}
     for number, node in enumerate(file.all("nodes")):
         extension = node.get("extensions", {}).get("VRMC_node_constraint")
         if extension is not None:
             with error_context(f"constraint of {label('node', number, node)}"):
-                found.append(_constraint(number, extension["constraint"]))
-    return VrmConstraints(tuple(found))
+                found[number] = _constraint(extension["constraint"])
+    return VrmConstraints(found)
 
 
-def _constraint(node: int, stated: Json) -> JointConstraint:
-    if "roll" in stated:
-        roll = stated["roll"]
-        return JointConstraint("roll", node, roll["source"], _axis(roll["rollAxis"]), _weight(roll))
-    if "aim" in stated:
-        aim = stated["aim"]
-        return JointConstraint("aim", node, aim["source"], _axis(aim["aimAxis"]), _weight(aim))
-    if "rotation" in stated:
-        copied = stated["rotation"]
-        return JointConstraint("rotation", node, copied["source"], weight=_weight(copied))
+def _constraint(stated: Json) -> _NodeConstraint:
+    for kind, axis in _AXIS_OF.items():
+        if kind in stated:
+            own = stated[kind]
+            weight = min(max(float(own.get("weight", 1.0)), 0.0), 1.0)
+            direction = _axis(own[axis]) if axis else (0.0, 0.0, 0.0)
+            return _NodeConstraint(kind, own["source"], direction, weight)
     raise DamagedFileError("is neither roll, aim nor rotation")
 
 
@@ -73,7 +85,3 @@ def _axis(name: str) -> Point:
     if name not in _AXES:
         raise DamagedFileError(f"{name!r:.20} is no axis")
     return _AXES[name]
-
-
-def _weight(stated: Json) -> float:
-    return min(max(float(stated.get("weight", 1.0)), 0.0), 1.0)

@@ -66,30 +66,32 @@ class VrmSprings:
     def bones(self, tree: NodeTree) -> tuple[SpringBone, ...]:
         """Return them as spring bones of a skeleton; the first of a joint counts."""
         skeleton, joint_of = tree.skeleton, tree.joint_of_node
+        names = {node: skeleton.names[joint] for node, joint in joint_of.items()}
         character_from_joint = skeleton.rest.globals(skeleton)
-        bones: dict[int, SpringBone] = {}
+        bones: dict[str, SpringBone] = {}
         for spring in self.springs:
             joint = joint_of[spring.node]
             tail = tail_of(skeleton, joint)
             if spring.tail is not None:
-                with error_context(f"the spring bone {skeleton.names[joint]!r}"):
+                with error_context(f"the spring bone {names[spring.node]!r}"):
                     end = character_from_joint[joint_of[spring.tail], :, 3]
                     x, y, z, _ = np.linalg.solve(character_from_joint[joint], end).tolist()
                 tail = x, y, z
-            if np.linalg.norm(tail) < _LEAST_LENGTH_M or joint in bones:
+            name = names[spring.node]
+            if np.linalg.norm(tail) < _LEAST_LENGTH_M or name in bones:
                 continue
-            bones[joint] = SpringBone(
-                joint,
+            bones[name] = SpringBone(
+                name,
                 tail,
                 max(spring.stiffness, 0.0),
                 min(max(spring.drag, 0.0), 1.0),
                 spring.gravity,
                 max(spring.radius, 0.0),
                 tuple(
-                    SpringCollider(joint_of[each.node], each.start, each.end, each.radius)
+                    SpringCollider(names[each.node], each.start, each.end, each.radius)
                     for each in spring.colliders
                 ),
-                None if spring.center is None else joint_of[spring.center],
+                None if spring.center is None else names[spring.center],
             )
         return tuple(bones.values())
 

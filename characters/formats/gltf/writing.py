@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from characters.errors import CharacterError
 from characters.formats.gltf.buffer import ARRAY_BUFFER, ELEMENT_BUFFER, GlbBuilder
 from characters.formats.gltf.document import Json
+from characters.formats.gltf.followers import EXTRA, followers_of
 from characters.formats.gltf.materials import MaterialWriter
 from characters.model.character import Character
 from characters.model.mesh import Mesh, Morph
@@ -56,7 +57,11 @@ class _CharacterWriter:
             "nodes": [*roots, *range(joints, joints + len(character.meshes))],
         }
         # glTF has no place for the order of morphs over all meshes and for body parts.
-        extras = {"morphs": list(character.morphs), "semantics": dict(character.semantics)}
+        extras = {
+            "morphs": list(character.morphs),
+            "semantics": dict(character.semantics),
+            EXTRA: followers_of(character),
+        }
         if any(extras.values()):
             scene["extras"] = {key: value for key, value in extras.items() if value}
         self._builder.add("scenes", scene)

@@ -11,8 +11,8 @@ from characters.model.springs import SpringBone, SpringCollider
 from characters.skeleton import rotations
 from characters.skeleton.pose import Pose, Skeleton
 
-BALL = SpringCollider(0, (0.0, -0.25, 0.1), (0.0, -0.25, 0.1), 0.12)
-CAPSULE = SpringCollider(1, (-0.2, -0.1, -0.1), (0.2, -0.2, -0.1), 0.05)
+BALL = SpringCollider("j0", (0.0, -0.25, 0.1), (0.0, -0.25, 0.1), 0.12)
+CAPSULE = SpringCollider("j1", (-0.2, -0.1, -0.1), (0.2, -0.2, -0.1), 0.05)
 
 
 def head_with_hair(seed=3):
@@ -25,7 +25,7 @@ def head_with_hair(seed=3):
     tails = {2: 3, 3: 4, 5: 6, 6: 7}
     bones = tuple(
         SpringBone(
-            joint,
+            f"j{joint}",
             tuple(translations[tails[joint]]) if joint in tails else (0.0, -0.06, 0.02),
             stiffness=random.uniform(0.2, 2.0),
             drag=random.uniform(0.1, 0.6),
@@ -59,13 +59,14 @@ class Specified:
 
     def __init__(self, skeleton, bones):
         self.skeleton, self.bones = skeleton, sorted(bones, key=lambda bone: bone.joint)
+        self.number = skeleton.index
         self.now, self.before = {}, {}
 
     def update(self, pose, world):
         local = pose.rotations.copy()
         for bone in self.bones:
             placed = world @ Pose(pose.translations, local).globals(self.skeleton)
-            own = placed[bone.joint]
+            own = placed[self.number(bone.joint)]
             head, rest = own[:3, 3], own[:3, :3] @ bone.tail
             now = self.now.get(bone.joint, head + rest)
             before = self.before.get(bone.joint, now)
@@ -75,7 +76,8 @@ class Specified:
             tail = self.kept(tail, head, rest)
             for shape in bone.colliders:
                 start, end = (
-                    placed[shape.joint][:3, :3] @ end + placed[shape.joint][:3, 3]
+                    placed[self.number(shape.joint)][:3, :3] @ end
+                    + placed[self.number(shape.joint)][:3, 3]
                     for end in (shape.start, shape.end)
                 )
                 along = end - start
@@ -87,7 +89,8 @@ class Specified:
             self.before[bone.joint], self.now[bone.joint] = now, tail
             inner = own[:3, :3].T @ (tail - head)
             turn = rotations.between(bone.tail, inner)
-            local[bone.joint] = rotations.multiply(local[bone.joint], turn)
+            joint = self.number(bone.joint)
+            local[joint] = rotations.multiply(local[joint], turn)
         return local
 
     @staticmethod
@@ -97,7 +100,8 @@ class Specified:
 
 def tails(skeleton, bones, pose, world):
     placed = world @ pose.globals(skeleton)
-    return np.array([placed[b.joint][:3, :3] @ b.tail + placed[b.joint][:3, 3] for b in bones])
+    own = [placed[skeleton.index(bone.joint)] for bone in bones]
+    return np.array([m[:3, :3] @ b.tail + m[:3, 3] for m, b in zip(own, bones, strict=True)])
 
 
 def angles(one, other):
@@ -159,7 +163,8 @@ def test_bones_keep_their_length_and_stay_finite_whatever_happens():
         pose = Pose(skeleton.rest.translations, turns)
         shown = body.update(pose, world, elapsed)
         placed = world @ shown.globals(skeleton)
-        found = tails(skeleton, bones, shown, world) - [placed[b.joint][:3, 3] for b in bones]
+        heads = [placed[skeleton.index(bone.joint), :3, 3] for bone in bones]
+        found = tails(skeleton, bones, shown, world) - heads
         assert np.allclose(np.linalg.norm(found, axis=1), lengths)
         assert np.allclose(np.linalg.norm(shown.rotations, axis=1), 1.0)
 
@@ -195,7 +200,7 @@ def test_hair_hangs_at_rest_in_the_first_frame():
 
 def test_bones_with_a_center_do_not_feel_how_it_moves():
     skeleton, bones = free_hair()
-    bones = [replace(bone, center=1, gravity=(0.0, 0.0, 0.0)) for bone in bones]
+    bones = [replace(bone, center="j1", gravity=(0.0, 0.0, 0.0)) for bone in bones]
     body = SpringBody(skeleton, bones)
     for frame in range(30):
         pose, world = walking(skeleton, frame)

@@ -15,6 +15,8 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from characters import Character, CharacterError
+from characters.body.constraints import ConstrainedJoints
+from characters.body.springs import SpringBody
 from characters.skeleton import rotations
 from tests.characters.formats.built_gltf import build_arm, glb
 
@@ -48,6 +50,13 @@ def specimen():
             "emissiveFactor": [1, 1, 1],
             "emissiveTexture": {"index": 0},
             "alphaMode": "MASK",
+            "extensions": {
+                "VRMC_materials_mtoon": {
+                    "shadeColorFactor": [0.5, 0, 0],
+                    "shadeMultiplyTexture": texture,
+                    "shadingToonyFactor": 0.5,
+                }
+            },
         }
     ]
     sparse = {
@@ -70,9 +79,29 @@ def specimen():
             "specVersion": "1.0",
             "humanoid": {"humanBones": {"hips": {"node": 1}}},
             "expressions": {"preset": {"aa": {"morphTargetBinds": binds}}},
-        }
+            "lookAt": {
+                "type": "expression",
+                "offsetFromHeadBone": [0, 0.1, 0],
+                "rangeMapVerticalUp": {"inputMaxValue": 30, "outputScale": 1},
+            },
+        },
+        "VRMC_springBone": {
+            "colliders": [{"node": 1, "shape": {"sphere": {"offset": [0, 0, 9], "radius": 0.1}}}],
+            "colliderGroups": [{"colliders": [0]}],
+            "springs": [
+                {
+                    "joints": [{"node": 1, "stiffness": 2, "gravityPower": 0.1}, {"node": 2}],
+                    "colliderGroups": [0],
+                    "center": 0,
+                }
+            ],
+        },
     }
-    build.document["scenes"] = [{"nodes": [0, 3], "extras": {"morphs": ["mesh0.0"]}}]
+    constraint = {"constraint": {"roll": {"source": 1, "rollAxis": "X", "weight": 0.5}}}
+    build.document["nodes"][2]["extensions"] = {"VRMC_node_constraint": constraint}
+    maps = {name: {"greatest": 1.0, "output": 0.5} for name in ("inner", "outer", "down", "up")}
+    extras = {"morphs": ["mesh0.0"], "cubelingFollowers": {"look_at": maps | {"by": "bone"}}}
+    build.document["scenes"] = [{"nodes": [0, 3], "extras": extras}]
     build.document["buffers"] = [{"byteLength": len(build.blob)}]
     return build.document, build.blob
 
@@ -91,8 +120,12 @@ def survives(data, suffix=".glb"):
         assert reason.startswith(str(path))
         assert "\n" not in reason
         return
+    constrained = ConstrainedJoints(character.skeleton, character.constraints)
+    body = SpringBody(character.skeleton, character.springs) if character.springs else None
     for clip in character.clips.values():
-        pose = clip.sample(clip.duration / 2)
+        pose = constrained.apply(clip.sample(clip.duration / 2))
+        if body is not None:
+            pose = body.update(pose, np.eye(4), 0.0)
         assert np.isfinite(pose.globals(character.skeleton)).all()
 
 
@@ -104,6 +137,10 @@ def test_the_unchanged_file_loads():
         character = Character.load(path)
     assert character.morphs == ("aa",)
     assert character.meshes[0].material.normal_texture is not None
+    assert character.meshes[0].material.toon is not None
+    assert character.springs
+    assert character.constraints
+    assert character.look_at is not None
 
 
 def places(value, path=()):

@@ -75,27 +75,25 @@ SPRINGS_0 = {
 
 def test_chains_of_vrm_1_swing_as_they_state(load):
     character = load(VRMC_springBone=springs_1())
-    names = character.skeleton.names
     (bone,) = character.springs  # the last of a chain is the end of the bone before it
-    assert names[bone.joint] == "lock1"
+    assert bone.joint == "lock1"
     assert bone.tail == pytest.approx((0.0, 80.0, 40.0))  # lock3, past lock2
     assert (bone.stiffness, bone.drag, bone.radius) == (0.5, 0.3, 0.02)
     assert bone.gravity == pytest.approx((0.0, -0.2, 0.0))
-    assert names[bone.center] == "upper"
+    assert bone.center == "upper"
     ball, capsule = bone.colliders
-    assert (names[ball.joint], ball.start, ball.end, ball.radius) == (
+    assert (ball.joint, ball.start, ball.end, ball.radius) == (
         "upper",
         (0, 10, 0),
         (0, 10, 0),
         0.05,
     )
-    assert (names[capsule.joint], capsule.end, capsule.radius) == ("lower", (9, 0, 0), 0.0)
+    assert (capsule.joint, capsule.end, capsule.radius) == ("lower", (9, 0, 0), 0.0)
 
 
 def test_groups_of_vrm_0_swing_with_all_below_them(load):
     character = load(VRM={"secondaryAnimation": SPRINGS_0})
-    names = character.skeleton.names
-    bones = {names[bone.joint]: bone for bone in character.springs}
+    bones = {bone.joint: bone for bone in character.springs}
     assert set(bones) == {"lock1", "lock2", "lock3", "ribbon"}
     first = bones["lock1"]
     assert first.tail == pytest.approx((0.0, 50.0, 0.0))  # its first child
