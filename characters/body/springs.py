@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.body.spring_contacts import Contacts, with_length
-from characters.model.springs import SpringBone
+from characters.model.springs import REFERENCE_HEIGHT_M, SpringBone
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose, Skeleton
 
@@ -29,8 +29,9 @@ SETTLING_STEPS = 60
 """Steps before the first frame, so that gravity does not make hair fall when it appears."""
 
 MAX_TAIL_SPEED = 25.0
-"""Speed of a tail in the pose [m/s] above which its chain is carried along instead of swinging: the
-character was put elsewhere. A running person whips its hair around at less than half of that."""
+"""Speed of a tail in the pose [m/s] above which its chain is carried along instead of swinging: a
+character of `REFERENCE_HEIGHT_M` was put elsewhere. A running person whips its hair around at less
+than half of that."""
 
 _Indices = NDArray[np.intp]
 
@@ -89,9 +90,17 @@ class SpringBody:
         All joints.
     bones
         Those that swing; at most one for each joint.
+    height
+        Of the character [m].
     """
 
-    def __init__(self, skeleton: Skeleton, bones: Sequence[SpringBone]) -> None:
+    def __init__(
+        self,
+        skeleton: Skeleton,
+        bones: Sequence[SpringBone],
+        height: float = REFERENCE_HEIGHT_M,
+    ) -> None:
+        self._most_speed = MAX_TAIL_SPEED * height / REFERENCE_HEIGHT_M
         joint_of = {name: joint for joint, name in enumerate(skeleton.names)}
         depths = _depths(skeleton, {joint_of[bone.joint] for bone in bones})
         order = sorted((depths[joint_of[bone.joint]], joint_of[bone.joint], bone) for bone in bones)
@@ -196,7 +205,7 @@ class SpringBody:
         if self._has_center.any():
             moves = _moves(before.centers, now.centers)
             before = self._moved_along(before, moves, self._has_center)
-        jumps = np.linalg.norm(now.tails - before.tails, axis=1) > MAX_TAIL_SPEED * elapsed
+        jumps = np.linalg.norm(now.tails - before.tails, axis=1) > self._most_speed * elapsed
         if jumps.any():
             chains = np.isin(self._roots, self._roots[jumps])
             moves = _moves(before.frames[first], now.frames[first])

@@ -201,7 +201,7 @@ def _springs(character: Character, sidecar: Sidecar) -> tuple[SpringBone, ...]:
     """Return the spring bones of a character; those of its sidecar file replace its own."""
     bones = {bone.joint: bone for bone in character.springs}
     for group in sidecar.springs:
-        for bone in group.bones(character.skeleton, character.meshes):
+        for bone in group.bones(character.skeleton, character.meshes, character.height):
             bones[bone.joint] = bone
     return tuple(bones.values())
 

@@ -20,6 +20,12 @@ Point = tuple[float, float, float]
 LEAF_LENGTH_M = 0.07
 """Length of a bone without children, as in VRM 0.x [m]."""
 
+_LEAST_LENGTH_M = 1e-6  # of a bone; a shorter one has no direction
+
+REFERENCE_HEIGHT_M = 1.7
+"""Height of the characters for which the stiffness and gravity of sidecar files are meant [m]:
+those of others are in proportion, so that the same numbers swing alike in any unit of length."""
+
 SIDECAR_WIND = 0.3
 """What the characters of sidecar files feel of the wind that their own speed makes; 1 as in VRM."""
 
@@ -95,13 +101,13 @@ class SpringGroup:
     """Joints that swing, together with all that hangs on them."""
 
     stiffness: float
-    """As in `SpringBone`."""
+    """As in `SpringBone`, for `REFERENCE_HEIGHT_M`."""
 
     drag: float
     """As in `SpringBone`."""
 
     gravity: float
-    """Strength of the pull downwards, as in `SpringBone`."""
+    """Strength of the pull downwards, likewise."""
 
     radius: float
     """As in `SpringBone` [m]."""
@@ -112,8 +118,8 @@ class SpringGroup:
     colliders: tuple[tuple[str, Point, Point, float], ...]
     """Joint, start, end and radius of each collider, as in `SpringCollider`."""
 
-    def bones(self, skeleton: Skeleton, meshes: Sequence[Mesh]) -> list[SpringBone]:
-        """Return its spring bones.
+    def bones(self, skeleton: Skeleton, meshes: Sequence[Mesh], height: float) -> list[SpringBone]:
+        """Return its spring bones in a character of a height [m].
 
         Raises
         ------
@@ -128,13 +134,14 @@ class SpringGroup:
             SpringCollider(skeleton.names[_joint(skeleton, name, self.place)], start, end, radius)
             for name, start, end, radius in self.colliders
         )
+        size = height / REFERENCE_HEIGHT_M
         return [
             SpringBone(
                 skeleton.names[joint],
                 tail_of(skeleton, joint, meshes),
-                self.stiffness,
+                self.stiffness * size,
                 self.drag,
-                (0.0, -self.gravity, 0.0),
+                (0.0, -self.gravity * size, 0.0),
                 self.radius,
                 colliders,
                 wind=self.wind,
@@ -143,22 +150,26 @@ class SpringGroup:
         ]
 
 
-def tail_of(skeleton: Skeleton, joint: int, meshes: Sequence[Mesh] = ()) -> Point:
+def tail_of(
+    skeleton: Skeleton, joint: int, meshes: Sequence[Mesh] = (), leaf_length: float | None = None
+) -> Point:
     """Return the end of a joint's bone in its frame: the origin of its first child.
 
-    Without a child it is the middle of the vertices that the joint moves, if `meshes` are given;
-    else it goes on in the direction in which the joint lies from its parent.
+    Without a child it is the middle of the vertices that the joint moves in `meshes`; without any,
+    it goes on from its parent by `leaf_length`, or by as much as it is away from it.
     """
     children = [child for child, parent in enumerate(skeleton.parents) if parent == joint]
     ends = [skeleton.rest.translations[child] for child in children]
     if not children:
         ends = _middle_of_vertices(joint, meshes)
     for end in ends:
-        if np.linalg.norm(end) > 1e-4:
+        if np.linalg.norm(end) > _LEAST_LENGTH_M:
             return _point(end)
     along = skeleton.rest.translations[joint]
     length = float(np.linalg.norm(along))
-    return _point(along * LEAF_LENGTH_M / length) if length > 1e-6 else (0.0, LEAF_LENGTH_M, 0.0)
+    if length <= _LEAST_LENGTH_M:
+        along, length = np.array([0.0, LEAF_LENGTH_M, 0.0]), LEAF_LENGTH_M
+    return _point(along if leaf_length is None else along * leaf_length / length)
 
 
 def _middle_of_vertices(joint: int, meshes: Sequence[Mesh]) -> list[Array]:

@@ -12,8 +12,9 @@ class SpringLayer:
     """Swings the spring bones of a character; it is the last that turns joints."""
 
     def __init__(self, character: Character, seed: int = 0) -> None:
-        springs = character.springs
-        self._body = SpringBody(character.skeleton, springs) if springs else None
+        self._body: SpringBody | None = None
+        if character.springs:
+            self._body = SpringBody(character.skeleton, character.springs, character.height)
 
     def update(self, pose: Pose, context: FrameContext) -> Pose:
         """Return the pose with its spring bones swung.

@@ -9,7 +9,7 @@ import numpy as np
 from characters.formats.gltf.document import Json, error_context
 from characters.formats.gltf.file import GltfFile
 from characters.formats.gltf.nodes import NodeTree
-from characters.model.springs import Point, SpringBone, SpringCollider, tail_of
+from characters.model.springs import LEAF_LENGTH_M, Point, SpringBone, SpringCollider, tail_of
 
 _DEFAULT_DRAG = 0.5
 _LEAST_LENGTH_M = 1e-5  # of a bone; a shorter one has no direction
@@ -71,7 +71,7 @@ class VrmSprings:
         bones: dict[str, SpringBone] = {}
         for spring in self.springs:
             joint = joint_of[spring.node]
-            tail = tail_of(skeleton, joint)
+            tail = tail_of(skeleton, joint, leaf_length=LEAF_LENGTH_M)
             if spring.tail is not None:
                 with error_context(f"the spring bone {names[spring.node]!r}"):
                     end = character_from_joint[joint_of[spring.tail], :, 3]

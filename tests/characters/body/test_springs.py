@@ -1,6 +1,7 @@
 """Spring bones: against the algorithm of VRM's specification, and what must hold of any."""
 
 import math
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -150,6 +151,17 @@ def test_bones_swing_alike_at_any_frame_rate():
 
 def test_the_same_frames_give_the_same_bytes():
     assert swung(30).tobytes() == swung(30).tobytes()
+
+
+def test_a_saved_state_goes_on_with_the_same_bytes():
+    skeleton, bones = head_with_hair()
+    body = SpringBody(skeleton, bones)
+    for frame in range(20):
+        body.update(*walking(skeleton, frame), frame and 1 / 30)
+    saved = pickle.loads(pickle.dumps(body))
+    for frame in range(20, 40):
+        one, other = (each.update(*walking(skeleton, frame), 1 / 30) for each in (body, saved))
+        assert one.rotations.tobytes() == other.rotations.tobytes()
 
 
 def test_bones_keep_their_length_and_stay_finite_whatever_happens():

@@ -1,11 +1,14 @@
 """The table [springs] of a character's sidecar file."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from characters import Animator, Character, CharacterCommand, CharacterError, RootDelta
 from characters.control.command import LocomotionIntent
 from characters.control.layers import SpringLayer, layers_of
+from characters.model.springs import REFERENCE_HEIGHT_M
 
 
 @pytest.fixture
@@ -39,12 +42,15 @@ def test_named_joints_and_what_hangs_on_them_swing(beside):
     first, *_, leaf, eye = character.springs
     child = character.skeleton.index("tail4")
     assert first.tail == pytest.approx(character.skeleton.rest.translations[child])
-    assert first.stiffness == 2.0
-    assert first.gravity == (0.0, -0.5, 0.0)
+    # As much less as it is smaller than a person.
+    size = character.height / REFERENCE_HEIGHT_M
+    assert size < 0.25
+    assert first.stiffness == pytest.approx(2.0 * size)
+    assert first.gravity == pytest.approx((0.0, -0.5 * size, 0.0))
     assert first.colliders[0].joint == "hips"
     assert first.colliders[0].start == first.colliders[0].end == (0.0, 0.0, 0.1)
     assert 0.001 < np.linalg.norm(leaf.tail) < 0.3  # the middle of the skin that it moves
-    assert eye.stiffness == 1.0
+    assert eye.stiffness == pytest.approx(size)
     assert eye.drag == 0.4
 
 
@@ -67,6 +73,40 @@ def test_a_tail_follows_later_than_the_body_turns(beside):
         assert np.array_equal(one[others], other[others])
     assert max(angles) > 3.0
     assert np.isfinite(angles).all()
+
+
+def scaled(character, size):
+    """The character in another unit of length."""
+    rest = character.skeleton.rest
+    skeleton = replace(
+        character.skeleton, rest=replace(rest, translations=rest.translations * size)
+    )
+    meshes = tuple(
+        replace(
+            mesh,
+            positions=mesh.positions * np.float32(size),
+            inverse_bind=np.diag([size, size, size, 1.0])
+            @ mesh.inverse_bind
+            @ np.diag([1 / size, 1 / size, 1 / size, 1.0]),
+        )
+        for mesh in character.meshes
+    )
+    return replace(character, skeleton=skeleton, meshes=meshes, clips={}, plan=None)
+
+
+def test_the_same_numbers_swing_alike_in_any_unit_of_length(beside, tmp_path):
+    text = '[springs.tail]\njoints = ["tail3"]\nstiffness = 0.3\ngravity = 0.2'
+    vleo = beside(text)
+    scaled(replace(vleo, springs=()), 100.0).save(tmp_path / "large.glb")
+    (tmp_path / "large.toml").write_text(text)
+    turns = []
+    for character in (scaled(vleo, 1.0), Character.load(tmp_path / "large.glb")):
+        animator = Animator(character, place=RootDelta(), layers=(SpringLayer,))
+        going = LocomotionIntent(target=np.array([0.3, 0.1]), speed=2.0, stop=False)
+        asked = [CharacterCommand(frame / 30, locomotion=going) for frame in range(30)]
+        turns.append(np.array([animator.update(each).pose.rotations for each in asked]))
+        assert np.ptp(turns[-1], axis=0).max() > 0.02
+    assert np.allclose(*turns, atol=1e-3)
 
 
 @pytest.mark.parametrize(
