@@ -68,14 +68,14 @@ class Contacts:
         """Return the ways from the axes of colliders to tails, (pairs, 3), and their lengths."""
         start, end = ends[self.colliders[which], 0], ends[self.colliders[which], 1]
         along, away = end - start, tails - start
-        squared = np.einsum("ni,ni->n", along, along)
-        shares = np.einsum("ni,ni->n", away, along) / np.maximum(squared, 1e-18)
+        squared = np.vecdot(along, along)
+        shares = np.vecdot(away, along) / np.maximum(squared, 1e-18)
         away -= np.clip(shares, 0.0, 1.0)[:, None] * along
-        return away, np.sqrt(np.einsum("ni,ni->n", away, away))
+        return away, np.sqrt(np.vecdot(away, away))
 
 
 def with_length(vectors: Array, lengths: Array) -> Array:
     """Return vectors (n, 3) with these lengths (n, 1)."""
-    squared = np.einsum("ni,ni->n", vectors, vectors)[:, None]
-    scaled: Array = vectors * (lengths / np.sqrt(np.maximum(squared, 1e-18)))
+    own = np.sqrt(np.vecdot(vectors, vectors))[:, None]
+    scaled: Array = vectors * (lengths / np.maximum(own, 1e-9))
     return scaled

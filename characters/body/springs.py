@@ -124,6 +124,7 @@ class SpringBody:
         self._kept = 1.0 - _rows([bone.drag for bone in bones])
         self._gravity = _rows([bone.gravity for bone in bones])
         self._stillness = 1.0 - _rows([bone.wind for bone in bones])
+        self._has_still_air = bool(self._stillness.any())
         centers = [-1 if bone.center is None else joint_of[bone.center] for bone in bones]
         self._has_center = np.array(centers) >= 0
         shapes = list(dict.fromkeys(each for bone in bones for each in bone.colliders))
@@ -159,7 +160,9 @@ class SpringBody:
             before = self._carried(self._last, placed, elapsed)
         self._last = placed
         steps = max(math.ceil(elapsed * REFERENCE_RATE - 1e-6), 1)
-        air = (placed.place - before.place) / steps * self._stillness
+        air = None
+        if self._has_still_air:
+            air = (placed.place - before.place) / steps * self._stillness
         length = elapsed * REFERENCE_RATE / steps
         for number in range(1, steps + 1):
             on_its_way = placed.between(before, number / steps, self._levels[0])
@@ -195,7 +198,9 @@ class SpringBody:
             above = self._parents[first:]
             frames[first:, :, 3] -= heads[above]
             frames[first:] = turns[above].swapaxes(1, 2) @ frames[first:]
-        ends = _moved(world_from_joint[self._carriers, None], self._shapes)
+        ends = self._shapes
+        if len(ends):
+            ends = _moved(world_from_joint[self._carriers, None], ends)
         place = world_from_character[:3, 3].copy()
         return _Placed(frames, heads + reach, lengths, centers, ends, place)
 
@@ -218,22 +223,26 @@ class SpringBody:
         self._now, self._before = _moved(matrices, self._now), _moved(matrices, self._before)
         return before.carried(matrices, self._levels[0])
 
-    def _advance(self, placed: _Placed, length: float, air: Array) -> Array:
+    def _advance(self, placed: _Placed, length: float, air: Array | None) -> Array:
         """Make a step of a length [1 / REFERENCE_RATE]; return where the bones point.
 
-        `air` is how far the air about each tail moves meanwhile. The directions, (bones, 3), are
-        in the frames of the joints in the pose.
+        `air` is how far the air about each tail moves meanwhile, if it does. The directions,
+        (bones, 3), are in the frames of the joints in the pose.
         """
         kept, falling, pulled = self._step_factors(length)
         drift = (self._now - self._before) * (length / self._step)
-        free = self._now + air + (drift - air) * kept + falling
+        if air is not None:
+            drift = drift - air
+        free = self._now + drift * kept + falling
+        if air is not None:
+            free += air
         tails, directions = np.empty_like(free), np.empty_like(free)
         # Rotations and origins of the swung bones, (bones, 3, 4).
         swung = np.empty((len(free), 3, 4))
         for number, level in enumerate(self._levels):
-            frames, lengths = placed.frames[level], placed.lengths[level]
+            frames, lengths, axes = placed.frames[level], placed.lengths[level], self._axes[level]
             if number:
-                above = swung[self._parents[level]]
+                above = swung.take(self._parents[level], 0)
                 frames = above[..., :3] @ frames
                 frames[..., 3] += above[..., 3]
             turns, origins, rest = frames[..., :3], frames[..., 3], frames[..., 4]
@@ -245,7 +254,7 @@ class SpringBody:
             tails[level] = origins + way
             inner = directions[level] = (aimed[:, None] @ turns)[:, 0]
             if number + 1 < len(self._levels):
-                swung[level, :, :3] = _swung(turns, self._axes[level], inner, rest, aimed)
+                swung[level, :, :3] = _swung(turns, axes, inner, rest, aimed)
                 swung[level, :, 3] = origins
         if length > 0.0:
             self._before, self._step = self._now, length
@@ -302,10 +311,13 @@ def _swung(frames: Array, axes: Array, inner: Array, rest: Array, aimed: Array) 
     A turn is two reflections: M + 2 b aᵀ − s (a + Mᵀb)ᵀ / (1 + rest·b), with a = Mᵀ rest, b the
     new direction and s = rest + b; the axes are a, and `inner` is Mᵀb.
     """
-    cosine = np.einsum("ni,ni->n", rest, aimed)
-    shares = (axes + inner) / np.maximum(1.0 + cosine, 1e-9)[:, None]
-    turned: Array = frames + 2.0 * aimed[:, :, None] * axes[:, None]
-    turned -= (rest + aimed)[:, :, None] * shares[:, None]
+    cosine = np.vecdot(rest, aimed)
+    columns, rows = np.empty((len(rest), 3, 2)), np.empty((len(rest), 2, 3))
+    np.multiply(aimed, 2.0, out=columns[..., 0])
+    np.add(rest, aimed, out=columns[..., 1])
+    rows[:, 0] = axes
+    np.divide(axes + inner, -np.maximum(1.0 + cosine, 1e-9)[:, None], out=rows[:, 1])
+    turned: Array = frames + columns @ rows
     return turned
 
 
