@@ -25,6 +25,8 @@ _SUPPORTED_EXTENSIONS = {
     "KHR_materials_emissive_strength",
     "VRMC_vrm",
     "VRMC_materials_mtoon",
+    "VRMC_springBone",
+    "VRMC_node_constraint",
     "VRM",
 }
 

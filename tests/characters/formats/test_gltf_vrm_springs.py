@@ -134,3 +134,15 @@ def test_a_file_without_a_vrm_has_no_spring_bones(load):
 def test_invalid_spring_bones_are_refused(load, springs, reason):
     with pytest.raises(CharacterError, match=reason):
         load(VRMC_springBone=springs)
+
+
+def test_a_file_may_require_what_is_read_of_vrm(tmp_path):
+    build = build_arm()
+    build.document["extensionsRequired"] = [
+        "VRMC_vrm",
+        "VRMC_springBone",
+        "VRMC_node_constraint",
+        "VRMC_materials_mtoon",
+    ]
+    (tmp_path / "arm.glb").write_bytes(build.bytes())
+    assert Character.load(tmp_path / "arm.glb").springs == ()
