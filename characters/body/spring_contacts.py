@@ -10,68 +10,83 @@ from characters.model.springs import SpringBone, SpringCollider
 from characters.skeleton.pose import Array
 
 _Indices = NDArray[np.intp]
+_NEVER = -1.0  # reach of a pair that does not exist: no distance is less
 
 
 @dataclass(frozen=True)
 class Contacts:
-    """Which spring bones of a level may hit which colliders."""
+    """Which spring bones of a level may hit which colliders, one after the other."""
 
     bones: _Indices
-    """A bone of the level for each pair, (pairs,)."""
+    """The bones of the level with colliders, (n,)."""
 
     colliders: _Indices
-    """A collider for each pair, (pairs,)."""
+    """A collider for each bone and turn, (n, turns)."""
 
     reach: Array
-    """The least distance of the tail to the axis of the collider, (pairs,) [m]."""
+    """The least distance of the tail to the axis of the collider, (n, turns) [m]."""
 
-    turns: tuple[slice, ...]
-    """Pairs that are treated together: no bone is in one of them twice."""
+    are_spheres: bool
+    """Whether all colliders are spheres."""
 
     @staticmethod
     def of(bones: Sequence[SpringBone], shapes: Sequence[SpringCollider]) -> "Contacts | None":
         """Return the pairs of bones and colliders, numbered as in `shapes`; None without any."""
-        pairs = sorted(
-            (turn, number, shapes.index(shape), bone.radius + shape.radius)
-            for number, bone in enumerate(bones)
-            for turn, shape in enumerate(bone.colliders)
-        )
-        if not pairs:
+        own = [number for number, bone in enumerate(bones) if bone.colliders]
+        if not own:
             return None
-        turns = [turn for turn, *_ in pairs]
-        return Contacts(
-            np.array([number for _, number, _, _ in pairs], np.intp),
-            np.array([shape for _, _, shape, _ in pairs], np.intp),
-            np.array([reach for *_, reach in pairs]),
-            tuple(
-                slice(turns.index(turn), turns.index(turn) + turns.count(turn))
-                for turn in sorted(set(turns))
-            ),
-        )
+        turns = max(len(bones[number].colliders) for number in own)
+        colliders = np.zeros((len(own), turns), np.intp)
+        reach = np.full((len(own), turns), _NEVER)
+        for row, number in enumerate(own):
+            bone = bones[number]
+            for turn, shape in enumerate(bone.colliders):
+                colliders[row, turn] = shapes.index(shape)
+                reach[row, turn] = bone.radius + shape.radius
+        are_spheres = all(shape.start == shape.end for shape in shapes)
+        return Contacts(np.array(own, np.intp), colliders, reach, are_spheres)
 
     def pushed_out(self, way: Array, origins: Array, lengths: Array, ends: Array) -> Array:
-        """Return the ways from joints to tails, (bones, 3), with the tails out of colliders."""
+        """Return the ways from joints to tails, (bones, 3), with the tails out of colliders.
+
+        `ends` are both ends of the axes of all colliders, (colliders, 2, 3). Each tail leaves its
+        colliders in turn, and is put back to its distance from the joint each time.
+        """
         tails = (origins + way)[self.bones]
-        if (self._distances(slice(None), tails, ends)[1] >= self.reach).all():
+        hits = self._hits(tails, ends)
+        if hits is None:
             return way
         way = way.copy()
-        for turn in self.turns:
-            bones = self.bones[turn]
-            heads = origins[bones]
-            away, distances = self._distances(turn, heads + way[bones], ends)
-            depth = np.maximum(self.reach[turn] - distances, 0.0)[:, None]
-            pushed = way[bones] + away * (depth / np.maximum(distances, 1e-9)[:, None])
-            way[bones] = np.where(depth > 0, with_length(pushed, lengths[bones]), way[bones])
+        later = np.ones(self.reach.shape, bool)  # pairs whose turn is still to come
+        while hits is not None:
+            hitting, away, distances = hits
+            rows = np.flatnonzero((hitting & later).any(axis=1))
+            if not rows.size:
+                break
+            turns = (hitting & later)[rows].argmax(axis=1)
+            later[rows] = np.arange(self.reach.shape[1]) > turns[:, None]
+            bones, distance = self.bones[rows], distances[rows, turns]
+            depth = (self.reach[rows, turns] - distance) / np.maximum(distance, 1e-9)
+            pushed = way[bones] + away[rows, turns] * depth[:, None]
+            way[bones] = with_length(pushed, lengths[bones])
+            tails[rows] = origins[bones] + way[bones]
+            hits = self._hits(tails, ends)
         return way
 
-    def _distances(self, which: slice, tails: Array, ends: Array) -> tuple[Array, Array]:
-        """Return the ways from the axes of colliders to tails, (pairs, 3), and their lengths."""
-        start, end = ends[self.colliders[which], 0], ends[self.colliders[which], 1]
-        along, away = end - start, tails - start
-        squared = np.vecdot(along, along)
-        shares = np.vecdot(away, along) / np.maximum(squared, 1e-18)
-        away -= np.clip(shares, 0.0, 1.0)[:, None] * along
-        return away, np.sqrt(np.vecdot(away, away))
+    def _hits(self, tails: Array, ends: Array) -> tuple[NDArray[np.bool_], Array, Array] | None:
+        """Return which pairs hit, the ways from the axes to the tails, and their lengths.
+
+        They are (n, turns), (n, turns, 3) and (n, turns); None if none hits.
+        """
+        start = ends[self.colliders, 0]
+        away = tails[:, None] - start
+        if not self.are_spheres:
+            along = ends[self.colliders, 1] - start
+            shares = np.vecdot(away, along) / np.maximum(np.vecdot(along, along), 1e-18)
+            away -= np.clip(shares, 0.0, 1.0)[..., None] * along
+        distances = np.sqrt(np.vecdot(away, away))
+        hitting = distances < self.reach
+        return (hitting, away, distances) if hitting.any() else None
 
 
 def with_length(vectors: Array, lengths: Array) -> Array:
