@@ -4,7 +4,8 @@ import struct
 import numpy as np
 import pytest
 
-from characters import Character, CharacterError
+from characters import Animator, Character, CharacterCommand, CharacterError, RootDelta
+from characters.control.layers.gaze import GazeLayer
 from characters.model.character import skin
 from tests.characters.formats.built_gltf import build_arm, glb
 
@@ -212,6 +213,27 @@ def test_joints_of_eyes_turn_by_10_of_90_degrees_unless_it_is_stated(tmp_path, e
     look_at = load(tmp_path, build.bytes()).look_at
     turns = look_at.mapped(np.radians(45), np.radians(180), "left")
     assert np.degrees(turns) == pytest.approx([5.0, 10.0])
+
+
+def test_a_vrm_without_joints_for_its_eyes_looks_at_a_point_by_its_expressions(tmp_path, human):
+    def looking(nodes, carrier, mesh, targets):
+        name, content = vrm_1(nodes, carrier, mesh, targets)
+        for way, target in {"lookLeft": "aa", "lookRight": "oh", "lookUp": "ih"}.items():
+            bind = {"node": carrier, "index": targets.index(target), "weight": 1.0}
+            content["expressions"]["preset"][way] = {"morphTargetBinds": [bind]}
+        content["lookAt"] = {"type": "expression"}
+        return name, content
+
+    character = load(tmp_path, vrm(human, looking))
+    animator = Animator(character, place=RootDelta(), layers=(GazeLayer,))
+    left = np.array([0.2, 0.15, 1.0])
+    for frame in range(30):
+        pose = animator.update(CharacterCommand(frame / 30, gaze=left)).pose
+    weights = dict(zip(character.morphs, pose.morphs, strict=True))
+    assert weights["lookLeft"] > 0.02
+    assert weights["lookRight"] == 0.0
+    eyes = [character.skeleton.index(name) for name in ("LeftEye", "RightEye")]
+    assert np.array_equal(pose.rotations[eyes], character.skeleton.rest.rotations[eyes])
 
 
 def test_a_vrm_that_says_nothing_of_its_eyes_looks_as_people_do(tmp_path):
