@@ -1,0 +1,195 @@
+"""Where a pose has spring bones: in the world, or as they hang on other spring bones."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.model.springs import SpringBone
+from characters.skeleton.pose import Array, Pose, Skeleton
+
+_Indices = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class PlacedBones:
+    """Where the bones are in the pose; those of the first level hang on what does not swing."""
+
+    frames: Array
+    """(bones, 3, 5): rotation, origin [m] and direction of each bone. They are those of the first
+    level in the world, of others in the frame of the spring bone above."""
+
+    tails: Array
+    """Ends of the bones in the world, (bones, 3) [m]."""
+
+    lengths: Array
+    """Of the bones, (bones, 1) [m]."""
+
+    centers: Array
+    """Rotations and origins of the centres in the world, (bones, 3, 4) [m]; any for none."""
+
+    colliders: Array
+    """Both ends of the colliders' axes in the world, (colliders, 2, 3) [m]."""
+
+    place: Array
+    """Where the character stands, (3,) [m]."""
+
+    def carried(self, matrices: Array, first: slice) -> "PlacedBones":
+        """Return the bones moved rigidly by a matrix each, (bones, 3, 4)."""
+        frames = self.frames.copy()
+        frames[first] = matrices[first, :3, :3] @ frames[first]
+        frames[first, :, 3] += matrices[first, :3, 3]
+        return replace(self, frames=frames, tails=moved(matrices, self.tails))
+
+    def between(self, before: "PlacedBones", share: float, first: slice) -> "PlacedBones":
+        """Return the bones with their first level on its way from an earlier placement."""
+        if share >= 1.0:
+            return self
+        frames = self.frames.copy()
+        mixed = before.frames[first] + share * (frames[first] - before.frames[first])
+        # One Newton step of the polar decomposition makes the mixture a rotation again.
+        turns = mixed[..., :3]
+        grown = turns.swapaxes(1, 2) @ mixed[..., [0, 1, 2, 4]]
+        mixed[..., [0, 1, 2, 4]] = 1.5 * mixed[..., [0, 1, 2, 4]] - 0.5 * turns @ grown
+        frames[first] = mixed
+        colliders = before.colliders + share * (self.colliders - before.colliders)
+        return replace(self, frames=frames, colliders=colliders)
+
+
+class SpringFrames:
+    """The spring bones of a skeleton in levels: each level hangs on those before it."""
+
+    def __init__(self, skeleton: Skeleton, bones: Sequence[SpringBone]) -> None:
+        joint_of = {name: joint for joint, name in enumerate(skeleton.names)}
+        depths = _depths(skeleton, {joint_of[bone.joint] for bone in bones})
+        order = sorted((depths[joint_of[bone.joint]], joint_of[bone.joint], bone) for bone in bones)
+        self.bones = [bone for _, _, bone in order]
+        """The spring bones in the order of all arrays: level by level."""
+        self.joints: _Indices = np.array([joint for _, joint, _ in order], np.intp)
+        """Their joints."""
+        self.parents = _parents(skeleton, self.joints)
+        """The spring bone above each, −1 for none."""
+        depth_of = [depth for depth, _, _ in order]
+        self.levels = [
+            slice(depth_of.index(depth), depth_of.index(depth) + depth_of.count(depth))
+            for depth in sorted(set(depth_of))
+        ]
+        """The bones of each level."""
+        self.roots: _Indices = np.arange(len(order))
+        """The first spring bone of the chain of each."""
+        for level in self.levels[1:]:
+            self.roots[level] = self.roots[self.parents[level]]
+        tails = rows([bone.tail for bone in self.bones])
+        self._tails = tails[:, :, None]
+        self._lengths = np.linalg.norm(tails, axis=1, keepdims=True)
+        self.axes = tails / self._lengths
+        """Directions of the bones in their joints' frames, (bones, 3)."""
+        self.shapes = list(dict.fromkeys(each for bone in self.bones for each in bone.colliders))
+        """The colliders."""
+        ends = [[shape.start, shape.end] for shape in self.shapes]
+        self._ends = np.array(ends).reshape(-1, 2, 3)
+        own = self.joints.tolist()
+        carriers = [joint_of[shape.joint] for shape in self.shapes]
+        centers = [-1 if bone.center is None else joint_of[bone.center] for bone in self.bones]
+        self._part = _SkeletonPart.of(skeleton, [*own, *carriers, *centers])
+        self._own, self._carriers, self._centers = map(self._part.places, (own, carriers, centers))
+
+    def placed(self, pose: Pose, world_from_character: Array) -> PlacedBones:
+        """Return where the pose has the bones."""
+        world_from_joint = world_from_character @ self._part.globals(pose)
+        own = world_from_joint[self._own]
+        turns, heads = own[:, :3, :3], own[:, :3, 3]
+        reach = (turns @ self._tails)[..., 0]
+        lengths = self._lengths
+        centers = world_from_joint[self._centers, :3]
+        if pose.scales is not None:
+            turns, centers[..., :3] = _unscaled(turns), _unscaled(centers[..., :3])
+            lengths = np.maximum(np.linalg.norm(reach, axis=1, keepdims=True), 1e-9)
+        frames = np.empty((len(own), 3, 5))
+        frames[..., :3], frames[..., 3], frames[..., 4] = turns, heads, reach / lengths
+        first = self.levels[0].stop
+        if first < len(frames):
+            above = self.parents[first:]
+            frames[first:, :, 3] -= heads[above]
+            frames[first:] = turns[above].swapaxes(1, 2) @ frames[first:]
+        ends = self._ends
+        if len(ends):
+            ends = moved(world_from_joint[self._carriers, None], ends)
+        place = world_from_character[:3, 3].copy()
+        return PlacedBones(frames, heads + reach, lengths, centers, ends, place)
+
+
+@dataclass(frozen=True)
+class _SkeletonPart:
+    """The joints on which some joints depend, as a skeleton of their own."""
+
+    skeleton: Skeleton
+    """These joints."""
+
+    joints: _Indices
+    """Their numbers in the whole skeleton."""
+
+    @staticmethod
+    def of(skeleton: Skeleton, joints: Sequence[int]) -> "_SkeletonPart":
+        kept = skeleton.with_ancestors(joint for joint in joints if joint >= 0)
+        places = {joint: number for number, joint in enumerate(kept)}
+        names = tuple(skeleton.names[joint] for joint in kept)
+        parents = tuple(places.get(skeleton.parents[joint], -1) for joint in kept)
+        rest = Pose(skeleton.rest.translations[kept], skeleton.rest.rotations[kept])
+        return _SkeletonPart(Skeleton(names, parents, rest), np.array(kept, np.intp))
+
+    def places(self, joints: Sequence[int]) -> _Indices:
+        """Return the numbers of joints in the part; any for −1."""
+        return np.searchsorted(self.joints, np.maximum(np.array(joints, np.intp), 0))
+
+    def globals(self, pose: Pose) -> Array:
+        """Return `character_from_joint` of its joints, (joints, 4, 4), in a pose of all."""
+        scales = None if pose.scales is None else pose.scales[self.joints]
+        own = Pose(pose.translations[self.joints], pose.rotations[self.joints], scales)
+        return own.globals(self.skeleton)
+
+
+def moved(matrices: Array, points: Array) -> Array:
+    """Return points (…, 3) after matrices (…, 3 or 4, 4)."""
+    moved: Array = (matrices[..., :3, :3] @ points[..., None])[..., 0] + matrices[..., :3, 3]
+    return moved
+
+
+def _unscaled(matrices: Array) -> Array:
+    """Return matrices (n, 3, 3) with columns of length one, as far as they have any."""
+    unit: Array = matrices / np.maximum(np.linalg.norm(matrices, axis=1, keepdims=True), 1e-9)
+    return unit
+
+
+def rigid_moves(before: Array, after: Array) -> Array:
+    """Return the rigid moves (n, 3, 4) from rotations and origins (n, 3, 4 or 5) to others."""
+    moves = np.empty((len(before), 3, 4))
+    moves[..., :3] = after[..., :3] @ before[..., :3].swapaxes(1, 2)
+    moves[..., 3] = after[..., 3] - (moves[..., :3] @ before[..., 3, None])[..., 0]
+    return moves
+
+
+def rows(values: Sequence[object]) -> Array:
+    """Return numbers or vectors as (n, 1) or (n, 3)."""
+    return np.array(values, float).reshape(len(values), -1)
+
+
+def _depths(skeleton: Skeleton, swinging: set[int]) -> list[int]:
+    """Return how many joints above each joint swing."""
+    depths: list[int] = []
+    for parent in skeleton.parents:
+        depths.append(0 if parent < 0 else depths[parent] + (parent in swinging))
+    return depths
+
+
+def _parents(skeleton: Skeleton, joints: _Indices) -> _Indices:
+    """Return for each joint which of them is the nearest above it, −1 for none."""
+    places = {joint: number for number, joint in enumerate(joints.tolist())}
+    found = []
+    for joint in joints.tolist():
+        above = skeleton.parents[joint]
+        while above >= 0 and above not in places:
+            above = skeleton.parents[above]
+        found.append(places.get(above, -1))
+    return np.array(found, np.intp)
