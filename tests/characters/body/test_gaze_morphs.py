@@ -89,8 +89,10 @@ def test_joints_of_eyes_come_before_morphs():
 
 
 def look_at(by, output=1.0, offset=None):
-    maps = (RangeMap(math.radians(degrees), output) for degrees in (30, 40, 20, 10))
-    return LookAt(by, *maps, eye_offset=offset)
+    inner, outer, down, up = (
+        RangeMap(math.radians(degrees), output) for degrees in (30, 40, 20, 10)
+    )
+    return LookAt(by, inner, outer, down, up, offset)
 
 
 @pytest.mark.parametrize(

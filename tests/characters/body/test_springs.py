@@ -167,10 +167,12 @@ def test_a_saved_state_goes_on_with_the_same_bytes():
     skeleton, bones = head_with_hair()
     body = SpringBody(skeleton, bones)
     for frame in range(20):
-        body.update(*walking(skeleton, frame), frame and 1 / 30)
+        pose, world = walking(skeleton, frame)
+        body.update(pose, world, frame and 1 / 30)
     saved = pickle.loads(pickle.dumps(body))
     for frame in range(20, 40):
-        one, other = (each.update(*walking(skeleton, frame), 1 / 30) for each in (body, saved))
+        pose, world = walking(skeleton, frame)
+        one, other = (each.update(pose, world, 1 / 30) for each in (body, saved))
         assert one.rotations.tobytes() == other.rotations.tobytes()
 
 

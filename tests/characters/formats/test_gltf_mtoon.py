@@ -87,8 +87,9 @@ def lit(toon, cosine):
 
 @pytest.mark.parametrize(("shift", "toony"), [(0.0, 0.9), (0.5, 0.5), (-0.5, 0.2)])
 def test_vrm_0_means_the_same_shade_in_numbers_of_its_own(load, shift, toony):
-    unlit = {"KHR_materials_unlit": {}}
-    toon = surface(load(unlit, VRM=old(_ShadeShift=shift, _ShadeToony=toony))).toon
+    toon = surface(
+        load({"KHR_materials_unlit": {}}, VRM=old(_ShadeShift=shift, _ShadeToony=toony))
+    ).toon
     assert toon.color == pytest.approx((1.0, 0.5**2.2, 0.0))
     assert toon.texture[0, 0].tolist() == [90, 30, 60]
     # Its shader went from the shift to 1, or less far the more toony it was.

@@ -229,6 +229,7 @@ def test_a_vrm_without_joints_for_its_eyes_looks_at_a_point_by_its_expressions(t
     left = np.array([0.2, 0.15, 1.0])
     for frame in range(30):
         pose = animator.update(CharacterCommand(frame / 30, gaze=left)).pose
+    assert pose.morphs is not None
     weights = dict(zip(character.morphs, pose.morphs, strict=True))
     assert weights["lookLeft"] > 0.02
     assert weights["lookRight"] == 0.0

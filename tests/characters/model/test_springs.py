@@ -106,7 +106,7 @@ def test_the_same_numbers_swing_alike_in_any_unit_of_length(beside, tmp_path):
         asked = [CharacterCommand(frame / 30, locomotion=going) for frame in range(30)]
         turns.append(np.array([animator.update(each).pose.rotations for each in asked]))
         assert np.ptp(turns[-1], axis=0).max() > 0.02
-    assert np.allclose(*turns, atol=1e-3)
+    assert np.allclose(turns[0], turns[1], atol=1e-3)
 
 
 @pytest.mark.parametrize(
