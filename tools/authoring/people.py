@@ -19,8 +19,8 @@ from tools.authoring.robot import rig as robot
 from tools.authoring.vleo import clips as vleo_clips
 from tools.authoring.vleo import rig as vleo
 
-KEPT_FRAMES = 2
-"""One of so many frames is kept: 15 a second."""
+KEPT_RATE_HZ = 15.0
+"""Frames a second that are kept [Hz]."""
 
 
 def save_standing(character: Character, path: Path) -> None:
@@ -33,7 +33,7 @@ def save_standing(character: Character, path: Path) -> None:
 
 def recording_of(character: Character, mood: str, clip: Clip) -> StandingRecording:
     """Return a clip of a mood as a recording of how a character stands."""
-    fewer = replace(clip, rate=clip.rate / KEPT_FRAMES, poses=clip.poses[::KEPT_FRAMES])
+    fewer = replace(clip, rate=KEPT_RATE_HZ, poses=clip.poses[:: round(clip.rate / KEPT_RATE_HZ)])
     body = character.skeleton, character.anatomy
     return read_standing(fewer, *body, region_of(mood), alignment="none")
 

@@ -61,3 +61,24 @@ def check_leg_stretch(character: Character, name: str, feet: tuple[str, ...]) ->
         joint = character.skeleton.index(foot)
         lengths = np.linalg.norm(character.clips[name].poses.translations[:, joint], axis=1)
         assert lengths.max() < 1.2 * lengths.min()
+
+
+def planted_slide(character: Character, name: str, feet: tuple[str, ...]) -> float:
+    """Return the greatest speed along the ground of soles on the ground in a clip [m/s].
+
+    It samples between the frames too, where legs are interpolated. Soles are on the ground up to
+    1 mm; toes and heel count each.
+    """
+    skeleton, clip = character.skeleton, character.clips[name]
+    rate = 120.0
+    times = np.arange(0, clip.duration, 1 / rate)
+    posed = np.array([clip.sample(time).globals(skeleton) for time in times])
+    rest, fastest = skeleton.rest.globals(skeleton), 0.0
+    for foot in map(skeleton.index, feet):
+        for ahead in (-0.012, 0.0, 0.02):
+            sole = [*(rest[foot, :3, :3].T @ [0.0, -rest[foot, 1, 3], ahead]), 1.0]
+            places = (posed[:, foot] @ sole)[:, :3]
+            speed = np.linalg.norm(np.diff(places[:, [0, 2]], axis=0), axis=1) * rate
+            down = places[:, 1] < 0.001
+            fastest = max(fastest, float((speed * (down[1:] & down[:-1])).max()))
+    return fastest

@@ -8,15 +8,17 @@ import numpy as np
 from characters.motion.clip import Clip
 from characters.skeleton import rotations
 from characters.skeleton.pose import Pose, Skeleton
-from tools.authoring.modelling.curves import spring_follow
+from tools.authoring.modelling.curves import smoothstep, spring_follow
 from tools.authoring.modelling.ik import aim_rotation, hinge_position
 from tools.authoring.modelling.shapes import Array
 
 DEGREE = np.pi / 180
-FRAME_RATE_HZ = 30.0
-"""Frames a second [Hz]."""
+FRAME_RATE_HZ = 60.0
+"""Frames a second [Hz]: between two frames, interpolated legs slide half as fast as at 30 Hz."""
 MAX_LEG_EXTENSION = 0.985
 """Leg extension over the length of its bones beyond which the leg stretches."""
+LIFT_CLEARANCE_M = 0.003, 0.012
+"""Heights of a foot from which it leaves its place, and from which it is free [m]."""
 
 
 @dataclass
@@ -70,8 +72,15 @@ class AnimationTracks:
         z: Array | float = 0,
         toes: Array | float = 0,
     ) -> None:
-        """Add an offset of a foot [m] and a rotation of its toes [rad]."""
-        self.feet[foot] = self.feet.get(foot, 0.0) + self._columns(x, y, z, toes)
+        """Add an offset of a foot [m] and a rotation of its toes [rad].
+
+        On the ground it stays where it is: it goes aside and turns only as far as it is lifted.
+        """
+        low, high = LIFT_CLEARANCE_M
+        free = smoothstep((np.asarray(y) - low) / (high - low))
+        self.feet[foot] = self.feet.get(foot, 0.0) + self._columns(
+            x * free, y, z * free, toes * free
+        )
 
     def _columns(self, *values: Array | float) -> Array:
         return np.stack([np.broadcast_to(value, self.frames) for value in values], axis=-1)

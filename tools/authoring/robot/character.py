@@ -39,7 +39,7 @@ def build_robot() -> Character:
 
 def clips(shipped: Skeleton) -> dict[str, Clip]:
     """Return all clips by name: idle, and every mood at three intensities."""
-    anims = {"idle": neutral(1, IDLE_DURATION_S)}
+    anims = {"idle": neutral(1, IDLE_DURATION_S, taps=False)}
     for level, name in enumerate(LEVELS):
         anims[f"neutral_{name}"] = neutral(level)
         anims[f"happy_{name}"] = happy(level)

@@ -1,7 +1,5 @@
 """The robot's happy clips: beam and nod, dance, and hop with a wagging tail."""
 
-import numpy as np
-
 from tools.authoring.modelling.curves import Array, delayed, keys, wave
 from tools.authoring.modelling.quadruped import DEGREE, FRAME_RATE_HZ, AnimationTracks
 from tools.authoring.robot.motion import face_ahead, keys_deg, neck, stomp_curve, tail
@@ -85,8 +83,8 @@ def _hop(anim: AnimationTracks) -> None:
     anim.turn("hips", left=6 * DEGREE * sway, tilt=3 * DEGREE * sway)
     for foot in FEET:
         front = "Front" in foot
-        anim.step(foot, y=(0.042 if front else 0.016) * air, z=(0.014 if front else -0.006) * air)
-        anim.step(foot, toes=(0.35 if front else -0.30) * np.asarray(air))
+        up, ahead, toes = (0.042, 0.014, 0.35) if front else (0.016, -0.006, -0.30)
+        anim.step(foot, y=up * air, z=ahead * air, toes=toes * air)
 
 
 def _lift(anim: AnimationTracks, side: str, up: Array, high: float) -> None:

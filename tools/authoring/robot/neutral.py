@@ -6,19 +6,20 @@ from tools.authoring.robot.motion import blink, keys_deg, neck, tail, turn_eyes
 from tools.authoring.robot.rig import set_lamps, set_lids, set_mouth
 
 
-def neutral(level: int, seconds: float = 4.8) -> AnimationTracks:
+def neutral(level: int, seconds: float = 4.8, taps: bool = True) -> AnimationTracks:
     """Look about, blink, and wait.
 
     Parameters
     ----------
     level : 0 head only, 1 head and legs, 2 whole body
     seconds : duration of the loop [s]
+    taps : whether a front foot taps twice, with the legs and the whole body
     """
     anim = AnimationTracks(round(seconds * FRAME_RATE_HZ))
     n = anim.frames
     set_lamps(anim, "neutral")
     # Overlapping action of the gaze: eyes first, then head, then neck.
-    wide = (0.75, 1.0, 1.35)[level]
+    wide = (1.0, 1.3, 1.6)[level]
     aside = wide * keys_deg(
         n, (0.03, 0), (0.10, 17), (0.36, 15), (0.45, -15), (0.72, -17), (0.82, 0)
     )
@@ -31,11 +32,14 @@ def neutral(level: int, seconds: float = 4.8) -> AnimationTracks:
     set_lids(anim, blink(n, 0.43), 0.12)
     set_mouth(anim, keys(n, (0.1, 0.0), (0.2, 0.05), (0.4, 0.0)), 0.22)
     if level >= 1:
-        shift = keys(n, (0.05, 1), (0.38, 1), (0.55, -1), (0.88, -1)) * 0.0055
-        anim.move("hips", x=shift, y=-0.002 + 0.0018 * wave(n, 4))
-        anim.turn("hips", tilt=-4 * shift, left=5 * shift, up=1.2 * DEGREE * wave(n, 1, 0.1))
-        anim.turn("chest", left=4 * shift)
-    swing = (2.5, 5.0, 13.0)[level] * DEGREE
-    lift = (1.0, 3.0, 9.0)[level] * DEGREE
+        shift = keys(n, (0.05, 1), (0.30, 1), (0.45, -1), (0.88, -1)) * 0.010
+        anim.move("hips", x=shift, y=-0.004 + 0.003 * wave(n, 4))
+        anim.turn("hips", tilt=-4 * shift, left=5 * shift, up=2.5 * DEGREE * wave(n, 2, 0.1))
+        anim.turn("chest", left=4 * shift, up=-1.5 * DEGREE * wave(n, 2, 0.16))
+    if level >= 1 and taps:  # while the weight is on the other side
+        tap = keys(n, (0.58, 0), (0.63, 1), (0.67, 0), (0.70, 0), (0.74, 0.7), (0.78, 0))
+        anim.step("LeftFrontFoot", y=0.020 * tap, z=0.010 * tap, toes=0.3 * tap)
+    swing = (5.0, 11.0, 18.0)[level] * DEGREE
+    lift = (2.0, 5.0, 10.0)[level] * DEGREE
     tail(anim, lift + 0.3 * lift * wave(n, 4, 0.1), swing * wave(n, 2), 1.3)
     return anim

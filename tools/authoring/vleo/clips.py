@@ -6,10 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from characters.motion.clip import Clip
+from characters.skeleton import rotations
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.curves import Array, loop_phases
+from tools.authoring.modelling.curves import Array, loop_phases, smoothstep
 from tools.authoring.modelling.quadruped import AnimationTracks, loop_clip, solve_poses, swing_tail
-from tools.authoring.vleo.expressions import EXPRESSIONS
+from tools.authoring.vleo.expressions import EXPRESSIONS, JAW_HINGE_M
 from tools.authoring.vleo.rig import FEET, HIDDEN_SCALE, TAIL
 
 
@@ -62,18 +63,22 @@ class EffectFlight:
 def animate_effects(
     anim: AnimationTracks, joints: Sequence[str], flights: Sequence[EffectFlight], bound: Skeleton
 ) -> None:
-    """Let effects fly from the position of the mouth at their start."""
-    pose = solve_poses(anim, bound, FEET)
-    mouth = pose.globals(bound)[:, bound.index("lips"), :3, 3]
+    """Let effects fly from the middle of the mouth at their start.
+
+    They leave straight ahead while they grow, and spread only then, so that they come out of the
+    mouth and not from beside it. None of them stops before it is gone.
+    """
+    mouth = _open_mouth(anim, bound)
     home = bound.rest.translations
     for joint, flight in zip(joints, flights, strict=True):
         leaves = mouth[round(flight.start * anim.frames) % anim.frames]
         age = ((loop_phases(anim.frames) - flight.start) % 1.0) / flight.life
         alive = age < 1
         age = np.minimum(age, 1.0)
-        out = 1 - (1 - age) ** 3
+        out = 0.7 * (1 - (1 - age) ** 3) + 0.3 * age
+        spread = 0.5 * smoothstep(age / 0.7) + 0.5 * age**1.5
         sideways = flight.swirl * np.sin(2 * np.pi * age)
-        rise = np.stack([out, age**1.3, out], axis=1) * np.array(flight.way)
+        rise = np.stack([spread, age**1.3, out], axis=1) * np.array(flight.way)
         offset = leaves - home[bound.index(joint)] + rise + sideways[:, None] * np.array([1, 0, 0])
         anim.moves[joint] = np.where(alive[:, None], offset, leaves - home[bound.index(joint)])
         anim.scales[joint] = np.where(
@@ -84,6 +89,22 @@ def animate_effects(
             left=(flight.facing + flight.spin * (age - 0.5)) * alive,
             tilt=0.3 * np.sin(6 * age) * alive,
         )
+
+
+def _open_mouth(anim: AnimationTracks, bound: Skeleton) -> Array:
+    """Return the middle of the opening between the lips, (frames, 3) [m]."""
+    globals_ = solve_poses(anim, bound, FEET).globals(bound)
+    rest = bound.rest.globals(bound)[:, :3, 3]
+    head, lips = bound.index("head"), bound.index("lips")
+    opening = sum(
+        (EXPRESSIONS[name].jaw * on for name, on in anim.morphs.items()),
+        start=np.zeros(anim.frames),
+    )
+    turned = rotations.rotate(rotations.about("x", 0.5 * opening), rest[lips] - JAW_HINGE_M)
+    at = turned + JAW_HINGE_M - rest[head]
+    return np.asarray(
+        np.einsum("fij,fj->fi", globals_[:, head, :3, :3], at) + globals_[:, head, :3, 3]
+    )
 
 
 def _pop(age: Array) -> Array:

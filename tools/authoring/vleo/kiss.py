@@ -99,7 +99,8 @@ def _jump(anim: AnimationTracks) -> None:
         front = "Front" in foot
         top = 0.058 if front else 0.026
         hop = [(0.68, 0), (0.745, 0.014), (0.81, 0), (0.99, 0)]
-        up = keys(n, (0.37, 0), (0.46, top), (0.55, 0), *hop)
+        leaves = 0.325 if front else 0.37  # the forelegs rear up before the hind legs push off
+        up = keys(n, (leaves, 0), (0.46, top), (0.55, 0), *hop)
         anim.step(foot, y=up, z=(0.4 if front else -0.3) * up, toes=(-12 if front else -9) * up)
 
 
@@ -124,6 +125,6 @@ def _hearts(anim: AnimationTracks, level: int, bound: Skeleton) -> None:
         EffectFlight(
             0.51, 0.42, (-1.35 * side, 0.90 * up, 0.9 * ahead), 0.8 * size, -0.008, -0.2, -0.5
         ),
-        EffectFlight(0.57, 0.40, (1.75 * side, 0.15 * up, 0.8 * ahead), third, 0.008, 0.3, 0.5),
+        EffectFlight(0.57, 0.40, (1.75 * side, 0.55 * up, 0.8 * ahead), third, 0.008, 0.3, 0.5),
     ]
     animate_effects(anim, HEARTS, flights, bound)

@@ -13,6 +13,10 @@ from tools.authoring.vleo.rig import BURSTS
 
 DURATION_S = 2.0
 """Duration of the loop [s]."""
+TREMBLES = 16
+"""Vibrations of the head and the jaw in a loop: 8 Hz."""
+TREMBLE_DEG = 4.0
+"""How far the head vibrates up and down while it shouts [degrees]."""
 StompPhases = tuple[float, float, float]
 """Phases at which a foot leaves the ground, is highest, and is back."""
 
@@ -60,10 +64,13 @@ def _rage(anim: AnimationTracks, raging: Array) -> None:
     """Open the mouth wide, shake the head while `raging` (0…1), and scowl all the time."""
     n = anim.frames
     shake = raging * wave(n, 8, 0.30)
-    anim.turn("head", left=10 * DEGREE * shake, tilt=6 * DEGREE * raging * wave(n, 8, 0.33))
+    tremble = raging * wave(n, TREMBLES)
+    anim.turn("head", left=12 * DEGREE * shake, tilt=7 * DEGREE * raging * wave(n, 8, 0.33))
+    anim.turn("head", up=TREMBLE_DEG * DEGREE * tremble)
+    anim.turn("chest", up=-0.25 * TREMBLE_DEG * DEGREE * delayed(tremble, 0.01))
     anim.turn("neck2", left=-5 * DEGREE * delayed(shake, 0.01))
     roar = [(0.0, 0.0), (0.21, 0.0), (0.30, 1.1), (0.37, 0.92), (0.71, 1.0), (0.82, 0.0)]
-    anim.show("aa", keys(n, *roar) + 0.07 * raging * wave(n, 16))
+    anim.show("aa", keys(n, *roar) + 0.16 * tremble)
     anim.show("angry", keys(n, (0.0, 0.8), (0.22, 1.0), (0.34, 1.0), (0.80, 0.8)))
 
 

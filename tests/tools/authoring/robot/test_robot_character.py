@@ -12,6 +12,7 @@ from tests.tools.authoring.clip_checks import (
     check_same_clips,
     check_vertices,
     moving,
+    planted_slide,
 )
 from tools.authoring.robot.character import build_robot
 from tools.authoring.robot.expressions import EXPRESSIONS
@@ -20,7 +21,7 @@ from tools.authoring.robot.rig import FEET, LAMPS, MOODS, skeleton
 LEVELS = ("head", "legs", "tail")
 CLIPS = ("idle", *(f"{mood}_{level}" for mood in MOODS for level in LEVELS))
 PLANTED = dict.fromkeys(("idle", "happy_head", "angry_head"), FEET) | {
-    "neutral_tail": FEET,
+    "neutral_tail": FEET[1:],
     "happy_legs": FEET[2:],
     "angry_legs": FEET[2:],
     "angry_tail": FEET[2:],
@@ -174,3 +175,18 @@ def test_a_blink_shuts_both_eyes_and_a_wink_one(robot: Character) -> None:
         away = np.linalg.norm(moved, axis=1) > 0.01
         left = mesh.positions[:, 0] > 0
         assert (bool((away & left).any()), bool((away & ~left).any())) == sides
+
+
+@pytest.mark.parametrize("name", CLIPS)
+def test_feet_on_the_ground_do_not_skid_between_steps_and_hops(robot: Character, name: str) -> None:
+    assert planted_slide(robot, name, FEET) < 0.010
+
+
+@pytest.mark.parametrize("name", ["idle", "neutral_legs", "neutral_tail"])
+def test_it_shifts_its_weight_looks_around_and_taps_while_it_waits(
+    robot: Character, name: str
+) -> None:
+    assert moving(robot, name, "hips") > 0.015
+    assert moving(robot, name, "head") > 0.03
+    assert name == "idle" or moving(robot, name, "LeftFrontFoot") > 0.015
+    assert moving(robot, name, "tail5") > 0.04

@@ -13,8 +13,10 @@ from tests.tools.authoring.clip_checks import (
     check_same_clips,
     check_vertices,
     moving,
+    planted_slide,
 )
 from tools.authoring.vleo.character import build_vleo
+from tools.authoring.vleo.expressions import EXPRESSIONS as FACES
 from tools.authoring.vleo.head import EYE_RADIUS_M, REST_GAZE
 from tools.authoring.vleo.rig import BURSTS, EYE_CENTRE_M, FEET, HEARTS
 
@@ -295,3 +297,41 @@ def test_skin_does_not_collapse_where_it_bends(vleo: Character, joint: str) -> N
         apart = points - points.mean(axis=0)
         widths.append(np.sqrt(np.linalg.eigvalsh(apart.T @ apart / len(apart))[1:]))
     assert (widths[1] > 0.7 * widths[0]).all()
+
+
+@pytest.mark.parametrize("name", CLIPS)
+def test_feet_on_the_ground_do_not_skid_between_steps_and_jumps(vleo: Character, name: str) -> None:
+    assert planted_slide(vleo, name, FEET) < 0.010
+
+
+@pytest.mark.parametrize("name", [*KISSES, *SHOUTS])
+def test_effects_come_out_of_the_mouth_and_never_stop(vleo: Character, name: str) -> None:
+    clip, skeleton = vleo.clips[name], vleo.skeleton
+    posed = clip.poses.globals(skeleton)
+    lips = posed[:, skeleton.index("lips"), :3, 3]
+    for joint in HEARTS if name in KISSES else BURSTS:
+        visible = np.flatnonzero(shown(vleo, name, (joint,))[:, 0] > 0.3)
+        if not len(visible):
+            continue  # the third, at the least intensity
+        places = posed[visible, skeleton.index(joint), :3, 3]
+        assert abs(places[0, 0] - lips[visible[0], 0]) < 0.010, joint
+        speeds = np.linalg.norm(np.diff(places, axis=0), axis=1) * clip.rate
+        assert speeds.min() > 0.03, joint
+
+
+@pytest.mark.parametrize("name", SHOUTS)
+def test_the_head_vibrates_while_the_shout_is_held(vleo: Character, name: str) -> None:
+    clip, skeleton = vleo.clips[name], vleo.skeleton
+    held = slice(round(0.40 * len(clip)), round(0.66 * len(clip)))
+    lips = clip.poses.globals(skeleton)[held, skeleton.index("lips"), 1, 3]
+    swing = lips - np.convolve(lips, np.ones(7) / 7, "same")
+    assert np.ptp(swing[7:-7]) > 0.004
+    assert clip.poses.morphs is not None
+    jaw = clip.poses.morphs[held, vleo.morphs.index("aa")]
+    assert np.ptp(jaw) > 0.25
+
+
+def test_sad_and_angry_have_mouths_of_their_own() -> None:
+    sad, angry = FACES["sadMouth"], FACES["angryMouth"]
+    assert angry.teeth > 0.003 > sad.teeth  # one bares its teeth, the other shuts its lips
+    assert sad.smile < angry.smile - 0.004  # and hangs its corners
