@@ -8,7 +8,7 @@ import numpy as np
 from characters.motion.clip import Clip
 from characters.skeleton import rotations
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.curves import Array, loop_phases, smoothstep
+from tools.authoring.modelling.curves import Array, loop_phases, smoothstep, soft_limited
 from tools.authoring.modelling.quadruped import AnimationTracks, loop_clip, solve_poses, swing_tail
 from tools.authoring.vleo.expressions import EXPRESSIONS, JAW_HINGE_M
 from tools.authoring.vleo.rig import FEET, HIDDEN_SCALE, TAIL
@@ -32,6 +32,10 @@ def breathe(anim: AnimationTracks, cycles: int, depth: float = 0.035) -> None:
     anim.scales["belly"] = 1 + depth * breath[:, None] * np.array([1.0, 1.0, 0.5])
     anim.turn("chest", up=0.25 * depth * breath)
     anim.turn("neck1", up=-0.3 * depth * breath)
+
+
+CARRIED_AGE = 0.15
+"""Share of a flight for which the mouth takes an effect along."""
 
 
 @dataclass(frozen=True)
@@ -71,10 +75,12 @@ def animate_effects(
     mouth = _open_mouth(anim, bound)
     home = bound.rest.translations
     for joint, flight in zip(joints, flights, strict=True):
-        leaves = mouth[round(flight.start * anim.frames) % anim.frames]
         age = ((loop_phases(anim.frames) - flight.start) % 1.0) / flight.life
         alive = age < 1
         age = np.minimum(age, 1.0)
+        # The mouth carries it while it is small.
+        carried = flight.start + flight.life * soft_limited(age, CARRIED_AGE)
+        leaves = mouth[np.round(carried * anim.frames).astype(int) % anim.frames]
         out = 0.7 * (1 - (1 - age) ** 3) + 0.3 * age
         spread = 0.5 * smoothstep(age / 0.7) + 0.5 * age**1.5
         sideways = flight.swirl * np.sin(2 * np.pi * age)

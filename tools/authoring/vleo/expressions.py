@@ -86,12 +86,12 @@ _MOODS = {
     ),
     "angry": VleoExpression(
         upper=0.70, upper_tilt=-0.80, lower=0.62, brow=-0.13, brow_inner=-0.30,
-        width=0.66, smile=-0.0030, rise=0.0046, drop=0.0058, square=0.45, lips=0.0022,
-        teeth=0.0050, jaw=0.05,
+        width=0.52, smile=-0.0050, rise=0.0066, drop=0.0020, square=0.8, lips=0.0022,
+        teeth=0.0050,
     ),
     "sad": VleoExpression(
         upper=0.74, upper_tilt=0.46, lower=0.88, brow=-0.02, brow_inner=0.36,
-        width=0.46, smile=-0.0095, drop=0.0006, pout=0.0030, lips=0.0030,
+        width=0.44, smile=-0.0120, drop=0.0006, pout=0.0030, lips=0.0030,
     ),
     "surprised": VleoExpression(
         upper=1.20, lower=1.12, brow=0.30, width=0.36, smile=0.0, rise=0.0080, drop=0.0070,
