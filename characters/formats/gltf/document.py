@@ -105,7 +105,7 @@ SCHEMA: Json = {
     ],
     "buffers": [{"uri": TEXT, "byteLength!": COUNT}],
     "images": [{"uri": TEXT, "bufferView": "bufferViews", "name": TEXT}],
-    "textures": [{"source": "images"}],
+    "textures": [{"source": "images", "extensions": {"EXT_texture_webp": {"source": "images"}}}],
     "materials": [
         {
             "name": TEXT,

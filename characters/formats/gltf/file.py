@@ -22,6 +22,7 @@ _SUPPORTED_EXTENSIONS = {
     "KHR_mesh_quantization",
     "KHR_materials_unlit",
     "KHR_texture_transform",
+    "EXT_texture_webp",
     "KHR_materials_emissive_strength",
     "VRMC_vrm",
     "VRMC_materials_mtoon",

@@ -37,7 +37,9 @@ class _ImageDecoder:
 
     def texture(self, index: int, mode: Literal["RGB", "RGBA"]) -> Image | None:
         """Return the image of a texture, or None if it has none."""
-        source = self._file.document["textures"][index].get("source")
+        texture = self._file.document["textures"][index]
+        webp = texture.get("extensions", {}).get("EXT_texture_webp", {})
+        source = webp.get("source", texture.get("source"))
         if source is None:
             return None
         if (source, mode) not in self._decoded:
@@ -57,14 +59,14 @@ class _ImageDecoder:
             # Warnings of the library, for example about palettes, need no action.
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
-                with PIL.Image.open(io.BytesIO(data), formats=("PNG", "JPEG")) as opened:
+                with PIL.Image.open(io.BytesIO(data), formats=("PNG", "JPEG", "WEBP")) as opened:
                     self._check_size(opened.size, name)
                     if opened.mode.startswith("I;16") or opened.mode == "I":
                         grey = (np.asarray(opened).astype(np.uint32) >> 8).astype(np.uint8)
                         return np.asarray(PIL.Image.fromarray(grey).convert(mode))
                     return np.asarray(opened.convert(mode))
         except UnidentifiedImageError:
-            raise DamagedFileError(f"{name} is neither PNG nor JPEG") from None
+            raise DamagedFileError(f"{name} is neither PNG, JPEG nor WebP") from None
         except PIL.Image.DecompressionBombError:
             raise DamagedFileError(f"{name} is larger than {MAX_SIDE_PX} pixels per side") from None
         # PIL raises any of these for a truncated or invalid file.

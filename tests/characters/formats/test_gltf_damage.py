@@ -326,4 +326,4 @@ def test_a_truncated_image_is_named(tmp_path, arm, kind):
 
 
 def test_an_unknown_image_format_is_named(tmp_path, arm):
-    refused(tmp_path, with_pictures(arm, b"GIF89a"), "image 'skin' is neither PNG nor JPEG")
+    refused(tmp_path, with_pictures(arm, b"GIF89a"), "image 'skin' is neither PNG, JPEG nor WebP")

@@ -87,6 +87,21 @@ def test_jpegs_and_image_files_are_read(tmp_path):
     assert np.abs(texture[..., :3].astype(int) - flat).max() < 6
 
 
+def test_webp_textures_are_read_in_place_of_their_fallback(tmp_path):
+    color = pixels(4)
+    color[..., 3] = 255  # lossless WebP keeps no colour where nothing is seen
+    build = dressed({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}, encoded(color))
+    webp = build.view(encoded(color[::-1], "WEBP", lossless=True))
+    build.document["images"].append({"bufferView": webp, "mimeType": "image/webp"})
+    for fallback in ({"source": 0}, {}):
+        build.document["textures"] = [
+            fallback | {"extensions": {"EXT_texture_webp": {"source": 1}}}
+        ]
+        build.document["extensionsRequired"] = ["EXT_texture_webp"]
+        texture = load(tmp_path, build).material.base_color_texture
+        assert np.array_equal(texture, color[::-1])
+
+
 def test_coordinates_are_moved_turned_and_scaled_with_their_texture(tmp_path):
     place = {"offset": [0.5, 0.25], "rotation": np.pi / 2, "scale": [2, 3]}
     texture = {"index": 0, "extensions": {"KHR_texture_transform": place}}
