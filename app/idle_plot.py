@@ -114,7 +114,7 @@ def _pictures(database: IdleDatabase, postures: list[RestingPosture]) -> list[ND
     renderer = PortraitRenderer(context, PORTRAIT_PX)
     poses = [database.kind.poses(posture.vector, held) for posture in postures]
     try:
-        return [renderer.portrait(body, pose, azimuth=0.0, extent=poses) for pose in poses]
+        return renderer.portraits(body, poses, azimuth=0.0)
     finally:
         renderer.release()
         context.release()

@@ -1,7 +1,7 @@
 """Contact sheets of a character: from all sides, its clips frame by frame, its faces."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -30,12 +30,15 @@ TRIM_MARGIN_PX = 10
 
 
 class ContactSheets:
-    """Draws the contact sheets of characters; it does not release the context."""
+    """Draws the contact sheets of characters; it does not release the context.
 
-    def __init__(self, context: moderngl.Context) -> None:
-        self._large = PortraitRenderer(context, (240, 280))
-        self._small = PortraitRenderer(context, (150, 200))
-        self._faces = PortraitRenderer(context, (230, 230))
+    `drawn` is called after each picture on a sheet, to show progress.
+    """
+
+    def __init__(self, context: moderngl.Context, drawn: Callable[[], None] | None = None) -> None:
+        self._large = PortraitRenderer(context, (240, 280), drawn)
+        self._small = PortraitRenderer(context, (150, 200), drawn)
+        self._faces = PortraitRenderer(context, (230, 230), drawn)
 
     def turntable(self, character: Character) -> Image:
         """Return a character from all sides, in its idle pose."""
@@ -57,32 +60,29 @@ class ContactSheets:
         names = character.morphs
         shapes = np.concatenate([np.zeros((1, len(names))), np.eye(len(names))])
         poses = [replace(pose, morphs=morphs if len(names) else None) for morphs in shapes]
-        pictures = []
-        for name, shown in zip(("at rest", *names), poses, strict=True):
-            face = self._faces.portrait(
-                character, shown, azimuth=0.3, elevation=0.05, focus="face", extent=poses
-            )
-            pictures.append(_captioned(face, name))
+        faces = self._faces.portraits(character, poses, azimuth=0.3, elevation=0.05, focus="face")
+        captioned = zip(faces, ("at rest", *names), strict=True)
+        pictures = [_captioned(face, name) for face, name in captioned]
         return _sheet(character.name, "its face", [side_by_side(pictures, FACE_COLUMNS)])
 
     def moods(self, character: Character, poses: Mapping[str, Pose]) -> Image:
         """Return a character in several moods, one column each: body, and face below."""
-        columns, extent = [], list(poses.values())
-        for name, pose in poses.items():
-            whole = self._large.portrait(character, pose, azimuth=0.5, elevation=0.1, extent=extent)
+        columns = []
+        bodies = self._large.portraits(character, list(poses.values()), azimuth=0.5, elevation=0.1)
+        for (name, pose), whole in zip(poses.items(), bodies, strict=True):
             face = self._faces.portrait(character, pose, azimuth=0.3, elevation=0.05, focus="face")
             columns.append(_captioned(stacked(whole, face), name))
         return _sheet(character.name, "its moods", [side_by_side(columns, len(columns))])
 
     def postures(self, character: Character, poses: Mapping[str, Pose]) -> Image:
         """Return a character in several postures, one column each, from ahead and from its left."""
-        columns, extent = [], list(poses.values())
-        for name, pose in poses.items():
-            views = [
-                self._small.portrait(character, pose, azimuth=azimuth, extent=extent)
-                for azimuth in (0.25, math.pi / 2)
-            ]
-            columns.append(_captioned(stacked(*views), name))
+        views = [
+            self._small.portraits(character, list(poses.values()), azimuth=azimuth)
+            for azimuth in (0.25, math.pi / 2)
+        ]
+        columns = [
+            _captioned(stacked(*both), name) for name, *both in zip(poses, *views, strict=True)
+        ]
         sheet = trimmed(side_by_side(columns, len(columns)))
         return _sheet(character.name, "how it stands in nine moods, without its face", [sheet])
 

@@ -1,7 +1,7 @@
 """Pictures of one character: a portrait, a turntable, a strip of frames side by side."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import cv2
 import moderngl
@@ -52,10 +52,18 @@ class PortraitRenderer:
         From `create_context`; the renderer does not release it.
     size
         Of one picture, (width, height) [px].
+    drawn
+        Called after each picture, to show progress.
     """
 
-    def __init__(self, context: moderngl.Context, size: tuple[int, int] = (360, 420)) -> None:
+    def __init__(
+        self,
+        context: moderngl.Context,
+        size: tuple[int, int] = (360, 420),
+        drawn: Callable[[], None] | None = None,
+    ) -> None:
         self.size = size
+        self._drawn = drawn
         self._stage = Stage(context, size)
         self._fade = _fade_mask(size)
         self._extents: dict[int, tuple[Character, CharacterExtent]] = {}
@@ -95,6 +103,20 @@ class PortraitRenderer:
         place = _place(character, azimuth)
         camera = self._camera(character, [(each, place) for each in framed], elevation, focus)
         return self._draw(character, pose, place, camera)
+
+    def portraits(
+        self,
+        character: Character,
+        poses: Sequence[Pose],
+        *,
+        azimuth: float = 0.4,
+        elevation: float = 0.16,
+        focus: Focus = None,
+    ) -> list[Image]:
+        """Return a picture of a character in each pose, by one camera that sees all of them."""
+        place = _place(character, azimuth)
+        camera = self._camera(character, [(pose, place) for pose in poses], elevation, focus)
+        return [self._draw(character, pose, place, camera) for pose in poses]
 
     def turntable(
         self,
@@ -173,7 +195,10 @@ class PortraitRenderer:
         view = View(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
         posed = PosedCharacter(pose, place, True, "", 0.0, 0.0, 0.0, 0.0)
         picture = self._stage.draw(view, [SceneCharacter(character, posed)])
-        return np.asarray(cv2.blendLinear(picture, paper, self._fade, 1.0 - self._fade), np.uint8)
+        faded = np.asarray(cv2.blendLinear(picture, paper, self._fade, 1.0 - self._fade), np.uint8)
+        if self._drawn is not None:
+            self._drawn()
+        return faded
 
 
 def side_by_side(pictures: Sequence[Image], columns: int = 8) -> Image:

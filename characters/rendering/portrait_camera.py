@@ -76,6 +76,9 @@ class CharacterExtent:
         self._vertices = CharacterVertices.of(character.meshes)
         self._extreme = self._vertices.extreme()
         self._owners = self._vertices.owners[self._extreme] % len(character.skeleton)
+        neutral = self._vertices.shape_records[: self._vertices.moved]
+        self._mixer = MorphMixer(neutral, self._vertices.morphs, character.morphs)
+        self._positions = self._vertices.positions.copy()  # with the morphs of the last pose
 
     def points(self, pose: Pose, part: NDArray[np.bool_] | None = None) -> Array:
         """Return points that enclose a character in a pose, (n, 3), in the character frame.
@@ -83,13 +86,11 @@ class CharacterExtent:
         `part` (joints,) selects joints; without, all are included.
         """
         vertices, joints = self._vertices, pose.globals(self._character.skeleton)
-        positions = vertices.positions.copy()
-        neutral = vertices.shape_records[: vertices.moved]
-        mixed = MorphMixer(neutral, vertices.morphs, self._character.morphs).mix(pose.morphs)
+        mixed = self._mixer.mix(pose.morphs)
         if mixed is not None:
-            positions[: vertices.moved] = mixed[:, :3]
+            self._positions[: vertices.moved] = mixed[:, :3]
         selected = self._extreme if part is None else self._extreme[part[self._owners]]
-        return vertices.skinned(vertices.palette(joints), selected, positions[selected])
+        return vertices.skinned(vertices.palette(joints), selected, self._positions[selected])
 
 
 def joints_below(character: Drawable, part: str) -> NDArray[np.bool_]:

@@ -1,8 +1,8 @@
 """`cubeling character inspect`."""
 
 import warnings
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -11,11 +11,12 @@ import typer
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.markup import escape
+from rich.progress import Progress
 from rich.table import Table
 from rich.tree import Tree
 
 from app.errors import AppError
-from app.ui.contact_sheets import ContactSheets, save
+from app.ui.contact_sheets import CLIP_COLUMNS, TURNTABLE_COLUMNS, ContactSheets, save
 from characters import Character, CharacterWarning, Skeleton, load_motion
 from characters.formats import Performance, is_motion_only
 from characters.model.inspection import ClipStats, FootContactStats, Inspection, inspect
@@ -24,6 +25,9 @@ from characters.rendering import create_context
 
 MIN_FOLDED_JOINTS = 4
 """Branches of at least this number of unrecognised joints are shown as one line."""
+
+MIN_NAME_WIDTH = 32
+"""Longer names of clips are folded at this width before other columns become narrower."""
 
 
 def inspect_command(
@@ -61,7 +65,8 @@ def inspect_command(
     if folder.exists() and not folder.is_dir():
         raise AppError(f"{folder} is a file: choose another folder with --output")
     read_motion = partial(load_motion, skeleton=skeleton, scale=scale, up=up)
-    inspection, has_body = _load(character, read_motion)
+    with _progress(f"Reading {Path(character).name}"):
+        inspection, has_body = _load(character, read_motion)
     _print(console, inspection)
     for path in _draw(inspection.character, folder, clips or not has_body):
         console.print(f"Written: [bold]{escape(str(path))}[/]", soft_wrap=True)
@@ -94,19 +99,32 @@ def sentence(note: str, name: str) -> str:
 
 def _draw(character: Character, folder: Path, clips: bool) -> list[Path]:
     """Draw a character, and return the paths of the pictures."""
+    faces = character.anatomy.joint("head") is not None and bool(character.morphs)
+    shown = list(character.clips.values()) if clips else []
+    count = TURNTABLE_COLUMNS + faces * (1 + len(character.morphs)) + CLIP_COLUMNS * len(shown)
     with ExitStack() as closing:
+        advance = closing.enter_context(_progress("Drawing", count))
         context = create_context()
         closing.callback(context.release)
-        sheets = ContactSheets(context)
+        sheets = ContactSheets(context, advance)
         closing.callback(sheets.release)
         pictures = {"turntable.png": sheets.turntable(character)}
-        if character.anatomy.joint("head") is not None and character.morphs:
+        if faces:
             pictures["faces.png"] = sheets.faces(character)
-        if clips and character.clips:
-            pictures["clips.png"] = sheets.clips(character, list(character.clips.values()))
+        if shown:
+            pictures["clips.png"] = sheets.clips(character, shown)
     for name, picture in pictures.items():
         save(picture, folder / name)
     return [folder / name for name in pictures]
+
+
+@contextmanager
+def _progress(what: str, steps: int | None = None) -> Iterator[Callable[[], None]]:
+    """Show a bar on a terminal's error output; what it yields is called after each step."""
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task(escape(what), total=steps)
+        yield lambda: progress.advance(task)
 
 
 def _print(console: Console, inspection: Inspection) -> None:
@@ -168,8 +186,13 @@ def _branches(skeleton: Skeleton, recognised: set[int]) -> tuple[list[int], set[
 
 def _table(clips: Sequence[ClipStats]) -> Table:
     table = Table(title="Clips", title_justify="left", title_style="bold", box=SIMPLE_HEAD)
-    for heading in ("clip", "seconds", "Hz", "repeats", "speed [m/s]", "feet down"):
-        table.add_column(heading, justify="right" if heading in ("seconds", "Hz") else "left")
+    longest = max(len(clip_stats.clip.name) for clip_stats in clips)
+    # A name is what other commands are called with: it is folded rather than cut off.
+    table.add_column("clip", overflow="fold", min_width=min(longest, MIN_NAME_WIDTH))
+    for heading in ("seconds", "Hz", "repeats", "speed [m/s]", "feet down"):
+        table.add_column(
+            escape(heading), justify="right" if heading in ("seconds", "Hz") else "left"
+        )
     for clip_stats in clips:
         clip = clip_stats.clip
         table.add_row(

@@ -74,6 +74,21 @@ def test_inspect_describes_and_draws_a_bundled_character(cubeling):
     assert "seen/turntable.png" in out
 
 
+def test_long_names_of_clips_are_shown_whole(cubeling, monkeypatch):
+    name = "Armature|" + "".join(chr(97 + number % 26) for number in range(71))
+    monkeypatch.setenv("COLUMNS", "80")
+    human = Character.load("human")
+    clip = replace(human.clips["Walk"], name=name)
+    replace(human, clips={name: clip}).save(Path("named.glb"))
+    code, out, _ = cubeling("character", "inspect", "named.glb")
+    assert code == 0
+    table = out[out.index("Clips") : out.index("No problems")].splitlines()
+    heading = next(line for line in table if "seconds" in line)
+    assert "speed [m/s]" in " ".join(table)
+    first_column = [line[: heading.index("seconds")].strip() for line in table]
+    assert name in "".join(first_column)
+
+
 def test_a_motion_without_a_body_is_drawn_as_sticks(cubeling):
     Path("nod.bvh").write_text(BVH)
     code, out, err = cubeling("character", "inspect", "nod.bvh")
@@ -131,9 +146,9 @@ def test_names_that_look_like_markup_are_printed_literally(cubeling, tmp_path):
 
 
 def test_rows_of_a_sheet_are_clips_one_below_the_other(sheets):
-    vleo = Character.load("vleo")
-    clips = list(vleo.clips.values())[:2]
-    one, two = sheets.clips(vleo, clips[:1]), sheets.clips(vleo, clips)
+    human = Character.load("human")
+    clips = list(human.clips.values())[:2]
+    one, two = sheets.clips(human, clips[:1]), sheets.clips(human, clips)
     assert one.shape[1] == two.shape[1]
     assert two.shape[0] > 1.5 * one.shape[0]
     assert np.array_equal(one[:150], two[:150])

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from characters import Character, CharacterError, Clip, Pose
+from characters import Character, CharacterError, Clip, Morph, Pose
 from characters.rendering.portrait import PAPER_BGR, PortraitRenderer
-from characters.rendering.portrait_camera import MARGIN_SHARE, PortraitCamera
+from characters.rendering.portrait_camera import MARGIN_SHARE, CharacterExtent, PortraitCamera
 
 SIZE = (90, 120)
 
@@ -108,6 +108,28 @@ def test_a_portrait_can_leave_room_for_a_clip(renderer, knight):
     tight = renderer.portrait(knight, azimuth=1.5)
     roomy = renderer.portrait(knight, azimuth=1.5, extent=knight.clips["slide"])
     assert drawn(roomy).sum() < 0.5 * drawn(tight).sum()
+
+
+def test_portraits_of_several_poses_have_one_camera(renderer, knight):
+    poses = [knight.clips["slide"].poses[frame] for frame in (0, 5)]
+    several = renderer.portraits(knight, poses, azimuth=1.5)
+    for pose, picture in zip(poses, several, strict=True):
+        alone = renderer.portrait(knight, pose, azimuth=1.5, extent=poses)
+        assert np.array_equal(picture, alone)
+    assert not np.array_equal(several[0], renderer.portrait(knight, poses[0], azimuth=1.5))
+
+
+def test_the_extent_of_a_pose_does_not_keep_the_morphs_of_the_last_one(knight):
+    mesh = knight.meshes[0]
+    every = np.arange(len(mesh.positions), dtype=np.uint32)
+    raised = Morph("tall", every, np.full((len(every), 3), (0.0, 9.0, 0.0), np.float32), None)
+    tall = replace(knight, meshes=(replace(mesh, morphs=(raised,)),), morphs=("tall",))
+    extent = CharacterExtent(tall)
+    rest = tall.skeleton.rest
+    before = extent.points(rest)
+    grown = extent.points(replace(rest, morphs=np.ones(1)))
+    assert np.allclose(grown - before, [0.0, 9.0, 0.0])
+    assert np.allclose(extent.points(rest), before)
 
 
 def test_a_face_fills_the_picture(renderer, knight):
