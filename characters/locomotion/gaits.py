@@ -6,6 +6,8 @@ Source: Fernández-Baena's thesis, section 5.2. Both trees, over Angular, are bl
 import math
 from collections.abc import Mapping
 
+import numpy as np
+
 from characters.ik.legs import find_legs
 from characters.locomotion.foot_trajectories import FootTrajectories
 from characters.locomotion.stride_blending import StrideBlend
@@ -59,6 +61,7 @@ _SLOW_WALK, _FAST_WALK, _SLOW_RUN, _FAST_RUN = 0.5, 1.3, 0.8, 1.25
 # Slow walking has shorter and slower steps (Grieve and Gear, "The relationships between length of
 # stride …", 1966); this power of the slowdown is the factor of the step length.
 _STEP_LENGTH_EXPONENT = 0.5
+_RADIUS_PART = 1 / 16  # of a cycle
 _IN_PLACE_SHORTENING = 0.4  # steps in place are shorter by this part
 
 
@@ -100,8 +103,11 @@ class Gaits:
 
     def radius(self, speed: float) -> float:
         """Return the radius of the tightest curve at a Speed [m]."""
-        cycle = self.at(speed, MAX_ANGULAR_RAD).between(0.0, 1.0)
-        return math.hypot(cycle.x, cycle.z) / max(2 * math.sin(abs(cycle.yaw) / 2), 1e-6)
+        motion = self.at(speed, MAX_ANGULAR_RAD)
+        # In parts, because an animal may walk a whole circle in one slow cycle.
+        parts = [motion.between(at, at + _RADIUS_PART) for at in np.arange(0.0, 1.0, _RADIUS_PART)]
+        turn = abs(sum(part.yaw for part in parts))
+        return sum(math.hypot(part.x, part.z) for part in parts) / max(turn, 1e-6)
 
     def at(self, speed: float, angular: float, stride: float = 1.0) -> "StrideBlend | TimeScaled":
         """Return the motion at a Speed, of which at least 0.5 is used, and an Angular.

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -7,6 +8,8 @@ from hypothesis import strategies as st
 
 from characters import Character
 from characters.locomotion.gaits import MAX_ANGULAR_RAD, RUN_CLIPS, WALK_CLIPS, Gaits
+from characters.retargeting.locomotion.gait_cycle import ArcPath
+from characters.retargeting.root import moved_to_trajectory
 
 SPEEDS = np.linspace(0.5, 5.0, 91)
 
@@ -78,3 +81,20 @@ def test_the_pose_changes_little_when_speed_and_angular_do(gaits, speed, angular
 def test_left_and_right_are_mirror_images(gaits):
     left, right = gaits.at(2.0, -1.0).between(0.0, 1.0), gaits.at(2.0, 1.0).between(0.0, 1.0)
     assert (left.x, left.z, left.yaw) == pytest.approx((-right.x, right.z, -right.yaw), abs=5e-3)
+
+
+@pytest.mark.parametrize("turn", np.linspace(0.9, 1.5, 7) * 2 * math.pi)
+def test_a_cycle_that_turns_a_whole_circle_has_the_radius_of_the_circle(walker, turn):
+    clips = dict(walker.clips)
+    for tree in (WALK_CLIPS, RUN_CLIPS):
+        for knot in (min(tree), max(tree)):
+            clip, side = clips[tree[knot]], -np.sign(knot)
+            circle = ArcPath(clip.cycle.length / clip.duration, turn / clip.duration)
+            path = circle.at(np.arange(len(clip)) / clip.rate) * [side, 1, side]
+            clips[tree[knot]] = replace(clip, poses=moved_to_trajectory(clip.in_place, path))
+    gaits = Gaits(clips, walker.skeleton, clips["idle"].sample(0.0))
+    for speed in (1.0, 2.0, 4.0):
+        cycle = gaits.at(speed, MAX_ANGULAR_RAD)
+        parts = [cycle.between(at, at + 0.01) for at in np.arange(0.0, 1.0, 0.01)]
+        way, turned = (sum(abs(getattr(part, n)) for part in parts) for n in ("length", "yaw"))
+        assert gaits.radius(speed) == pytest.approx(way / turned, rel=0.03)
