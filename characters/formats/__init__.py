@@ -8,7 +8,13 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
-from characters.formats.loading import MOTION_READERS, Performance, is_motion_only, load_motion
+from characters.formats.loading import (
+    MESH_FINDERS,
+    MOTION_READERS,
+    Performance,
+    is_motion_only,
+    load_motion,
+)
 from characters.model.character import CHARACTER_READERS, CHARACTER_WRITERS
 
 
@@ -22,7 +28,9 @@ CHARACTER_READERS |= dict.fromkeys(
 )
 CHARACTER_WRITERS[".glb"] = _deferred("gltf.writing", "save")
 MOTION_READERS |= dict.fromkeys(CHARACTER_READERS, _deferred("gltf.reading", "load_motion"))
+MESH_FINDERS |= dict.fromkeys((".glb", ".gltf"), _deferred("gltf.file", "has_mesh"))
 MOTION_READERS |= {
+    ".vrma": _deferred("gltf.reading", "load_motion"),
     ".bvh": _deferred("mocap.bvh", "load_motion"),
     ".amc": _deferred("mocap.amc", "load_motion"),
     ".asf": _deferred("mocap.asf", "refuse_motion"),

@@ -1,11 +1,11 @@
 """Reading one motion from a file of any registered format."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from characters.errors import CharacterError
-from characters.model.character import CHARACTER_READERS
+from characters.model.character import CHARACTER_READERS, conversion_advice
 from characters.motion.clip import Clip
 from characters.skeleton.pose import Skeleton
 
@@ -22,6 +22,9 @@ class Performance:
 
     notes: tuple[str, ...] = ()
     """Guesses and repairs while reading, one line each, for a person to check."""
+
+    semantics: Mapping[str, str] = field(default_factory=dict)
+    """Joint by body part, as far as the file states it."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,10 @@ MOTION_READERS: dict[str, Callable[[Path, MotionOptions], Performance]] = {}
 """Readers of one motion, by the suffix of the file; `characters.formats` registers its own."""
 
 
+MESH_FINDERS: dict[str, Callable[[Path], bool]] = {}
+"""What finds out whether a file has a mesh, by the suffix of files that need not have one."""
+
+
 def load_motion(
     path: "str | Path",
     name: str | None = None,
@@ -57,7 +64,7 @@ def load_motion(
     scale: float | None = None,
     up: str | None = None,
 ) -> Performance:
-    """Read one motion from a .bvh, .amc (with its .asf), .glb, .gltf or .vrm file.
+    """Read one motion from a .bvh, .amc (with its .asf), .glb, .gltf, .vrm or .vrma file.
 
     Motion capture is returned in metres with +y up, with identity rest rotations. Its clips do
     not loop and have no root motion: the hips carry the motion over the ground.
@@ -85,7 +92,8 @@ def load_motion(
     reader = MOTION_READERS.get(path.suffix.lower())
     if reader is None:
         known = ", ".join(sorted(MOTION_READERS))
-        raise CharacterError(f"{path}: not a motion file; convert it to one of {known}")
+        advice = conversion_advice(path)
+        raise CharacterError(f"{path}: not a motion file of {known}; {advice}")
     stated = MotionOptions(name, None if skeleton is None else Path(skeleton), rate, scale, up)
     performance = reader(path, stated)
     if name not in (None, performance.clip.name):
@@ -96,6 +104,10 @@ def load_motion(
 
 
 def is_motion_only(path: "str | Path") -> bool:
-    """Return whether files of this suffix hold motions and no characters."""
-    suffix = Path(path).suffix.lower()
-    return suffix in MOTION_READERS and suffix not in CHARACTER_READERS
+    """Return whether a file holds motions and no character: by its suffix, or without a mesh."""
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if suffix not in CHARACTER_READERS:
+        return suffix in MOTION_READERS
+    has_mesh = MESH_FINDERS.get(suffix)
+    return has_mesh is not None and path.is_file() and not has_mesh(path)

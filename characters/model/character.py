@@ -100,8 +100,8 @@ class Character:
             return _with_sidecar(reader(path), path)
         if path.suffix or len(path.parts) > 1:
             raise CharacterError(
-                f"{name_or_path}: not a {_known_suffixes()} file; convert it, or name a bundled "
-                f"character: {', '.join(bundled)}"
+                f"{name_or_path}: not a {_known_suffixes()} file; {conversion_advice(path)}, or "
+                f"name a bundled character: {', '.join(bundled)}"
             )
         if str(name_or_path) not in bundled:
             raise CharacterError(
@@ -164,6 +164,13 @@ class Character:
     def length(self) -> float:
         """Length of the rest pose from front to back [m]."""
         return float(self.bounds[1, 2] - self.bounds[0, 2])
+
+
+def conversion_advice(path: Path) -> str:
+    """Return what turns a file of another kind into one that can be read."""
+    if path.suffix.lower() in (".fbx", ".blend", ".dae"):
+        return "open it in Blender and export it as .glb"
+    return "convert it"
 
 
 def _known_suffixes() -> str:

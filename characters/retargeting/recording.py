@@ -9,6 +9,7 @@ from characters.model.bind_pose import with_bind_pose
 from characters.model.character import Character
 from characters.model.sidecar import read_sidecar
 from characters.motion.clip import Clip
+from characters.retargeting.standing_rest import standing_skeleton
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Skeleton
 
@@ -30,8 +31,14 @@ class Recording:
     """Which joint is which body part."""
 
 
-def load_recording(name: str, skeleton: "str | Path | None" = None) -> Recording:
-    """Read a motion: a .bvh or .amc file, or a clip of a character.
+def load_recording(
+    name: str,
+    skeleton: "str | Path | None" = None,
+    *,
+    up: str | None = None,
+    rest: str | None = None,
+) -> Recording:
+    """Read a motion: a .bvh, .amc or .vrma file, a .glb without a mesh, or a character's clip.
 
     A [joints] table in the sidecar .toml file may state the body parts.
 
@@ -42,6 +49,11 @@ def load_recording(name: str, skeleton: "str | Path | None" = None) -> Recording
         be left out if there is only one.
     skeleton
         The .asf file of an .amc; left out, the one in the same folder.
+    up
+        The vertical axis of a .bvh or .amc file ("y", "z", "-y", …); left out, it is recognised.
+    rest
+        The rest pose of a motion without a body: "zero" or "frame:N"; left out, the zero pose if
+        it stands, else the most upright frame.
 
     Raises
     ------
@@ -50,14 +62,18 @@ def load_recording(name: str, skeleton: "str | Path | None" = None) -> Recording
     """
     file, _, clip = name.partition("#")
     if is_motion_only(file):
-        motion = load_motion(file, clip or None, skeleton=skeleton)
+        motion = load_motion(file, clip or None, skeleton=skeleton, up=up)
         sidecar = Path(file).with_suffix(".toml")
         joints = read_sidecar(sidecar, (motion.clip.name,)).joints
         try:
-            anatomy = Anatomy.guess(motion.skeleton, joints)
+            anatomy = Anatomy.guess(motion.skeleton, {**motion.semantics, **joints})
         except CharacterError as error:
             raise CharacterError(f"{sidecar}: {error}") from None
-        return Recording(Path(name).name, motion.clip, motion.skeleton, anatomy)
+        try:
+            upright = standing_skeleton(motion.skeleton, anatomy, motion.clip, rest)
+        except CharacterError as error:
+            raise CharacterError(f"{file}: {error}") from None
+        return Recording(Path(name).name, motion.clip, upright, anatomy)
     character = Character.load(file)
     if not clip and len(character.clips) == 1:
         clip = next(iter(character.clips))

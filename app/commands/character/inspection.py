@@ -72,13 +72,16 @@ def inspect_command(
         console.print(f"Written: [bold]{escape(str(path))}[/]", soft_wrap=True)
 
 
-def _load(name: str, read_motion: Callable[[Path], Performance]) -> tuple[Inspection, bool]:
+def _load(
+    name: str, read_motion: Callable[[str, str | None], Performance]
+) -> tuple[Inspection, bool]:
     """Return the inspection of a character or motion, and whether it has a body."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        if is_motion_only(name):
-            motion = read_motion(Path(name))
-            body = stick_figure(Path(name).stem, motion.skeleton, [motion.clip])
+        file, _, clip = name.partition("#")
+        if is_motion_only(file):
+            motion = read_motion(file, clip or None)
+            body = stick_figure(Path(file).stem, motion.skeleton, [motion.clip])
             notes, has_body = list(motion.notes), False
         else:
             body, notes, has_body = Character.load(name), [], True

@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -24,7 +25,7 @@ from characters.retargeting import (
 
 Files = Annotated[
     list[str] | None,
-    typer.Option(help="A motion: .bvh, .amc, or FILE.glb#CLIP; straight or curved."),
+    typer.Option(help="A motion: .bvh, .amc, .vrma, or FILE.glb#CLIP; straight or curved."),
 ]
 
 
@@ -43,6 +44,17 @@ def locomotion(
     skeleton: Annotated[
         Path | None, typer.Option(help="The .asf of .amc files, if it is in another folder.")
     ] = None,
+    up: Annotated[
+        str | None,
+        typer.Option(help="Vertical axis of .bvh and .amc files: x, y, z, -x, -y or -z."),
+    ] = None,
+    rest: Annotated[
+        str | None,
+        typer.Option(
+            help="Where .bvh and .amc files stand straight: zero (all angles) or frame:N. "
+            "Default: zero, or the most upright frame if that does not stand."
+        ),
+    ] = None,
 ) -> None:
     """Make the walking and running clips of a character from your own recordings.
 
@@ -60,10 +72,9 @@ def locomotion(
         if _same(target, Path(given.partition("#")[0])):
             raise AppError(f"'{target}' would overwrite one of its inputs: choose another -o")
     original = Character.load(character)
-    walks, runs = (
-        [load_recording(name, skeleton) for name in names or ()] for names in (walk, run)
-    )
-    standing = load_recording(idle, skeleton) if idle else None
+    read = partial(load_recording, skeleton=skeleton, up=up, rest=rest)
+    walks, runs = ([read(name) for name in names or ()] for names in (walk, run))
+    standing = read(idle) if idle else None
     result = make_locomotion(original, walks, runs, standing)
     result.character.save(target)
     console = Console()

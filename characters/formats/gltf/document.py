@@ -156,6 +156,10 @@ SCHEMA: Json = {
                 "rangeMapVerticalUp": _RANGE,
             },
         },
+        "VRMC_vrm_animation": {
+            "specVersion": TEXT,
+            "humanoid": {"humanBones": {"*": {"node!": "nodes"}}},
+        },
         "VRMC_springBone": {
             "colliders": [
                 {

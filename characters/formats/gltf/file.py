@@ -1,6 +1,7 @@
 """Opening a .glb or .gltf, and the arrays in its buffers."""
 
 import base64
+import json
 import struct
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -25,6 +26,7 @@ _SUPPORTED_EXTENSIONS = {
     "EXT_texture_webp",
     "KHR_materials_emissive_strength",
     "VRMC_vrm",
+    "VRMC_vrm_animation",
     "VRMC_materials_mtoon",
     "VRMC_springBone",
     "VRMC_node_constraint",
@@ -231,6 +233,16 @@ def open_gltf(path: Path) -> GltfFile:
                 raise DamagedFileError(f"has {len(content)} bytes, not {buffer['byteLength']}")
         buffers.append(content)
     return replace(opened, buffers=tuple(buffers))
+
+
+def has_mesh(path: Path) -> bool:
+    """Return whether a file has a mesh; one that cannot be read is said to have one."""
+    try:
+        text, _ = _unpacked(path, read_file(path))
+        document = json.loads(text)
+    except (CharacterError, ValueError, RecursionError):
+        return True
+    return not isinstance(document, dict) or "asset" not in document or bool(document.get("meshes"))
 
 
 def _unpacked(path: Path, data: bytes) -> tuple[bytes, bytes]:

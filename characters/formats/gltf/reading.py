@@ -31,7 +31,9 @@ def load_character(path: Path) -> Character:
         table = read_morph_table(file, tree)
         parts = read_meshes(file, tree, table)
         if not parts:
-            raise DamagedFileError("its skeleton moves no mesh; export the model with its skin")
+            raise DamagedFileError(
+                "its skeleton moves no mesh; export the model with its skin, or use it as a motion"
+            )
         names, stated = tree.skeleton.names, file.scene_extra("semantics")
         semantics = stated.items() if isinstance(stated, dict) else ()
         character = Character(
@@ -54,7 +56,7 @@ def load_character(path: Path) -> Character:
 def load_motion(path: Path, options: MotionOptions) -> Performance:
     """Read one clip of a file and its skeleton; the file need not have a mesh."""
     with _open(path) as file:
-        tree, _ = _read_joints(file)
+        tree, humanoid = _read_joints(file)
         table = read_morph_table(file, tree)
         skeleton = _with_rest_morphs(tree.skeleton, table.rest)
         clips = read_clips(file, tree, table)
@@ -63,8 +65,10 @@ def load_motion(path: Path, options: MotionOptions) -> Performance:
         name = next(iter(clips))
     if name not in clips:
         known = ", ".join(clips) or "no clips at all"
-        raise CharacterError(f"{path}: has {known}; say which one to load")
-    return Performance(skeleton, clips[name])
+        raise CharacterError(f"{path}: has {known}; say which one: {path.name}#CLIP")
+    bones = {} if humanoid is None else humanoid.bones
+    semantics = {bone: skeleton.names[tree.joint_of_node[node]] for bone, node in bones.items()}
+    return Performance(skeleton, clips[name], semantics=semantics)
 
 
 @contextmanager

@@ -50,9 +50,10 @@ class VrmHumanoid:
 def read_humanoid(file: GltfFile) -> VrmHumanoid | None:
     """Return the VRM part of a file, or None without one."""
     extensions = file.document.get("extensions", {})
-    if "VRMC_vrm" in extensions:
-        with error_context("VRMC_vrm"):
-            return _humanoid_1(extensions["VRMC_vrm"])
+    for name in ("VRMC_vrm", "VRMC_vrm_animation"):
+        if name in extensions:
+            with error_context(name):
+                return _humanoid_1(extensions[name])
     if "VRM" in extensions:
         with error_context("VRM"):
             return _humanoid_0(file, extensions["VRM"])

@@ -1,9 +1,11 @@
 """Extraction of one regular gait cycle from a recording, on a character."""
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from characters.errors import CharacterError
 from characters.locomotion.gaits import MIN_CYCLE_LENGTH
@@ -28,15 +30,15 @@ from characters.skeleton.pose import Skeleton
 MAX_RATE_HZ = 60.0
 """Finer recordings are resampled."""
 
+_MAX_REPEATED_SEAM = 0.1  # leg lengths; parts of a loop that differ more do not repeat
+
 
 def extract_gait(recording: Recording, character: Character, walker: Character) -> GaitCycle:
     """Return the best cycle of a recording; `walker` is the character with a root joint."""
     rig = Rig(walker.skeleton, walker.anatomy)
     clip, contacts = on_character(recording, character, walker)
     clip = _without_treadmill(clip, rig, contacts)
-    cut = LoopCut(0, len(clip) - 1, 0.0)
-    if not clip.loop:
-        cut = find_cycle(clip, rig, contacts.any[:, :2])
+    cut = _cycle_of(clip, rig, contacts.any[:, :2])
     start, end = (RootDelta(*clip.track[frame]) for frame in (cut.start, cut.end))
     delta = start.inverse().then(end)
     seconds = (cut.end - cut.start) / clip.rate
@@ -67,6 +69,20 @@ def extract_gait(recording: Recording, character: Character, walker: Character) 
     loop = replace(loop, poses=poses, root_motion=True)
     seam = cut.seam * rig.leg_length
     return GaitCycle(recording.origin, loop, rig, contacts, path, seam).with_held_feet()
+
+
+def _cycle_of(clip: Clip, rig: Rig, contacts: NDArray[np.bool_]) -> LoopCut:
+    """Return the best cycle of a recording, or all of a loop unless it holds several."""
+    if not clip.loop:
+        return find_cycle(clip, rig, contacts)
+    whole = LoopCut(0, len(clip) - 1, 0.0)
+    steady = contacts[:-1]
+    landings = (steady & ~np.roll(steady, 1, axis=0)).sum(0)
+    if landings.max() > 1:
+        with suppress(CharacterError):
+            one = find_cycle(replace(clip, loop=False), rig, contacts)
+            return one if one.seam < _MAX_REPEATED_SEAM else whole
+    return whole
 
 
 def on_character(
