@@ -1,6 +1,12 @@
-"""Quality of retargeting: `python -m tests.bench.retarget`."""
+"""Quality of retargeting: `python -m tests.bench.retarget`.
+
+Two tables: how well poses and feet are kept, and whether the body crouches or sinks. The second
+has the retargeted motions and, where a motion has one, the gait cycles made of them.
+"""
 
 import time
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,11 +15,14 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from characters import Character, Clip
+from characters import Character, CharacterError, Clip
 from characters.model.bind_pose import with_bind_pose
 from characters.retargeting import Recording, load_recording, retarget
 from characters.retargeting.footskate import find_foot_contacts
-from characters.retargeting.rig import Rig, leg_pairs
+from characters.retargeting.locomotion.recorded_gait import extract_gait
+from characters.retargeting.rig import LegJoints, Rig, leg_pairs
+from characters.retargeting.root import with_root_joint
+from characters.skeleton import rotations
 
 SHARED = Path(__file__).parents[3] / "shared" / "data"
 PERSON_HEIGHT_M = 1.7
@@ -36,10 +45,24 @@ CASES = [
 ]
 CASES += [
     ("bvh/131_01.bvh", "human"),
+    ("bvh/131_03.bvh", "gltf/CesiumMan.glb"),
     ("bvh/zombie.bvh", "human"),
+    ("gltf/CesiumMan.glb", "human"),
+    ("gltf/CesiumMan.glb", "gltf/RobotExpressive.glb"),
+    ("gltf/RobotExpressive.glb#Walking", "human"),
+    ("gltf/RobotExpressive.glb#Running", "gltf/CesiumMan.glb"),
+    ("human#Walk", "gltf/CesiumMan.glb"),
+    ("gltf/Fox.glb#Walk", "robot"),
     ("gltf/Fox.glb#Walk", "gltf/dino_apatosaurus.glb"),
     ("gltf/Fox.glb#Walk", "vleo"),
+    ("gltf/Fox.glb#Run", "gltf/dino_apatosaurus.glb"),
+    ("gltf/dino_apatosaurus.glb#Armature|Apatosaurus_Walk", "gltf/Fox.glb"),
 ]
+QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
+"""Of the bend of knees: those of a cycle are compared with those of the whole recording."""
+
+MAX_KNEE_DEG, MAX_HIPS_SHARE, MAX_DIP_CM, MAX_BONE_SHARE = 8.0, 0.03, 0.5, 0.01
+"""The bars of issue 18."""
 
 
 def directions(clip: Clip, rig: Rig) -> NDArray[np.float64]:
@@ -79,21 +102,162 @@ def feet(source: Recording, made: Clip, rig: Rig, height: float) -> tuple[float,
     return float(held.mean()) * scale, float(held.max()) * scale, sunk * scale
 
 
+def knee_bends(clip: Clip, rig: Rig, leg: LegJoints) -> NDArray[np.float64]:
+    """Return how far a knee is bent in each frame, (frames,) [degrees]; an animal's beyond rest."""
+    rest = rig.skeleton.rest.globals(rig.skeleton)[None]
+    bends = []
+    for placements in (clip.poses.globals(rig.skeleton), rest):
+        hip, knee, ankle = (placements[:, j, :3, 3] for j in (leg.upper, leg.lower, leg.foot))
+        thigh, shin = knee - hip, ankle - knee
+        cosines = (thigh * shin).sum(-1)
+        cosines /= np.linalg.norm(thigh, axis=-1) * np.linalg.norm(shin, axis=-1)
+        bends.append(np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0))))
+    beyond_rest: NDArray[np.float64] = bends[0] - bends[1]
+    return beyond_rest if rig.anatomy.kind == "quadruped" else bends[0]
+
+
+def knee_beyond(source: Recording, made: Clip, rig: Rig) -> float:
+    """Return how far knees bend beyond those of the source at most, of the quantiles [degrees]."""
+    theirs = Rig(source.skeleton, source.anatomy)
+    return max(
+        float((np.quantile(own, QUANTILES) - np.quantile(other, QUANTILES)).max())
+        for a, b in leg_pairs(theirs, rig)
+        for own, other in [(knee_bends(made, rig, b), knee_bends(source.clip, theirs, a))]
+    )
+
+
+def hips_height(clip: Clip, rig: Rig) -> float:
+    """Return the mean height of the hip joints above the lowest ankle [leg lengths]."""
+    ankles, hips = [leg.foot for leg in rig.legs], [leg.upper for leg in rig.legs]
+    found = []
+    for placements in (clip.poses.globals(rig.skeleton), rig.skeleton.rest.globals(rig.skeleton)):
+        heights = rotations.rotate(rig.common_from_skeleton, placements[..., :3, 3])[..., 1]
+        found.append(float((heights[..., hips].mean(-1) - heights[..., ankles].min(-1)).mean()))
+    return found[0] / (found[1] if rig.anatomy.kind == "quadruped" else rig.leg_length)
+
+
+def dip(clip: Clip, character: Character) -> float:
+    """Return how deep the skin of feet goes below the soles at rest [m]; 0 without a skin."""
+    rig, rest = Rig(character.skeleton, character.anatomy), character.skeleton.rest
+    deepest = 0.0
+    feet = {j for leg in rig.legs for j in (leg.foot, leg.toes) if j is not None}
+    joints = [j for j in range(len(rig.skeleton)) if feet & set(rig.chain_to(j))]
+    for mesh in character.meshes:
+        own = np.where(np.isin(mesh.joints, joints), mesh.weights, 0).sum(1) > 0.5
+        if not own.any():
+            continue
+        points = np.concatenate([mesh.positions[own], np.ones((own.sum(), 1))], axis=1)
+        lowest = []
+        for placements in (rest.globals(rig.skeleton)[None], clip.poses.globals(rig.skeleton)):
+            heights = np.zeros((len(placements), len(points)))
+            for used, weights in zip(mesh.joints[own].T, mesh.weights[own].T, strict=True):
+                rows = np.einsum("fvi,vij->fvj", placements[:, used, 1], mesh.inverse_bind[used])
+                heights += weights * np.einsum("fvj,vj->fv", rows, points)
+            lowest.append(float(heights.min()))
+        deepest = max(deepest, lowest[0] - lowest[1])
+    return deepest
+
+
+def bone_change(clip: Clip, rig: Rig) -> float:
+    """Return the greatest change of a limb's length, as a share of it."""
+    lengths = []
+    for placements in (rig.skeleton.rest.globals(rig.skeleton), clip.poses.globals(rig.skeleton)):
+        at = placements[..., :3, 3]
+        joints = [(rig.anatomy.joint(a), rig.anatomy.joint(b)) for a, b in LIMBS]
+        bones = [(a, b) for a, b in joints if a is not None and b is not None]
+        starts, ends = zip(*bones, strict=True)
+        lengths.append(np.linalg.norm(at[..., ends, :] - at[..., starts, :], axis=-1))
+    return float(np.abs(lengths[1] / lengths[0] - 1).max())
+
+
+def stature(source: Recording, made: Clip, body: Character) -> tuple[float, float, float, float]:
+    """Return knees beyond the source [°], hips against it, dip [cm] and change of bones."""
+    rig = Rig(body.skeleton, body.anatomy)
+    theirs = hips_height(source.clip, Rig(source.skeleton, source.anatomy))
+    scale = 100 * PERSON_HEIGHT_M / body.height
+    return (
+        knee_beyond(source, made, rig),
+        hips_height(made, rig) / theirs,
+        dip(made, body) * scale,
+        bone_change(made, rig),
+    )
+
+
+def gait_of(source: Recording, character: Character) -> Clip | None:
+    """Return the gait cycle of a motion on a character, or None if it has none."""
+    with suppress(CharacterError):
+        return extract_gait(source, character, with_root_joint(character)).clip
+    return None
+
+
+def stature_table() -> Table:
+    """Return the table of knees, hips and soles."""
+    bars = f"bars: {MAX_KNEE_DEG:.0f}°, ±{MAX_HIPS_SHARE:.0%}, {MAX_DIP_CM} cm, "
+    table = Table(title="Crouching and sinking", caption=bars + f"{MAX_BONE_SHARE:.0%}")
+    table.add_column("motion")
+    table.add_column("on")
+    for heading in ("knee beyond", "hips", "soles dip", "bones", "gait: knee", "hips", "dips"):
+        table.add_column(heading, justify="right")
+    found: list[NDArray[np.float64]] = []
+    for source, character in cases():
+        rig = Rig(character.skeleton, character.anatomy)
+        made = retarget(source.clip, source.skeleton, source.anatomy, rig.skeleton, rig.anatomy)
+        measures = stature(source, made, character)
+        gait = gait_of(source, character)
+        again = stature(source, gait, with_root_joint(character)) if gait else None
+        found += [np.array(each) for each in (measures, again) if each is not None]
+        table.add_row(
+            source.origin,
+            character.name,
+            *_stature_cells(measures),
+            *(_stature_cells(again)[:3] if again else ()),
+        )
+    knees, hips, dips, bones = np.array(found).T
+    over = [
+        (knees > MAX_KNEE_DEG).sum(),
+        (np.abs(hips - 1) > MAX_HIPS_SHARE).sum(),
+        (dips > MAX_DIP_CM).sum(),
+        (bones > MAX_BONE_SHARE).sum(),
+    ]
+    table.add_section()
+    worst = (knees.max(), 1 + np.abs(hips - 1).max(), dips.max(), bones.max())
+    table.add_row("worst", "", *_stature_cells(worst))
+    table.add_row(f"beyond the bar, of {len(found)}", "", *map(str, over))
+    return table
+
+
+def _stature_cells(measures: tuple[float, float, float, float]) -> tuple[str, str, str, str]:
+    knee, hips, sunk, bones = measures
+    return f"{knee:.1f}°", f"{hips:.3f}", f"{sunk:.2f} cm", f"{bones:.2%}"
+
+
+def cases() -> Iterator[tuple[Recording, Character]]:
+    """Yield the recordings and the characters, at rest in their bind poses; absent files not."""
+    for motion, model in CASES:
+        name, _, _ = motion.partition("#")
+        names = [str(SHARED / each) if "/" in each else each for each in (motion, model)]
+        if "/" in name and not (SHARED / name).exists():
+            continue
+        character = Character.load(names[1])
+        yield load_recording(names[0]), replace(character, skeleton=with_bind_pose(character))
+
+
 def main() -> None:
-    """Print the table."""
+    """Print the tables."""
+    console = Console(width=120)
+    console.print(feet_table())
+    console.print(stature_table())
+
+
+def feet_table() -> Table:
+    """Return the table of limbs and feet."""
     table = Table(title="Retargeted motions, measured at the size of a person 1.7 m tall")
     table.add_column("motion")
     table.add_column("on")
     headings = ("limbs off, bare", "limbs off", "slide, bare", "slide", "worst", "sinks", "ms/s")
     for heading in headings:
         table.add_column(heading, justify="right")
-    for motion, model in CASES:
-        name = str(SHARED / model) if model.startswith("gltf") else model
-        if not (SHARED / motion.split("#")[0]).exists():
-            continue
-        source = load_recording(str(SHARED / motion))
-        character = Character.load(name)
-        character = replace(character, skeleton=with_bind_pose(character))
+    for source, character in cases():
         rig = Rig(character.skeleton, character.anatomy)
         args = (source.clip, source.skeleton, source.anatomy, rig.skeleton, rig.anatomy)
         bare = retarget(*args, hold_feet=False)
@@ -105,8 +269,8 @@ def main() -> None:
         person = rig.anatomy.kind == "humanoid"
         in_place = source.clip.root_motion and source.clip.cycle.length < 0.1 * character.height
         table.add_row(
-            Path(motion).name,
-            Path(model).stem,
+            source.origin,
+            character.name,
             f"{limb_error(source, bare, rig):.2f}°" if person else "",
             f"{limb_error(source, made, rig):.2f}°" if person else "",
             "treadmill" if in_place else f"{before:.1f} cm/s",
@@ -115,7 +279,7 @@ def main() -> None:
             f"{sunk:.2f} cm",
             f"{1e3 * took:.0f}",
         )
-    Console(width=120).print(table)
+    return table
 
 
 if __name__ == "__main__":
