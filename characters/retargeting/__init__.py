@@ -4,12 +4,8 @@
 character needs to walk and run where it is sent.
 """
 
-from characters.retargeting.locomotion.locomotion_clips import (
-    YAW_RATE_PER_ANGULAR,
-    GaitReport,
-    LocomotionResult,
-    make_locomotion,
-)
+from characters.retargeting.locomotion.grading import YAW_RATE_PER_ANGULAR, GaitReport
+from characters.retargeting.locomotion.locomotion_clips import LocomotionResult, make_locomotion
 from characters.retargeting.recording import Recording, load_recording
 from characters.retargeting.retarget import retarget
 

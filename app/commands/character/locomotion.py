@@ -19,6 +19,7 @@ from characters import Character
 from characters.retargeting import (
     YAW_RATE_PER_ANGULAR,
     GaitReport,
+    LocomotionResult,
     load_recording,
     make_locomotion,
 )
@@ -80,12 +81,24 @@ def locomotion(
     console = Console()
     console.print(table("Found in the recordings", result.recordings, seams=True))
     console.print(table("Made for the movement trees", result.clips))
+    for warning in _warnings(result):
+        console.print(f"[yellow]![/] {escape(warning)}", soft_wrap=True)
     speeds = {each.name: each.speed for each in result.clips}
     if speeds.get("Run", math.inf) < speeds["Walk"]:
         console.print("[yellow]![/] It runs slower than it walks: did you swap the recordings?")
     _write_sidecar(console, result.character, target)
     name = escape(str(target))
     console.print(f"[bold]{name}[/] walks: [cyan]cubeling play follow --character {name}[/]")
+
+
+def _warnings(result: LocomotionResult) -> list[str]:
+    """Return what a person would see of the gaits: each fault once, where it is seen first."""
+    gaits = [*result.recordings, *result.clips]
+    found: dict[str, str] = {}
+    for gait in gaits:
+        for fault, text in gait.warnings.items():
+            found.setdefault(fault, f"{gait.name}: {text}")
+    return list(found.values())
 
 
 def _same(one: Path, other: Path) -> bool:

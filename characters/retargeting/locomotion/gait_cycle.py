@@ -99,6 +99,9 @@ class GaitCycle:
     seam: float
     """Distance of the joints where the loop was closed, root mean square [m]."""
 
+    source_knees: Array | None = None
+    """How far the knees of a person's recording are bent, (legs, 5); see `knee_quantiles`."""
+
     @property
     def legs(self) -> tuple[LegJoints, ...]:
         """The legs with contacts."""

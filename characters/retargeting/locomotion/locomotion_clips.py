@@ -21,14 +21,16 @@ from characters.motion.mirror import Mirror
 from characters.retargeting.footskate import FootContacts
 from characters.retargeting.locomotion.cycle import LoopCut, close_loop, find_pause, resample_loop
 from characters.retargeting.locomotion.gait_cycle import ArcPath, GaitCycle
+from characters.retargeting.locomotion.grading import (
+    YAW_RATE_PER_ANGULAR,
+    GaitReport,
+    angular_of,
+)
 from characters.retargeting.locomotion.recorded_gait import MAX_RATE_HZ, extract_gait, on_character
 from characters.retargeting.recording import Recording
 from characters.retargeting.rig import Rig
 from characters.retargeting.root import moved_to_trajectory, with_root_joint
 from characters.skeleton.pose import Pose
-
-YAW_RATE_PER_ANGULAR = 1.5
-"""Yaw rate of the movement trees [°/s], for each degree of their parameter Angular."""
 
 _MAX_STRAIGHT_ANGULAR = 8.0  # degrees; less is straight
 _MIRROR_COST = 1.0  # degrees of Angular by which a gait that needs no mirror is preferred
@@ -38,39 +40,6 @@ _CURVE_SPEED: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
     "walk": ((0.0, 30.0, 60.0, 90.0), (1.0, 0.97, 0.86, 0.72)),
     "run": ((0.0, 45.0, 90.0), (1.0, 0.94, 0.82)),
 }
-
-
-@dataclass(frozen=True)
-class GaitReport:
-    """A gait found in a recording, or made for a movement tree."""
-
-    name: str
-    """Name of the file, or of the clip."""
-
-    origin: str
-    """The recording that it is made from, and how."""
-
-    duration: float
-    """Duration of one cycle [s]."""
-
-    speed: float
-    """Speed over the ground [m/s of the character]."""
-
-    angular: float
-    """Turn to the right, as the parameter Angular of the movement trees [degrees]."""
-
-    seam: float
-    """Distance of the joints where the cycle was closed, root mean square [m]."""
-
-    slide: float
-    """Mean speed of standing feet over the ground [m/s]."""
-
-    @classmethod
-    def of(cls, name: str, gait: GaitCycle) -> "GaitReport":
-        """Measure a gait."""
-        path = gait.path
-        angular, duration = _angular(path), gait.clip.duration
-        return cls(name, gait.origin, duration, path.speed, angular, gait.seam, gait.mean_slide)
 
 
 @dataclass(frozen=True)
@@ -120,20 +89,16 @@ def make_locomotion(
         mirror = mirror_of(walker)
     for kind, names, given in (("walk", WALK_CLIPS, walks), ("run", RUN_CLIPS, runs)):
         gaits = [extract_gait(recording, character, walker) for recording in given]
-        recordings += [GaitReport.of(gait.origin, gait) for gait in gaits]
+        recordings += [GaitReport.of(gait.origin, gait, walker.meshes) for gait in gaits]
         for gait in gaits and _tree_gaits(kind, names, gaits, mirror):
             clips[gait.clip.name] = gait.clip
-            made.append(GaitReport.of(gait.clip.name, gait))
+            made.append(GaitReport.of(gait.clip.name, gait, walker.meshes))
     if idle is not None:
         clips["idle"] = _idle_from(idle, character, walker)
     elif "idle" not in clips:
         clips["idle"] = _static_idle(clips["Walk"], Rig(walker.skeleton, walker.anatomy))
     rooted = replace(with_root_joint(original), clips=clips)
     return LocomotionResult(rooted, tuple(recordings), tuple(made))
-
-
-def _angular(path: ArcPath) -> float:
-    return -math.degrees(path.yaw_rate) / YAW_RATE_PER_ANGULAR
 
 
 def _tree_gaits(
@@ -145,7 +110,7 @@ def _tree_gaits(
     for angular, name in names.items():
         gait, mirrored = _nearest_gait(angular, gaits, mirror)
         sign = -1.0 if mirrored else 1.0
-        own_angular = sign * _angular(gait.path)
+        own_angular = sign * angular_of(gait.path)
         share = np.interp(abs(angular), knots, speeds) / np.interp(abs(own_angular), knots, speeds)
         yaw_rate = -math.radians(YAW_RATE_PER_ANGULAR * angular)
         bent = gait.bent_to(ArcPath(gait.path.speed * float(share), sign * yaw_rate))
@@ -168,7 +133,7 @@ def _nearest_gait(
     """
     options: list[tuple[float, int, bool]] = []
     for number, gait in enumerate(gaits):
-        own = _angular(gait.path)
+        own = angular_of(gait.path)
         straight = abs(own) < _MAX_STRAIGHT_ANGULAR
         difference = max(abs(own - angular), _MAX_STRAIGHT_ANGULAR)  # the first of similar ones
         options.append((difference, number, straight and angular > 0 and mirror is not None))

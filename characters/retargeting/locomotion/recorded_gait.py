@@ -16,6 +16,8 @@ from characters.retargeting.footskate import FootContacts, find_foot_contacts
 from characters.retargeting.ground_motion import find_ground_motion
 from characters.retargeting.locomotion.cycle import LoopCut, close_loop, find_cycle, resample_loop
 from characters.retargeting.locomotion.gait_cycle import ArcPath, GaitCycle
+from characters.retargeting.locomotion.grading import refuse_other_motion
+from characters.retargeting.measures import knee_quantiles
 from characters.retargeting.recording import Recording
 from characters.retargeting.retarget import retarget
 from characters.retargeting.rig import Rig, leg_pairs
@@ -25,7 +27,7 @@ from characters.retargeting.root import (
     moved_to_trajectory,
     with_root_trajectory,
 )
-from characters.skeleton.pose import Skeleton
+from characters.skeleton.pose import Array, Skeleton
 
 MAX_RATE_HZ = 60.0
 """Finer recordings are resampled."""
@@ -67,8 +69,19 @@ def extract_gait(recording: Recording, character: Character, walker: Character) 
     times = np.arange(len(loop)) / loop.rate
     poses = moved_to_trajectory(loop.poses, path.at(times))
     loop = replace(loop, poses=poses, root_motion=True)
-    seam = cut.seam * rig.leg_length
-    return GaitCycle(recording.origin, loop, rig, contacts, path, seam).with_held_feet()
+    seam, knees = cut.seam * rig.leg_length, _source_knees(recording, rig, cut)
+    gait = GaitCycle(recording.origin, loop, rig, contacts, path, seam, knees).with_held_feet()
+    refuse_other_motion(gait)
+    return gait
+
+
+def _source_knees(recording: Recording, rig: Rig, cut: LoopCut) -> Array | None:
+    """Return how far the knees of a person's recording are bent in a cycle, (legs, 5)."""
+    if rig.anatomy.kind == "quadruped":
+        return None
+    source = Rig(recording.skeleton, recording.anatomy)
+    cycle = recording.clip.poses[slice(cut.start, cut.end + 1)]
+    return np.array([knee_quantiles(cycle, source, leg) for leg, _ in leg_pairs(source, rig)])
 
 
 def _cycle_of(clip: Clip, rig: Rig, contacts: NDArray[np.bool_]) -> LoopCut:

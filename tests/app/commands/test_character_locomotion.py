@@ -1,5 +1,7 @@
 """`cubeling character locomotion`: what it makes, tells and refuses."""
 
+from dataclasses import replace
+
 import pytest
 
 from characters import Character
@@ -54,3 +56,17 @@ def test_a_run_slower_than_the_walk_is_reported(cubeling):
     )
     assert code == 0
     assert "slower than it walks" in out
+
+
+def test_visible_faults_are_told(cubeling, tmp_path):
+    human = Character.load("human")
+    walk = human.clips["Walk"]
+    longer = walk.poses.translations.copy()
+    longer[:, human.anatomy.joints["leftLowerArm"]] *= 1.4
+    grown = replace(walk, poses=replace(walk.poses, translations=longer))
+    replace(human, clips={"Walk": grown}).save(tmp_path / "grown.glb")
+    code, out, _ = cubeling(
+        "character", "locomotion", "grown.glb", "--walk", "grown.glb#Walk", "-o", "mine.glb"
+    )
+    assert code == 0
+    assert "! grown.glb#Walk: its bones change length by 40%" in out

@@ -1,0 +1,95 @@
+"""What retargeting should keep: knees, bone lengths, soles on the ground, the way ahead."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from characters.model.character import skin
+from characters.model.mesh import Mesh
+from characters.retargeting.rig import LegJoints, Rig
+from characters.skeleton import rotations
+from characters.skeleton.pose import Array, Pose
+
+_KNEE_QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
+_LIMBS = (("Arm", "Hand"), ("Leg", "Foot"))
+_MIN_FOOT_WEIGHT = 0.5  # of a vertex that belongs to a foot
+_MAX_SKINNED_FRAMES = 24
+
+
+def knee_bends(poses: Pose, rig: Rig, leg: LegJoints) -> Array:
+    """Return how far a knee is bent, (frames,) [rad]; 0 is straight."""
+    at = poses.globals(rig.skeleton)[:, [leg.upper, leg.lower, leg.foot]][..., :3, 3]
+    thigh, shin = at[:, 1] - at[:, 0], at[:, 2] - at[:, 1]
+    across = np.linalg.norm(np.cross(thigh, shin), axis=-1)
+    return np.asarray(np.arctan2(across, (thigh * shin).sum(-1)), np.float64)
+
+
+def knee_quantiles(poses: Pose, rig: Rig, leg: LegJoints) -> Array:
+    """Return how far a knee is bent in the straightest to the most bent frames [rad], (5,)."""
+    return np.asarray(np.quantile(knee_bends(poses, rig, leg), _KNEE_QUANTILES), np.float64)
+
+
+def bone_change(poses: Pose, rig: Rig) -> float:
+    """Return the greatest change of a limb bone's length in poses, as a share of it at rest."""
+    joint = rig.anatomy.joint
+    bones = []
+    for side in ("left", "right"):
+        for limb, end in _LIMBS:
+            chain = [joint(f"{side}{part}") for part in (f"Upper{limb}", f"Lower{limb}", end)]
+            bones += [(a, b) for a, b in pairwise(chain) if None not in (a, b)]
+    if not bones:
+        return 0.0
+    starts, ends = np.array(bones).T
+    lengths = [
+        np.linalg.norm(at[..., ends, :] - at[..., starts, :], axis=-1)
+        for pose in (rig.skeleton.rest, poses)
+        for at in [pose.globals(rig.skeleton)[..., :3, 3]]
+    ]
+    at_rest = np.maximum(lengths[0], 1e-9)
+    return float(np.abs(lengths[1] / at_rest - 1.0).max())
+
+
+def facing_error(poses: Pose, rig: Rig) -> float:
+    """Return the mean angle between the body's front and +z, −π…π [rad].
+
+    The front is perpendicular to the line between the thighs.
+    """
+    leg_joints = {rig.anatomy.parts[leg.upper]: leg.upper for leg in rig.legs}
+    left, right = (leg_joints.get(f"{side}UpperLeg") for side in ("left", "right"))
+    if left is None or right is None:
+        return 0.0
+    at = poses.globals(rig.skeleton)[:, [left, right]][..., :3, 3]
+    across = rotations.rotate(rig.common_from_skeleton, at[:, 0] - at[:, 1])
+    across = across / np.maximum(np.linalg.norm(across, axis=-1, keepdims=True), 1e-9)
+    x, _, z = across.mean(0)
+    return float(np.arctan2(-z, x))
+
+
+def sole_dip(poses: Pose, rig: Rig, meshes: Sequence[Mesh]) -> float:
+    """Return how deep the skin of the feet goes below the soles at rest [m]; 0 without a skin.
+
+    Poses are of a character that stands and walks on one plane.
+    """
+    feet = {j for leg in rig.legs for j in (leg.foot, leg.toes) if j is not None}
+    own = [j for j in range(len(rig.skeleton)) if feet & set(rig.chain_to(j))]
+    frames = np.linspace(0, len(poses.rotations) - 1, _MAX_SKINNED_FRAMES).round().astype(int)
+    placements = poses[np.unique(frames)].globals(rig.skeleton)
+    rest = rig.skeleton.rest.globals(rig.skeleton)
+    up = rotations.rotate(rotations.conjugate(rig.common_from_skeleton), np.array([0.0, 1.0, 0.0]))
+    at_rest, moving = [], []
+    for mesh in meshes:
+        shares = np.where(np.isin(mesh.joints, own), mesh.weights, 0.0).sum(1)
+        chosen = shares > _MIN_FOOT_WEIGHT
+        if chosen.any():
+            soles = replace(
+                mesh,
+                positions=mesh.positions[chosen],
+                joints=mesh.joints[chosen],
+                weights=mesh.weights[chosen],
+                morphs=(),
+            )
+            at_rest.append((skin(soles, rest) @ up).min())
+            moving += [(skin(soles, frame) @ up).min() for frame in placements]
+    return max(float(min(at_rest) - min(moving)), 0.0) if moving else 0.0
