@@ -9,20 +9,24 @@ Source: Kovar, Schreiner and Gleicher, "Footskate cleanup for motion capture edi
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from characters.motion.clip import Clip
 from characters.motion.contacts import find_contacts, spans
+from characters.retargeting.foot_path import FootPath
 from characters.retargeting.ground_motion import GroundMotion
 from characters.retargeting.leg_ik import place_ankle
-from characters.retargeting.rig import LegJoints, Rig, global_rotations
+from characters.retargeting.rig import LegJoints, Rig
+from characters.retargeting.soles import tilted_less
 from characters.retargeting.transfer import (
     ankle_positions,
     clip_in_common_axes,
+    in_common_axes,
     set_joint_positions,
+    turns_from_rest,
+    with_turns_from_rest,
 )
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
@@ -34,9 +38,7 @@ _MAX_CORRECTION = 0.3  # a contact that needs a larger one is dropped
 _MAX_HIPS_DROP = 0.2
 _MAX_REACH = 0.997
 _MAX_ROLL_S = 0.25  # from the heel onto the ball
-_SETTLING_S = 0.12  # to leave or reach the speed of the correction during a contact
 _HIPS_SMOOTHING_S = 0.06  # standard deviation of the hips' drop
-_HEEL_LENGTH = 0.35  # distance from the ankle back to the heel, per distance ahead to the ball
 
 
 @dataclass(frozen=True)
@@ -91,131 +93,83 @@ def hold_feet_in_contact(
 ) -> Pose:
     """Return poses (frames, joints, …) whose standing feet do not move over the ground.
 
-    `ends` are positions of the legs' ends without contact, (frames, legs, 3) [m] in the common
-    axes; left out, those of the poses.
+    `ends` are positions of the balls of the feet without contact, (frames, legs, 3) [m] in the
+    common axes; left out, those of the poses.
     """
-    placements = pose.globals(rig.skeleton)
-    turns = rotations.multiply(rig.common_from_skeleton, global_rotations(placements))
+    floor = _floor(rig)
     targets: list[Array] = []
+    placements = pose.globals(rig.skeleton)
+    ankles = [in_common_axes(rig, ankle_positions(placements, rig, leg)) for leg in legs]
+    if ends is not None:
+        balls = [ball_positions(pose, rig, leg) for leg in legs]
+        ankles = [at + ends[:, n] - balls[n] for n, at in enumerate(ankles)]
+    if floor is not None:
+        pose = _on_soles(pose, rig, legs, [at[:, 1] - floor for at in ankles])
+    turns = turns_from_rest(pose, rig, [leg.foot for leg in legs])
     for number, leg in enumerate(legs):
-        to_end, to_heel = _foot_vectors(rig, leg, turns)
-        ankles = rotations.rotate(rig.common_from_skeleton, ankle_positions(placements, rig, leg))
-        goal = ankles + to_end if ends is None else ends[:, number]
-        foot = _FootPath(
-            ground.to_ground(goal),
-            ground.directions_to_ground(to_end - to_heel),
+        sole, turn = rig.sole(leg), turns[:, number]
+        to_ball, to_heel = (rotations.rotate(turn, each) for each in (sole.ball, sole.heel))
+        lowest = np.full(len(turn), -np.inf)
+        if floor is not None:
+            lowest = floor + sole.clearance(turn) + to_ball[:, 1]
+        foot = FootPath(
+            ground.to_ground(ankles[number] + to_ball),
+            ground.directions_to_ground(to_ball - to_heel),
             ground.repeat(contacts.heel[:, number]),
             ground.repeat(contacts.ball[:, number]),
-            float(rig.rest_positions[leg.end, 1]) if rig.rests_on_feet else None,
+            ground.repeat(lowest),
             _MAX_CORRECTION * rig.leg_length,
             ground.rate,
         )
-        targets.append(ground.from_ground(foot.held()) - to_end)
-    pose = _with_lower_hips(pose, rig, _hips_drop(rig, legs, placements, targets, ground))
+        targets.append(ground.from_ground(foot.held()) - to_ball)
+    drop = _hips_drop(rig, legs, placements, targets, contacts, ground)
+    pose = _with_lower_hips(pose, rig, drop)
     skeleton_from_common = rotations.conjugate(rig.common_from_skeleton)
     for leg, target in zip(legs, targets, strict=True):
         pose = place_ankle(pose, rig, leg, rotations.rotate(skeleton_from_common, target))
+    return pose if floor is None else _with_toes_above(pose, rig, legs, floor)
+
+
+def ball_positions(pose: Pose, rig: Rig, leg: LegJoints) -> Array:
+    """Return where the ball of a foot is in poses, (frames, 3) [m] in the common axes."""
+    placements = pose.globals(rig.skeleton)
+    ankles = in_common_axes(rig, ankle_positions(placements, rig, leg))
+    turns = turns_from_rest(pose, rig, [leg.foot])[:, 0]
+    return ankles + rotations.rotate(turns, rig.sole(leg).ball)
+
+
+def _floor(rig: Rig) -> float | None:
+    """Return the height of the ground [m]; None for a skeleton that does not stand on it."""
+    if not rig.rests_on_feet:
+        return None
+    legs = rig.legs[:2]
+    heights = [rig.rest_positions[leg.foot, 1] + rig.sole(leg).heel[1] for leg in legs]
+    return float(min(heights))
+
+
+def _on_soles(pose: Pose, rig: Rig, legs: Sequence[LegJoints], heights: Sequence[Array]) -> Pose:
+    """Return poses with feet tilted no more than there is room for; toes keep their turns.
+
+    `heights` of the ankles above the ground are (frames,) [m] for each leg.
+    """
+    for leg, height in zip(legs, heights, strict=True):
+        joints = [leg.foot] if leg.toes is None else [leg.foot, leg.toes]
+        turns = turns_from_rest(pose, rig, joints)
+        turns[:, 0] = tilted_less(turns[:, 0], height, rig.sole(leg).clearance)
+        pose = with_turns_from_rest(pose, rig, joints, turns)
     return pose
 
 
-def _foot_vectors(rig: Rig, leg: LegJoints, turns: Array) -> tuple[Array, Array]:
-    """Return the vectors from the ankle to the ball and to the heel, (frames, 3) [m] each.
-
-    The heel has no joint: it is assumed on the ground behind the ankle.
-    """
-    if leg.toes is None:
-        zero = np.zeros((len(turns), 3))
-        return zero, zero
-    ball = rig.rest_positions[leg.toes] - rig.rest_positions[leg.foot]
-    up, ahead = rotations.rotate(rig.flat_foot(leg), np.eye(3)[1:])
-    height = rig.rest_positions[leg.foot, 1] if rig.rests_on_feet else -1.5 * float(ball @ up)
-    heel = -height * up - _HEEL_LENGTH * float(ball @ ahead) * ahead
-    from_rest = rotations.multiply(
-        turns[:, leg.foot], rotations.conjugate(rig.rest_rotations[leg.foot])
-    )
-    return rotations.rotate(from_rest, ball), rotations.rotate(from_rest, heel)
-
-
-@dataclass(frozen=True)
-class _FootPath:
-    """The path of one foot over the ground."""
-
-    goal: Array  # position of its end without corrections, (frames, 3) [m]
-    heel_to_end: Array  # from the heel to the end, (frames, 3) [m]
-    heel: NDArray[np.bool_]  # whether it stands on its heel alone, (frames,)
-    ball: NDArray[np.bool_]  # whether it stands on its end, (frames,)
-    floor: float | None  # height of the end while it stands [m]; None to keep that of the goal
-    max_correction: float  # a contact that needs a larger correction is dropped [m]
-    rate: float  # [Hz]
-
-    def held(self) -> Array:
-        """Return the positions of its end, (frames, 3) [m], constant during contacts."""
-        correction = np.zeros_like(self.goal)
-        contacts: list[tuple[int, int]] = []
-        for first, length in spans(self.heel | self.ball, loop=False):
-            span = np.arange(first, first + length)
-            wanted = self._contact_positions(span) - self.goal[span]
-            if np.abs(wanted).max() < self.max_correction:
-                correction[span] = wanted
-                contacts.append((first, length))
-        self._interpolate(correction, contacts)
-        held: Array = self.goal + correction
-        held[:, 1] = np.maximum(held[:, 1], self._lowest())
-        return held
-
-    def _lowest(self) -> Array:
-        """Return the height of the end with ball or heel on the ground, (frames,) [m]."""
-        if self.floor is None:
-            return np.full(len(self.goal), -np.inf)
-        return np.maximum(self.floor, self.heel_to_end[:, 1])
-
-    def _contact_positions(self, span: NDArray[np.intp]) -> Array:
-        """Return the positions of the end during a contact: on the heel first, then on the ball."""
-        goal, heel_to_end = self.goal[span], self.heel_to_end[span]
-        ball = self.ball[span]
-        if not ball.any():  # the contact is cut off, or too short to roll onto the ball
-            return np.asarray((goal - heel_to_end).mean(0) + heel_to_end)
-        spot = goal[ball].mean(0)
-        first = int(ball.argmax())
-        at = np.tile(spot, (len(span), 1))
-        # The foot turns about its heel until the ball is down.
-        at[:first] = spot - heel_to_end[first] + heel_to_end[:first]
-        if self.floor is not None:
-            at[:, 1] = self._lowest()[span]
-        return at
-
-    def _interpolate(self, correction: Array, contacts: Sequence[tuple[int, int]]) -> None:
-        """Fill in the correction between contacts, smoothly."""
-        if not contacts:
-            return
-        ends = [(0, 0), *contacts, (len(correction), 0)]
-        for (first, length), (after, _) in pairwise(ends):
-            start, gap = first + length, after - first - length
-            if gap <= 0:
-                continue
-            here = correction[start - 1] if length else correction[after]
-            there = correction[after] if after < len(correction) else here
-            zero = np.zeros(3)
-            leaving = _slope(correction, start - 1, -1) if length > 1 else zero
-            arriving = _slope(correction, after, 1) if after + 1 < len(correction) else zero
-            u: Array = np.arange(1.0, gap + 1)[:, None]
-            part = u / (gap + 1)
-            ease = part * part * (3 - 2 * part)
-            width = min(_SETTLING_S * self.rate, (gap + 1) / 2)
-            correction[start:after] = here + (there - here) * ease
-            correction[start:after] += leaving * _decay(u, width)
-            correction[start:after] -= arriving * _decay(gap + 1 - u, width)
-
-
-def _slope(correction: Array, frame: int, inward: int) -> Array:
-    """Return the change per frame at an end of a contact, forward in time."""
-    change: Array = (correction[frame + inward] - correction[frame]) * inward
-    return change
-
-
-def _decay(frames: Array, width: float) -> Array:
-    """Return a curve that starts from 0 with slope 1 and is 0 from `width` on."""
-    return np.asarray(frames * np.clip(1 - frames / width, 0.0, 1.0) ** 2)
+def _with_toes_above(pose: Pose, rig: Rig, legs: Sequence[LegJoints], floor: float) -> Pose:
+    """Return poses with toes tilted no more than there is room for."""
+    for leg in legs:
+        if leg.toes is None:
+            continue
+        heights = in_common_axes(rig, pose.globals(rig.skeleton)[:, leg.toes, :3, 3])[:, 1] - floor
+        turns = turns_from_rest(pose, rig, [leg.toes])
+        turns[:, 0] = tilted_less(turns[:, 0], heights, rig.sole(leg).toes_clearance)
+        pose = with_turns_from_rest(pose, rig, [leg.toes], turns)
+    return pose
 
 
 def _hips_drop(
@@ -223,16 +177,18 @@ def _hips_drop(
     legs: Sequence[LegJoints],
     placements: Array,
     ankles: Sequence[Array],
+    contacts: FootContacts,
     ground: GroundMotion,
 ) -> Array:
-    """Return how far the hips come down so that the legs reach, smoothed, (frames,) [m]."""
+    """Return how far the hips come down so that standing legs reach, smoothed, (frames,) [m]."""
     needed = np.zeros(len(placements))
-    for leg, target in zip(legs, ankles, strict=True):
+    for number, (leg, target) in enumerate(zip(legs, ankles, strict=True)):
         hip = rotations.rotate(rig.common_from_skeleton, placements[:, leg.upper, :3, 3])
         aside = np.linalg.norm((hip - target)[:, [0, 2]], axis=-1)
         reach = _MAX_REACH * sum(rig.bone_lengths(leg))
         height = np.sqrt(np.maximum(reach**2 - aside**2, 0.0))
-        needed = np.maximum(needed, hip[:, 1] - target[:, 1] - height)
+        missing = hip[:, 1] - target[:, 1] - height
+        needed = np.maximum(needed, np.where(contacts.any[:, number], missing, 0.0))
     needed = np.clip(needed, 0.0, _MAX_HIPS_DROP * rig.leg_length)
     if not needed.any():
         return needed

@@ -1,15 +1,27 @@
 """Retargeting a clip from one skeleton to another."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from characters.errors import CharacterError
+from characters.model.mesh import Mesh
 from characters.motion.clip import Clip
-from characters.retargeting.footskate import find_foot_contacts, hold_feet_in_contact
+from characters.retargeting.footskate import (
+    ball_positions,
+    find_foot_contacts,
+    hold_feet_in_contact,
+)
 from characters.retargeting.ground_motion import find_ground_motion
 from characters.retargeting.mapping import map_joints
 from characters.retargeting.rig import Rig, leg_pairs
 from characters.retargeting.root import has_root_joint, root_trajectory
-from characters.retargeting.transfer import build_poses, hips_trajectory, transferred_rotations
+from characters.retargeting.transfer import (
+    build_poses,
+    hips_trajectory,
+    in_common_axes,
+    transferred_rotations,
+)
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Skeleton
@@ -28,6 +40,7 @@ def retarget(
     target_anatomy: Anatomy,
     *,
     hold_feet: bool = True,
+    meshes: Sequence[Mesh] = (),
 ) -> Clip:
     """Return a clip of one skeleton for another.
 
@@ -45,6 +58,8 @@ def retarget(
         The skeleton that is to move, and its body parts.
     hold_feet
         Whether the feet of the target stay in place on the ground while those of the source stand.
+    meshes
+        The skin of the target, whose soles then stay above the ground.
 
     Raises
     ------
@@ -52,7 +67,8 @@ def retarget(
         If one is a person and the other a quadruped, or either lacks hips or legs.
     """
     try:
-        return _retarget(clip, Rig(source, source_anatomy), Rig(target, target_anatomy), hold_feet)
+        rigs = Rig(source, source_anatomy), Rig(target, target_anatomy, meshes)
+        return _retarget(clip, *rigs, hold_feet)
     except CharacterError as error:
         raise CharacterError(f"clip {clip.name!r}: {error}") from None
 
@@ -71,6 +87,9 @@ def _retarget(clip: Clip, source: Rig, target: Rig, hold_feet: bool) -> Clip:
         ends = None
         if target.anatomy.kind == "quadruped":
             ends = _paw_positions(clip, source, target, ratio * np.array([share, 1.0, share]))
+            at = in_common_axes(target, pose.globals(target.skeleton)[..., :3, 3])
+            for number, leg in enumerate(target_legs):
+                ends[:, number] += ball_positions(pose, target, leg) - at[:, leg.end]
         contacts = find_foot_contacts(clip, source, source_legs)
         ground = find_ground_motion(clip, source, source_legs, contacts.ball, ratio * share)
         pose = hold_feet_in_contact(pose, target, target_legs, contacts, ground, ends)

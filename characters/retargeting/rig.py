@@ -1,17 +1,21 @@
 """A skeleton with its anatomy, in axes that all skeletons share: +y up and +z ahead."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from characters.errors import CharacterError
+from characters.model.mesh import Mesh
+from characters.retargeting.soles import Sole, skin_of_joints
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import SIDES, Anatomy
 from characters.skeleton.facing import common_from_skeleton
 from characters.skeleton.pose import Array, Skeleton
 
 _STANDING_HEIGHT = (-0.02, 0.12)  # of the lowest joint of a standing rest pose, in body sizes
+_FOOT_LENGTH, _ANKLE_HEIGHT = 0.15, 0.09  # [leg lengths], of feet without toes and skin
 _MAX_STANDING_SPREAD = 0.2  # [rad]: legs farther apart at rest do not stand; see `Rig.flat_foot`
 
 
@@ -49,6 +53,9 @@ class Rig:
 
     anatomy: Anatomy
     """Which joint is which body part."""
+
+    meshes: Sequence[Mesh] = ()
+    """The skin of a character: where its soles are; without it, that is assumed."""
 
     @cached_property
     def common_from_skeleton(self) -> Array:
@@ -147,6 +154,40 @@ class Rig:
         ahead = ahead - up * float(ahead @ up)
         ahead = ahead / max(float(np.linalg.norm(ahead)), 1e-9)
         return rotations.from_matrix(np.stack([np.cross(up, ahead), up, ahead], axis=-1))
+
+    def sole(self, leg: LegJoints) -> Sole:
+        """Return the underside of a foot at rest."""
+        return self._soles[leg.foot]
+
+    @cached_property
+    def _soles(self) -> dict[int, Sole]:
+        """The undersides of the feet by joint."""
+        return {leg.foot: self._sole(leg) for leg in self.legs}
+
+    def _sole(self, leg: LegJoints) -> Sole:
+        joints = range(len(self.skeleton))
+        toes = [j for j in joints if leg.toes is not None and leg.toes in self.chain_to(j)]
+        foot = [j for j in joints if leg.foot in self.chain_to(j) and j not in toes]
+        ankle = self.rest_positions[leg.foot]
+        ball = None if leg.toes is None else self.rest_positions[leg.toes] - ankle
+        ahead = rotations.rotate(self.flat_foot(leg), [0.0, 0.0, 1.0])
+        rest = self.skeleton.rest.globals(self.skeleton)
+        points, tips = (
+            rotations.rotate(self.common_from_skeleton, skin_of_joints(self.meshes, rest, *parts))
+            for parts in ((foot, toes), (toes, foot))
+        )
+        if len(points) and (ball is None or len(tips)):
+            origin = ankle if ball is None else ankle + ball
+            return Sole.of(points - ankle, tips - origin, ball, ahead)
+        height = float(ankle[1]) if self.rests_on_feet else self._assumed_ankle_height(leg)
+        return Sole.assumed(ball, height, ahead, _FOOT_LENGTH * self.leg_length)
+
+    def _assumed_ankle_height(self, leg: LegJoints) -> float:
+        """Return the height of an ankle whose ground is not known [m]."""
+        if leg.toes is None:
+            return _ANKLE_HEIGHT * self.leg_length
+        up = rotations.rotate(self.flat_foot(leg), [0.0, 1.0, 0.0])
+        return 1.5 * float(up @ (self.rest_positions[leg.foot] - self.rest_positions[leg.toes]))
 
     @cached_property
     def _leg_spread(self) -> float:

@@ -4,6 +4,7 @@ Every joint rotates away from the common reference pose as its partner does, see
 both rigs share. So the axes and the rest rotations of joints do not matter.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -156,6 +157,34 @@ def ankle_positions(placements: Array, rig: Rig, leg: LegJoints) -> Array:
     local = np.linalg.inv(rest[leg.lower]) @ rest[leg.foot, :, 3]
     positions: Array = placements[..., leg.lower, :3, :] @ local
     return positions
+
+
+def in_common_axes(rig: Rig, positions: Array) -> Array:
+    """Return positions (…, 3) of a skeleton's own axes in the common ones."""
+    return rotations.rotate(rig.common_from_skeleton, positions)
+
+
+def turns_from_rest(pose: Pose, rig: Rig, joints: Sequence[int]) -> Array:
+    """Return how joints are turned from rest in the common axes, (frames, n, 4)."""
+    turns = global_rotations(pose.globals(rig.skeleton)[:, joints])
+    turns = rotations.multiply(rig.common_from_skeleton, turns)
+    return rotations.multiply(turns, rotations.conjugate(rig.rest_rotations[joints]))
+
+
+def with_turns_from_rest(pose: Pose, rig: Rig, joints: Sequence[int], turns: Array) -> Pose:
+    """Return poses with joints, parents first, turned from rest by (frames, n, 4)."""
+    skeleton_from_common = rotations.conjugate(rig.common_from_skeleton)
+    own = pose.rotations.copy()
+    turned = replace(pose, rotations=own)
+    for number, joint in enumerate(joints):
+        world = rotations.multiply(turns[:, number], rig.rest_rotations[joint])
+        world = rotations.multiply(skeleton_from_common, world)
+        parent = rig.skeleton.parents[joint]
+        if parent >= 0:
+            above = global_rotations(turned.globals(rig.skeleton)[:, parent])
+            world = rotations.multiply(rotations.conjugate(above), world)
+        own[:, joint] = world
+    return replace(pose, rotations=rotations.continuous(own))
 
 
 def _local_rotations(turns: Array, parents: tuple[int, ...]) -> Array:

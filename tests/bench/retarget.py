@@ -18,7 +18,8 @@ from rich.table import Table
 from characters import Character, CharacterError, Clip
 from characters.model.bind_pose import with_bind_pose
 from characters.retargeting import Recording, load_recording, retarget
-from characters.retargeting.footskate import find_foot_contacts
+from characters.retargeting.footskate import ball_positions, find_foot_contacts
+from characters.retargeting.ground_motion import find_ground_motion
 from characters.retargeting.locomotion.recorded_gait import extract_gait
 from characters.retargeting.rig import LegJoints, Rig, leg_pairs
 from characters.retargeting.root import with_root_joint
@@ -92,14 +93,20 @@ def feet(source: Recording, made: Clip, rig: Rig, height: float) -> tuple[float,
     theirs = Rig(source.skeleton, source.anatomy)
     pairs = leg_pairs(theirs, rig)
     down = find_foot_contacts(source.clip, theirs, [leg for leg, _ in pairs]).ball
-    ends = [leg.end for _, leg in pairs]
-    at = made.poses.globals(rig.skeleton)[:, ends][..., :3, 3]
-    rest = rig.rest_positions[ends, 1]
+    at = np.stack([ball_positions(made.poses, rig, leg) for _, leg in pairs], axis=1)
+    rest = np.array([rig.rest_positions[leg.foot, 1] + rig.sole(leg).ball[1] for _, leg in pairs])
     speeds = np.linalg.norm(np.diff(at[..., [0, 2]], axis=0), axis=-1) * made.rate
     held = speeds[down[1:] & down[:-1]] if down.any() else np.zeros(1)
     scale = 100 * PERSON_HEIGHT_M / height
     sunk = max(float((rest - at[..., 1]).max()), 0.0)
     return float(held.mean()) * scale, float(held.max()) * scale, sunk * scale
+
+
+def on_treadmill(source: Recording) -> bool:
+    """Return whether a motion walks in place."""
+    rig = Rig(source.skeleton, source.anatomy)
+    contacts = find_foot_contacts(source.clip, rig, rig.legs).ball
+    return bool(find_ground_motion(source.clip, rig, rig.legs, contacts, 1.0).frame_poses.any())
 
 
 def knee_bends(clip: Clip, rig: Rig, leg: LegJoints) -> NDArray[np.float64]:
@@ -201,7 +208,14 @@ def stature_table() -> Table:
     found: list[NDArray[np.float64]] = []
     for source, character in cases():
         rig = Rig(character.skeleton, character.anatomy)
-        made = retarget(source.clip, source.skeleton, source.anatomy, rig.skeleton, rig.anatomy)
+        made = retarget(
+            source.clip,
+            source.skeleton,
+            source.anatomy,
+            rig.skeleton,
+            rig.anatomy,
+            meshes=character.meshes,
+        )
         measures = stature(source, made, character)
         gait = gait_of(source, character)
         again = stature(source, gait, with_root_joint(character)) if gait else None
@@ -258,16 +272,16 @@ def feet_table() -> Table:
     for heading in headings:
         table.add_column(heading, justify="right")
     for source, character in cases():
-        rig = Rig(character.skeleton, character.anatomy)
+        rig = Rig(character.skeleton, character.anatomy, character.meshes)
         args = (source.clip, source.skeleton, source.anatomy, rig.skeleton, rig.anatomy)
         bare = retarget(*args, hold_feet=False)
         start = time.perf_counter()
-        made = retarget(*args)
+        made = retarget(*args, meshes=character.meshes)
         took = (time.perf_counter() - start) / max(made.duration, 1e-9)
         before, _, _ = feet(source, bare, rig, character.height)
         mean, worst, sunk = feet(source, made, rig, character.height)
         person = rig.anatomy.kind == "humanoid"
-        in_place = source.clip.root_motion and source.clip.cycle.length < 0.1 * character.height
+        in_place = on_treadmill(source)
         table.add_row(
             source.origin,
             character.name,

@@ -10,11 +10,14 @@ import numpy as np
 
 from characters.motion.clip import Clip
 from characters.motion.motion import RootDelta
-from characters.retargeting.footskate import FootContacts, hold_feet_in_contact
+from characters.retargeting.footskate import (
+    FootContacts,
+    ball_positions,
+    hold_feet_in_contact,
+)
 from characters.retargeting.ground_motion import GroundMotion, arc, transform
 from characters.retargeting.rig import LegJoints, Rig, global_rotations
 from characters.retargeting.root import moved_to_trajectory
-from characters.retargeting.transfer import ankle_positions
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
 
@@ -112,7 +115,7 @@ class GaitCycle:
         """Mean speed of standing balls of feet over the ground [m/s]."""
         speeds: list[Array] = []
         for number, leg in enumerate(self.legs):
-            at = self._end_positions(leg)[:, [0, 2]]
+            at = ball_positions(self.clip.poses, self.rig, leg)[:, [0, 2]]
             down = self.contacts.ball[:, number]
             speed = np.linalg.norm(np.diff(at, axis=0), axis=-1) * self.clip.rate
             speeds.append(speed[down[1:] & down[:-1]])
@@ -128,7 +131,8 @@ class GaitCycle:
         pose = self._with_lean(pose, path)
         ends = np.empty((len(times), len(self.legs), 3))
         for number, leg in enumerate(self.legs):
-            coordinates = self.path.to_arc(self._end_positions(leg), times)
+            balls = ball_positions(self.clip.poses, self.rig, leg)
+            coordinates = self.path.to_arc(balls, times)
             yaw = curvature_change * (coordinates[:, 0] - self.path.speed * times)
             pose = _turned(pose, self.rig, leg.foot, rotations.about("y", yaw))
             coordinates[:, 0] *= share
@@ -143,13 +147,6 @@ class GaitCycle:
         pose = self.clip.poses
         held = hold_feet_in_contact(pose, self.rig, self.legs, self.contacts, ground, ends)
         return replace(self, clip=replace(self.clip, poses=_with_exact_end(held)))
-
-    def _end_positions(self, leg: LegJoints) -> Array:
-        """Return the positions of the end of a leg, (frames, 3) [m]."""
-        placements = self.clip.poses.globals(self.rig.skeleton)
-        if leg.toes is not None and leg.foot in self.rig.chain_to(leg.toes):
-            return np.asarray(placements[:, leg.toes, :3, 3])
-        return ankle_positions(placements, self.rig, leg)
 
     def _with_lean(self, pose: Pose, path: ArcPath) -> Pose:
         """Return poses that lean into a curve and look ahead in it."""

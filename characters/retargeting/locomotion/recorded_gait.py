@@ -37,7 +37,7 @@ _MAX_REPEATED_SEAM = 0.1  # leg lengths; parts of a loop that differ more do not
 
 def extract_gait(recording: Recording, character: Character, walker: Character) -> GaitCycle:
     """Return the best cycle of a recording; `walker` is the character with a root joint."""
-    rig = Rig(walker.skeleton, walker.anatomy)
+    rig = Rig(walker.skeleton, walker.anatomy, walker.meshes)
     clip, contacts = on_character(recording, character, walker)
     clip = _without_treadmill(clip, rig, contacts)
     cut = _cycle_of(clip, rig, contacts.any[:, :2])
@@ -111,7 +111,7 @@ def on_character(
         raise CharacterError(f"{recording.origin}: {error}") from None
     if not _are_same(recording.skeleton, character.skeleton):
         args = (recording.skeleton, recording.anatomy, walker.skeleton, walker.anatomy)
-        return retarget(recording.clip, *args), contacts
+        return retarget(recording.clip, *args, meshes=walker.meshes), contacts
     if has_root_joint(character.skeleton, character.anatomy):
         return replace(recording.clip, root_motion=True), contacts
     return clip_with_root(recording.clip, character.skeleton, character.anatomy), contacts

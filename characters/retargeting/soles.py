@@ -1,0 +1,158 @@
+"""The undersides of feet, and the turn of a foot that keeps them above the ground.
+
+A foot is longer or shorter than that of the motion's performer. So it cannot be turned just as far
+without going through the ground, or its ankle would have to rise and the knee to bend. The ankle
+keeps its height instead, and the foot turns as far as there is room.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from characters.model.character import skin
+from characters.model.mesh import Mesh
+from characters.skeleton import rotations
+from characters.skeleton.pose import Array
+
+_UP = np.array([0.0, 1.0, 0.0])
+_DIRECTIONS = 96  # in which the outermost points of a foot are kept
+_HALVINGS = 14  # of the range of tilts
+_MIN_WEIGHT = 0.5  # of a vertex that belongs to a foot
+# Without a skin: lengths per distance ahead from the ankle to the toes.
+_HEEL_LENGTH, _TOES_LENGTH = 0.35, 0.4
+_BALL_PART = 0.7  # of the way from the ankle to the tip of a foot without toes
+
+
+@dataclass(frozen=True)
+class Sole:
+    """Outermost points of a foot at rest, in the common axes."""
+
+    foot: Array
+    """Of what moves with the foot, from the ankle, (n, 3) [m]."""
+
+    toes: Array
+    """Of what moves with the toes, from their joint, (m, 3) [m]; none without toes."""
+
+    ball: Array
+    """From the ankle to the joint of the toes; without toes, to the ground below the ball, (3,)."""
+
+    heel: Array
+    """From the ankle to the ground below the heel, (3,) [m]."""
+
+    @classmethod
+    def of(cls, foot: Array, toes: Array, ball: Array | None, ahead: Array) -> "Sole":
+        """Return the sole of a foot with a skin.
+
+        Parameters
+        ----------
+        foot, toes
+            Vertices of both, from their joints, (n, 3) and (m, 3) [m].
+        ball
+            From the ankle to the joint of the toes, (3,) [m], or None without toes.
+        ahead
+            Unit vector along the foot, level, (3,).
+        """
+        along, lowest = foot @ ahead, float(foot[:, 1].min())
+        below = lowest * _UP
+        if ball is None:
+            ball = _BALL_PART * float(along.max()) * ahead + below
+        return cls(_outermost(foot), _outermost(toes), ball, float(along.min()) * ahead + below)
+
+    @classmethod
+    def assumed(cls, ball: Array | None, height: float, ahead: Array, length: float) -> "Sole":
+        """Return the sole of a foot without a skin, whose ankle is at a height [m].
+
+        `length` is the distance ahead to the ball of a foot without toes [m]; see `of`.
+        """
+        below = -height * _UP
+        if ball is not None:
+            length = float(ball @ ahead)
+        heel, front = (part * length * ahead + below for part in (-_HEEL_LENGTH, 1.0))
+        if ball is None:
+            return cls(np.stack([heel, front]), np.zeros((0, 3)), front, heel)
+        ground = (-height - ball[1]) * _UP
+        tip = _TOES_LENGTH * length * ahead + ground
+        return cls(np.stack([heel, front]), np.stack([ground, tip]), ball, heel)
+
+    def clearance(self, turns: Array) -> Array:
+        """Return how high the ankle of a foot turned from rest (…, 4) is above the ground, (…) [m].
+
+        The sole touches the ground, and level toes are not below it.
+        """
+        down = rotations.rotate(rotations.conjugate(turns), -_UP)
+        lowest = (down @ self.foot.T).max(-1)
+        if len(self.toes):
+            lowest = np.maximum(lowest, down @ self.ball - self.toes[:, 1].min())
+        return np.asarray(lowest)
+
+    def toes_clearance(self, turns: Array) -> Array:
+        """Return how high the joint of toes turned from rest (…, 4) is above ground, (…) [m]."""
+        down = rotations.rotate(rotations.conjugate(turns), -_UP)
+        return np.asarray((down @ self.toes.T).max(-1))
+
+
+def tilted_less(turns: Array, heights: Array, clearance: Callable[[Array], Array]) -> Array:
+    """Return turns from rest (frames, 4) with as much of their tilt as there is room for.
+
+    `heights` (frames,) [m] are those of the joint above the ground and `clearance` gives those at
+    which a turned foot touches it.
+    """
+    tilt = rotations.between(_UP, rotations.rotate(turns, _UP))
+    level = rotations.multiply(rotations.conjugate(tilt), turns)
+    room = np.maximum(heights, clearance(level))  # a level foot stands, even if it is too low
+    least, most = np.zeros(len(turns)), np.ones(len(turns))
+    most[clearance(turns) <= room + 1e-9] = 0.0
+    least[most == 0.0] = most[most == 0.0] = 1.0
+    for _ in range(_HALVINGS):
+        middle = (least + most) / 2
+        fits = clearance(_tilted(level, tilt, middle)) <= room + 1e-9
+        least, most = np.where(fits, middle, least), np.where(fits, most, middle)
+    return _tilted(level, tilt, least)
+
+
+def _tilted(level: Array, tilt: Array, shares: Array) -> Array:
+    part = rotations.slerp(rotations.IDENTITY, tilt, shares)
+    return rotations.multiply(part, level)
+
+
+def skin_of_joints(
+    meshes: Sequence[Mesh], placements: Array, joints: Sequence[int], others: Sequence[int] = ()
+) -> Array:
+    """Return the vertices that mostly follow these joints, and no more the others, (n, 3) [m].
+
+    `placements` of all joints are (joints, 4, 4).
+    """
+    found = [np.zeros((0, 3))]
+    for mesh in meshes:
+        own, other = (
+            np.where(np.isin(mesh.joints, each), mesh.weights, 0.0).sum(1)
+            for each in (joints, others)
+        )
+        chosen = (own + other > _MIN_WEIGHT) & (own >= other)
+        if chosen.any():
+            part = replace(
+                mesh,
+                positions=mesh.positions[chosen],
+                joints=mesh.joints[chosen],
+                weights=mesh.weights[chosen],
+                morphs=(),
+            )
+            found.append(skin(part, placements))
+    return np.concatenate(found)
+
+
+def _outermost(points: Array) -> Array:
+    """Return the points of a set (n, 3) that are outermost in some direction."""
+    if len(points) <= _DIRECTIONS:
+        return points
+    # Evenly spread over the sphere (González, "Measurement of areas on a sphere using Fibonacci
+    # and latitude–longitude lattices", 2010).
+    number = np.arange(_DIRECTIONS)
+    y = (2 * number + 1) / _DIRECTIONS - 1
+    around = np.pi * (1 + 5**0.5) * number
+    ring = np.sqrt(1 - y**2)
+    directions = np.stack([ring * np.cos(around), y, ring * np.sin(around)], axis=-1)
+    lowest = points[:, 1].argmin()
+    kept = np.unique([lowest, *(points @ directions.T).argmax(0)])
+    return np.asarray(points[kept])
