@@ -117,11 +117,13 @@ def report_recording(path: Path, console: Console) -> None:
 def run_with_progress(session: OpenedSession, console: Console, title: str) -> Summary:
     """Run a session and show its progress; raise KeyboardInterrupt if no picture came before it."""
     lens_line, sound_line = _LensLine(session, console), _SoundLine(session, console)
+    hop_line = _HopLine(session, console)
     with _progress(session, console, title) as report:
 
         def progress(step: Step) -> None:
             report(step)
             lens_line(step)
+            hop_line(step)
             sound_line()
 
         summary = run(session, progress)
@@ -221,6 +223,26 @@ class _LensLine:
         if words is not None:
             self._console.print(words)
             self._said = True
+
+
+class _HopLine:
+    """Prints once, when the character hops as it cannot walk, what would give it a walk."""
+
+    def __init__(self, session: OpenedSession, console: Console) -> None:
+        self._name = session.playground.character.name
+        self._file = session.options.character or self._name
+        self._console, self._said = console, False
+
+    def __call__(self, step: Step) -> None:
+        if self._said or step.outcome.icon != "hop":
+            return
+        self._said = True
+        file = escape(shlex.quote(self._file))
+        self._console.print(
+            f"{escape(self._name)} has no walk, so it hops: "
+            f"[cyan]cubeling character locomotion {file} --walk WALK.bvh[/] gives it one",
+            soft_wrap=True,
+        )
 
 
 class _SoundLine:

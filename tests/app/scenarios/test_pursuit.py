@@ -90,11 +90,13 @@ def test_the_character_stops_before_it_stands_in_the_cube(hand, name):
     assert max(moods) > moods[0] + 0.2  # it is glad to have come
 
 
-def test_the_summary_names_what_gives_a_gait_to_a_character_that_hops(cubeling):
+def test_a_character_that_hops_is_told_with_the_command_that_gives_it_a_walk(cubeling):
     part = (bundled("follow"), "--end", "8", "--no-pictures")
     code, out, _ = cubeling("replay", *part, "--character", "vleo")
     assert code == 0
-    assert "cubeling character locomotion" in " ".join(out.split())
+    said = " ".join(out.split())
+    assert said.count("vleo has no walk, so it hops: cubeling character locomotion vleo") == 1
+    assert "cubeling character locomotion gives it a gait" in said
 
 
 def test_a_lap_that_is_finished_pleases(hand):
