@@ -103,7 +103,9 @@ class GaitCycle:
     """Distance of the joints where the loop was closed, root mean square [m]."""
 
     source_knees: Array | None = None
-    """How far the knees of a person's recording are bent, (legs, 5); see `knee_quantiles`."""
+    """How far the knees of a person's recording are bent, (legs, 5); see `knee_quantiles`.
+
+    None for an animal, and on another curve, where knees bend otherwise."""
 
     @property
     def legs(self) -> tuple[LegJoints, ...]:
@@ -137,7 +139,9 @@ class GaitCycle:
             pose = _turned(pose, self.rig, leg.foot, rotations.about("y", yaw))
             coordinates[:, 0] *= share
             ends[:, number] = path.from_arc(coordinates)
-        return replace(self, path=path, clip=replace(self.clip, poses=pose)).with_held_feet(ends)
+        knees = self.source_knees if abs(curvature_change) < _MIN_CURVATURE else None
+        clip = replace(self.clip, poses=pose)
+        return replace(self, path=path, clip=clip, source_knees=knees).with_held_feet(ends)
 
     def with_held_feet(self, ends: Array | None = None) -> "GaitCycle":
         """Return the gait with feet that do not slide; see `hold_feet_in_contact`."""
