@@ -8,7 +8,7 @@ Source: Kovar, Schreiner and Gleicher, "Footskate cleanup for motion capture edi
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from characters.motion.clip import Clip
 from characters.motion.contacts import find_contacts, spans
 from characters.retargeting.foot_path import FootPath
 from characters.retargeting.ground_motion import GroundMotion
+from characters.retargeting.hips_shift import hips_shift, with_moved_hips
 from characters.retargeting.leg_ik import place_ankle
 from characters.retargeting.rig import LegJoints, Rig
 from characters.retargeting.soles import tilted_less
@@ -24,21 +25,16 @@ from characters.retargeting.transfer import (
     ankle_positions,
     clip_in_common_axes,
     in_common_axes,
-    set_joint_positions,
     turns_from_rest,
     with_turns_from_rest,
 )
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
-from characters.smoothing import gaussian_smoothed
 
 # Lengths in leg lengths.
 _MAX_BALL_RISE = 0.02  # of the ball of a standing foot above its lowest position
 _MAX_CORRECTION = 0.3  # a contact that needs a larger one is dropped
-_MAX_HIPS_DROP = 0.2
-_MAX_REACH = 0.997
 _MAX_ROLL_S = 0.25  # from the heel onto the ball
-_HIPS_SMOOTHING_S = 0.06  # standard deviation of the hips' drop
 
 
 @dataclass(frozen=True)
@@ -122,8 +118,10 @@ def hold_feet_in_contact(
             ground.rate,
         )
         targets.append(ground.from_ground(foot.held()) - to_ball)
-    drop = _hips_drop(rig, legs, placements, targets, contacts, ground)
-    pose = _with_lower_hips(pose, rig, drop)
+    places = np.stack(targets, axis=1)
+    corrections = places - np.stack(ankles, axis=1)
+    shift = hips_shift(pose, rig, legs, corrections, places, contacts.any, ground)
+    pose = with_moved_hips(pose, rig, shift)
     skeleton_from_common = rotations.conjugate(rig.common_from_skeleton)
     for leg, target in zip(legs, targets, strict=True):
         pose = place_ankle(pose, rig, leg, rotations.rotate(skeleton_from_common, target))
@@ -170,42 +168,3 @@ def _with_toes_above(pose: Pose, rig: Rig, legs: Sequence[LegJoints], floor: flo
         turns[:, 0] = tilted_less(turns[:, 0], heights, rig.sole(leg).toes_clearance)
         pose = with_turns_from_rest(pose, rig, [leg.toes], turns)
     return pose
-
-
-def _hips_drop(
-    rig: Rig,
-    legs: Sequence[LegJoints],
-    placements: Array,
-    ankles: Sequence[Array],
-    contacts: FootContacts,
-    ground: GroundMotion,
-) -> Array:
-    """Return how far the hips come down so that standing legs reach, smoothed, (frames,) [m]."""
-    needed = np.zeros(len(placements))
-    for number, (leg, target) in enumerate(zip(legs, ankles, strict=True)):
-        hip = rotations.rotate(rig.common_from_skeleton, placements[:, leg.upper, :3, 3])
-        aside = np.linalg.norm((hip - target)[:, [0, 2]], axis=-1)
-        reach = _MAX_REACH * sum(rig.bone_lengths(leg))
-        height = np.sqrt(np.maximum(reach**2 - aside**2, 0.0))
-        missing = hip[:, 1] - target[:, 1] - height
-        needed = np.maximum(needed, np.where(contacts.any[:, number], missing, 0.0))
-    needed = np.clip(needed, 0.0, _MAX_HIPS_DROP * rig.leg_length)
-    if not needed.any():
-        return needed
-    deviation = _HIPS_SMOOTHING_S * ground.rate
-    margin = round(2 * deviation)
-    padded = np.pad(ground.repeat(needed), margin, mode="edge")
-    greatest = np.lib.stride_tricks.sliding_window_view(padded, 2 * margin + 1).max(-1)
-    return ground.middle_cycle(gaussian_smoothed(greatest, deviation))
-
-
-def _with_lower_hips(pose: Pose, rig: Rig, drop: Array) -> Pose:
-    """Return poses with the hips lowered by (frames,) [m]."""
-    if not drop.any():
-        return pose
-    hips = rig.anatomy.joints["hips"]
-    at = pose.globals(rig.skeleton)[:, hips, :3, 3]
-    down = rotations.rotate(rotations.conjugate(rig.common_from_skeleton), [0.0, -1.0, 0.0])
-    lowered = replace(pose, translations=pose.translations.copy())
-    set_joint_positions(lowered, rig, hips, at + drop[:, None] * down)
-    return lowered

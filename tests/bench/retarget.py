@@ -21,6 +21,7 @@ from characters.retargeting import Recording, load_recording, retarget
 from characters.retargeting.footskate import ball_positions, find_foot_contacts
 from characters.retargeting.ground_motion import find_ground_motion
 from characters.retargeting.locomotion.recorded_gait import extract_gait
+from characters.retargeting.measures import knee_quantiles
 from characters.retargeting.rig import LegJoints, Rig, leg_pairs
 from characters.retargeting.root import with_root_joint
 from characters.skeleton import rotations
@@ -190,10 +191,18 @@ def stature(source: Recording, made: Clip, body: Character) -> tuple[float, floa
     )
 
 
-def gait_of(source: Recording, character: Character) -> Clip | None:
-    """Return the gait cycle of a motion on a character, or None if it has none."""
+def gait_figures(source: Recording, character: Character) -> tuple[float, float, float] | None:
+    """Return the same of the gait cycle of a motion: knees beyond the source [°], dip and slide.
+
+    [cm, cm/s]; None if the motion has no cycle.
+    """
+    body = with_root_joint(character)
     with suppress(CharacterError):
-        return extract_gait(source, character, with_root_joint(character)).clip
+        gait = extract_gait(source, character, body)
+        own = [knee_quantiles(gait.clip.poses, gait.rig, leg) for leg in gait.legs]
+        knees = np.nan if gait.source_knees is None else float((own - gait.source_knees).max())
+        scale = 100 * PERSON_HEIGHT_M / body.height
+        return float(np.degrees(knees)), dip(gait.clip, body) * scale, gait.mean_slide * scale
     return None
 
 
@@ -203,7 +212,7 @@ def stature_table() -> Table:
     table = Table(title="Crouching and sinking", caption=bars + f"{MAX_BONE_SHARE:.0%}")
     table.add_column("motion")
     table.add_column("on")
-    for heading in ("knee beyond", "hips", "soles dip", "bones", "gait: knee", "hips", "dips"):
+    for heading in ("knee beyond", "hips", "soles dip", "bones", "gait: knee", "dips", "slides"):
         table.add_column(heading, justify="right")
     found: list[NDArray[np.float64]] = []
     for source, character in cases():
@@ -217,16 +226,17 @@ def stature_table() -> Table:
             meshes=character.meshes,
         )
         measures = stature(source, made, character)
-        gait = gait_of(source, character)
-        again = stature(source, gait, with_root_joint(character)) if gait else None
-        found += [np.array(each) for each in (measures, again) if each is not None]
+        gait = gait_figures(source, character)
+        found.append(np.array(measures))
+        if gait is not None:
+            found.append(np.array([gait[0], np.nan, gait[1], np.nan]))
         table.add_row(
             source.origin,
             character.name,
             *_stature_cells(measures),
-            *(_stature_cells(again)[:3] if again else ()),
+            *(_gait_cells(*gait) if gait else ()),
         )
-    knees, hips, dips, bones = np.array(found).T
+    knees, hips, dips, bones = np.array(found).T  # unknown figures are not beyond a bar
     over = [
         (knees > MAX_KNEE_DEG).sum(),
         (np.abs(hips - 1) > MAX_HIPS_SHARE).sum(),
@@ -234,7 +244,7 @@ def stature_table() -> Table:
         (bones > MAX_BONE_SHARE).sum(),
     ]
     table.add_section()
-    worst = (knees.max(), 1 + np.abs(hips - 1).max(), dips.max(), bones.max())
+    worst = np.nanmax(knees), 1 + np.nanmax(np.abs(hips - 1)), dips.max(), np.nanmax(bones)
     table.add_row("worst", "", *_stature_cells(worst))
     table.add_row(f"beyond the bar, of {len(found)}", "", *map(str, over))
     return table
@@ -243,6 +253,10 @@ def stature_table() -> Table:
 def _stature_cells(measures: tuple[float, float, float, float]) -> tuple[str, str, str, str]:
     knee, hips, sunk, bones = measures
     return f"{knee:.1f}°", f"{hips:.3f}", f"{sunk:.2f} cm", f"{bones:.2%}"
+
+
+def _gait_cells(knee: float, sunk: float, slide: float) -> tuple[str, str, str]:
+    return "" if np.isnan(knee) else f"{knee:.1f}°", f"{sunk:.2f} cm", f"{slide:.2f} cm/s"
 
 
 def cases() -> Iterator[tuple[Recording, Character]]:
