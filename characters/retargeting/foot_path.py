@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -25,20 +26,42 @@ class FootPath:
     max_correction: float  # a contact that needs a larger correction is dropped [m]
     rate: float  # [Hz]
 
-    def held(self) -> Array:
-        """Return the positions of its end, (frames, 3) [m], constant during contacts."""
-        correction = np.zeros_like(self.goal)
-        contacts: list[tuple[int, int]] = []
-        for first, length in spans(self.heel | self.ball, loop=False):
-            span = np.arange(first, first + length)
-            wanted = self._contact_positions(span) - self.goal[span]
-            if np.abs(wanted).max() < self.max_correction:
-                correction[span] = wanted
-                contacts.append((first, length))
-        self._interpolate(correction, contacts)
-        held: Array = self.goal + correction
+    @cached_property
+    def contacts(self) -> list[tuple[int, int]]:
+        """First frame and number of frames of each contact that can be held."""
+        found = spans(self.heel | self.ball, loop=False)
+        return [each for each in found if np.abs(self._wanted(*each)).max() < self.max_correction]
+
+    @cached_property
+    def standing(self) -> NDArray[np.bool_]:
+        """Whether it is held, (frames,)."""
+        standing = np.zeros(len(self.goal), bool)
+        for first, length in self.contacts:
+            standing[first : first + length] = True
+        return standing
+
+    @cached_property
+    def corrections(self) -> Array:
+        """How its end moves to be held, (frames, 3) [m]; zero between the contacts."""
+        corrections = np.zeros_like(self.goal)
+        for first, length in self.contacts:
+            corrections[first : first + length] = self._wanted(first, length)
+        return corrections
+
+    def held(self, shift: Array) -> Array:
+        """Return the positions of its end, (frames, 3) [m], constant during contacts.
+
+        A swinging foot moves with the body, which is shifted by (frames, 3) [m].
+        """
+        correction = np.where(self.standing[:, None], self.corrections - shift, 0.0)
+        self._interpolate(correction, self.contacts)
+        held: Array = self.goal + shift + correction
         held[:, 1] = np.maximum(held[:, 1], self.lowest)
         return held
+
+    def _wanted(self, first: int, length: int) -> Array:
+        span = np.arange(first, first + length)
+        return np.asarray(self._contact_positions(span) - self.goal[span])
 
     def _contact_positions(self, span: NDArray[np.intp]) -> Array:
         """Return the positions of the end during a contact: on the heel first, then on the ball."""

@@ -17,7 +17,7 @@ from characters.motion.clip import Clip
 from characters.motion.contacts import find_contacts, spans
 from characters.retargeting.foot_path import FootPath
 from characters.retargeting.ground_motion import GroundMotion
-from characters.retargeting.hips_shift import hips_shift, with_moved_hips
+from characters.retargeting.hips_shift import drop_to_reach, following_feet, with_moved_hips
 from characters.retargeting.leg_ik import place_ankle
 from characters.retargeting.rig import LegJoints, Rig
 from characters.retargeting.soles import tilted_less
@@ -93,7 +93,6 @@ def hold_feet_in_contact(
     common axes; left out, those of the poses.
     """
     floor = _floor(rig)
-    targets: list[Array] = []
     placements = pose.globals(rig.skeleton)
     ankles = [in_common_axes(rig, ankle_positions(placements, rig, leg)) for leg in legs]
     if ends is not None:
@@ -102,13 +101,14 @@ def hold_feet_in_contact(
     if floor is not None:
         pose = _on_soles(pose, rig, legs, [at[:, 1] - floor for at in ankles])
     turns = turns_from_rest(pose, rig, [leg.foot for leg in legs])
+    paths, to_balls = [], []
     for number, leg in enumerate(legs):
         sole, turn = rig.sole(leg), turns[:, number]
         to_ball, to_heel = (rotations.rotate(turn, each) for each in (sole.ball, sole.heel))
         lowest = np.full(len(turn), -np.inf)
         if floor is not None:
             lowest = floor + sole.clearance(turn) + to_ball[:, 1]
-        foot = FootPath(
+        path = FootPath(
             ground.to_ground(ankles[number] + to_ball),
             ground.directions_to_ground(to_ball - to_heel),
             ground.repeat(contacts.heel[:, number]),
@@ -117,14 +117,19 @@ def hold_feet_in_contact(
             _MAX_CORRECTION * rig.leg_length,
             ground.rate,
         )
-        targets.append(ground.from_ground(foot.held()) - to_ball)
-    places = np.stack(targets, axis=1)
-    corrections = places - np.stack(ankles, axis=1)
-    shift = hips_shift(pose, rig, legs, corrections, places, contacts.any, ground)
-    pose = with_moved_hips(pose, rig, shift)
+        paths.append(path)
+        to_balls.append(to_ball)
+    shift = following_feet(paths)
+    pose = with_moved_hips(pose, rig, ground.middle_cycle(shift))
+    places = [
+        ground.from_ground(path.held(shift)) - to for path, to in zip(paths, to_balls, strict=True)
+    ]
+    standing = np.stack([ground.middle_cycle(path.standing) for path in paths], axis=1)
+    drop = drop_to_reach(pose, rig, legs, np.stack(places, axis=1), standing, ground)
+    pose = with_moved_hips(pose, rig, drop[:, None] * [0.0, -1.0, 0.0])
     skeleton_from_common = rotations.conjugate(rig.common_from_skeleton)
-    for leg, target in zip(legs, targets, strict=True):
-        pose = place_ankle(pose, rig, leg, rotations.rotate(skeleton_from_common, target))
+    for leg, place in zip(legs, places, strict=True):
+        pose = place_ankle(pose, rig, leg, rotations.rotate(skeleton_from_common, place))
     return pose if floor is None else _with_toes_above(pose, rig, legs, floor)
 
 

@@ -59,7 +59,7 @@ class GroundMotion:
         """Return values (frames, …) that do not depend on position for three cycles of a loop."""
         return values if self.cycle is None else np.concatenate([values[:-1]] * 3)
 
-    def middle_cycle(self, values: Array) -> Array:
+    def middle_cycle(self, values: NDArray[_T]) -> NDArray[_T]:
         """Return the clip's own part, (frames, …), of repeated values."""
         if self.cycle is None:
             return values
