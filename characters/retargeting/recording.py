@@ -3,6 +3,8 @@
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from characters.errors import CharacterError
 from characters.formats.loading import is_motion_only, load_motion
 from characters.model.bind_pose import with_bind_pose
@@ -10,8 +12,13 @@ from characters.model.character import Character
 from characters.model.sidecar import read_sidecar
 from characters.motion.clip import Clip
 from characters.retargeting.standing_rest import standing_skeleton
+from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
+from characters.skeleton.facing import common_from_skeleton
 from characters.skeleton.pose import Skeleton
+
+_MIN_WAY = 0.05  # of hips in a cycle, in sizes of the skeleton; loops close less exactly
+_UNROLLED_CYCLES = 3
 
 
 @dataclass(frozen=True)
@@ -73,7 +80,9 @@ def load_recording(
             upright = standing_skeleton(motion.skeleton, anatomy, motion.clip, rest)
         except CharacterError as error:
             raise CharacterError(f"{file}: {error}") from None
-        return Recording(Path(name).name, motion.clip, upright, anatomy)
+        return Recording(
+            Path(name).name, _unrolled(motion.clip, upright, anatomy), upright, anatomy
+        )
     character = Character.load(file)
     if not clip and len(character.clips) == 1:
         clip = next(iter(character.clips))
@@ -82,6 +91,30 @@ def load_recording(
         raise CharacterError(
             f"{file}: which clip? write {file}#CLIP with one of its clips: {known}"
         )
-    found = character.clips[clip]
-    bound = replace(character, skeleton=with_bind_pose(character))
-    return Recording(Path(name).name, found, bound.skeleton, bound.anatomy)
+    bound = with_bind_pose(character)
+    found = _unrolled(character.clips[clip], bound, character.anatomy)
+    return Recording(Path(name).name, found, bound, character.anatomy)
+
+
+def _unrolled(clip: Clip, skeleton: Skeleton, anatomy: Anatomy) -> Clip:
+    """Return a loop whose hips end elsewhere as several cycles on their way over the ground.
+
+    Its joints close but for the way, which it has in the hips and not in a root joint.
+    """
+    hips = anatomy.joint("hips")
+    if not clip.loop or clip.root_motion or hips is None:
+        return clip
+    start, end = (clip.poses[frame].globals(skeleton)[hips, :3, 3] for frame in (0, -1))
+    common = common_from_skeleton(skeleton, anatomy)
+    way = rotations.rotate(common, end - start) * [1.0, 0.0, 1.0]
+    places = skeleton.rest.globals(skeleton)[:, :3, 3]
+    if np.linalg.norm(way) < _MIN_WAY * np.ptp(places, axis=0).max():
+        return clip
+    step = rotations.rotate(rotations.conjugate(common), way)
+    count = len(clip) - 1
+    frames = np.arange(_UNROLLED_CYCLES * count + 1)
+    poses = clip.poses[frames % count]
+    translations = poses.translations.copy()
+    roots = [joint for joint, parent in enumerate(skeleton.parents) if parent < 0]
+    translations[:, roots] += (frames // count)[:, None, None] * step
+    return replace(clip, poses=replace(poses, translations=translations), loop=False)

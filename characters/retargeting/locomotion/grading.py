@@ -29,6 +29,7 @@ MAX_BONE_CHANGE = 0.01
 # What is no gait. People shuffle at 0.3 leg lengths a second; boxers move at 0.1.
 _MIN_SPEED = 0.25  # [leg lengths/s]
 _MAX_CLOSED_SEAM = 0.3  # [leg lengths]
+_MAX_SLIDE = 0.2  # [leg lengths/s]; feet that hop, or that nothing holds
 _MAX_BACKWARD = math.radians(120.0)
 
 
@@ -157,6 +158,9 @@ def refuse_other_motion(gait: GaitCycle) -> None:
     elif seam > _MAX_CLOSED_SEAM:
         reason = f"no step repeats; the most similar poses are {100 * seam * PERSON_LEG_M:.0f} cm "
         reason += "apart on a person"
+    elif gait.mean_slide > _MAX_SLIDE * gait.rig.leg_length:
+        slide = 100 * gait.mean_slide / gait.rig.leg_length * PERSON_LEG_M
+        reason = f"no foot stands still; they slide at {slide:.0f} cm/s on a person"
     elif abs(turn) > _MAX_BACKWARD:
         reason = f"goes backwards: its body looks {abs(math.degrees(turn)):.0f}° away from its way"
     else:

@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 from characters import Character, CharacterError, Pose
 from characters.locomotion.gaits import Gaits
 from characters.retargeting import GaitReport, Recording, make_locomotion
+from characters.retargeting.locomotion.grading import refuse_other_motion
+from characters.retargeting.locomotion.recorded_gait import extract_gait
 from characters.retargeting.measures import bone_change, facing_error, knee_bends, sole_dip
 from characters.retargeting.rig import Rig
 from characters.retargeting.root import moved_to_trajectory
@@ -88,6 +90,14 @@ def test_a_walk_that_does_not_repeat_is_refused(human):
     poses = replace(clip.poses, translations=sinking)
     with pytest.raises(CharacterError, match=r"no step repeats|no whole cycle"):
         made(human, replace(recording, clip=replace(clip, poses=poses)))
+
+
+def test_feet_that_never_stand_still_are_refused(human):
+    walk = human.clips["Walk"]
+    gait = extract_gait(moving(human, 1.0), human, human)
+    skating = moved_to_trajectory(walk.in_place, walk.track * [1.0, 1.9, 1.0])
+    with pytest.raises(CharacterError, match="no foot stands still; they slide at"):
+        refuse_other_motion(replace(gait, clip=replace(walk, poses=skating)))
 
 
 def test_a_body_that_grows_is_told(human):
