@@ -20,7 +20,7 @@ from characters.retargeting.ground_motion import GroundMotion
 from characters.retargeting.hips_shift import drop_to_reach, following_feet, with_moved_hips
 from characters.retargeting.leg_ik import place_ankle
 from characters.retargeting.rig import LegJoints, Rig
-from characters.retargeting.soles import tilted_less
+from characters.retargeting.soles import tilted_to_fit, tilts
 from characters.retargeting.transfer import (
     ankle_positions,
     clip_in_common_axes,
@@ -30,10 +30,13 @@ from characters.retargeting.transfer import (
 )
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
+from characters.smoothing import gaussian_smoothed
 
 # Lengths in leg lengths.
 _MAX_BALL_RISE = 0.02  # of the ball of a standing foot above its lowest position
 _MAX_CORRECTION = 0.3  # a contact that needs a larger one is dropped
+_MAX_TILT = 1.5  # of a foot on its ball, as a share, if it is short for its ankle's height
+_TILT_SMOOTHING_S = 0.04  # standard deviation
 _MAX_ROLL_S = 0.25  # from the heel onto the ball
 
 
@@ -99,7 +102,7 @@ def hold_feet_in_contact(
         balls = [ball_positions(pose, rig, leg) for leg in legs]
         ankles = [at + ends[:, n] - balls[n] for n, at in enumerate(ankles)]
     if floor is not None:
-        pose = _on_soles(pose, rig, legs, [at[:, 1] - floor for at in ankles])
+        pose = _on_soles(pose, rig, legs, [at[:, 1] - floor for at in ankles], contacts, ground)
     turns = turns_from_rest(pose, rig, [leg.foot for leg in legs])
     paths, to_balls = [], []
     for number, leg in enumerate(legs):
@@ -150,15 +153,28 @@ def _floor(rig: Rig) -> float | None:
     return float(min(heights))
 
 
-def _on_soles(pose: Pose, rig: Rig, legs: Sequence[LegJoints], heights: Sequence[Array]) -> Pose:
-    """Return poses with feet tilted no more than there is room for; toes keep their turns.
+def _on_soles(
+    pose: Pose,
+    rig: Rig,
+    legs: Sequence[LegJoints],
+    heights: Sequence[Array],
+    contacts: FootContacts,
+    ground: GroundMotion,
+) -> Pose:
+    """Return poses with feet tilted as there is room for; toes keep their turns.
 
     `heights` of the ankles above the ground are (frames,) [m] for each leg.
     """
-    for leg, height in zip(legs, heights, strict=True):
+    smoothing = _TILT_SMOOTHING_S * ground.rate
+    on_ball = gaussian_smoothed(ground.repeat(contacts.ball.astype(float)), smoothing)
+    on_ball = ground.middle_cycle(on_ball)
+    for number, leg in enumerate(legs):
+        sole = rig.sole(leg)
         joints = [leg.foot] if leg.toes is None else [leg.foot, leg.toes]
         turns = turns_from_rest(pose, rig, joints)
-        turns[:, 0] = tilted_less(turns[:, 0], height, rig.sole(leg).clearance)
+        useful = np.clip(sole.highest_tilt / np.maximum(tilts(turns[:, 0]), 1e-3), 1.0, _MAX_TILT)
+        greatest = 1.0 + (useful - 1.0) * on_ball[:, number]
+        turns[:, 0] = tilted_to_fit(turns[:, 0], heights[number], sole.clearance, greatest)
         pose = with_turns_from_rest(pose, rig, joints, turns)
     return pose
 
@@ -170,6 +186,6 @@ def _with_toes_above(pose: Pose, rig: Rig, legs: Sequence[LegJoints], floor: flo
             continue
         heights = in_common_axes(rig, pose.globals(rig.skeleton)[:, leg.toes, :3, 3])[:, 1] - floor
         turns = turns_from_rest(pose, rig, [leg.toes])
-        turns[:, 0] = tilted_less(turns[:, 0], heights, rig.sole(leg).toes_clearance)
+        turns[:, 0] = tilted_to_fit(turns[:, 0], heights, rig.sole(leg).toes_clearance)
         pose = with_turns_from_rest(pose, rig, [leg.toes], turns)
     return pose

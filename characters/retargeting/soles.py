@@ -2,7 +2,8 @@
 
 A foot is longer or shorter than that of the motion's performer. So it cannot be turned just as far
 without going through the ground, or its ankle would have to rise and the knee to bend. The ankle
-keeps its height instead, and the foot turns as far as there is room.
+keeps its height instead, and the foot turns as far as there is room: a shorter foot farther, as
+long as it stands on its ball.
 """
 
 from collections.abc import Callable, Sequence
@@ -75,6 +76,11 @@ class Sole:
         tip = _TOES_LENGTH * length * ahead + ground
         return cls(np.stack([heel, front]), np.stack([ground, tip]), ball, heel)
 
+    @property
+    def highest_tilt(self) -> float:
+        """The tilt on the ball at which the ankle is highest [rad]."""
+        return float(np.arctan2(np.hypot(self.ball[0], self.ball[2]), -self.ball[1]))
+
     def clearance(self, turns: Array) -> Array:
         """Return how high the ankle of a foot turned from rest (…, 4) is above the ground, (…) [m].
 
@@ -92,21 +98,39 @@ class Sole:
         return np.asarray((down @ self.toes.T).max(-1))
 
 
-def tilted_less(turns: Array, heights: Array, clearance: Callable[[Array], Array]) -> Array:
+def tilts(turns: Array) -> Array:
+    """Return how far turns from rest (frames, 4) are from level, (frames,) [rad]."""
+    return np.asarray(np.arccos(np.clip(rotations.rotate(turns, _UP)[:, 1], -1.0, 1.0)))
+
+
+def tilted_to_fit(
+    turns: Array,
+    heights: Array,
+    clearance: Callable[[Array], Array],
+    greatest: Array | float = 1.0,
+) -> Array:
     """Return turns from rest (frames, 4) with as much of their tilt as there is room for.
 
-    `heights` (frames,) [m] are those of the joint above the ground and `clearance` gives those at
-    which a turned foot touches it.
+    Parameters
+    ----------
+    turns
+        Of a foot or of toes.
+    heights
+        Of their joint above the ground, (frames,) [m].
+    clearance
+        Gives the height at which a turned foot touches the ground.
+    greatest
+        Tilt with enough room, as a share of that in `turns`, (frames,).
     """
     tilt = rotations.between(_UP, rotations.rotate(turns, _UP))
     level = rotations.multiply(rotations.conjugate(tilt), turns)
-    room = np.maximum(heights, clearance(level))  # a level foot stands, even if it is too low
-    least, most = np.zeros(len(turns)), np.ones(len(turns))
-    most[clearance(turns) <= room + 1e-9] = 0.0
-    least[most == 0.0] = most[most == 0.0] = 1.0
+    room = np.maximum(heights, clearance(level)) + 1e-9  # a level foot stands, even if too low
+    least, most = np.zeros(len(turns)), np.zeros(len(turns)) + greatest
+    fits = clearance(_tilted(level, tilt, most)) <= room
+    least[fits] = most[fits]
     for _ in range(_HALVINGS):
         middle = (least + most) / 2
-        fits = clearance(_tilted(level, tilt, middle)) <= room + 1e-9
+        fits = clearance(_tilted(level, tilt, middle)) <= room
         least, most = np.where(fits, middle, least), np.where(fits, most, middle)
     return _tilted(level, tilt, least)
 
