@@ -15,8 +15,8 @@ strike, down
 lean
     Mean angle between the vertical and the line from the hips to the neck, forward [degrees].
 slide
-    Greatest speed along the ground of a sole within 1 mm of it [mm/s], sampled at 120 Hz, without
-    the first and the last 33 ms of each stay, in which a foot lands and leaves.
+    Greatest speed along the ground of the slowest point of a sole within 1 mm of it [mm/s], over
+    33 ms, without the first and the last 33 ms of each stay, in which a foot lands and leaves.
 halves
     How unlike the second half of a cycle is to the mirrored first [degrees], root mean square over
     the joints.
@@ -24,8 +24,8 @@ halves
 Other clips:
 
 slide, begins, acts, ends
-    The same with those 33 ms: of the clip, and of a whole animated character, around the start of
-    the action, in it, and around its end.
+    The same of the fastest point, sampled at 120 Hz, and with landing and leaving: of the clip, and
+    of a whole animated character around the start of the action, in it, and around its end.
 turn, pitch
     How far the head turns to both sides, and up and down [degrees].
 
@@ -97,19 +97,30 @@ class Soles:
             for foot in self.feet
         ]
 
-    def slides(self, poses: Pose, placed: Array | None = None, edge_s: float = 0.0) -> Array:
-        """Return the greatest speed of a vertex on the ground before each frame [mm/s].
-
-        At the ends of its stay on the ground, a time does not count [s].
-        """
+    def slides(self, poses: Pose, placed: Array | None = None) -> Array:
+        """Return the greatest speed of a vertex on the ground before each frame [mm/s]."""
         fastest = np.zeros(len(poses.rotations) - 1)
         for places in self.places(poses, placed):
             down = places[..., 1] < ON_GROUND_M
-            for _ in range(round(edge_s * RATE_HZ)):
-                down[1:-1] &= down[:-2] & down[2:]
             speed = np.linalg.norm(np.diff(places[..., [0, 2]], axis=0), axis=-1) * RATE_HZ
             fastest = np.maximum(fastest, (speed * (down[1:] & down[:-1])).max(axis=1))
         return 1e3 * fastest
+
+    def gait_slide(self, poses: Pose) -> float:
+        """Return the greatest speed of the slowest vertex of a foot in its stance [mm/s].
+
+        It is measured over `EDGE_S`, and does not count so long after the foot lands and before it
+        leaves. A foot rolls about its slowest vertex.
+        """
+        fastest, span = 0.0, round(EDGE_S * RATE_HZ)
+        for places in self.places(poses):
+            down = places[..., 1] < ON_GROUND_M
+            for _ in range(span):
+                down[1:-1] &= down[:-2] & down[2:]
+            way = np.linalg.norm((places[span:] - places[:-span])[..., [0, 2]], axis=-1)
+            least = np.where(down[span:] & down[:-span], way, np.inf).min(axis=1)
+            fastest = max(fastest, least[np.isfinite(least)].max(initial=0.0))
+        return 1e3 * fastest * RATE_HZ / span
 
 
 def sampled(clip: Clip) -> Pose:
@@ -137,7 +148,7 @@ def gait_row(character: Character, soles: Soles, clip: Clip) -> tuple[list[str],
     bob = 100 * float(np.ptp(hips[:, 1]))
     air = float((lowest.min(axis=0) > IN_AIR_M).mean())
     near = float((lowest.max(axis=0) < NEAR_M).mean())
-    slide = float(soles.slides(poses, edge_s=EDGE_S).max())
+    slide = soles.gait_slide(poses)
     strikes, downs = zip(*(_knees(character, posed, low, foot) for foot, low in enumerate(lowest)),
                          strict=True)  # fmt: skip
     ahead = np.diff(hips, axis=0, append=hips[-1:] + hips[-1:] - hips[-2:-1])[:, [0, 2]]

@@ -155,7 +155,7 @@ def test_no_joint_jumps_whatever_is_asked(human):
     steps = rotations.multiply(running[1:], rotations.conjugate(running[:-1]))
     fastest = np.linalg.norm(rotations.to_rotation_vector(steps), axis=-1).max() * 60 * 1.25
     speeds = velocities(frames, rate)
-    assert np.linalg.norm(speeds, axis=-1).max() < 1.6 * fastest
+    assert np.linalg.norm(speeds, axis=-1).max() < 1.75 * fastest  # between walking and running
     ways = np.array([place(frame) for frame in frames])
     assert np.linalg.norm(np.diff(ways, axis=0), axis=1).max() * rate < 1.1 * 4.25 * animator.scale
 

@@ -11,7 +11,7 @@ from tools.authoring.modelling.ik import aim_rotation
 from tools.authoring.modelling.rig import PosedRig
 from tools.authoring.modelling.shapes import Array
 
-FOOT = FootDimensions(ankle=0.095, heel=-0.07, ball=(0.03, 0.115), toes=0.09)
+FOOT = FootDimensions(ankle=0.095, heel=-0.05, ball=(0.03, 0.115), toes=0.09)
 SIDES = (("Left", 1.0), ("Right", -1.0))
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from characters.motion.clip import Clip
 from characters.skeleton import rotations
-from characters.skeleton.pose import Pose, Skeleton
+from characters.skeleton.pose import Skeleton
 from tools.authoring.human.acting import GAZE_PITCH_DEG, pose_with_face
 from tools.authoring.human.limbs import (
     FOOT,
@@ -21,9 +21,9 @@ from tools.authoring.human.limbs import (
     hang_arm,
     rotation_deg,
 )
-from tools.authoring.human.secondary_motion import add_secondary_motion
+from tools.authoring.human.secondary_motion import GRAVITY_M_S2, add_secondary_motion
 from tools.authoring.modelling.gait import Footfalls, FootMotion, GroundArc, foot_motion
-from tools.authoring.modelling.rig import PosedRig, mirrored
+from tools.authoring.modelling.rig import PosedRig
 from tools.authoring.modelling.shapes import Array
 
 FRAME_RATE_HZ = 60.0
@@ -34,7 +34,7 @@ class GaitStyle:
     """Movement of the body in a gait; amplitudes in degrees where no unit is given."""
 
     bob: float
-    """Amplitude of the rise and fall of the pelvis [m]."""
+    """Amplitude of the rise and fall of the pelvis [m]; a run is ballistic instead."""
 
     lowest: float
     """Phase of its lowest point, in a step from 0 to 0.5."""
@@ -75,12 +75,19 @@ class GaitStyle:
     fist: float
     """Bend of the fingers."""
 
+    habit: float
+    """How far the two halves of the cycle differ, as a share of the movements."""
+
     mood: Mapping[str, float]
     """Weights of the face's morph targets by name."""
 
 
-WALK = GaitStyle(0.028, 0.06, 0.024, 9, 5, 4, 15, 30, 4, 24, 16, 0.994, 2.0, 18, {"happy": 0.12})
-RUN = GaitStyle(0.032, 0.15, 0.012, 12, 5, 13, 26, 44, 12, 86, 18, 0.985, 3.6, 58, {"happy": 0.4})
+WALK = GaitStyle(
+    0.026, 0.07, 0.024, 10, 4, 4, 15, 30, 4, 24, 16, 0.9965, 2.0, 18, 0.08, {"happy": 0.12}
+)
+RUN = GaitStyle(
+    0.03, 0.12, 0.012, 12, 5, 17, 26, 48, 12, 88, 18, 0.985, 3.6, 58, 0.07, {"happy": 0.4}
+)
 
 
 @dataclass(frozen=True)
@@ -105,28 +112,35 @@ class HumanGait:
 
 def _walk(speed: float, yaw_rate: float, frames: int, width: float, ahead: float) -> HumanGait:
     cycle = frames / FRAME_RATE_HZ
-    longest = 1.395  # the double step of a straight walk [m]
+    longest = 1.305  # the double step of a straight walk [m]
     part = speed * cycle / longest
     # Walking is an inverted pendulum: it rises with the square of the step (Alexander 1976).
     style = replace(WALK, bob=WALK.bob * part**2, pelvis_yaw=WALK.pelvis_yaw * part)
-    strike, off = 0.36 * part, 0.35 + 0.7 * part
-    steps = Footfalls(cycle, 0.6, width, ahead, strike, off, 0.035, rise_from=0.45)
+    strike, off = 0.42 * part, 0.35 + 0.55 * part
+    steps = Footfalls(
+        cycle, 0.6, width, ahead, strike, off, 0.08 - 0.045 * part,
+        rise_from=0.44, retract=0.95, rise_fall=(1.8, 1.8),
+    )  # fmt: skip
     return HumanGait(speed, yaw_rate, frames, steps, style)
 
 
-def _run(speed: float, yaw_rate: float, frames: int, ahead: float) -> HumanGait:
-    steps = Footfalls(frames / FRAME_RATE_HZ, 0.29, 0.06, ahead, 0.1, 0.85, 0.17, 0.06, 0.35, 0.55)
+def _run(speed: float, yaw_rate: float, frames: int, width: float, ahead: float) -> HumanGait:
+    cycle = frames / FRAME_RATE_HZ
+    steps = Footfalls(
+        cycle, 0.27, width, ahead, 0.1, 1.05, 0.19,
+        toe_out=0.06, rise_from=0.45, retract=0.6, rise_fall=(1.4, 1.4),
+    )  # fmt: skip
     return HumanGait(speed, yaw_rate, frames, steps, RUN)
 
 
 GAITS = {
-    "Walk": _walk(1.35, 0.0, 62, 0.082, -0.07),
-    "WalkTurnWide": _walk(1.3, 45.0, 62, 0.084, -0.065),
-    "WalkTurnMedium": _walk(1.12, 90.0, 58, 0.09, -0.045),
-    "WalkTurnShort": _walk(0.9, 135.0, 52, 0.1, -0.03),
-    "Run": _run(3.4, 0.0, 42, -0.11),
-    "RunTurnWide": _run(3.2, 67.5, 42, -0.1),
-    "RunTurnMedium": _run(2.8, 135.0, 40, -0.09),
+    "Walk": _walk(1.35, 0.0, 58, 0.082, -0.04),
+    "WalkTurnWide": _walk(1.3, 45.0, 58, 0.084, -0.04),
+    "WalkTurnMedium": _walk(1.12, 90.0, 56, 0.09, -0.035),
+    "WalkTurnShort": _walk(0.9, 135.0, 52, 0.1, -0.025),
+    "Run": _run(3.4, 0.0, 46, 0.06, -0.105),
+    "RunTurnWide": _run(3.2, 67.5, 46, 0.07, -0.1),
+    "RunTurnMedium": _run(2.8, 135.0, 44, 0.085, -0.085),
 }
 """Gaits by name. In tighter turns the speed is lower and the feet are wider apart."""
 
@@ -139,7 +153,7 @@ def gait_clip(skeleton: Skeleton, name: str, gait: HumanGait) -> Clip:
     feet = {s: foot_motion(path, steps, FOOT, sign, phase) for s, sign in SIDES}
     rig = PosedRig(skeleton, gait.frames + 1)
     bank = np.arctan(path.speed * path.yaw_rate / 9.81)
-    _carry_pelvis(rig, style, phase, bank)
+    _carry_pelvis(rig, gait, phase, bank)
     _fit_height(rig, feet, style.reach)
     _carry_trunk(rig, style, phase, path.yaw_rate)
     _swing_arms(rig, style, phase)
@@ -157,15 +171,29 @@ def _wave(phase: Array, peak: float, times: int = 1) -> Array:
     return np.asarray(np.cos(2 * np.pi * times * (phase - peak)))
 
 
-def _carry_pelvis(rig: PosedRig, style: GaitStyle, phase: Array, bank: float) -> None:
-    height = float(rig.rest("hips")[1])
+def _carry_pelvis(rig: PosedRig, gait: HumanGait, phase: Array, bank: float) -> None:
+    style, height = gait.style, float(rig.rest("hips")[1])
     sway = style.sway * _wave(phase, 0.28) + 0.55 * height * np.tan(0.5 * bank)
     bob = -style.bob * _wave(phase, style.lowest, 2)
+    if gait.steps.stance < 0.5:
+        bob = _bounce(gait.steps, phase)
+    bob -= style.habit * style.bob * _wave(phase, style.lowest)  # deeper onto the left foot
     surge = 0.3 * style.bob * _wave(phase, style.lowest + 0.3, 2)
     rig.shift("hips", np.stack([sway, bob, surge], axis=-1))
     pitch = 0.45 * style.lean + 1.2 * _wave(phase, 0.1, 2)
     roll = style.pelvis_list * _wave(phase, 0.2) - np.degrees(0.3 * bank)
     rig.turn("hips", rotation_deg(pitch, -style.pelvis_yaw * _wave(phase, 0.02), roll))
+
+
+def _bounce(steps: Footfalls, phase: Array) -> Array:
+    """Return the height of a body that falls freely in flight and is sprung in stance [m]."""
+    stance = steps.stance * steps.cycle
+    flight = steps.cycle / 2 - stance
+    since = phase * steps.cycle % (steps.cycle / 2)  # time since a landing
+    depth = GRAVITY_M_S2 * flight * stance / (2 * np.pi)  # at the speed of the landing
+    sprung = -depth * np.sin(np.pi * np.minimum(since / stance, 1.0))
+    falling = np.maximum(since - stance, 0.0)
+    return np.asarray(sprung + GRAVITY_M_S2 / 2 * falling * (flight - falling))
 
 
 def _fit_height(rig: PosedRig, feet: dict[str, FootMotion], reach: float) -> None:
@@ -191,6 +219,7 @@ def _carry_trunk(rig: PosedRig, style: GaitStyle, phase: Array, yaw_rate: float)
         rig.turn(name, rotation_deg(pitch, yaw, roll))
     # The head dips after each landing, and tilts and turns with a delay.
     dip, tilt = style.head * _wave(phase, 0.17, 2), 0.7 * style.head * _wave(phase, 0.32)
+    tilt += 10.0 * style.habit
     gaze = rotation_deg(
         GAZE_PITCH_DEG + dip, 0.12 * into + 2 * _wave(phase, 0.12), tilt - 0.04 * into
     )
@@ -203,7 +232,8 @@ def _swing_arms(rig: PosedRig, style: GaitStyle, phase: Array) -> None:
     """Swing the arms against the legs; elbows and hands follow through."""
     for side, sign in SIDES:
         front = 0.52 if sign > 0 else 0.02  # phase at which this arm is in front
-        swing = style.arm_swing * _wave(phase, front) - style.arm_back
+        wide = 1.0 + sign * style.habit
+        swing = wide * style.arm_swing * _wave(phase, front) - style.arm_back
         rig.turn(
             f"{side}Shoulder",
             rotation_deg(
@@ -211,7 +241,7 @@ def _swing_arms(rig: PosedRig, style: GaitStyle, phase: Array) -> None:
             ),
         )
         hang_arm(rig, side, sign, swing, 20 - 3 * _wave(phase, front))
-        bend = style.elbow + style.elbow_swing * _wave(phase, front + 0.07)
+        bend = style.elbow / wide + style.elbow_swing * _wave(phase, front + 0.07)
         inward = 0.06 * bend + 3 * _wave(phase, front)
         rig.turn(f"{side}ForeArm", elbow_rotation(rig, side, sign, bend, inward))
         late = _wave(phase, front + 0.17)
@@ -219,29 +249,14 @@ def _swing_arms(rig: PosedRig, style: GaitStyle, phase: Array) -> None:
         curl_fingers(rig, side, style.fist, 0.4 * style.fist)
 
 
-def mirrored_half_cycle(clip: Clip, skeleton: Skeleton, name: str) -> Clip:
-    """Return the mirror image of a gait, shifted by half a cycle to start with the left foot."""
-    image = mirrored(clip.in_place, skeleton)
-    half = (len(clip) - 1) // 2
-    order = (np.arange(len(clip)) + half) % (len(clip) - 1)
-    pose, morphs = Pose(image.translations[order], image.rotations[order]), clip.poses.morphs
-    x, z, yaw = (clip.track * [-1.0, 1.0, -1.0]).T  # an even arc looks the same from any frame
-    translations, turns = pose.translations.copy(), pose.rotations.copy()
-    translations[:, 0] += np.stack([x, 0 * x, z], axis=-1)
-    turns[:, 0] = rotations.multiply(rotations.about("y", yaw), turns[:, 0])
-    return Clip(
-        name, clip.rate, Pose(translations, turns, None, morphs), clip.loop, clip.root_motion
-    )
-
-
 def locomotion(skeleton: Skeleton) -> dict[str, Clip]:
     """Return the twelve gaits, straight and in turns of both sides, by name."""
-    clips = {}
+    clips = []
     for name, gait in GAITS.items():
-        straight = gait.yaw_rate == 0
-        clip = gait_clip(skeleton, name if straight else name.replace("Turn", "Left"), gait)
-        clips[clip.name] = clip
-        if not straight:
-            right = mirrored_half_cycle(clip, skeleton, name.replace("Turn", "Right"))
-            clips[right.name] = right
-    return clips
+        if gait.yaw_rate == 0:
+            clips.append(gait_clip(skeleton, name, gait))
+            continue
+        for side, sign in SIDES:
+            turn = replace(gait, yaw_rate=sign * gait.yaw_rate)
+            clips.append(gait_clip(skeleton, name.replace("Turn", side), turn))
+    return {clip.name: clip for clip in clips}

@@ -14,6 +14,10 @@ from characters.skeleton import rotations
 from tools.authoring.modelling.curves import smoothstep
 from tools.authoring.modelling.shapes import Array
 
+MAX_SPIN_RAD = 5.0
+"""Pitch that a foot which leaves fast would gain in the time of its swing [rad]: an ankle that
+points the toes gives way."""
+
 
 @dataclass(frozen=True)
 class GroundArc:
@@ -69,6 +73,9 @@ class Footfalls:
 
     retract: float = 0.5
     """Retraction: share of its speed that a foot loses before landing, 0…1."""
+
+    rise_fall: tuple[float, float] = (2.0, 3.0)
+    """Powers with which a swing rises at first and falls in the end."""
 
 
 @dataclass(frozen=True)
@@ -134,10 +141,11 @@ def foot_motion(
     leave = (ends[0][0] - before[0]) / tiny * swing_time
     land = (after[0] - ends[1][0]) / tiny * swing_time * (1.0 - steps.retract)
     swing = _hermite(u[:, None], ends[0][0], ends[1][0], leave, land)
-    swing[:, 1] += steps.lift * u**2 * (1 - u) ** 3 / 0.03456  # 1 at its peak, u = 0.4
-    swing_pitch = _hermite(
-        u, ends[0][2], ends[1][2], (ends[0][2] - before[2]) / tiny * swing_time, 0
-    )
+    rise, fall = steps.rise_fall
+    top = rise / (rise + fall)
+    swing[:, 1] += steps.lift * (u / top) ** rise * ((1 - u) / (1 - top)) ** fall
+    spin = np.minimum((ends[0][2] - before[2]) / tiny * swing_time, MAX_SPIN_RAD)
+    swing_pitch = _hermite(u, ends[0][2], ends[1][2], spin, 0)
     ease = smoothstep(u)
     swing_yaw = ends[0][1] + (ends[1][1] - ends[0][1]) * ease
     room = foot.ball_height(swing[:, 1], swing_pitch) - foot.ball[0]

@@ -12,6 +12,7 @@ from tests.tools.authoring.clip_checks import check_same_clips
 from tools.authoring.human.character import build_human
 from tools.authoring.human.limbs import FOOT, rotation_deg
 from tools.authoring.human.rig import JOINT_POSITIONS
+from tools.authoring.human.secondary_motion import GRAVITY_M_S2
 
 WALKS = [f"Walk{side}{size}" for side in ("Left", "Right") for size in ("Short", "Medium", "Wide")]
 RUNS = [f"Run{side}{size}" for side in ("Left", "Right") for size in ("Medium", "Wide")]
@@ -129,7 +130,15 @@ def test_no_foot_sinks_into_the_ground(human: Character, name: str) -> None:
 
 @pytest.mark.parametrize("name", GAITS)
 def test_no_knee_straightens_or_pops(human: Character, name: str) -> None:
+    for bend in knees(human, name):
+        assert bend.min() > 8.0
+        assert np.abs(np.diff(bend)).max() * human.clips[name].rate < 1100.0
+
+
+def knees(human: Character, name: str) -> list[Array]:
+    """Bend of the left and the right knee in a clip [degrees]."""
     places = human.clips[name].in_place.globals(human.skeleton)[..., :3, 3]
+    bends = []
     for side in ("Left", "Right"):
         hip, knee, ankle = (
             places[:, human.skeleton.names.index(side + joint)]
@@ -137,9 +146,17 @@ def test_no_knee_straightens_or_pops(human: Character, name: str) -> None:
         )
         upper, lower = knee - hip, ankle - knee
         cosine = (upper * lower).sum(-1) / np.linalg.norm(upper, axis=-1)
-        bend = np.degrees(np.arccos(cosine / np.linalg.norm(lower, axis=-1)))
-        assert bend.min() > 8.0
-        assert np.abs(np.diff(bend)).max() * human.clips[name].rate < 1100.0
+        bends.append(np.degrees(np.arccos(cosine / np.linalg.norm(lower, axis=-1))))
+    return bends
+
+
+def test_the_front_leg_lands_nearly_straight_and_gives_way_under_the_weight(
+    human: Character,
+) -> None:
+    for name, most, deeper in (("Walk", 18.0, 12.0), ("Run", 32.0, 24.0)):
+        left = knees(human, name)[0]
+        assert left[0] < most
+        assert left[: len(left) // 4].max() > left[0] + deeper
 
 
 def test_running_has_a_flight_and_walking_has_none(human: Character) -> None:
@@ -156,18 +173,38 @@ def test_running_has_a_flight_and_walking_has_none(human: Character) -> None:
         ]
         lowest[name] = np.min(soles, axis=0)
     assert lowest["Walk"].max() < 0.001
-    assert (lowest["Run"] > 0.005).sum() >= 8
+    assert (lowest["Run"] > 0.005).mean() > 0.35
+    assert lowest["Run"].max() > 0.05
+
+
+def test_a_run_bobs_as_much_as_its_flights_make_it_fall(human: Character) -> None:
+    clip = human.clips["Run"]
+    height = clip.in_place.globals(human.skeleton)[:, human.skeleton.index("hips"), 1, 3]
+    assert 0.09 < np.ptp(height) < 0.11
+    falling = np.diff(height, 2) * clip.rate**2
+    assert np.median(falling[falling < 0]) == pytest.approx(-GRAVITY_M_S2, rel=0.1)
+
+
+@pytest.mark.parametrize("name", ["Walk", "Run"])
+def test_the_halves_of_a_gait_are_alike_but_no_mirror_images(human: Character, name: str) -> None:
+    poses = human.clips[name].in_place
+    places = poses.globals(human.skeleton)[:-1, :, :3, 3]
+    left, right = (human.skeleton.index(f"{side}Hand") for side in ("Left", "Right"))
+    half = len(places) // 2
+    other = np.roll(places[:, right], half, axis=0) * [-1.0, 1.0, 1.0]
+    apart = np.linalg.norm(places[:, left] - other, axis=1)
+    assert 0.01 < apart.max() < 0.08
 
 
 @pytest.mark.parametrize("name", [n for n in GAITS if "Left" in n])
-def test_a_right_turn_mirrors_the_left_one(human: Character, name: str) -> None:
+def test_a_right_turn_is_a_left_one_with_the_same_habits(human: Character, name: str) -> None:
     left, right = (human.clips[n].in_place for n in (name, name.replace("Left", "Right")))
     names = human.skeleton.names
-    hand, other = names.index("LeftHand"), names.index("RightHand")
     half = (len(left.rotations) - 1) // 2
-    a = left.globals(human.skeleton)[:-1, hand, :3, 3] * [-1.0, 1.0, 1.0]
-    b = right.globals(human.skeleton)[:-1, other, :3, 3]
-    assert np.allclose(np.roll(a, -half, axis=0), b, atol=1e-4)
+    for joint, other, apart in (("LeftFoot", "RightFoot", 1e-4), ("LeftHand", "RightHand", 0.08)):
+        a = left.globals(human.skeleton)[:-1, names.index(joint), :3, 3] * [-1.0, 1.0, 1.0]
+        b = right.globals(human.skeleton)[:-1, names.index(other), :3, 3]
+        assert np.linalg.norm(np.roll(a, -half, axis=0) - b, axis=1).max() < apart
 
 
 def test_skin_is_closed_faces_outward_and_is_fully_held(human: Character) -> None:
