@@ -81,6 +81,12 @@ SCHEMA: Json = {
                     "material": "materials",
                     "mode": COUNT,
                     "targets": [{"*": "accessors"}],
+                    "extensions": {
+                        "KHR_draco_mesh_compression": {
+                            "bufferView!": "bufferViews",
+                            "attributes!": {"*": COUNT},
+                        }
+                    },
                 }
             ],
         }

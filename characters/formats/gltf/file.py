@@ -20,6 +20,7 @@ _MAX_EMPTY_ROWS = 2_000_000  # of an accessor without data
 
 # Extensions that may be required; others change how the data must be read.
 _SUPPORTED_EXTENSIONS = {
+    "KHR_draco_mesh_compression",
     "KHR_mesh_quantization",
     "KHR_materials_unlit",
     "KHR_texture_transform",
@@ -221,8 +222,9 @@ def open_gltf(path: Path) -> GltfFile:
         raise CharacterError(f"{path}: glTF {version:.20}; export it as glTF 2.0")
     unknown = sorted(set(document.get("extensionsRequired", ())) - _SUPPORTED_EXTENSIONS)
     if unknown:
+        advice = {_advice(extension, path) for extension in unknown}
         raise CharacterError(
-            f"{path}: requires the extension {', '.join(unknown)}; export it without compression"
+            f"{path}: requires the extension {', '.join(unknown)}; {'; '.join(sorted(advice))}"
         )
     opened = GltfFile(path, document, (), ReadBudget(60_000_000 + 2 * len(data)))
     buffers: list[bytes] = []
@@ -233,6 +235,15 @@ def open_gltf(path: Path) -> GltfFile:
                 raise DamagedFileError(f"has {len(content)} bytes, not {buffer['byteLength']}")
         buffers.append(content)
     return replace(opened, buffers=tuple(buffers))
+
+
+def _advice(extension: str, path: Path) -> str:
+    """Return what makes a file do without an extension."""
+    if extension.endswith("_meshopt_compression"):
+        return f"unpack it: npx @gltf-transform/cli copy {path.name} unpacked.glb"
+    if extension == "KHR_texture_basisu":
+        return "export its textures as PNG, JPEG or WebP"
+    return "export it without"
 
 
 def has_mesh(path: Path) -> bool:

@@ -9,6 +9,7 @@ from characters.errors import CharacterError
 from characters.formats.gltf import vrm
 from characters.formats.gltf.animations import read_clips
 from characters.formats.gltf.document import DamagedFileError
+from characters.formats.gltf.draco import with_unpacked_meshes
 from characters.formats.gltf.file import GltfFile, open_gltf
 from characters.formats.gltf.followers import EXTRA, with_followers
 from characters.formats.gltf.meshes import read_meshes
@@ -75,7 +76,7 @@ def load_motion(path: Path, options: MotionOptions) -> Performance:
 def _open(path: Path) -> Iterator[GltfFile]:
     """Open a file; errors while it is read name it in one line."""
     try:
-        file = open_gltf(path)
+        file = with_unpacked_meshes(open_gltf(path))
         if path.suffix.lower() == ".vrm" and vrm.read_humanoid(file) is None:
             raise DamagedFileError("contains no VRM; call it .glb if it is glTF")
         yield file
