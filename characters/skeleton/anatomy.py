@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import Literal
 
 from characters.errors import CharacterError
-from characters.skeleton.limbs import find_parts
+from characters.skeleton.parts import find_parts
 from characters.skeleton.pose import Skeleton
 
 Kind = Literal["humanoid", "quadruped", "other"]

@@ -1,298 +1,249 @@
-"""Limbs and trunk of a skeleton, found by joint names first, else by the shape of the skeleton.
+"""Arms, legs, eyes and fingers of a skeleton, by the names of joints and by its shape.
 
 The parts of a limb are assigned for the chain as a whole, so "Shoulder, Arm, ForeArm, Hand" and
-"Collar, Shoulder, Elbow, Wrist" are both read correctly.
+"Collar, Shoulder, Elbow, Wrist" are both read correctly. Where names say only a part of it, the
+tree says the rest.
 """
 
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from characters.skeleton.joint_chains import (
-    assign,
-    chains_to_root,
-    children_of,
-    longest_chain_below,
-    longest_chain_of,
-)
-from characters.skeleton.joint_names import ARM_ROLES, LEG_ROLES, JointName, read_name
-from characters.skeleton.pose import Array, Skeleton
+from characters.skeleton.joint_chains import assign, longest_chain_below, longest_chain_of
+from characters.skeleton.joint_names import ARM_ROLES, LEG_ROLES, JointName
+from characters.skeleton.joint_tree import JointTree
 
-_MIN_SIDE_OFFSET = 0.02  # body sizes from the middle: beyond it, a joint has a side
-_MAX_FOOT_HEIGHT = 0.2  # body heights: limbs that end below it are legs
-_MAX_TRUNK_SLOPE = 1.0  # rise over run: below it, the trunk is horizontal
+FORELEG_ROLES = ("Shoulder", *LEG_ROLES)
+"""Joints of a front leg from the shoulder blade down."""
+
+_END_FIT = 0.05  # of the end of the last bone that has a name, to a foot or hand
+_UNNAMED_FIT = 0.1  # of a joint whose name says nothing, to any part of a limb
+_SURE_FIT = 0.9  # names that fit so well are of one part only
+_REPEATED = 0.8  # how well the second joint of a bone fits, relative to its first
+_MIN_FOREARM = 0.75  # of the upper arm: a wrist nearer to the elbow is half way to the hand
+# Of the thigh's length: how far from the knee a foot may be that hangs elsewhere in the tree.
+_SHIN_LENGTHS = (0.4, 1.8)
+_HIP_LINK = 0.5  # of the bone below: shorter bones above a chain of five link it to the body
 _FINGER_PARTS: tuple[str, ...] = ("Proximal", "Intermediate", "Distal")
 _THUMB_PARTS = ("Metacarpal", "Proximal", "Distal")
 
-
-def find_parts(skeleton: Skeleton, known: Mapping[str, int]) -> dict[str, int]:
-    """Return joint numbers by part, including the `known` ones."""
-    return _PartSearch(skeleton, known).run()
+Fit = Callable[[JointName], Mapping[str, float]]
+"""How well a name fits each role of a limb."""
 
 
-class _PartSearch:
-    def __init__(self, skeleton: Skeleton, known: Mapping[str, int]) -> None:
-        self.skeleton = skeleton
-        self.known = dict(known)
-        self.positions: Array = skeleton.rest.globals(skeleton)[:, :3, 3]
-        self.names = [read_name(name) for name in skeleton.names]
-        self.chains = chains_to_root(skeleton.parents)
-        low, high = self.positions.min(0), self.positions.max(0)
-        self.size = float(np.linalg.norm(high - low)) or 1.0
-        self.ground, self.height = float(low[1]), float(high[1] - low[1]) or 1.0
+def limbs_by_name(tree: JointTree) -> dict[str, int]:
+    """Return the limbs and eyes that are recognised by name, of both sides."""
+    found: dict[str, int] = {}
+    legs: dict[str, list[dict[str, int]]] = {}
+    for side in ("left", "right"):
+        mine = [joint for joint in range(len(tree)) if tree.side(joint) == side]
+        legs[side] = _legs(tree, mine)
+        taken = {joint for leg in legs[side] for joint in leg.values()}
+        arms = [j for j in mine if tree.names[j].arm and j not in taken]
+        arm = _limb(tree, arms, ARM_ROLES, ARM_ROLES[1:], lambda name: name.arm)
+        found |= {side + role: joint for role, joint in _with_wrist(tree, arm).items()}
+        eyes = [j for j in mine if tree.names[j].trunk == "Eye"]
+        found |= {side + "Eye": eyes[0]} if eyes else {}
+    for side, rows in _hind_first(tree, legs).items():
+        for row, leg in zip(("", "Front"), rows, strict=False):
+            found |= {f"{side}{row}{role}": joint for role, joint in leg.items()}
+    return found
 
-    def run(self) -> dict[str, int]:
-        """Return joint numbers by part."""
-        found = dict(self.known)
-        for side in ("left", "right"):
-            _add_missing(found, self._limbs_by_name(side))
-        if not {"leftUpperLeg", "rightUpperLeg"} <= set(found):
-            _add_missing(found, self._limbs_by_shape())
-        _add_missing(found, self._trunk(found))
-        if self._on_all_fours(found):
-            found = {_as_front(part): joint for part, joint in found.items()} | self.known
-        for side in ("left", "right"):
-            _add_missing(found, self._fingers(side))
-        return found
 
-    def _side(self, joint: int) -> str:
-        """Return the side of a joint: by its name, its ancestors' names, or its position."""
-        for above in reversed(self.chains[joint]):
-            if self.names[above].side:
-                return self.names[above].side
-        offset = float(self.positions[joint, 0])
-        if abs(offset) < _MIN_SIDE_OFFSET * self.size:
-            return ""
-        return "left" if offset > 0 else "right"
+def _legs(tree: JointTree, mine: Sequence[int]) -> list[dict[str, int]]:
+    """Return the legs of one side: one, or the hind leg and the front leg as far as names tell."""
+    legs = [joint for joint in mine if tree.names[joint].hindleg]
+    rows = {joint: tree.row(joint) for joint in mine if tree.names[joint].foreleg}
+    if not any(rows.values()):
+        leg = _limb(tree, legs, LEG_ROLES, LEG_ROLES[:3], lambda name: name.leg)
+        others = [j for j in legs if leg and not tree.is_below(j, next(iter(leg.values())))]
+        second = _hindleg(tree, others)
+        if not set(LEG_ROLES[:3]) <= second.keys():
+            return [leg]
+        return [_hindleg(tree, [joint for joint in legs if joint not in others]), second]
+    front_named = "front" in rows.values()
+    other_row = "hind" if front_named else "front"
+    hind = [j for j in legs if (rows[j] or other_row) == "hind"]
+    fore = [j for j in rows if (rows[j] or other_row) == "front" or tree.names[j].arm]
+    roles = FORELEG_ROLES
+    front = _limb(tree, fore, roles, roles[1:4], lambda name: name.foreleg)
+    return [_hindleg(tree, hind), front]
 
-    def _limbs_by_name(self, side: str) -> dict[str, int]:
-        """Return the limbs and the eye of one side that are recognised by name."""
-        mine = [joint for joint in range(len(self.names)) if self._side(joint) == side]
-        found: dict[str, int] = {}
-        front = any(self.names[joint].front for joint in mine)
-        legs = [j for j in mine if self.names[j].leg and not self.names[j].front]
-        found |= self._limb(side, legs, LEG_ROLES, LEG_ROLES[:3], lambda name: name.leg)
-        if front:
-            fore = [j for j in mine if self.names[j].front or self.names[j].arm]
-            roles = tuple(f"Front{role}" for role in ("Shoulder", *LEG_ROLES))
-            found |= self._limb(side, fore, roles, roles[1:4], _front_fit)
-        arms = [j for j in mine if self.names[j].arm and j not in found.values()]
-        found |= self._limb(side, arms, ARM_ROLES, ARM_ROLES[1:], lambda name: name.arm)
-        eyes = [j for j in mine if self.names[j].trunk == "Eye"]
-        return found | ({side + "Eye": eyes[0]} if eyes else {})
 
-    def _limb(
-        self,
-        side: str,
-        joints: Sequence[int],
-        roles: Sequence[str],
-        essential: Sequence[str],
-        fit: Callable[[JointName], Mapping[str, float]],
-    ) -> dict[str, int]:
-        """Return the best assignment of one chain of joints to the roles of a limb."""
-        best: tuple[float, dict[str, int]] = (0.0, {})
-        for end in joints:
-            chain = [joint for joint in self.chains[end] if joint in joints]
-            scored = assign(chain, roles, essential, [fit(self.names[j]) for j in chain])
-            best = max(best, scored, key=lambda option: option[0])
-        found = {side + role: joint for role, joint in best[1].items()}
-        if found:  # in rigs with inverse kinematics the foot may have another parent
-            for role in roles:
-                for joint in joints:
-                    exact = fit(self.names[joint]).get(role, 0.0) >= 1.0
-                    if exact and side + role not in found and joint not in found.values():
-                        found[side + role] = joint
-        return found
+def _hindleg(tree: JointTree, joints: Sequence[int]) -> dict[str, int]:
+    return _limb(tree, joints, LEG_ROLES, LEG_ROLES[:3], lambda name: name.hindleg)
 
-    def _limbs_by_shape(self) -> dict[str, int]:
-        """Return the limbs of a skeleton with uninformative names: mirrored chains of joints."""
-        found: dict[str, int] = {}
-        pairs = [pair for pair in self._mirrored_chains() if len(pair[0]) >= 3]
-        low = self.ground + _MAX_FOOT_HEIGHT * self.height
-        legs = [p for p in pairs if min(self.positions[j, 1] for j in p[0]) < low]
-        legs.sort(key=lambda pair: float(self.positions[pair[0][0], 2]))
-        arms = [pair for pair in pairs if pair not in legs]
-        if len(legs) > 1:
-            fore = tuple(f"Front{role}" for role in LEG_ROLES)
-            found |= _as_limbs(legs[-1], fore)
-        if legs:
-            found |= _as_limbs(legs[0], LEG_ROLES)
-        arms.sort(key=lambda pair: float(self.positions[pair[0][0], 1]))
-        if arms:
-            roles = ARM_ROLES if len(arms[-1][0]) > 3 else ARM_ROLES[1:]
-            found |= _as_limbs(arms[-1], roles)
-        return found
 
-    def _mirrored_chains(self) -> list[tuple[list[int], list[int]]]:
-        """Return pairs of chains, left and right, that have one parent and mirror each other."""
-        children = children_of(self.skeleton.parents)
-        near = 3 * _MIN_SIDE_OFFSET * self.size
-        pairs: list[tuple[list[int], list[int]]] = []
-        for siblings in children.values():
-            for left in siblings:
-                for right in siblings:
-                    image = self.positions[right] * [-1.0, 1.0, 1.0]
-                    apart = float(np.linalg.norm(self.positions[left] - image))
-                    both = self.positions[left, 0] > near / 3 > 0 > self.positions[right, 0]
-                    if both and apart < near:
-                        pairs.append(
-                            (
-                                longest_chain_below(left, children)[:4],
-                                longest_chain_below(right, children)[:4],
-                            )
-                        )
-        return pairs
+def _hind_first(
+    tree: JointTree, legs: Mapping[str, list[dict[str, int]]]
+) -> dict[str, list[dict[str, int]]]:
+    """Return the legs of each side, hind legs first; names or the way to the head tell."""
+    ordered: dict[str, list[dict[str, int]]] = {}
+    heads = [j for j, name in enumerate(tree.names) if name.trunk == "head"]
+    for side, rows in legs.items():
+        tops = [next(iter(leg.values()), -1) for leg in rows]
+        named = any(tree.row(top) for top in tops if top >= 0)
+        if len(rows) == 2 and min(tops) >= 0 and not named:
+            keys = [
+                (
+                    len(tree.shared_chain([top, heads[0]])) if heads else 0,
+                    -tree.distance(top, heads[0]) if heads else float(tree.positions[top, 2]),
+                )
+                for top in tops
+            ]
+            rows = rows if keys[0] < keys[1] else rows[::-1]
+        ordered[side] = rows
+    return ordered
 
-    def _trunk(self, found: Mapping[str, int]) -> dict[str, int]:
-        """Return hips, spine, neck, head, jaw and tail."""
-        named = {
-            part: [j for j, name in enumerate(self.names) if name.trunk == part and not name.side]
-            for part in ("hips", "head", "jaw", "tail", "neck", "chest", "upperChest")
+
+def _limb(
+    tree: JointTree,
+    joints: Sequence[int],
+    roles: Sequence[str],
+    essential: Sequence[str],
+    fit: Fit,
+) -> dict[str, int]:
+    """Return the joints of one limb by role: of the chain of joints whose names fit best."""
+    ends = [j for j in range(len(tree)) if tree.names[j].end and tree.parents[j] in joints]
+    among = {*joints, *(j for j in ends if tree.distance(j, tree.parents[j]) > 0)}
+    best: tuple[float, dict[str, int]] = (0.0, {})
+    for end in sorted(among):
+        chain = [joint for joint in tree.chains[end] if joint in among]
+        fits = _fits(tree, chain, fit)
+        if end in ends:
+            fits[-1] = {essential[-1]: _END_FIT}
+        best = max(best, assign(chain, roles, essential, fits), key=_score)
+    found = best[1]
+    if found and not set(essential) <= found.keys():
+        found = max(best, _with_unnamed(tree, found, roles, essential, fit), key=_score)[1]
+    if essential[-1] == "Foot" and {*essential[:2]} <= found.keys() and "Foot" not in found:
+        found |= _detached_foot(tree, *(found[role] for role in essential[:2]))
+    return found
+
+
+def _score(option: tuple[float, dict[str, int]]) -> float:
+    return option[0]
+
+
+def _fits(tree: JointTree, chain: Sequence[int], fit: Fit) -> list[Mapping[str, float]]:
+    """Return how well each joint of a chain fits each role; less for the second of one bone."""
+    fits = [fit(tree.names[joint]) for joint in chain]
+    sure = [{role for role, value in each.items() if value >= _SURE_FIT} for each in fits]
+    return [
+        {role: value * _REPEATED for role, value in each.items()}
+        if number and sure[number] and sure[number] == sure[number - 1]
+        else each
+        for number, each in enumerate(fits)
+    ]
+
+
+def _with_unnamed(
+    tree: JointTree,
+    found: Mapping[str, int],
+    roles: Sequence[str],
+    essential: Sequence[str],
+    fit: Fit,
+) -> tuple[float, dict[str, int]]:
+    """Return an assignment of a chain in which only some joints are named, and its score."""
+    top, bottom = min(found.values()), max(found.values())
+    side = tree.side(top)
+    above = [j for j in tree.chains[top][:-1] if tree.side(j) == side]
+    between = [j for j in tree.chains[bottom] if tree.is_below(j, top)]
+    chain = [*above, *between, *longest_chain_below(bottom, tree.children)[1:]]
+    chain = [j for j in chain if not tree.names[j].auxiliary]
+    fits = [
+        fit(tree.names[j]) or ({} if tree.names[j].known else dict.fromkeys(roles, _UNNAMED_FIT))
+        for j in chain
+    ]
+    return assign(chain, roles, essential, fits)
+
+
+def _detached_foot(tree: JointTree, hip: int, knee: int) -> dict[str, int]:
+    """Return the foot and toes that hang elsewhere in the tree, under a knee as a shin's end.
+
+    So it is in rigs with inverse kinematics.
+    """
+    thigh = tree.positions[knee] - tree.positions[hip]
+    low, high = np.array(_SHIN_LENGTHS) * float(np.linalg.norm(thigh))
+    rows = {tree.row(knee), ""}
+    feet = [
+        joint
+        for joint in range(len(tree))
+        if tree.names[joint].foot
+        and tree.side(joint) == tree.side(knee)
+        and tree.row(joint) in rows
+        and not tree.is_below(joint, hip)
+        and joint not in tree.chains[hip]
+        and low < tree.distance(joint, knee) < high
+        and float((tree.positions[joint] - tree.positions[knee]) @ thigh) > 0
+    ]
+    if not feet:
+        return {}
+    foot = max(feet, key=lambda joint: tree.names[joint].foot)
+    toes = [j for j in tree.children.get(foot, ()) if tree.names[j].leg.get("Toes", 0.0) > 0.5]
+    return {"Foot": foot} | ({"Toes": toes[0]} if toes else {})
+
+
+def _with_wrist(tree: JointTree, arm: Mapping[str, int]) -> dict[str, int]:
+    """Return an arm whose hand turns at the wrist, if there is a joint for it above the hand."""
+    if not {"UpperArm", "LowerArm", "Hand"} <= arm.keys():
+        return dict(arm)
+    elbow, wrist = arm["LowerArm"], tree.parents[arm["Hand"]]
+    upper = tree.distance(arm["UpperArm"], elbow)
+    named = wrist != elbow and "Hand" in tree.names[wrist].arm
+    if named and tree.distance(elbow, wrist) > _MIN_FOREARM * upper:
+        return {**arm, "Hand": wrist}
+    return dict(arm)
+
+
+def limbs_by_shape(tree: JointTree) -> dict[str, int]:
+    """Return the limbs of a skeleton with uninformative names: mirrored chains of joints."""
+    found: dict[str, int] = {}
+    pairs = [pair for pair in tree.mirrored_chains() if len(pair[0]) >= 3]
+    legs = [pair for pair in pairs if any(map(tree.near_ground, pair[0][:5]))]
+    legs.sort(key=lambda pair: float(tree.positions[pair[0][0], 2]))
+    arms = [pair for pair in pairs if pair not in legs]
+    if len(legs) > 1:
+        found |= _as_limbs(tree, legs[-1], [f"Front{role}" for role in LEG_ROLES])
+    if legs:
+        found |= _as_limbs(tree, legs[0], LEG_ROLES)
+    arms.sort(key=lambda pair: float(tree.positions[pair[0][0], 1]))
+    if arms:
+        roles = ARM_ROLES if len(arms[-1][0]) > 3 else ARM_ROLES[1:]
+        found |= {
+            side + role: joint
+            for side, chain in zip(("left", "right"), arms[-1], strict=True)
+            for role, joint in zip(roles, chain, strict=False)
         }
-        head = next(iter(named["head"]), None) if "head" not in found else found["head"]
-        hips = found.get("hips", self._hips(found, named["hips"], head))
-        if hips is None:
-            return {}
-        trunk = {"hips": hips}
-        junction = self._junction(hips, found)
-        if head is None:
-            head = self._unnamed_head(hips, junction, found)
-        if head is not None and hips in self.chains[head] and head != hips:
-            trunk["head"] = head
-            trunk |= self._spine(hips, head, junction, named)
-        jaws = [j for j in named["jaw"] if head is not None and head in self.chains[j]]
-        trunk |= {"jaw": jaws[0]} if jaws else {}
-        tail = longest_chain_of(named["tail"], self.chains)
-        return trunk | {f"tail{number}": joint for number, joint in enumerate(tail[:32], 1)}
+    return found
 
-    def _hips(self, found: Mapping[str, int], named: Sequence[int], head: int | None) -> int | None:
-        """Return the joint above both legs and the trunk."""
-        legs = [found[p] for p in ("leftUpperLeg", "rightUpperLeg") if p in found]
-        upper = [head] if head is not None else []
-        upper = upper or [found[p] for p in ("leftUpperArm", "rightUpperArm") if p in found]
-        carried = [self.chains[joint] for joint in legs + upper]
-        for joint in named:
-            if carried and all(joint in chain for chain in carried):
-                return joint
-        if len(legs) < 2:
-            return named[0] if named else None
-        common = [j for j in carried[0] if all(j in chain for chain in carried)]
-        below = [j for j in common if j not in legs]
-        return below[-1] if below else None
 
-    def _junction(self, hips: int, found: Mapping[str, int]) -> int | None:
-        """Return the joint from which both arms, or both front legs, branch off."""
-        for part in ("Shoulder", "UpperArm", "FrontShoulder", "FrontUpperLeg"):
-            both = [found[side + part] for side in ("left", "right") if side + part in found]
-            if len(both) == 2:
-                left, right = (self.chains[joint][:-1] for joint in both)
-                common = [j for j in left if j in right and hips in self.chains[j]]
-                return common[-1] if common else None
-        return None
+def _as_limbs(
+    tree: JointTree, pair: tuple[Sequence[int], Sequence[int]], roles: Sequence[str]
+) -> dict[str, int]:
+    """Return a left and a right chain as legs."""
+    found: dict[str, int] = {}
+    for side, whole in zip(("left", "right"), pair, strict=True):
+        chain = list(whole)
+        if len(chain) > len(roles):
+            link, thigh = tree.distance(*chain[:2]), tree.distance(*chain[1:3])
+            chain = chain[1:] if link < _HIP_LINK * thigh else chain
+        found |= {side + role: joint for role, joint in zip(roles, chain, strict=False)}
+    return found
 
-    def _unnamed_head(
-        self, hips: int, junction: int | None, found: Mapping[str, int]
-    ) -> int | None:
-        """Return the end of the highest chain in the middle of the body: an unnamed head."""
-        taken = set(found.values())
-        middle = [
-            joint
-            for joint, chain in enumerate(self.chains)
-            if (hips if junction is None else junction) in chain[:-1]
-            and not taken.intersection(chain)
-            and not self.names[joint].auxiliary
-            and self.names[joint].trunk != "tail"
-            and abs(self.positions[joint, 0]) < _MIN_SIDE_OFFSET * self.size
-        ]
-        return max(middle, key=lambda j: (len(self.chains[j]), self.positions[j, 1]), default=None)
 
-    def _spine(
-        self, hips: int, head: int, junction: int | None, named: Mapping[str, Sequence[int]]
-    ) -> dict[str, int]:
-        """Return the joints between hips and head."""
-        chain = self.chains[head]
-        between = chain[chain.index(hips) + 1 : -1]
-        necks = [joint for joint in between if joint in named["neck"]]
-        if necks:
-            first_neck = between.index(necks[0])
-        elif junction in between:
-            first_neck = between.index(junction) + 1
-        else:
-            first_neck = len(between)
-        spine, neck = between[:first_neck], between[first_neck:]
-        found = {"neck": neck[0]} if neck else {}
-        if not spine:
-            return found
-        chests = [joint for joint in spine if joint in named["chest"]]
-        found["spine"] = spine[0]
-        if chests and chests[0] != spine[0]:
-            above = spine[spine.index(chests[0]) + 1 :]
-            return found | {"chest": chests[0]} | ({"upperChest": above[-1]} if above else {})
-        if len(spine) == 2:
-            found["chest"] = spine[1]
-        elif len(spine) > 2:
-            found |= {"chest": spine[len(spine) // 2], "upperChest": spine[-1]}
-        return found
-
-    def _on_all_fours(self, found: Mapping[str, int]) -> bool:
-        """Return whether the arms are front legs: the hands stand, and the trunk is horizontal."""
-        hands = [found[p] for p in ("leftHand", "rightHand") if p in found]
-        if not hands or "head" not in found or "hips" not in found:
-            return False
-        low = self.ground + _MAX_FOOT_HEIGHT * self.height
-        arms = [found.get("leftUpperArm", hands[0]), found.get("leftUpperLeg", hands[0])]
-        run = self.positions[arms[0]] - self.positions[arms[1]]
-        level = abs(float(run[1])) < _MAX_TRUNK_SLOPE * float(np.hypot(run[0], run[2]))
-        return level and all(self.positions[hand, 1] < low for hand in hands)
-
-    def _fingers(self, side: str) -> dict[str, int]:
-        found: dict[str, int] = {}
-        joints = [j for j, name in enumerate(self.names) if name.finger and self._side(j) == side]
+def fingers_by_name(tree: JointTree) -> dict[str, int]:
+    """Return the joints of the fingers of both hands."""
+    found: dict[str, int] = {}
+    named = [j for j, name in enumerate(tree.names) if name.finger]
+    for side in ("left", "right"):
+        joints = [joint for joint in named if tree.side(joint) == side]
         for finger in ("Thumb", "Index", "Middle", "Ring", "Little"):
             chain = longest_chain_of(
-                [j for j in joints if self.names[j].finger == finger], self.chains
+                [j for j in joints if tree.names[j].finger == finger], tree.chains
             )
             parts = _FINGER_PARTS
             if finger == "Thumb":  # the metacarpal is seldom rigged
                 parts = _THUMB_PARTS if len(chain) > 2 else _THUMB_PARTS[1:]
             found |= {side + finger + p: j for p, j in zip(parts, chain, strict=False)}
-        return found
-
-
-def _add_missing(found: dict[str, int], more: Mapping[str, int]) -> None:
-    """Add parts that are not found yet, of joints that have no part yet."""
-    for part, joint in more.items():
-        if part not in found and joint not in found.values():
-            found[part] = joint
-
-
-def _front_fit(name: JointName) -> Mapping[str, float]:
-    """Return how well a name fits each role of a front leg, 0…1."""
-    arm = {f"Front{role}": fit for role, fit in name.arm.items() if role == "Shoulder"}
-    fit = {"FrontShoulder": 0.2} | arm if name.leg or arm else {}
-    return fit | {f"Front{role}": value for role, value in name.leg.items()}
-
-
-def _as_limbs(pair: tuple[Sequence[int], Sequence[int]], roles: Sequence[str]) -> dict[str, int]:
-    """Return a left and a right chain as limbs."""
-    return {
-        side + role: joint
-        for side, chain in zip(("left", "right"), pair, strict=True)
-        for role, joint in zip(roles, chain, strict=False)
-    }
-
-
-_FRONT_OF_ARM = {
-    "Shoulder": "FrontShoulder",
-    "UpperArm": "FrontUpperLeg",
-    "LowerArm": "FrontLowerLeg",
-    "Hand": "FrontFoot",
-}
-
-
-def _as_front(part: str) -> str:
-    """Return the front-leg part for a part of an arm; other parts are unchanged."""
-    for side in ("left", "right"):
-        if part.removeprefix(side) in _FRONT_OF_ARM and part.startswith(side):
-            return side + _FRONT_OF_ARM[part.removeprefix(side)]
-    return part
+    return found

@@ -1,0 +1,92 @@
+"""What names, places and the tree say about the joints of a skeleton."""
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+
+import numpy as np
+
+from characters.skeleton.joint_chains import chains_to_root, children_of, longest_chain_below
+from characters.skeleton.joint_names import JointName, read_names
+from characters.skeleton.pose import Array, Skeleton
+
+_MIN_SIDE_OFFSET = 0.02  # body sizes from the middle: beyond it, a joint has a side
+_MAX_FOOT_HEIGHT = 0.2  # body heights: limbs that end below it are legs
+
+
+class JointTree:
+    """The joints of a skeleton at rest, with what their names say."""
+
+    def __init__(self, skeleton: Skeleton) -> None:
+        self.positions: Array = skeleton.rest.globals(skeleton)[:, :3, 3]
+        self.names: Sequence[JointName] = read_names(skeleton.names)
+        self.chains: Sequence[Sequence[int]] = chains_to_root(skeleton.parents)
+        self.parents: Sequence[int] = skeleton.parents
+        low, high = self.positions.min(0), self.positions.max(0)
+        self.size = float(np.linalg.norm(high - low)) or 1.0
+        self._ground, self._height = float(low[1]), float(high[1] - low[1]) or 1.0
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    @cached_property
+    def children(self) -> Mapping[int, Sequence[int]]:
+        """The children of each joint; those of −1 are the roots."""
+        return children_of(self.parents)
+
+    def side(self, joint: int) -> str:
+        """Return the side of a joint: by its name, its ancestors' names, or its position."""
+        for above in reversed(self.chains[joint]):
+            if self.names[above].side:
+                return self.names[above].side
+        if self.in_middle(joint):
+            return ""
+        return "left" if self.positions[joint, 0] > 0 else "right"
+
+    def row(self, joint: int) -> str:
+        """Return "front", "hind" or "": the legs to which a joint belongs by name."""
+        for above in reversed(self.chains[joint]):
+            if self.names[above].front:
+                return "front"
+            if self.names[above].hind:
+                return "hind"
+        return ""
+
+    def in_middle(self, joint: int) -> bool:
+        """Return whether a joint is between the sides of the body."""
+        return abs(float(self.positions[joint, 0])) < _MIN_SIDE_OFFSET * self.size
+
+    def near_ground(self, joint: int) -> bool:
+        """Return whether a joint is as low as feet are."""
+        return float(self.positions[joint, 1]) < self._ground + _MAX_FOOT_HEIGHT * self._height
+
+    def distance(self, joint: int, other: int) -> float:
+        """Return how far two joints are apart [m]."""
+        return float(np.linalg.norm(self.positions[joint] - self.positions[other]))
+
+    def is_below(self, joint: int, above: int) -> bool:
+        """Return whether a joint is a descendant of another, or that joint itself."""
+        return above in self.chains[joint]
+
+    def shared_chain(self, joints: Sequence[int]) -> list[int]:
+        """Return the ancestors that joints share, from the root down, the joints included."""
+        first = self.chains[joints[0]]
+        return [above for above in first if all(above in self.chains[j] for j in joints[1:])]
+
+    def mirrored_chains(self) -> list[tuple[list[int], list[int]]]:
+        """Return pairs of chains, left and right, that have one parent and mirror each other."""
+        near = 3 * _MIN_SIDE_OFFSET * self.size
+        pairs: list[tuple[list[int], list[int]]] = []
+        for siblings in self.children.values():
+            for left in siblings:
+                for right in siblings:
+                    image = self.positions[right] * [-1.0, 1.0, 1.0]
+                    apart = float(np.linalg.norm(self.positions[left] - image))
+                    both = self.positions[left, 0] > near / 3 > 0 > self.positions[right, 0]
+                    if both and apart < near:
+                        pairs.append(
+                            (
+                                longest_chain_below(left, self.children),
+                                longest_chain_below(right, self.children),
+                            )
+                        )
+        return pairs
