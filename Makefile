@@ -64,6 +64,9 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.speaking
 	$(BIN)/python -m tests.bench.ik
 	$(BIN)/python -m tests.bench.reach
+	$(BIN)/python -m tests.bench.springs
+	$(BIN)/python -m tests.bench.cast
+	-$(BIN)/python -m tests.bench.strangers ../shared/data
 	$(BIN)/python -m tests.bench.symbolic_gestures
 	$(BIN)/python -m tests.bench.bml
 	$(BIN)/python -m tests.bench.picture
