@@ -44,6 +44,8 @@ def _on_all_fours(tree: JointTree, found: Mapping[str, int]) -> bool:
     hands = [found[p] for p in ("leftHand", "rightHand") if p in found]
     if not hands or "head" not in found or "hips" not in found:
         return False
+    if tree.near_ground(found["hips"]):  # the zero pose of a recording, which does not stand
+        return False
     arms = [found.get("leftUpperArm", hands[0]), found.get("leftUpperLeg", hands[0])]
     run = tree.positions[arms[0]] - tree.positions[arms[1]]
     level = abs(float(run[1])) < _MAX_TRUNK_SLOPE * float(np.hypot(run[0], run[2]))

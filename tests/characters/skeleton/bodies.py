@@ -45,7 +45,7 @@ def named_body(style, tree):
 
     A style is the words for left and right, then a name for each part of the tree with {} for the
     side, "-" where it has none. Helper joints follow: "a<b" is a below b, "a>b" is a between b and
-    its parent, "a<b@Foot" is a below b at the place of the foot.
+    its parent, "a>b@" too but at the origin, "a<b@Foot" is a below b at the place of the foot.
     """
     left, right, *names = style.split()
     names, helpers = names[: len(tree)], names[len(tree) :]
@@ -76,9 +76,11 @@ def _add_helper(joints, helper, sign, tree):
         name, below = helper.split(">")
         if name in joints:
             return
+        below = below.removesuffix("@")
         parent, place = joints[below]
-        above = joints[parent][1] if parent else (0, 0, 0)
-        joints[name] = (parent, tuple(np.mean([place, above], axis=0)))
+        above = joints[parent][1] if parent else place
+        middle = (0.0, 0.0, 0.0) if "@" in helper else tuple(np.mean([place, above], axis=0))
+        joints[name] = (parent, middle)
         joints[below] = (name, place)
         return
     name, parent = helper.split("<")

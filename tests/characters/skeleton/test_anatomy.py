@@ -1,3 +1,4 @@
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,8 +10,8 @@ from characters import Character, CharacterError, Pose, Skeleton
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import BODY_PARTS, Anatomy
 from characters.skeleton.joint_names import read_name
-from tests.characters.skeleton.bodies import PERSON, named_body, skeleton_of
-from tests.characters.skeleton.test_naming import PEOPLE
+from tests.characters.skeleton.bodies import DOG, PERSON, named_body, skeleton_of
+from tests.characters.skeleton.test_naming import ANIMALS, PEOPLE
 
 DATA = Path(__file__).parents[4] / "shared" / "data" / "gltf"
 
@@ -43,6 +44,81 @@ def test_third_party_models_are_recognised(file, kind, some):
     assert character.anatomy.kind == kind
     names = character.skeleton.names
     assert {part: names[character.anatomy.joints[part]] for part in some} == some
+
+
+UNITY = PEOPLE["Unity, VRM"]
+SHIN_ENDS = "L R Hips Spine Chest Neck Head - Arm.{} Forearm.{} Hand.{} Thigh.{} Shin.{} - - "
+
+
+@pytest.mark.parametrize(
+    ("style", "hips"),
+    [
+        (f"{UNITY} Root>Hips@", "Hips"),
+        (f"{UNITY} Hips_root>Hips@", "Hips"),
+        (UNITY.replace("Hips", "Bone.003") + " Hips>Bone.003@", "Bone.003"),
+        (f"{UNITY} Root>Hips@ Head_target<Root", "Hips"),
+        (f"{UNITY} Root>Hips@ Head.001<Root", "Hips"),
+        (f"{UNITY} Root>Hips@ {{}}UpperLeg_IK<Root@UpperLeg", "Hips"),
+        (PEOPLE["MMD"], "センター"),
+    ],
+)
+def test_hips_are_not_a_root_on_the_ground(style, hips):
+    skeleton, truth = named_body(style, PERSON)
+    anatomy = Anatomy.guess(skeleton)
+    assert skeleton.names[anatomy.joints["hips"]] == hips
+    assert skeleton.names[anatomy.joints["head"]] == truth["head"]
+
+
+@pytest.mark.parametrize("end", ["Shin.{}_end", "Shin.{}.001_end", "Nub.{}", "EndSite.{}"])
+def test_a_leg_that_ends_at_the_shin_stands_on_the_end_of_its_bone(end):
+    skeleton, _ = named_body(f"{SHIN_ENDS} {end}<Shin.{{}}@Foot", PERSON)
+    anatomy = Anatomy.guess(skeleton)
+    assert skeleton.names[anatomy.joints["leftFoot"]] == end.format("L")
+    assert anatomy.missing == ()
+
+
+@pytest.mark.parametrize(
+    "foot", ["Foot.{}", "IK_Foot.{}", "ankle_ctrl.{}", "LegIK.{}", "Leg.target.{}", "foot_{}_bind"]
+)
+def test_a_foot_of_inverse_kinematics_hangs_under_the_root(foot):
+    helpers = f"Root>Hips@ Pole.{{}}<Root@Pole {foot}<Root@Foot Toe.{{}}<{foot}@Toes"
+    skeleton, _ = named_body(f"{SHIN_ENDS} - {helpers}", PERSON | {"Pole": ("", (0.1, 0.5, 0.5))})
+    anatomy = Anatomy.guess(skeleton)
+    assert skeleton.names[anatomy.joints["rightFoot"]] == foot.format("R")
+    assert skeleton.names[anatomy.joints["leftToes"]] == "Toe.L"
+    assert anatomy.missing == ()
+
+
+def test_an_animal_may_stand_on_feet_of_inverse_kinematics():
+    skeleton, _ = named_body(
+        "L R Body Spine Neck Head Tail1 Tail2 BackUpperLeg.{} BackLowerLeg.{} - - FrontShoulder.{} "
+        "FrontUpperLeg.{} FrontLowerLeg.{} - - Root>Body@ IKBackLeg.{}<Root@Foot "
+        "IKFrontLeg.{}<Root@FrontFoot PoleTargetBack.{}<Root",
+        DOG,
+    )
+    anatomy = Anatomy.guess(skeleton)
+    assert anatomy.kind == "quadruped"
+    assert [skeleton.names[joint] for joint in anatomy.feet] == [
+        *("IKBackLeg.L", "IKBackLeg.R"),
+        *("IKFrontLeg.L", "IKFrontLeg.R"),
+    ]
+
+
+def test_names_are_read_whatever_the_zero_pose():
+    upright, truth = named_body(f"{PEOPLE['cgspeed']} Root>Hips@", PERSON)
+    along_x = np.zeros((len(upright), 3))
+    along_x[1:, 0] = 0.2
+    skeleton = Skeleton(upright.names, upright.parents, replace(upright.rest, translations=along_x))
+    anatomy = Anatomy.guess(skeleton)
+    assert {part: skeleton.names[joint] for part, joint in anatomy.joints.items()} == truth
+
+
+@pytest.mark.parametrize("facing", [-1.0, 1.0])
+def test_legs_that_only_their_place_tells_apart_are_told_by_the_head(facing):
+    skeleton, truth = named_body(ANIMALS["legs that only their place tells apart"], DOG)
+    turned = replace(skeleton.rest, translations=skeleton.rest.translations * [1, 1, facing])
+    anatomy = Anatomy.guess(replace(skeleton, rest=turned))
+    assert skeleton.names[anatomy.joints["leftFrontFoot"]] == truth["leftFrontFoot"]
 
 
 def test_declared_parts_have_priority_over_guesses():
