@@ -95,7 +95,7 @@ def hold_feet_in_contact(
     `ends` are positions of the balls of the feet without contact, (frames, legs, 3) [m] in the
     common axes; left out, those of the poses.
     """
-    floor = _floor(rig)
+    floor = rig.floor
     placements = pose.globals(rig.skeleton)
     ankles = [in_common_axes(rig, ankle_positions(placements, rig, leg)) for leg in legs]
     if ends is not None:
@@ -142,15 +142,6 @@ def ball_positions(pose: Pose, rig: Rig, leg: LegJoints) -> Array:
     ankles = in_common_axes(rig, ankle_positions(placements, rig, leg))
     turns = turns_from_rest(pose, rig, [leg.foot])[:, 0]
     return ankles + rotations.rotate(turns, rig.sole(leg).ball)
-
-
-def _floor(rig: Rig) -> float | None:
-    """Return the height of the ground [m]; None for a skeleton that does not stand on it."""
-    if not rig.rests_on_feet:
-        return None
-    legs = rig.legs[:2]
-    heights = [rig.rest_positions[leg.foot, 1] + rig.sole(leg).heel[1] for leg in legs]
-    return float(min(heights))
 
 
 def _on_soles(

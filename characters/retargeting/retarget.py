@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from characters.errors import CharacterError
 from characters.model.mesh import Mesh
@@ -84,13 +85,14 @@ def _retarget(clip: Clip, source: Rig, target: Rig, hold_feet: bool) -> Clip:
     if hold_feet:
         pairs = leg_pairs(source, target)
         source_legs, target_legs = [a for a, _ in pairs], [b for _, b in pairs]
+        contacts = find_foot_contacts(clip, source, source_legs)
         ends = None
         if target.anatomy.kind == "quadruped":
-            ends = _paw_positions(clip, source, target, ratio * np.array([share, 1.0, share]))
+            scale = ratio * np.array([share, 1.0, share])
+            ends = _paw_positions(clip, source, target, contacts.ball, scale)
             at = in_common_axes(target, pose.globals(target.skeleton)[..., :3, 3])
             for number, leg in enumerate(target_legs):
                 ends[:, number] += ball_positions(pose, target, leg) - at[:, leg.end]
-        contacts = find_foot_contacts(clip, source, source_legs)
         ground = find_ground_motion(clip, source, source_legs, contacts.ball, ratio * share)
         pose = hold_feet_in_contact(pose, target, target_legs, contacts, ground, ends)
     return Clip(clip.name, clip.rate, pose, clip.loop, rooted)
@@ -116,13 +118,22 @@ def _stride_share(clip: Clip, source: Rig, target: Rig) -> float:
     return float(share)
 
 
-def _paw_positions(clip: Clip, source: Rig, target: Rig, ratio: Array) -> Array:
-    """Return the positions of the paws, (frames, legs, 3) [m]: offsets from rest in proportion.
+def _paw_positions(
+    clip: Clip, source: Rig, target: Rig, contacts: NDArray[np.bool_], ratio: Array
+) -> Array:
+    """Return the positions of the ends of legs, (frames, legs, 3) [m].
 
-    The legs of animals have different bones, so their angles do not determine the paws.
+    The legs of animals have different bones, so their angles do not determine the paws. These are
+    as far from rest, and as high above where they stand, as in the source, in proportion.
     """
     placements = clip.poses.globals(source.skeleton)
     pairs = leg_pairs(source, target)
     theirs, own = [a.end for a, _ in pairs], [b.end for _, b in pairs]
     at = rotations.rotate(source.common_from_skeleton, placements[:, theirs][..., :3, 3])
-    return target.rest_positions[own] + ratio * (at - source.rest_positions[theirs])
+    rest, others = target.rest_positions[own], source.rest_positions[theirs].copy()
+    for number, (_, leg) in enumerate(pairs):
+        down = contacts[:, number]
+        if down.any():
+            others[number, 1] = np.median(at[down, number, 1])
+        rest[number, 1] += target.standing_ankle_height(leg) - target.rest_positions[leg.foot, 1]
+    return np.asarray(rest + ratio * (at - others))

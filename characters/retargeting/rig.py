@@ -15,6 +15,7 @@ from characters.skeleton.facing import common_from_skeleton
 from characters.skeleton.pose import Array, Skeleton
 
 _STANDING_HEIGHT = (-0.02, 0.12)  # of the lowest joint of a standing rest pose, in body sizes
+_MAX_HOVERING = 0.2  # of feet above the ground at rest, in leg lengths
 _FOOT_LENGTH, _ANKLE_HEIGHT = 0.15, 0.09  # [leg lengths], of feet without toes and skin
 _MAX_STANDING_SPREAD = 0.2  # [rad]: legs farther apart at rest do not stand; see `Rig.flat_foot`
 
@@ -154,6 +155,24 @@ class Rig:
         ahead = ahead - up * float(ahead @ up)
         ahead = ahead / max(float(np.linalg.norm(ahead)), 1e-9)
         return rotations.from_matrix(np.stack([np.cross(up, ahead), up, ahead], axis=-1))
+
+    @cached_property
+    def floor(self) -> float | None:
+        """Height of the ground under its feet at rest [m], or None if it does not rest on them."""
+        if not self.rests_on_feet:
+            return None
+        heights = [self.rest_positions[leg.foot, 1] + self.sole(leg).lowest for leg in self.legs]
+        return float(min(heights))
+
+    def standing_ankle_height(self, leg: LegJoints) -> float:
+        """Return the height of an ankle whose sole is on the ground [m].
+
+        At rest the feet of some models are a little above the ground; those that are far above it
+        are hands.
+        """
+        at_rest = float(self.rest_positions[leg.foot, 1])
+        hovers = 0.0 if self.floor is None else at_rest + self.sole(leg).lowest - self.floor
+        return at_rest - (hovers if hovers < _MAX_HOVERING * self.leg_length else 0.0)
 
     def sole(self, leg: LegJoints) -> Sole:
         """Return the underside of a foot at rest."""

@@ -77,6 +77,12 @@ class Sole:
         return cls(np.stack([heel, front]), np.stack([ground, tip]), ball, heel)
 
     @property
+    def lowest(self) -> float:
+        """Height of the lowest point at rest from the ankle, not positive [m]."""
+        toes = self.ball[1] + self.toes[:, 1].min() if len(self.toes) else 0.0
+        return float(min(self.foot[:, 1].min(), toes, 0.0))
+
+    @property
     def highest_tilt(self) -> float:
         """The tilt on the ball at which the ankle is highest [rad]."""
         return float(np.arctan2(np.hypot(self.ball[0], self.ball[2]), -self.ball[1]))

@@ -58,7 +58,7 @@ def hips_trajectory(clip: Clip, source: Rig, target: Rig) -> Array:
     """Return the positions of the target's hips, (frames, 3) [m], in the common axes."""
     ratio = target.leg_length / source.leg_length
     source_height = _ankle_height(source, clip)
-    target_height = _rest_ankle_height(target)
+    target_height = _standing_ankle_height(target)
     if target_height is None:
         target_height = ratio * source_height
     positions = clip.poses.globals(source.skeleton)[:, source.anatomy.joints["hips"], :3, 3]
@@ -75,14 +75,14 @@ def _hips_height(rig: Rig) -> float:
     so its whole height counts.
     """
     hips = rig.rest_positions[rig.anatomy.joints["hips"], 1]
-    low = [leg.upper if rig.anatomy.kind == "humanoid" else leg.foot for leg in rig.legs[:2]]
+    low = [leg.upper if rig.anatomy.kind == "humanoid" else leg.foot for leg in rig.legs]
     return float(hips - rig.rest_positions[low, 1].mean())
 
 
-def _rest_ankle_height(rig: Rig) -> float | None:
-    """Return the height of the ankles at rest [m], or None if it does not rest on its feet."""
-    feet = [leg.foot for leg in rig.legs[:2]]
-    return float(np.mean(rig.rest_positions[feet, 1])) if rig.rests_on_feet else None
+def _standing_ankle_height(rig: Rig) -> float | None:
+    """Return the height of standing ankles [m], or None if a body does not rest on its feet."""
+    heights = [rig.standing_ankle_height(leg) for leg in rig.legs]
+    return float(np.mean(heights)) if rig.rests_on_feet else None
 
 
 def _ankle_height(rig: Rig, clip: Clip) -> float:
@@ -91,8 +91,8 @@ def _ankle_height(rig: Rig, clip: Clip) -> float:
     It is that at rest on the feet, else the median in the clip; so also in a recording that never
     comes near the ground of its rest, as those whose hips are recorded from their place at rest.
     """
-    at_rest = _rest_ankle_height(rig)
-    feet = [leg.foot for leg in rig.legs[:2]]
+    at_rest = _standing_ankle_height(rig)
+    feet = [leg.foot for leg in rig.legs]
     clip = clip_in_common_axes(clip, rig)
     heights = clip.poses.globals(rig.skeleton)[:, feet, 1, 3]
     if at_rest is not None and heights.max() > at_rest - _MAX_SINKING * rig.leg_length:

@@ -21,8 +21,8 @@ from characters.retargeting import Recording, load_recording, retarget
 from characters.retargeting.footskate import ball_positions, find_foot_contacts
 from characters.retargeting.ground_motion import find_ground_motion
 from characters.retargeting.locomotion.recorded_gait import extract_gait
-from characters.retargeting.measures import knee_quantiles
-from characters.retargeting.rig import LegJoints, Rig, leg_pairs
+from characters.retargeting.measures import bone_change, knee_quantiles
+from characters.retargeting.rig import Rig, leg_pairs
 from characters.retargeting.root import with_root_joint
 from characters.skeleton import rotations
 
@@ -60,9 +60,6 @@ CASES += [
     ("gltf/Fox.glb#Run", "gltf/dino_apatosaurus.glb"),
     ("gltf/dino_apatosaurus.glb#Armature|Apatosaurus_Walk", "gltf/Fox.glb"),
 ]
-QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
-"""Of the bend of knees: those of a cycle are compared with those of the whole recording."""
-
 MAX_KNEE_DEG, MAX_HIPS_SHARE, MAX_DIP_CM, MAX_BONE_SHARE = 8.0, 0.03, 0.5, 0.01
 """The bars of issue 18."""
 
@@ -110,27 +107,18 @@ def on_treadmill(source: Recording) -> bool:
     return bool(find_ground_motion(source.clip, rig, rig.legs, contacts, 1.0).frame_poses.any())
 
 
-def knee_bends(clip: Clip, rig: Rig, leg: LegJoints) -> NDArray[np.float64]:
-    """Return how far a knee is bent in each frame, (frames,) [degrees]; an animal's beyond rest."""
-    rest = rig.skeleton.rest.globals(rig.skeleton)[None]
-    bends = []
-    for placements in (clip.poses.globals(rig.skeleton), rest):
-        hip, knee, ankle = (placements[:, j, :3, 3] for j in (leg.upper, leg.lower, leg.foot))
-        thigh, shin = knee - hip, ankle - knee
-        cosines = (thigh * shin).sum(-1)
-        cosines /= np.linalg.norm(thigh, axis=-1) * np.linalg.norm(shin, axis=-1)
-        bends.append(np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0))))
-    beyond_rest: NDArray[np.float64] = bends[0] - bends[1]
-    return beyond_rest if rig.anatomy.kind == "quadruped" else bends[0]
+def knees_beyond(source: Recording, made: Clip, rig: Rig) -> float:
+    """Return how far knees bend beyond those of the source at most, of the quantiles [degrees].
 
-
-def knee_beyond(source: Recording, made: Clip, rig: Rig) -> float:
-    """Return how far knees bend beyond those of the source at most, of the quantiles [degrees]."""
+    NaN for animals, whose legs have other bones: their knees need not bend alike.
+    """
+    if rig.anatomy.kind == "quadruped":
+        return np.nan
     theirs = Rig(source.skeleton, source.anatomy)
     return max(
-        float((np.quantile(own, QUANTILES) - np.quantile(other, QUANTILES)).max())
+        float(np.degrees(knee_quantiles(made.poses, rig, b) - others).max())
         for a, b in leg_pairs(theirs, rig)
-        for own, other in [(knee_bends(made, rig, b), knee_bends(source.clip, theirs, a))]
+        for others in [knee_quantiles(source.clip.poses, theirs, a)]
     )
 
 
@@ -166,28 +154,16 @@ def dip(clip: Clip, character: Character) -> float:
     return deepest
 
 
-def bone_change(clip: Clip, rig: Rig) -> float:
-    """Return the greatest change of a limb's length, as a share of it."""
-    lengths = []
-    for placements in (rig.skeleton.rest.globals(rig.skeleton), clip.poses.globals(rig.skeleton)):
-        at = placements[..., :3, 3]
-        joints = [(rig.anatomy.joint(a), rig.anatomy.joint(b)) for a, b in LIMBS]
-        bones = [(a, b) for a, b in joints if a is not None and b is not None]
-        starts, ends = zip(*bones, strict=True)
-        lengths.append(np.linalg.norm(at[..., ends, :] - at[..., starts, :], axis=-1))
-    return float(np.abs(lengths[1] / lengths[0] - 1).max())
-
-
 def stature(source: Recording, made: Clip, body: Character) -> tuple[float, float, float, float]:
     """Return knees beyond the source [°], hips against it, dip [cm] and change of bones."""
     rig = Rig(body.skeleton, body.anatomy)
     theirs = hips_height(source.clip, Rig(source.skeleton, source.anatomy))
     scale = 100 * PERSON_HEIGHT_M / body.height
     return (
-        knee_beyond(source, made, rig),
+        knees_beyond(source, made, rig),
         hips_height(made, rig) / theirs,
         dip(made, body) * scale,
-        bone_change(made, rig),
+        bone_change(made.poses, rig),
     )
 
 
@@ -252,7 +228,7 @@ def stature_table() -> Table:
 
 def _stature_cells(measures: tuple[float, float, float, float]) -> tuple[str, str, str, str]:
     knee, hips, sunk, bones = measures
-    return f"{knee:.1f}°", f"{hips:.3f}", f"{sunk:.2f} cm", f"{bones:.2%}"
+    return "" if np.isnan(knee) else f"{knee:.1f}°", f"{hips:.3f}", f"{sunk:.2f} cm", f"{bones:.2%}"
 
 
 def _gait_cells(knee: float, sunk: float, slide: float) -> tuple[str, str, str]:
