@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from characters.errors import CharacterError
-from characters.formats.loading import is_motion_only, load_motion
+from characters.formats.loading import Performance, is_motion_only, load_motion
 from characters.model.bind_pose import with_bind_pose
 from characters.model.character import Character
 from characters.model.sidecar import read_sidecar
@@ -19,6 +19,9 @@ from characters.skeleton.pose import Skeleton
 
 _MIN_WAY = 0.05  # of hips in a cycle, in sizes of the skeleton; loops close less exactly
 _UNROLLED_CYCLES = 3
+_REST_GUESSES = 3
+_SHORTEST_CLIP = 12  # frames, of which the first may be one of calibration
+_MAX_FIRST_STEP = 5.0  # of the greatest of the next steps
 
 
 @dataclass(frozen=True)
@@ -69,19 +72,8 @@ def load_recording(
     """
     file, _, clip = name.partition("#")
     if is_motion_only(file):
-        motion = load_motion(file, clip or None, skeleton=skeleton, up=up)
-        sidecar = Path(file).with_suffix(".toml")
-        joints = read_sidecar(sidecar, (motion.clip.name,)).joints
-        try:
-            anatomy = Anatomy.guess(motion.skeleton, {**motion.semantics, **joints})
-        except CharacterError as error:
-            raise CharacterError(f"{sidecar}: {error}") from None
-        try:
-            upright = standing_skeleton(motion.skeleton, anatomy, motion.clip, rest)
-        except CharacterError as error:
-            raise CharacterError(f"{file}: {error}") from None
-        return Recording(
-            Path(name).name, _unrolled(motion.clip, upright, anatomy), upright, anatomy
+        return _of_performance(
+            name, load_motion(file, clip or None, skeleton=skeleton, up=up), rest
         )
     character = Character.load(file)
     if not clip and len(character.clips) == 1:
@@ -94,6 +86,42 @@ def load_recording(
     bound = with_bind_pose(character)
     found = _unrolled(character.clips[clip], bound, character.anatomy)
     return Recording(Path(name).name, found, bound, character.anatomy)
+
+
+def _of_performance(name: str, motion: Performance, rest: str | None) -> Recording:
+    """Return a motion without a body as a recording that stands at rest."""
+    file = name.partition("#")[0]
+    sidecar = Path(file).with_suffix(".toml")
+    stated = {**motion.semantics, **read_sidecar(sidecar, (motion.clip.name,)).joints}
+    upright = motion.skeleton
+    # Bones that lie along one axis show the body parts by their names only, so the guess from the
+    # standing pose is better, and with it the choice of that pose.
+    for _ in range(_REST_GUESSES):
+        try:
+            anatomy = Anatomy.guess(upright, stated)
+        except CharacterError as error:
+            raise CharacterError(f"{sidecar}: {error}") from None
+        try:
+            found = standing_skeleton(motion.skeleton, anatomy, motion.clip, rest)
+        except CharacterError as error:
+            raise CharacterError(f"{file}: {error}") from None
+        if found is upright:
+            break
+        upright = found
+    clip = _unrolled(motion.clip, upright, anatomy)
+    clip = _without_calibration_frame(clip, upright)
+    return Recording(Path(name).name, clip, upright, anatomy)
+
+
+def _without_calibration_frame(clip: Clip, skeleton: Skeleton) -> Clip:
+    """Return a clip without a first frame that is a pose of its own, such as a T-pose."""
+    if len(clip) < _SHORTEST_CLIP:
+        return clip
+    places = clip.poses[np.arange(_SHORTEST_CLIP)].globals(skeleton)[..., :3, 3]
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=-1).max(-1)
+    if steps[0] < _MAX_FIRST_STEP * steps[1:].max():
+        return clip
+    return replace(clip, poses=clip.poses[np.arange(1, len(clip))])
 
 
 def _unrolled(clip: Clip, skeleton: Skeleton, anatomy: Anatomy) -> Clip:

@@ -16,6 +16,7 @@ from characters.skeleton.anatomy import SIDES, Anatomy
 from characters.skeleton.pose import Array, Pose, Skeleton
 
 _MIN_UPRIGHT = 0.5  # cosine: bones farther than 60° from the vertical do not stand
+_RAISED_FOOT_COST = 2.0  # of uprightness, for a foot that is raised by the body's height
 _MAX_CANDIDATES = 300  # frames that are compared
 
 
@@ -47,10 +48,12 @@ def standing_skeleton(
     if uprightness(at_rest, anatomy)[0] >= _MIN_UPRIGHT:
         return skeleton
     frames = np.unique(np.linspace(0, len(clip) - 1, _MAX_CANDIDATES).round().astype(int))
-    upright = uprightness(clip.poses[frames].globals(skeleton), anatomy)
+    placements = clip.poses[frames].globals(skeleton)
+    upright = uprightness(placements, anatomy)
     if upright.max() < _MIN_UPRIGHT:
         return skeleton
-    return _resting_in(skeleton, anatomy, clip.poses[int(frames[upright.argmax()])])
+    standing = upright - _RAISED_FOOT_COST * _foot_lift(placements, anatomy)
+    return _resting_in(skeleton, anatomy, clip.poses[int(frames[standing.argmax()])])
 
 
 def uprightness(placements: Array, anatomy: Anatomy) -> Array:
@@ -70,6 +73,16 @@ def uprightness(placements: Array, anatomy: Anatomy) -> Array:
             length = np.linalg.norm(bone, axis=-1)
             cosines.append(bone[:, 1] / np.maximum(length, 1e-9))
     return np.asarray(np.min(cosines, axis=0), np.float64)
+
+
+def _foot_lift(placements: Array, anatomy: Anatomy) -> Array:
+    """Return how much higher one foot is than the other, (frames,), per height of the body."""
+    ends = [anatomy.joint(f"{side}Toes") or anatomy.joint(f"{side}Foot") for side in SIDES]
+    if None in ends:
+        return np.zeros(len(placements))
+    heights = placements[..., 1, 3]
+    left, right = (heights[:, end] for end in ends)
+    return np.asarray(np.abs(left - right) / np.maximum(np.ptp(heights, axis=1), 1e-9), np.float64)
 
 
 def _stated_frame(rest: str, clip: Clip) -> int:

@@ -51,10 +51,11 @@ def along_x(recording):
         rotations.conjugate(turns[:, above[under]]), turns[:, under]
     )
     hips = recording.anatomy.joints["hips"]
-    up = rotations.conjugate(turns[:, above[hips]])
-    translations[:, hips] = rotations.rotate(
-        up, moved[:, hips, :3, 3] - moved[:, above[hips], :3, 3]
-    )
+    translations[:, hips] = moved[:, hips, :3, 3]
+    if above[hips] >= 0:
+        up = rotations.conjugate(turns[:, above[hips]])
+        way = moved[:, hips, :3, 3] - moved[:, above[hips], :3, 3]
+        translations[:, hips] = rotations.rotate(up, way)
     flat = Pose(offsets, np.tile(rotations.IDENTITY, (len(skeleton), 1)))
     lying = Skeleton(skeleton.names, skeleton.parents, flat)
     clip = replace(recording.clip, poses=Pose(translations, local))
@@ -101,6 +102,18 @@ def test_the_rest_pose_may_be_stated_as_a_frame(walk, tmp_path):
     for wrong, why in (("frame:9999", "the last frame is"), ("first", "is not known; write zero")):
         with pytest.raises(CharacterError, match=rf"lying\.bvh: rest '{wrong}'.*{why}"):
             load_recording(str(path), rest=wrong)
+
+
+def test_a_first_frame_of_calibration_is_left_out(human, walk, tmp_path):
+    rest, poses = walk.skeleton.rest, walk.clip.poses
+    translations = np.concatenate([rest.translations[None], poses.translations])
+    turns = np.concatenate([rest.rotations[None], poses.rotations])
+    calibrated = replace(walk.clip, poses=Pose(translations, turns))
+    path = written(replace(walk, clip=calibrated), tmp_path / "calibrated.bvh")
+    recording = load_recording(str(path))
+    assert len(recording.clip) == len(walk.clip)
+    (ours,), (theirs,) = (found(human, each).recordings for each in (recording, walk))
+    assert (ours.duration, ours.seam) == pytest.approx((theirs.duration, theirs.seam), abs=1e-3)
 
 
 def test_a_root_joint_fixed_above_the_hips_does_not_stop_a_walk(human, walk, tmp_path):
