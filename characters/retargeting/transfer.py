@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from characters.motion.clip import Clip
 from characters.motion.contacts import find_contacts
 from characters.retargeting.mapping import JointMapping
+from characters.retargeting.relaxed_hands import relaxed_rest
 from characters.retargeting.rig import LegJoints, Rig, global_rotations
 from characters.retargeting.root import ground_positions
 from characters.skeleton import rotations
@@ -31,16 +32,15 @@ def transferred_rotations(clip: Clip, source: Rig, target: Rig, mapping: JointMa
     mapped = np.where(
         mapping.shares[:, None] > 0, rotations.slerp(first, second, mapping.shares), first
     )
-    reference = rotations.multiply(mapping.corrections, target.rest_rotations[mapping.joints])
+    rest = relaxed_rest(target, source, mapping.joints, mapped)
+    reference = rotations.multiply(mapping.corrections, rest[mapping.joints])
     mapped = rotations.multiply(mapped, reference)
     # Joints without a partner follow the nearest ancestor that has one.
     carrier = _nearest_mapped_ancestors(target, mapping.joints)
     result = np.tile(target.rest_rotations, (len(clip), 1, 1))
     carried = carrier >= 0
     ancestors = mapping.joints[carrier[carried]]
-    relative = rotations.multiply(
-        rotations.conjugate(target.rest_rotations[ancestors]), target.rest_rotations[carried]
-    )
+    relative = rotations.multiply(rotations.conjugate(rest[ancestors]), rest[carried])
     result[:, carried] = rotations.multiply(mapped[:, carrier[carried]], relative)
     return result
 

@@ -1,0 +1,142 @@
+"""Hands hang relaxed where a motion has no fingers."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from characters import Character, Clip, Pose
+from characters.retargeting.retarget import retarget
+from characters.skeleton import rotations
+from characters.skeleton.anatomy import Anatomy
+from tests.characters.skeleton.bodies import PERSON, named_body
+from tests.characters.skeleton.test_naming import PEOPLE
+
+FINGERS = {"Index": 0.03, "Middle": 0.01, "Ring": -0.01, "Little": -0.03}
+PARTS = ("Proximal", "Intermediate", "Distal")
+HAND = PERSON | {
+    f"{finger}{part}": (f"{finger}{PARTS[number - 1]}" if number else "Hand", place)
+    for finger, z in FINGERS.items()
+    for number, part in enumerate(PARTS)
+    for place in [(0.8 + 0.03 * number, 1.45, z)]
+}
+HAND |= {
+    "ThumbProximal": ("Hand", (0.73, 1.45, 0.03)),
+    "ThumbDistal": ("ThumbProximal", (0.76, 1.45, 0.05)),
+}
+FLAT = f"{PEOPLE['Unity, VRM']} " + " ".join(f"{{}}{part}" for part in list(HAND)[len(PERSON) :])
+
+
+@pytest.fixture(scope="module")
+def flat():
+    """A person with flat hands, palms down, in a T-pose."""
+    skeleton, _ = named_body(FLAT, HAND)
+    return skeleton, Anatomy.guess(skeleton)
+
+
+@pytest.fixture(scope="module")
+def fingerless():
+    """A motion of a person whose hands have no fingers, in the same T-pose."""
+    skeleton, _ = named_body(PEOPLE["Unity, VRM"], PERSON)
+    return still(skeleton), skeleton, Anatomy.guess(skeleton)
+
+
+def still(skeleton):
+    return Clip("Still", 30.0, Pose.of_frames([skeleton.rest] * 3), loop=False)
+
+
+def bones(clip, skeleton, anatomy, side, finger):
+    """Unit vectors along the bones of a finger, without the last, in the first frame."""
+    parts = [f"{side}{finger}{part}" for part in PARTS]
+    joints = [anatomy.joints[part] for part in parts if part in anatomy.joints]
+    places = clip.poses.globals(skeleton)[0, joints, :3, 3]
+    along = np.diff(places, axis=0)
+    return along / np.linalg.norm(along, axis=-1, keepdims=True)
+
+
+def bends_deg(clip, skeleton, anatomy, side, finger):
+    """Turn of each joint of a finger relative to the joint above [deg]."""
+    joints = [anatomy.joints[f"{side}{finger}{part}"] for part in PARTS]
+    turns = rotations.to_rotation_vector(clip.poses.rotations[0, joints])
+    return np.degrees(np.linalg.norm(turns, axis=-1))
+
+
+def test_flat_fingers_curl_to_the_palm_without_data(flat, fingerless):
+    clip = retarget(*fingerless, *flat, hold_feet=False)
+    for side in ("left", "right"):
+        for finger in FINGERS:
+            first, second = bones(clip, *flat, side, finger)
+            assert 0 > first[1] > second[1]  # palms are down
+            assert abs(first[2]) < 1e-6  # and fingers stay side by side
+            assert np.all(bends_deg(clip, *flat, side, finger) > 14)
+            assert np.all(bends_deg(clip, *flat, side, finger) < 36)
+
+
+def test_the_index_bends_least_and_the_little_finger_most(flat, fingerless):
+    clip = retarget(*fingerless, *flat, hold_feet=False)
+    sums = [bends_deg(clip, *flat, "left", finger).sum() for finger in FINGERS]
+    assert sums == sorted(sums)
+    assert sums[-1] > sums[0] + 20
+
+
+def test_both_hands_mirror_each_other(flat, fingerless):
+    skeleton, anatomy = flat
+    places = retarget(*fingerless, *flat, hold_feet=False).poses.globals(skeleton)[0, :, :3, 3]
+    for part, joint in anatomy.joints.items():
+        if part.startswith("left"):
+            partner = places[anatomy.joints["right" + part[4:]]]
+            assert places[joint] == pytest.approx(partner * [-1, 1, 1], abs=1e-6)
+
+
+def test_the_thumb_turns_to_the_palm(flat, fingerless):
+    skeleton, anatomy = flat
+    places = retarget(*fingerless, *flat, hold_feet=False).poses.globals(skeleton)[0, :, :3, 3]
+    thumb = [anatomy.joints[f"leftThumb{part}"] for part in ("Proximal", "Distal")]
+    assert -0.02 < places[thumb[1], 1] - places[thumb[0], 1] < -0.003
+
+
+def test_the_fingers_of_the_motion_win(flat):
+    skeleton, anatomy = flat
+    joints = [anatomy.joints["leftIndexProximal"]]
+    poses = still(skeleton).poses
+    turns = poses.rotations.copy()
+    turns[:, joints] = rotations.about("z", -np.linspace(0.1, 0.4, 3))[:, None]
+    clip = Clip("Point", 30.0, replace(poses, rotations=turns), loop=False)
+    same = retarget(clip, *flat, *flat, hold_feet=False)
+    assert same.poses.rotations == pytest.approx(turns, abs=1e-9)
+
+
+def test_fingers_that_a_motion_has_but_never_moves_are_relaxed(flat, fingerless):
+    clip = retarget(still(flat[0]), *flat, *flat, hold_feet=False)
+    relaxed = retarget(*fingerless, *flat, hold_feet=False)
+    assert clip.poses.rotations == pytest.approx(relaxed.poses.rotations, abs=1e-9)
+
+
+def test_a_hand_that_is_a_fist_at_rest_stays_one(flat, fingerless):
+    skeleton, anatomy = flat
+    turns = skeleton.rest.rotations.copy()
+    for side, sign in (("left", -1.0), ("right", 1.0)):
+        for finger in FINGERS:
+            for part in PARTS:
+                joint = anatomy.joints[f"{side}{finger}{part}"]
+                turns[joint] = rotations.about("z", sign * 1.2)
+    fists = replace(skeleton, rest=replace(skeleton.rest, rotations=turns))
+    clip = retarget(*fingerless, fists, anatomy, hold_feet=False)
+    fingers = [anatomy.joints[f"left{f}{part}"] for f in FINGERS for part in PARTS]
+    alike = np.abs((clip.poses.rotations[0, fingers] * turns[fingers]).sum(-1))
+    assert alike == pytest.approx(1.0, abs=1e-9)
+
+
+def test_the_bundled_human_relaxes_its_hands_in_a_walk_without_fingers():
+    human = Character.load("human")
+    skeleton, anatomy = human.skeleton, human.anatomy
+    bare = {p: j for p, j in anatomy.joints.items() if not p.endswith(PARTS)}
+    source = replace(anatomy, joints=bare)
+    renamed = replace(skeleton, names=tuple(f"{n}_{k}" for k, n in enumerate(skeleton.names)))
+    clip = retarget(human.clips["Walk"], renamed, source, skeleton, anatomy, hold_feet=False)
+    own = [anatomy.joints[p] for p in anatomy.joints if p.startswith("leftLittle")]
+    bent = rotations.multiply(
+        rotations.conjugate(skeleton.rest.rotations[own]), clip.poses.rotations[0, own]
+    )
+    angles = np.degrees(np.linalg.norm(rotations.to_rotation_vector(bent), axis=-1))
+    assert np.all((angles > 10) & (angles < 40))
