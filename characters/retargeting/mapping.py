@@ -171,11 +171,11 @@ def _rest_corrections(source: Rig, target: Rig) -> dict[int, Array]:
                 own = target.direction(side + start, side + end)
                 other = source.direction(side + start, side + end)
                 joint = target.anatomy.joint(side + start)
-                if own is None or other is None or joint is None:
-                    break
-                aligned = rotations.between(rotations.rotate(turn, own), other)
-                turn = rotations.multiply(aligned, turn)
-                corrections[joint] = turn
+                if own is not None and other is not None:
+                    aligned = rotations.between(rotations.rotate(turn, own), other)
+                    turn = rotations.multiply(aligned, turn)
+                if joint is not None:  # a bone whose end is unknown goes on like the one above
+                    corrections[joint] = turn
             hand = target.anatomy.joint(side + bones[-1][1])
             if hand is not None and bones[-1][1] == "Hand":  # hand and fingers follow the arm
                 parts = target.anatomy.joints.values()

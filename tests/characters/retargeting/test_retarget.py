@@ -112,6 +112,24 @@ def test_it_does_not_matter_how_the_arms_are_held_at_rest(human, hold):
     assert np.abs(apart[:, arm]).max() < 1e-6
 
 
+def test_forearms_without_hands_go_on_like_the_upper_arms(human):
+    clip, skeleton = human.clips["Walk"], human.skeleton
+    handless = {
+        p: j for p, j in human.anatomy.joints.items() if "Hand" not in p and "Prox" not in p
+    }
+    anatomy = replace(human.anatomy, joints=handless)
+    bare = skeleton, replace(anatomy, joints=handless)
+    arms = {"leftUpperArm": rotations.about("z", 0.9), "rightUpperArm": rotations.about("z", -0.9)}
+    spread = reposed(skeleton, anatomy, arms)
+    hands = [human.anatomy.joints[f"{side}Hand"] for side in ("left", "right")]
+    elbows = [anatomy.joints[f"{side}LowerArm"] for side in ("left", "right")]
+    forearms = []
+    for body in (skeleton, spread):
+        at = places(retarget(clip, *bare, body, anatomy, hold_feet=False), body)
+        forearms.append(at[:, hands] - at[:, elbows])
+    assert forearms[1] == pytest.approx(forearms[0], abs=0.002)
+
+
 def test_a_body_that_lies_on_its_back_in_the_file_stands_up(human):
     clip, skeleton, anatomy = human.clips["Walk"], human.skeleton, human.anatomy
     lying = rotations.about("x", -np.pi / 2)
