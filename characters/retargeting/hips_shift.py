@@ -19,7 +19,7 @@ from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
 from characters.smoothing import gaussian_smoothed
 
-_SMOOTHING_S = 0.08  # standard deviation of the shift with the feet
+_SMOOTHING_S = 0.05  # standard deviation of the shift with the feet
 _DROP_SMOOTHING_S = 0.04  # and of the drop
 # In leg lengths.
 _MAX_DROP = 0.2

@@ -1,0 +1,165 @@
+"""Legs of other proportions: feet stand on their soles, and knees bend as in the source."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from characters import Character, Mesh, Pose
+from characters.retargeting import retarget
+from characters.retargeting.footskate import ball_positions, find_foot_contacts
+from characters.retargeting.ground_motion import GroundMotion
+from characters.retargeting.hips_shift import drop_to_reach
+from characters.retargeting.measures import knee_quantiles, sole_dip
+from characters.retargeting.rig import Rig
+from characters.skeleton import rotations
+
+MAX_KNEES_BEYOND = np.radians(8.0)
+MAX_DIP_M = 0.005
+
+
+@pytest.fixture(scope="module")
+def human():
+    return Character.load("human")
+
+
+def with_feet(human, length, *, toes=True):
+    """The human on shoes of boxes as long as its own times a factor, with or without toes."""
+    skeleton, sides = human.skeleton, ("Left", "Right")
+    translations = skeleton.rest.translations.copy()
+    for side in sides:
+        translations[skeleton.index(f"{side}Toe"), 2] *= length
+    skeleton = replace(skeleton, rest=replace(skeleton.rest, translations=translations))
+    placements = skeleton.rest.globals(skeleton)
+    at = placements[:, :3, 3]
+    points, joints = [], []
+    for side in sides:
+        foot, toe = (skeleton.index(side + part) for part in ("Foot", "Toe"))
+        heel, ball = at[foot, 2] - 0.05 * length, at[toe, 2]
+        tip = ball + 0.07 * length
+        ends = [(foot, heel, ball), (toe if toes else foot, ball, tip)]
+        for joint, back, front in ends:
+            box = [
+                (at[foot, 0] + x, y, z)
+                for x in (-0.04, 0.04)
+                for y in (0, 0.05)
+                for z in (back, front)
+            ]
+            points += box
+            joints += [joint] * len(box)
+    weights = np.zeros((len(points), 4), np.float32)
+    weights[:, 0] = 1.0
+    bones = np.zeros((len(points), 4), np.uint16)
+    bones[:, 0] = joints
+    mesh = Mesh(
+        "shoes",
+        np.array(points, np.float32),
+        np.tile(np.array([0, 1, 0], np.float32), (len(points), 1)),
+        np.zeros((0, 3), np.uint32),
+        bones,
+        weights,
+        np.linalg.inv(placements),
+    )
+    semantics = {} if toes else {f"{side.lower()}Toes": "" for side in sides}
+    return replace(human, skeleton=skeleton, meshes=(mesh,), clips={}, semantics=semantics)
+
+
+def on(body, human, clip):
+    return retarget(
+        clip, human.skeleton, human.anatomy, body.skeleton, body.anatomy, meshes=body.meshes
+    )
+
+
+def knees_beyond(made, body, human, clip):
+    """By how much knees bend more than in the source at most, of the quantiles [rad]."""
+    source, rig = Rig(human.skeleton, human.anatomy), Rig(body.skeleton, body.anatomy)
+    return max(
+        (knee_quantiles(made.poses, rig, own) - knee_quantiles(clip.poses, source, other)).max()
+        for own, other in zip(rig.legs, source.legs, strict=True)
+    )
+
+
+def hips_height(clip, character):
+    """Mean height of the hip joints above the lower ankle [leg lengths]."""
+    rig = Rig(character.skeleton, character.anatomy)
+    heights = clip.poses.globals(rig.skeleton)[..., 1, 3]
+    hips, ankles = [leg.upper for leg in rig.legs], [leg.foot for leg in rig.legs]
+    return (heights[:, hips].mean(1) - heights[:, ankles].min(1)).mean() / rig.leg_length
+
+
+BODIES = [(0.7, True), (1.0, True), (1.7, True), (0.7, False), (1.0, False), (1.7, False)]
+
+
+@pytest.mark.parametrize(("length", "toes"), BODIES)
+def test_feet_of_any_length_stay_above_the_ground(human, length, toes):
+    body, clip = with_feet(human, length, toes=toes), human.clips["Walk"]
+    made = on(body, human, clip)
+    assert sole_dip(made.poses, Rig(body.skeleton, body.anatomy), body.meshes) < MAX_DIP_M
+
+
+@pytest.mark.parametrize(("length", "toes"), BODIES)
+def test_knees_bend_as_in_the_source_whatever_the_feet(human, length, toes):
+    body, clip = with_feet(human, length, toes=toes), human.clips["Walk"]
+    made = on(body, human, clip)
+    assert knees_beyond(made, body, human, clip) < MAX_KNEES_BEYOND
+    assert hips_height(made, body) == pytest.approx(hips_height(clip, human), rel=0.03)
+
+
+@pytest.mark.parametrize(("length", "toes"), BODIES)
+def test_balls_of_feet_of_any_length_do_not_slide(human, length, toes):
+    body, clip = with_feet(human, length, toes=toes), human.clips["Walk"]
+    made = on(body, human, clip)
+    source, rig = Rig(human.skeleton, human.anatomy), Rig(body.skeleton, body.anatomy, body.meshes)
+    down = find_foot_contacts(clip, source, source.legs).ball
+    for number, leg in enumerate(rig.legs):
+        at = ball_positions(made.poses, rig, leg)[:, [0, 2]]
+        speeds = np.linalg.norm(np.diff(at, axis=0), axis=-1) * made.rate
+        assert down[:, number].mean() > 0.3
+        assert speeds[down[1:, number] & down[:-1, number]].max() < 0.01
+
+
+def test_a_swinging_foot_out_of_reach_does_not_lower_the_hips(human):
+    rig = Rig(human.skeleton, human.anatomy)
+    rest = human.skeleton.rest
+    pose = Pose(np.tile(rest.translations, (30, 1, 1)), np.tile(rest.rotations, (30, 1, 1)))
+    ankles = np.tile(rig.rest_positions[[leg.foot for leg in rig.legs]], (30, 1, 1))
+    ankles[..., 1] += 0.02  # bent a little, as legs are in motion
+    ankles[10:20, 0, 2] += 0.5 * rig.leg_length
+    ground = GroundMotion(np.zeros((30, 3)), None, 30.0)
+    standing = np.ones((30, 2), bool)
+    standing[10:20, 0] = False
+    assert not drop_to_reach(pose, rig, rig.legs, ankles, standing, ground).any()
+    standing[:] = True
+    assert drop_to_reach(pose, rig, rig.legs, ankles, standing, ground).max() > 0.05
+
+
+@pytest.mark.parametrize("clip", ["Walk", "Run"])
+@pytest.mark.parametrize("change", [-0.05, 0.05])
+def test_knees_bend_as_in_the_source_whatever_thighs_and_shins(human, change, clip):
+    skeleton = human.skeleton
+    translations = skeleton.rest.translations.copy()
+    for joint, sign in (("Leg", 1), ("Foot", -1)):
+        for side in ("Left", "Right"):
+            bone = translations[skeleton.index(side + joint)]
+            bone *= 1 + sign * change / np.linalg.norm(bone)
+    body = replace(
+        human, skeleton=replace(skeleton, rest=replace(skeleton.rest, translations=translations))
+    )
+    made = on(body, human, human.clips[clip])
+    assert knees_beyond(made, body, human, human.clips[clip]) < np.radians(5.0)
+
+
+def test_a_foot_that_hovers_at_rest_stands_on_the_ground():
+    vleo = Character.load("vleo")
+    skeleton = vleo.skeleton
+    turns = skeleton.rest.rotations.copy()
+    leg = Rig(skeleton, vleo.anatomy).legs[2]
+    for joint, angle in ((leg.upper, 0.2), (leg.lower, -0.4), (leg.foot, 0.2)):
+        turns[joint] = rotations.multiply(turns[joint], rotations.about("x", angle))
+    bent = replace(skeleton, rest=replace(skeleton.rest, rotations=turns))
+    rig = Rig(bent, vleo.anatomy, vleo.meshes)
+    left, right = rig.legs[2:]
+    assert rig.rest_positions[left.foot, 1] > rig.rest_positions[right.foot, 1] + 0.001
+    assert rig.standing_ankle_height(left) == pytest.approx(
+        rig.standing_ankle_height(right), abs=0.0005
+    )
