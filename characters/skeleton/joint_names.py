@@ -326,13 +326,17 @@ def _split_corner(word: str, corners: bool) -> list[str]:
 
 
 def _split_joined(word: str) -> list[str]:
-    """Split a word that joins a side or a row and a part: "lfemur", "leftfoot", "hindleg"."""
+    """Split a word that joins a side, a row and a part: "lfemur", "leftfoot", "lefthindfoot"."""
     if word in _KNOWN_WORDS:
         return [word]
     for side in ("left", "right", "l", "r"):
         for inner in (word.removeprefix(side), word.removesuffix(side)):
-            if inner != word and inner in _KNOWN_WORDS:
-                return [side, inner]
+            if inner != word and (inner in _KNOWN_WORDS or len(_split_row(inner)) > 1):
+                return [side, *_split_row(inner)]
+    return _split_row(word)
+
+
+def _split_row(word: str) -> list[str]:
     for row in (*_FRONT_WORDS, *_HIND_WORDS):
         if word.startswith(row) and word[len(row) :] in _LIMB_WORDS:
             return [row, word[len(row) :]]

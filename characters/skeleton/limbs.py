@@ -54,7 +54,7 @@ def _legs(tree: JointTree, mine: Sequence[int]) -> list[dict[str, int]]:
     """Return the legs of one side: one, or the hind leg and the front leg as far as names tell."""
     legs = [joint for joint in mine if tree.names[joint].hindleg]
     rows = {joint: tree.row(joint) for joint in mine if tree.names[joint].foreleg}
-    if not any(rows.values()):
+    if not any(row and tree.names[joint].certainty == 1.0 for joint, row in rows.items()):
         leg = _limb(tree, legs, LEG_ROLES, LEG_ROLES[:3], lambda name: name.leg)
         others = [j for j in legs if leg and not tree.is_below(j, next(iter(leg.values())))]
         second = _hindleg(tree, others)

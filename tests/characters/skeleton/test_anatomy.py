@@ -90,18 +90,23 @@ def test_a_foot_of_inverse_kinematics_hangs_under_the_root(foot):
 
 
 def test_an_animal_may_stand_on_feet_of_inverse_kinematics():
+    """As in much used sets of animals: the paws have no parent, and the hip has a link above."""
     skeleton, _ = named_body(
-        "L R Body Spine Neck Head Tail1 Tail2 BackUpperLeg.{} BackLowerLeg.{} - - FrontShoulder.{} "
-        "FrontUpperLeg.{} FrontLowerLeg.{} - - Root>Body@ IKBackLeg.{}<Root@Foot "
-        "IKFrontLeg.{}<Root@FrontFoot PoleTargetBack.{}<Root",
+        "L R Body Torso Neck1 Head Tail1 Tail2 BackUpperLeg.{} BackLowerLeg.{} - - "
+        "FrontShoulder.{} FrontUpperLeg.{} FrontLowerLeg.{} - - Back>Tail1 "
+        "BackLeg.{}>BackUpperLeg.{} BackShoulder.{}>BackLeg.{} Neck2>Head IKBackLeg.{}<@Foot FFB.{}<IKBackLeg.{}@Toes "
+        "IKFrontLeg.{}<@FrontFoot FF.{}<IKFrontLeg.{}@FrontToes PoleTargetBack.{}<@LowerLeg "
+        "PoleTarget.{}<@FrontLowerLeg Ear1.{}<Head",
         DOG,
     )
     anatomy = Anatomy.guess(skeleton)
     assert anatomy.kind == "quadruped"
+    assert anatomy.missing == ()
     assert [skeleton.names[joint] for joint in anatomy.feet] == [
         *("IKBackLeg.L", "IKBackLeg.R"),
         *("IKFrontLeg.L", "IKFrontLeg.R"),
     ]
+    assert skeleton.names[anatomy.joints["hips"]] == "Body"
 
 
 def test_names_are_read_whatever_the_zero_pose():

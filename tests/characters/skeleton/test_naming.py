@@ -177,6 +177,9 @@ PEOPLE = {
     "leg_joint_{}_5",
     "Kenney": "left right root torso chest neck head - arm-{}-upper arm-{}-lower hand-{} "
     "leg-{}-upper leg-{}-lower foot-{} -",
+    "artist: an apron and greaves": "L R Hips Spine Chest Neck Head Clavicle_{} UpperArm_{} "
+    "LowerArm_{} Hand_{} Thigh_{} Shin_{} Foot_{} Toes_{} Front_Leg_Armor_{}<Thigh_{} "
+    "Back_Leg_Cape_{}<Hips Front_Apron<Hips",
     "lower case without breaks": "left right hips spine chest neck head {}shoulder {}upperarm "
     "{}forearm {}hand {}upperleg {}lowerleg {}foot {}toes",
     "sides at the end": "Left Right Hips Spine Chest Neck Head Shoulder{} UpperArm{} LowerArm{} "
@@ -223,6 +226,8 @@ ANIMALS = {
     "fore and hind": "L R Pelvis Spine Neck Head Tail_01 Tail_02 Hind_Thigh_{} Hind_Calf_{} "
     "Hind_Foot_{} Hind_Ball_{} Scapula_{} Fore_UpperArm_{} Fore_LowerArm_{} Fore_Hand_{} "
     "Fore_Ball_{}",
+    "joined words": "Left Right Hips Spine Neck Head Tail1 Tail2 {}hindthigh {}hindshin {}hindfoot "
+    "{}hindtoe - {}frontthigh {}frontshin {}frontfoot {}fronttoe",
     "numbered legs": "L R Hips Spine Neck Head Tail1 Tail2 Back_Leg_{}_01 Back_Leg_{}_02 "
     "Back_Leg_{}_03 Back_Leg_{}_04 - Front_Leg_{}_01 Front_Leg_{}_02 Front_Leg_{}_03 "
     "Front_Leg_{}_04",
