@@ -94,8 +94,8 @@ def test_an_animal_may_stand_on_feet_of_inverse_kinematics():
     skeleton, _ = named_body(
         "L R Body Torso Neck1 Head Tail1 Tail2 BackUpperLeg.{} BackLowerLeg.{} - - "
         "FrontShoulder.{} FrontUpperLeg.{} FrontLowerLeg.{} - - Back>Tail1 "
-        "BackLeg.{}>BackUpperLeg.{} BackShoulder.{}>BackLeg.{} Neck2>Head IKBackLeg.{}<@Foot FFB.{}<IKBackLeg.{}@Toes "
-        "IKFrontLeg.{}<@FrontFoot FF.{}<IKFrontLeg.{}@FrontToes PoleTargetBack.{}<@LowerLeg "
+        "BackLeg.{}>BackUpperLeg.{} BackShoulder.{}>BackLeg.{} Neck2>Head IKBackLeg.{}<@Foot "
+        "FFB.{}<IKBackLeg.{}@Toes IKFrontLeg.{}<@FrontFoot FF.{}<IKFrontLeg.{}@FrontToes PoleTargetBack.{}<@LowerLeg "
         "PoleTarget.{}<@FrontLowerLeg Ear1.{}<Head",
         DOG,
     )
