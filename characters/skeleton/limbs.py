@@ -114,10 +114,12 @@ def _limb(
             fits[-1] = {essential[-1]: _END_FIT}
         best = max(best, assign(chain, roles, essential, fits), key=_score)
     found = best[1]
+    hip, knee, foot = (found.get(role) for role in essential)
+    apart = essential[-1] == "Foot" and (foot is None or tree.names[foot].end)
+    if apart and hip is not None and knee is not None:
+        found |= _detached_foot(tree, hip, knee)
     if found and not set(essential) <= found.keys():
         found = max(best, _with_unnamed(tree, found, roles, essential, fit), key=_score)[1]
-    if essential[-1] == "Foot" and {*essential[:2]} <= found.keys() and "Foot" not in found:
-        found |= _detached_foot(tree, *(found[role] for role in essential[:2]))
     return found
 
 

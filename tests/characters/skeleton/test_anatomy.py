@@ -89,24 +89,31 @@ def test_a_foot_of_inverse_kinematics_hangs_under_the_root(foot):
     assert anatomy.missing == ()
 
 
-def test_an_animal_may_stand_on_feet_of_inverse_kinematics():
-    """As in much used sets of animals: the paws have no parent, and the hip has a link above."""
-    skeleton, _ = named_body(
-        "L R Body Torso Neck1 Head Tail1 Tail2 BackUpperLeg.{} BackLowerLeg.{} - - "
-        "FrontShoulder.{} FrontUpperLeg.{} FrontLowerLeg.{} - - Back>Tail1 "
-        "BackLeg.{}>BackUpperLeg.{} BackShoulder.{}>BackLeg.{} Neck2>Head IKBackLeg.{}<@Foot "
-        "FFB.{}<IKBackLeg.{}@Toes IKFrontLeg.{}<@FrontFoot FF.{}<IKFrontLeg.{}@FrontToes PoleTargetBack.{}<@LowerLeg "
-        "PoleTarget.{}<@FrontLowerLeg Ear1.{}<Head",
-        DOG,
-    )
+# As in two much used sets of animals, whose paws have no leg above them.
+PAWS_APART = {
+    "Body Torso Neck1 Head Tail1 Tail2 BackUpperLeg.{} BackLowerLeg.{} - - FrontShoulder.{} "
+    "FrontUpperLeg.{} FrontLowerLeg.{} - - Back>Tail1 BackLeg.{}>BackUpperLeg.{} "
+    "BackShoulder.{}>BackLeg.{} Neck2>Head IKBackLeg.{}<@Foot FFB.{}<IKBackLeg.{}@Toes "
+    "IKFrontLeg.{}<@FrontFoot FF.{}<IKFrontLeg.{}@FrontToes PoleTargetBack.{}<@LowerLeg "
+    "PoleTarget.{}<@FrontLowerLeg Ear1.{}<Head": ("IKBackLeg", "IKFrontLeg"),
+    "Body Shoulders Neck Head Tail1 Tail2 BackUpLeg.{} BackLowLeg.{} - - FrontLeg.{} FrontUpLeg.{} "
+    "FrontLowLeg.{} - - root>Body@ BackLeg.{}>BackUpLeg.{} BackLowLeg.{}_end<BackLowLeg.{}@Foot "
+    "FrontLowLeg.{}_end<FrontLowLeg.{}@FrontFoot BackFoot.{}<root@Foot FrontFoot.{}<root@FrontFoot "
+    "FrontFoot.{}_end<FrontFoot.{} Hips<Body Torso<Hips": ("BackFoot", "FrontFoot"),
+}
+
+
+@pytest.mark.parametrize("style", PAWS_APART)
+def test_an_animal_may_stand_on_feet_of_inverse_kinematics(style):
+    skeleton, truth = named_body(f"L R {style}", DOG)
     anatomy = Anatomy.guess(skeleton)
     assert anatomy.kind == "quadruped"
     assert anatomy.missing == ()
     assert [skeleton.names[joint] for joint in anatomy.feet] == [
-        *("IKBackLeg.L", "IKBackLeg.R"),
-        *("IKFrontLeg.L", "IKFrontLeg.R"),
+        f"{foot}.{side}" for foot in PAWS_APART[style] for side in "LR"
     ]
-    assert skeleton.names[anatomy.joints["hips"]] == "Body"
+    for part in ("hips", "head", "leftUpperLeg", "rightFrontLowerLeg"):
+        assert skeleton.names[anatomy.joints[part]] == truth[part]
 
 
 def test_names_are_read_whatever_the_zero_pose():
