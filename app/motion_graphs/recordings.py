@@ -72,5 +72,10 @@ def fitted(recording: Recording, character: Character) -> Clip:
     if stride > 1 and not clip.loop:  # frames that the graph would leave out anyway
         clip = replace(clip, rate=clip.rate / stride, poses=clip.poses[::stride])
     return retarget(
-        clip, recording.skeleton, recording.anatomy, character.skeleton, character.anatomy
+        clip,
+        recording.skeleton,
+        recording.anatomy,
+        character.skeleton,
+        character.anatomy,
+        meshes=character.meshes,
     )

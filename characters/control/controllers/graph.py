@@ -225,6 +225,7 @@ def fitted(stored: StoredGraph, character: Character) -> StoredGraph:
             library.anatomy,
             character.skeleton,
             character.anatomy,
+            meshes=character.meshes,
         )
         for name in library.names
     ]

@@ -26,7 +26,10 @@ def standing_as(character: Character, path: Path) -> Character:
     if skeleton_identity(skeleton) != skeleton_identity(character.skeleton):
         body, parts = with_bind_pose(character), character.anatomy
         try:
-            clips = [retarget(each, skeleton, anatomy, body, parts) for each in as_clips(person)]
+            clips = [
+                retarget(each, skeleton, anatomy, body, parts, meshes=character.meshes)
+                for each in as_clips(person)
+            ]
             recordings = tuple(
                 read_standing(clip, character.skeleton, parts, old.feeling)
                 for clip, old in zip(clips, recordings, strict=True)

@@ -33,7 +33,12 @@ def read_motions(names: Sequence[str], character: Character) -> list[Clip]:
         recording = load_recording(name)
         try:
             clip = retarget(
-                recording.clip, recording.skeleton, recording.anatomy, skeleton, character.anatomy
+                recording.clip,
+                recording.skeleton,
+                recording.anatomy,
+                skeleton,
+                character.anatomy,
+                meshes=character.meshes,
             )
         except CharacterError as error:
             raise CharacterError(f"{recording.origin}: {error}") from None

@@ -9,13 +9,15 @@ import pytest
 
 from characters import Animator, Character, CharacterCommand, Clip, Pose
 from characters.control.controllers.idle import standing_as
+from characters.retargeting.leg_ik import place_ankle
+from characters.retargeting.rig import Rig
 from characters.synthesis.idle.recordings import read_standing
 from characters.synthesis.idle.storage import load_person, save_person
 
 RATE = 25.0
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def swaying() -> Clip:
     """A person who shifts her balance every three seconds: her hips go from side to side."""
     human = Character.load("human")
@@ -30,11 +32,13 @@ def swaying() -> Clip:
 @pytest.fixture
 def anna(swaying: Clip, tmp_path: Path) -> Path:
     human = Character.load("human")
-    fixed = swaying.poses.translations.copy()
-    feet = [human.anatomy.joints[side + "UpperLeg"] for side in ("left", "right")]
-    hips = human.anatomy.joints["hips"]
-    fixed[:, feet, 0] -= (fixed[:, hips, 0] - human.skeleton.rest.translations[hips, 0])[:, None]
-    clip = Clip("anna", RATE, Pose(fixed, swaying.poses.rotations), root_motion=True)
+    rig = Rig(human.skeleton, human.anatomy)
+    poses = swaying.poses
+    poses.translations[:, human.anatomy.joints["hips"], 1] -= 0.02  # bent knees let her sway
+    for leg in rig.legs:  # her feet stay where they are
+        ankle = np.broadcast_to(rig.rest_positions[leg.foot], (len(swaying), 3))
+        poses = place_ankle(poses, rig, leg, ankle)
+    clip = Clip("anna", RATE, poses, root_motion=True)
     recording = read_standing(clip, human.skeleton, human.anatomy)
     save_person((human.skeleton, human.anatomy, (recording,)), tmp_path / "anna.idle")
     return tmp_path / "anna.idle"
