@@ -55,13 +55,18 @@ def _nearest_mapped_ancestors(rig: Rig, joints: NDArray[np.intp]) -> NDArray[np.
 
 
 def hips_trajectory(clip: Clip, source: Rig, target: Rig) -> Array:
-    """Return the positions of the target's hips, (frames, 3) [m], in the common axes."""
+    """Return where the middle of the target's hips goes, (frames, 3) [m], in the common axes.
+
+    It is between the thighs, wherever the joint is that carries them: in some models, on the
+    ground.
+    """
     ratio = target.leg_length / source.leg_length
     source_height = _ankle_height(source, clip)
     target_height = _standing_ankle_height(target)
     if target_height is None:
         target_height = ratio * source_height
-    positions = clip.poses.globals(source.skeleton)[:, source.anatomy.joints["hips"], :3, 3]
+    thighs = [leg.upper for leg in source.legs[:2]]
+    positions = clip.poses.globals(source.skeleton)[:, thighs][..., :3, 3].mean(1)
     trajectory = rotations.rotate(source.common_from_skeleton, positions) * ratio
     own, others = _hips_height(target), _hips_height(source)
     trajectory[:, 1] += own + target_height - ratio * (others + source_height)
@@ -69,14 +74,20 @@ def hips_trajectory(clip: Clip, source: Rig, target: Rig) -> Array:
 
 
 def _hips_height(rig: Rig) -> float:
-    """Return the rest height of the hips joint above the thighs [m]; above the ankles of animals.
+    """Return how high the middle of the hips is above the feet at rest [m]; 0 for people.
 
     The legs of people are aligned with each other, however they rest. Animals keep their stance,
     so its whole height counts.
     """
-    hips = rig.rest_positions[rig.anatomy.joints["hips"], 1]
-    low = [leg.upper if rig.anatomy.kind == "humanoid" else leg.foot for leg in rig.legs]
-    return float(hips - rig.rest_positions[low, 1].mean())
+    if rig.anatomy.kind == "humanoid":
+        return 0.0
+    feet = [leg.foot for leg in rig.legs]
+    return float(_middle_of_hips(rig)[1] - rig.rest_positions[feet, 1].mean())
+
+
+def _middle_of_hips(rig: Rig) -> Array:
+    """Return the middle between the thighs at rest, (3,) [m]."""
+    return np.asarray(rig.rest_positions[[leg.upper for leg in rig.legs[:2]]].mean(0))
 
 
 def _standing_ankle_height(rig: Rig) -> float | None:
@@ -115,10 +126,10 @@ def clip_in_common_axes(clip: Clip, rig: Rig) -> Clip:
 
 
 def build_poses(rig: Rig, turns: Array, hips: Array, root: Array | None) -> Pose:
-    """Return poses from global rotations and hips positions in the common axes.
+    """Return poses from global rotations and the path of the hips in the common axes.
 
-    `turns` are (frames, joints, 4), `hips` (frames, 3) [m], and the root trajectory (frames, 3) is
-    x, z [m] and yaw [rad], or None without root motion.
+    `turns` are (frames, joints, 4), `hips` (frames, 3) [m] the middle between the thighs, and the
+    root trajectory (frames, 3) is x, z [m] and yaw [rad], or None without root motion.
     """
     skeleton, frames = rig.skeleton, len(turns)
     skeleton_from_common = rotations.conjugate(rig.common_from_skeleton)
@@ -131,9 +142,10 @@ def build_poses(rig: Rig, turns: Array, hips: Array, root: Array | None) -> Pose
         own[:, 0] = rotations.multiply(rotations.about("y", root[:, 2]), skeleton.rest.rotations[0])
         translations[:, 0] = ground_positions(root)
     pose = Pose(translations, _local_rotations(own, skeleton.parents), scales)
-    set_joint_positions(
-        pose, rig, rig.anatomy.joints["hips"], rotations.rotate(skeleton_from_common, hips)
-    )
+    joint = rig.anatomy.joints["hips"]
+    from_rest = rotations.multiply(turns[:, joint], rotations.conjugate(rig.rest_rotations[joint]))
+    hips = hips + rotations.rotate(from_rest, rig.rest_positions[joint] - _middle_of_hips(rig))
+    set_joint_positions(pose, rig, joint, rotations.rotate(skeleton_from_common, hips))
     for leg in rig.legs:
         if not leg.attached:
             ankles = ankle_positions(pose.globals(skeleton), rig, leg)

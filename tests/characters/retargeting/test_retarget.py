@@ -130,6 +130,23 @@ def test_forearms_without_hands_go_on_like_the_upper_arms(human):
     assert forearms[1] == pytest.approx(forearms[0], abs=0.002)
 
 
+@pytest.mark.parametrize("name", ["Run", "cheer"])
+def test_it_does_not_matter_where_the_joint_is_that_carries_the_hips(human, name):
+    clip, skeleton, anatomy = human.clips[name], human.skeleton, human.anatomy
+    hips = anatomy.joints["hips"]
+    offsets = skeleton.rest.translations.copy()
+    below = np.array(skeleton.parents) == hips
+    offsets[below] += offsets[hips] - [0.0, 0.0, 0.1]
+    offsets[hips] = [0.0, 0.0, 0.1]
+    grounded = replace(skeleton, rest=replace(skeleton.rest, translations=offsets))
+    at = [
+        places(retarget(clip, skeleton, anatomy, body, anatomy, hold_feet=False), body)
+        for body in (skeleton, grounded)
+    ]
+    others = [joint for part, joint in anatomy.joints.items() if part != "hips"]
+    assert np.allclose(at[1][:, others], at[0][:, others], atol=1e-6)
+
+
 def test_a_body_that_lies_on_its_back_in_the_file_stands_up(human):
     clip, skeleton, anatomy = human.clips["Walk"], human.skeleton, human.anatomy
     lying = rotations.about("x", -np.pi / 2)
