@@ -151,7 +151,7 @@ _FORELEG_FIT = _HINDLEG_FIT | _by_word(_FORELEG_WORDS)
 _LEG_ROLE_OF_ARM = dict(zip(ARM_ROLES, ("Shoulder", *LEG_ROLES), strict=False))
 _TRUNK_OF = {word: part for words, part in _TRUNK_WORDS.items() for word in words.split()}
 _LIMB_WORDS = frozenset({*_ARM_FIT, *_FORELEG_FIT})
-_KNOWN_WORDS = frozenset({*_LIMB_WORDS, *_TRUNK_OF, *_FINGER_OF, "hipjoint", "fingers"})
+_KNOWN_WORDS = frozenset({*_LIMB_WORDS, *_TRUNK_OF, *_FINGER_OF, "hipjoint", "fingers", "armdigit"})
 _GUESS = (
     0.7  # how well a name fits if some of its words are unknown, relative to one of known words
 )

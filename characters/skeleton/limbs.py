@@ -1,4 +1,4 @@
-"""Arms, legs, eyes and fingers of a skeleton, by the names of joints and by its shape.
+"""Arms, legs and eyes of a skeleton, by the names of joints and by its shape.
 
 The parts of a limb are assigned for the chain as a whole, so "Shoulder, Arm, ForeArm, Hand" and
 "Collar, Shoulder, Elbow, Wrist" are both read correctly. Where names say only a part of it, the
@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from characters.skeleton.joint_chains import assign, longest_chain_below, longest_chain_of
+from characters.skeleton.joint_chains import assign, longest_chain_below
 from characters.skeleton.joint_names import ARM_ROLES, LEG_ROLES, JointName
 from characters.skeleton.joint_tree import JointTree
 
@@ -24,8 +24,6 @@ _MIN_FOREARM = 0.75  # of the upper arm: a wrist nearer to the elbow is half way
 # Of the thigh's length: how far from the knee a foot may be that hangs elsewhere in the tree.
 _SHIN_LENGTHS = (0.4, 1.8)
 _HIP_LINK = 0.5  # of the bone below: shorter bones above a chain of five link it to the body
-_FINGER_PARTS: tuple[str, ...] = ("Proximal", "Intermediate", "Distal")
-_THUMB_PARTS = ("Metacarpal", "Proximal", "Distal")
 
 Fit = Callable[[JointName], Mapping[str, float]]
 """How well a name fits each role of a limb."""
@@ -231,21 +229,4 @@ def _as_limbs(
             link, thigh = tree.distance(*chain[:2]), tree.distance(*chain[1:3])
             chain = chain[1:] if link < _HIP_LINK * thigh else chain
         found |= {side + role: joint for role, joint in zip(roles, chain, strict=False)}
-    return found
-
-
-def fingers_by_name(tree: JointTree) -> dict[str, int]:
-    """Return the joints of the fingers of both hands."""
-    found: dict[str, int] = {}
-    named = [j for j, name in enumerate(tree.names) if name.finger]
-    for side in ("left", "right"):
-        joints = [joint for joint in named if tree.side(joint) == side]
-        for finger in ("Thumb", "Index", "Middle", "Ring", "Little"):
-            chain = longest_chain_of(
-                [j for j in joints if tree.names[j].finger == finger], tree.chains
-            )
-            parts = _FINGER_PARTS
-            if finger == "Thumb":  # the metacarpal is seldom rigged
-                parts = _THUMB_PARTS if len(chain) > 2 else _THUMB_PARTS[1:]
-            found |= {side + finger + p: j for p, j in zip(parts, chain, strict=False)}
     return found

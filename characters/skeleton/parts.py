@@ -4,8 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from characters.skeleton.fingers import find_fingers
 from characters.skeleton.joint_tree import JointTree
-from characters.skeleton.limbs import fingers_by_name, limbs_by_name, limbs_by_shape
+from characters.skeleton.limbs import limbs_by_name, limbs_by_shape
 from characters.skeleton.pose import Skeleton
 from characters.skeleton.trunk import find_trunk
 
@@ -28,7 +29,7 @@ def find_parts(skeleton: Skeleton, known: Mapping[str, int]) -> dict[str, int]:
     _add_missing(found, find_trunk(tree, found))
     if _on_all_fours(tree, found):
         found = {_as_front(part): joint for part, joint in found.items()} | dict(known)
-    _add_missing(found, fingers_by_name(tree))
+    _add_missing(found, find_fingers(tree, found))
     return found
 
 

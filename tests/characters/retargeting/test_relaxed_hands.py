@@ -10,20 +10,9 @@ from characters.retargeting.retarget import retarget
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
 from tests.characters.skeleton.bodies import PERSON, named_body
+from tests.characters.skeleton.test_fingers import FINGERS, HAND, PARTS
 from tests.characters.skeleton.test_naming import PEOPLE
 
-FINGERS = {"Index": 0.03, "Middle": 0.01, "Ring": -0.01, "Little": -0.03}
-PARTS = ("Proximal", "Intermediate", "Distal")
-HAND = PERSON | {
-    f"{finger}{part}": (f"{finger}{PARTS[number - 1]}" if number else "Hand", place)
-    for finger, z in FINGERS.items()
-    for number, part in enumerate(PARTS)
-    for place in [(0.8 + 0.03 * number, 1.45, z)]
-}
-HAND |= {
-    "ThumbProximal": ("Hand", (0.73, 1.45, 0.03)),
-    "ThumbDistal": ("ThumbProximal", (0.76, 1.45, 0.05)),
-}
 FLAT = f"{PEOPLE['Unity, VRM']} " + " ".join(f"{{}}{part}" for part in list(HAND)[len(PERSON) :])
 
 
