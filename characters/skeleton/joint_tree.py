@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -11,6 +12,9 @@ from characters.skeleton.pose import Array, Skeleton
 
 _MIN_SIDE_OFFSET = 0.02  # body sizes from the middle: beyond it, a joint has a side
 _MAX_FOOT_HEIGHT = 0.2  # body heights: limbs that end below it are legs
+
+_MAX_KNEE_HEIGHT = 0.65  # of the hip's height
+_MAX_HIP_HEIGHT = 0.75  # body heights
 
 
 class JointTree:
@@ -58,6 +62,15 @@ class JointTree:
     def near_ground(self, joint: int) -> bool:
         """Return whether a joint is as low as feet are."""
         return float(self.positions[joint, 1]) < self._ground + _MAX_FOOT_HEIGHT * self._height
+
+    def reaches_down(self, hip: int, knee: int) -> bool:
+        """Return whether a bone leads down as far as the thigh of a leg without joints below."""
+        high, low = self.positions[[hip, knee], 1] - self._ground
+        return bool(low < _MAX_KNEE_HEIGHT * high and high < _MAX_HIP_HEIGHT * self._height)
+
+    def length(self, chain: Sequence[int]) -> float:
+        """Return the length of a chain of joints [m]."""
+        return float(sum(self.distance(a, b) for a, b in pairwise(chain)))
 
     def distance(self, joint: int, other: int) -> float:
         """Return how far two joints are apart [m]."""

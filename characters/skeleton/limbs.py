@@ -199,20 +199,23 @@ def _with_wrist(tree: JointTree, arm: Mapping[str, int]) -> dict[str, int]:
 def limbs_by_shape(tree: JointTree) -> dict[str, int]:
     """Return the limbs of a skeleton with uninformative names: mirrored chains of joints."""
     found: dict[str, int] = {}
-    pairs = [pair for pair in tree.mirrored_chains() if len(pair[0]) >= 3]
+    every = tree.mirrored_chains()
+    pairs = [pair for pair in every if len(pair[0]) >= 3]
     legs = [pair for pair in pairs if any(map(tree.near_ground, pair[0][:5]))]
-    legs.sort(key=lambda pair: float(tree.positions[pair[0][0], 2]))
     arms = [pair for pair in pairs if pair not in legs]
+    if not legs:  # that end at the shin
+        legs = [pair for pair in every if len(pair[0]) == 2 and tree.reaches_down(*pair[0])]
+    legs.sort(key=lambda pair: float(tree.positions[pair[0][0], 2]))
     if len(legs) > 1:
         found |= _as_limbs(tree, legs[-1], [f"Front{role}" for role in LEG_ROLES])
     if legs:
         found |= _as_limbs(tree, legs[0], LEG_ROLES)
-    arms.sort(key=lambda pair: float(tree.positions[pair[0][0], 1]))
-    if arms:
-        roles = ARM_ROLES if len(arms[-1][0]) > 3 else ARM_ROLES[1:]
+    if arms:  # ears and hair are shorter
+        both = max(arms, key=lambda pair: tree.length(pair[0]))
+        roles = ARM_ROLES if len(both[0]) > 3 else ARM_ROLES[1:]
         found |= {
             side + role: joint
-            for side, chain in zip(("left", "right"), arms[-1], strict=True)
+            for side, chain in zip(("left", "right"), both, strict=True)
             for role, joint in zip(roles, chain, strict=False)
         }
     return found

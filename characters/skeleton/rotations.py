@@ -315,3 +315,20 @@ def wrap(angle: float) -> float:
     True
     """
     return math.remainder(angle, math.tau)
+
+
+def nearest_quarter_turns(matrix: Array) -> Array:
+    """Return the rotation (3, 3) by quarter turns that is most like a matrix (3, 3).
+
+    >>> nearest_quarter_turns(np.array([[0.2, -0.9, 0.1], [0.8, 0.1, 0.3], [0.1, 0.2, 0.9]]))
+    array([[ 0., -1.,  0.],
+           [ 1.,  0.,  0.],
+           [ 0.,  0.,  1.]])
+    """
+    left, found = matrix.copy(), np.zeros((3, 3))
+    for _ in range(3):  # the greatest entry first, then those of the other rows and columns
+        row, column = np.unravel_index(np.abs(left).argmax(), left.shape)
+        found[row, column] = np.sign(matrix[row, column]) or 1.0
+        left[row], left[:, column] = 0.0, 0.0
+    found[row, column] *= np.linalg.det(found)  # no mirror
+    return found

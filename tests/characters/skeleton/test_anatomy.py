@@ -89,6 +89,16 @@ def test_a_foot_of_inverse_kinematics_hangs_under_the_root(foot):
     assert anatomy.missing == ()
 
 
+def test_unnamed_legs_may_end_at_the_shin_and_unnamed_ears_are_no_arms():
+    ears = PERSON | {f"Ear{k}": ("", (0.1, 1.7 + 0.1 * k, 0)) for k in range(3)}
+    helpers = "- - - c{}0<n6@Ear0 c{}1<c{}0@Ear1 c{}2<c{}1@Ear2"
+    style = f"1 2 n0 n3 n4 n5 n6 - a{{}}1 a{{}}2 a{{}}3 b{{}}0 b{{}}1 - - {helpers}"
+    skeleton, truth = named_body(style, ears)
+    anatomy = Anatomy.guess(skeleton)
+    assert {part: skeleton.names[joint] for part, joint in anatomy.joints.items()} == truth
+    assert anatomy.missing == ("leftFoot", "rightFoot")
+
+
 # As in two much used sets of animals, whose paws have no leg above them.
 PAWS_APART = {
     "Body Torso Neck1 Head Tail1 Tail2 BackUpperLeg.{} BackLowerLeg.{} - - FrontShoulder.{} "
