@@ -17,6 +17,7 @@ from characters.retargeting.ground_motion import find_ground_motion
 from characters.retargeting.locomotion.cycle import LoopCut, close_loop, find_cycle, resample_loop
 from characters.retargeting.locomotion.gait_cycle import ArcPath, GaitCycle
 from characters.retargeting.locomotion.grading import refuse_other_motion
+from characters.retargeting.locomotion.looking_ahead import looking_ahead
 from characters.retargeting.measures import knee_quantiles
 from characters.retargeting.recording import Recording
 from characters.retargeting.retarget import retarget
@@ -104,6 +105,12 @@ def on_character(
     """Return a recording as a clip of the walker, and its foot contacts."""
     source = Rig(recording.skeleton, recording.anatomy)
     target = Rig(walker.skeleton, walker.anatomy)
+    for name, rig in ((recording.origin, source), (character.name, target)):
+        if rig.anatomy.joint("hips") is None:
+            raise CharacterError(
+                f"{name}: no hips found in its skeleton; name them in a [joints] table, see "
+                "docs/your-own-character.md"
+            )
     legs = [leg for leg, _ in leg_pairs(source, target)]
     try:
         contacts = find_foot_contacts(recording.clip, source, legs)
@@ -111,7 +118,8 @@ def on_character(
         raise CharacterError(f"{recording.origin}: {error}") from None
     if not _are_same(recording.skeleton, character.skeleton):
         args = (recording.skeleton, recording.anatomy, walker.skeleton, walker.anatomy)
-        return retarget(recording.clip, *args, meshes=walker.meshes), contacts
+        clip = retarget(recording.clip, *args, meshes=walker.meshes)
+        return looking_ahead(clip, target), contacts
     if has_root_joint(character.skeleton, character.anatomy):
         return replace(recording.clip, root_motion=True), contacts
     return clip_with_root(recording.clip, character.skeleton, character.anatomy), contacts

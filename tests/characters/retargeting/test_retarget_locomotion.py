@@ -13,7 +13,10 @@ from characters import Animator, Character, CharacterCommand, CharacterError, Lo
 from characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS
 from characters.retargeting import Recording, load_recording, make_locomotion
 from characters.retargeting.locomotion.gait_cycle import ArcPath
+from characters.retargeting.measures import facing_error
+from characters.retargeting.rig import Rig
 from characters.retargeting.root import clip_with_root, with_root_joint
+from characters.retargeting.transfer import turns_from_rest
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
 
@@ -221,3 +224,50 @@ def test_a_walk_with_standing_and_turning_around_it_is_found():
     (found,) = make_locomotion(Character.load("human"), [recording]).recordings
     assert 0.9 < found.speed < 1.1, "the shuffling before the walk closes better"
     assert 1.0 < found.duration < 1.4
+
+
+@pytest.mark.parametrize("size", [1.0, 1.3])
+def test_a_made_idle_faces_ahead_and_stands_over_its_root(human, taught, size):
+    """Whatever the person faced and wherever she stood in the recording."""
+    idle, skeleton = human.clips["idle"], human.skeleton
+    hips = skeleton.index("hips")
+    translations, turns = idle.poses.translations * size, idle.poses.rotations.copy()
+    back = rotations.about("y", np.pi)
+    translations[:, hips] = rotations.rotate(back, translations[:, hips]) + [2.0, 0.0, 3.0]
+    turns[:, hips] = rotations.multiply(back, turns[:, hips])
+    rest = replace(skeleton.rest, translations=skeleton.rest.translations * size)
+    person = replace(skeleton, rest=rest)
+    clip = replace(idle, poses=Pose(translations, turns), loop=False)
+    recording = Recording("still", clip, person, human.anatomy)
+    walks = [exported(human, "Walk")]
+    walker = make_locomotion(taught.character, walks, idle=recording).character
+    made = walker.clips["idle"]
+    assert abs(facing_error(made.poses, Rig(walker.skeleton, walker.anatomy))) < math.radians(10)
+    at = made.poses.globals(walker.skeleton)[:, walker.anatomy.joints["hips"], :3, 3].mean(0)
+    assert np.abs(at[[0, 2]]).max() < 0.05
+
+
+def test_made_clips_look_ahead_though_the_neck_was_recorded_straight(human):
+    """Motion capture has straight necks at rest, so people who look ahead seem to look down."""
+    recording = exported(human, "Walk")
+    neck = recording.anatomy.joints["neck"]
+    turns = recording.clip.poses.rotations.copy()
+    bent = rotations.about("x", np.radians(25.0))
+    turns[:, neck] = rotations.multiply(turns[:, neck], bent)
+    nodding = turns.copy()
+    nodding[:, neck] = rotations.multiply(
+        nodding[:, neck], rotations.about("x", 0.3 * np.sin(np.arange(len(turns)) / 5.0))
+    )
+    pitches = []
+    for each in (turns, nodding):
+        clip = replace(recording.clip, poses=replace(recording.clip.poses, rotations=each))
+        larger = replace(
+            recording.skeleton.rest, translations=recording.skeleton.rest.translations * 1.1
+        )
+        other = replace(recording.skeleton, rest=larger)
+        made = make_locomotion(human, [replace(recording, clip=clip, skeleton=other)]).character
+        rig = Rig(made.skeleton, made.anatomy)
+        head = turns_from_rest(made.clips["Walk"].poses, rig, [made.anatomy.joints["head"]])[:, 0]
+        pitches.append(np.degrees(np.arcsin(rotations.rotate(head, [0.0, 0.0, 1.0])[:, 1])))
+    assert -8.0 < pitches[0].mean() < 2.0
+    assert np.ptp(pitches[1]) > 20.0
