@@ -21,13 +21,23 @@ class JointTree:
     """The joints of a skeleton at rest, with what their names say."""
 
     def __init__(self, skeleton: Skeleton) -> None:
-        self.positions: Array = skeleton.rest.globals(skeleton)[:, :3, 3]
+        self.positions: Array = skeleton.rest.globals(skeleton)[:, :3, 3].copy()
         self.names: Sequence[JointName] = read_names(skeleton.names)
         self.chains: Sequence[Sequence[int]] = chains_to_root(skeleton.parents)
         self.parents: Sequence[int] = skeleton.parents
+        self.positions[:, 0] -= self._middle()
         low, high = self.positions.min(0), self.positions.max(0)
         self.size = float(np.linalg.norm(high - low)) or 1.0
         self._ground, self._height = float(low[1]), float(high[1] - low[1]) or 1.0
+
+    def _middle(self) -> float:
+        """Return x of the trunk as far as names tell it, else 0 [m]."""
+        trunk = [
+            x
+            for x, name in zip(self.positions[:, 0], self.names, strict=True)
+            if name.trunk in ("hips", "spine", "chest", "neck", "head") and not name.side
+        ]
+        return float(np.median(trunk)) if trunk else 0.0
 
     def __len__(self) -> int:
         return len(self.names)
@@ -54,6 +64,11 @@ class JointTree:
             if self.names[above].hind:
                 return "hind"
         return ""
+
+    def is_of_one_side(self, joint: int) -> bool:
+        """Return whether all joints below a joint are of one side as far as names tell."""
+        below = [j for j in range(joint, len(self)) if self.is_below(j, joint)]
+        return not {"left", "right"} <= {self.names[j].side for j in below}
 
     def in_middle(self, joint: int) -> bool:
         """Return whether a joint is between the sides of the body."""

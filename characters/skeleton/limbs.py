@@ -54,7 +54,7 @@ def _legs(tree: JointTree, mine: Sequence[int]) -> list[dict[str, int]]:
     rows = {joint: tree.row(joint) for joint in mine if tree.names[joint].foreleg}
     if not any(row and tree.names[joint].certainty == 1.0 for joint, row in rows.items()):
         leg = _limb(tree, legs, LEG_ROLES, LEG_ROLES[:3], lambda name: name.leg)
-        others = [j for j in legs if leg and not tree.is_below(j, next(iter(leg.values())))]
+        others = [j for j in legs if leg and not set(leg.values()) & set(tree.chains[j])]
         second = _hindleg(tree, others)
         if not set(LEG_ROLES[:3]) <= second.keys():
             return [leg]
@@ -147,7 +147,7 @@ def _with_unnamed(
     """Return an assignment of a chain in which only some joints are named, and its score."""
     top, bottom = min(found.values()), max(found.values())
     side = tree.side(top)
-    above = [j for j in tree.chains[top][:-1] if tree.side(j) == side]
+    above = [j for j in tree.chains[top][:-1] if tree.side(j) == side and tree.is_of_one_side(j)]
     between = [j for j in tree.chains[bottom] if tree.is_below(j, top)]
     chain = [*above, *between, *longest_chain_below(bottom, tree.children)[1:]]
     chain = [j for j in chain if not tree.names[j].auxiliary]
