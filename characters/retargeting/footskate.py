@@ -65,7 +65,8 @@ def find_foot_contacts(clip: Clip, rig: Rig, legs: Sequence[LegJoints]) -> FootC
     clip = clip_in_common_axes(clip, rig)
     feet = [[leg.foot] if leg.toes is None else [leg.foot, leg.toes] for leg in legs]
     contacts = find_contacts(clip, rig.skeleton, feet)
-    heights = clip.poses.globals(rig.skeleton)[:, [leg.end for leg in legs], 1, 3]
+    ends = [leg.end for leg in legs]
+    heights = rig.placements(clip.poses, ends)[:, ends, 1, 3]
     heel, ball = np.zeros_like(contacts), np.zeros_like(contacts)
     count = len(clip) - 1 if clip.loop else len(clip)
     for leg in range(len(legs)):
@@ -96,7 +97,7 @@ def hold_feet_in_contact(
     common axes; left out, those of the poses.
     """
     floor = rig.floor
-    placements = pose.globals(rig.skeleton)
+    placements = rig.placements(pose, [leg.lower for leg in legs])
     ankles = [in_common_axes(rig, ankle_positions(placements, rig, leg)) for leg in legs]
     if ends is not None:
         balls = [ball_positions(pose, rig, leg) for leg in legs]
@@ -138,7 +139,7 @@ def hold_feet_in_contact(
 
 def ball_positions(pose: Pose, rig: Rig, leg: LegJoints) -> Array:
     """Return where the ball of a foot is in poses, (frames, 3) [m] in the common axes."""
-    placements = pose.globals(rig.skeleton)
+    placements = rig.placements(pose, [leg.lower])
     ankles = in_common_axes(rig, ankle_positions(placements, rig, leg))
     turns = turns_from_rest(pose, rig, [leg.foot])[:, 0]
     return ankles + rotations.rotate(turns, rig.sole(leg).ball)
@@ -175,7 +176,8 @@ def _with_toes_above(pose: Pose, rig: Rig, legs: Sequence[LegJoints], floor: flo
     for leg in legs:
         if leg.toes is None:
             continue
-        heights = in_common_axes(rig, pose.globals(rig.skeleton)[:, leg.toes, :3, 3])[:, 1] - floor
+        toes = rig.placements(pose, [leg.toes])[:, leg.toes, :3, 3]
+        heights = in_common_axes(rig, toes)[:, 1] - floor
         turns = turns_from_rest(pose, rig, [leg.toes])
         turns[:, 0] = tilted_to_fit(turns[:, 0], heights, rig.sole(leg).toes_clearance)
         pose = with_turns_from_rest(pose, rig, [leg.toes], turns)

@@ -97,11 +97,13 @@ def _treadmill_velocity(
     clip: Clip, rig: Rig, legs: Sequence[LegJoints], contacts: NDArray[np.bool_]
 ) -> Array:
     """Return the velocity (2,) [m/s] of ground that moves under a clip, or zero."""
-    ends = clip.poses.globals(rig.skeleton)[:, [leg.end for leg in legs]][..., [0, 2], 3]
+    joints = [leg.end for leg in legs]
+    ends = rig.placements(clip.poses, joints)[:, joints][..., [0, 2], 3]
     standing = contacts[1:] & contacts[:-1]
     if not standing.any():
         return np.zeros(2)
-    hips = clip.poses.globals(rig.skeleton)[:, rig.anatomy.joints["hips"], [0, 2], 3]
+    joint = rig.anatomy.joints["hips"]
+    hips = rig.placements(clip.poses, [joint])[:, joint, [0, 2], 3]
     if np.ptp(hips, axis=0).max() > _MAX_TREADMILL_TRAVEL * rig.leg_length:
         return np.zeros(2)
     velocity = np.median(np.diff(ends, axis=0)[standing] * clip.rate, axis=0)

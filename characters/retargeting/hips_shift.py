@@ -62,7 +62,8 @@ def drop_to_reach(
     ground
         The ground under the clip.
     """
-    hips = pose.globals(rig.skeleton)[:, [leg.upper for leg in legs]][..., :3, 3]
+    thighs = [leg.upper for leg in legs]
+    hips = rig.placements(pose, thighs)[:, thighs][..., :3, 3]
     away = in_common_axes(rig, hips) - ankles
     reach = _MAX_REACH * np.array([sum(rig.bone_lengths(leg)) for leg in legs])
     height = np.sqrt(np.maximum(reach**2 - np.square(away[..., [0, 2]]).sum(-1), 0.0))
@@ -80,7 +81,7 @@ def drop_to_reach(
 def with_moved_hips(pose: Pose, rig: Rig, shift: Array) -> Pose:
     """Return poses with the hips moved by (frames, 3) [m] in the common axes."""
     hips = rig.anatomy.joints["hips"]
-    at = pose.globals(rig.skeleton)[:, hips, :3, 3]
+    at = rig.placements(pose, [hips])[:, hips, :3, 3]
     moved = replace(pose, translations=pose.translations.copy())
     own = rotations.rotate(rotations.conjugate(rig.common_from_skeleton), shift)
     set_joint_positions(moved, rig, hips, at + own)

@@ -22,11 +22,13 @@ def place_ankle(pose: Pose, rig: Rig, leg: LegJoints, target: Array) -> Pose:
     in the skeleton's own axes.
     """
     skeleton = rig.skeleton
-    placements = pose.globals(skeleton)
-    turns = global_rotations(placements)
+    joints = skeleton.with_ancestors([leg.upper, leg.lower, leg.foot])
+    placements = rig.placements(pose, joints)
+    turns = np.zeros_like(pose.rotations)
+    turns[:, joints] = global_rotations(placements[:, joints])
     hip, knee = placements[:, leg.upper, :3, 3], placements[:, leg.lower, :3, 3]
-    joints = hip, knee, ankle_positions(placements, rig, leg)
-    shin_turn, thigh_turn = _leg_turns(leg, rig, turns, joints, target)
+    bones = hip, knee, ankle_positions(placements, rig, leg)
+    shin_turn, thigh_turn = _leg_turns(leg, rig, turns, bones, target)
     shin_and_thigh = rotations.multiply(thigh_turn, shin_turn)
     own = pose.rotations.copy()
     parents = skeleton.parents
@@ -39,7 +41,7 @@ def place_ankle(pose: Pose, rig: Rig, leg: LegJoints, target: Array) -> Pose:
         own[:, leg.foot] = _relative(above, turns[:, leg.foot])
     bent = replace(pose, translations=pose.translations.copy(), rotations=rotations.continuous(own))
     if not leg.attached:
-        ankles = ankle_positions(bent.globals(skeleton), rig, leg)
+        ankles = ankle_positions(rig.placements(bent, [leg.lower]), rig, leg)
         set_joint_positions(bent, rig, leg.foot, ankles)
     return bent
 

@@ -12,7 +12,7 @@ from characters.retargeting.soles import Sole, skin_of_joints
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import SIDES, Anatomy
 from characters.skeleton.facing import common_from_skeleton
-from characters.skeleton.pose import Array, Skeleton
+from characters.skeleton.pose import Array, Pose, Skeleton
 
 _STANDING_HEIGHT = (-0.02, 0.12)  # of the lowest joint of a standing rest pose, in body sizes
 _MAX_HOVERING = 0.2  # of feet above the ground at rest, in leg lengths
@@ -95,6 +95,24 @@ class Rig:
     def chain_to(self, joint: int) -> list[int]:
         """Return the ancestors of a joint from the root down, and the joint itself."""
         return self.skeleton.with_ancestors([joint])
+
+    def placements(self, pose: Pose, joints: Sequence[int]) -> Array:
+        """Return global placements (…, joints, 4, 4) of some joints and what is above them.
+
+        Those of the others are zero; legs are a few joints of many.
+        """
+        chain = np.array(self.skeleton.with_ancestors(joints))
+        number = {joint: place for place, joint in enumerate(chain.tolist())}
+        parents = tuple(number.get(self.skeleton.parents[joint], -1) for joint in number)
+        names = tuple(self.skeleton.names[joint] for joint in number)
+        part = Pose(
+            pose.translations[..., chain, :],
+            pose.rotations[..., chain, :],
+            None if pose.scales is None else pose.scales[..., chain, :],
+        )
+        found = np.zeros((*pose.rotations.shape[:-1], 4, 4))
+        found[..., chain, :, :] = part.globals(Skeleton(names, parents, self.skeleton.rest[chain]))
+        return found
 
     def direction(self, start: str, end: str) -> Array | None:
         """Return the unit vector (3,) from one body part to another at rest, or None."""

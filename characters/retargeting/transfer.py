@@ -148,7 +148,7 @@ def build_poses(rig: Rig, turns: Array, hips: Array, root: Array | None) -> Pose
     set_joint_positions(pose, rig, joint, rotations.rotate(skeleton_from_common, hips))
     for leg in rig.legs:
         if not leg.attached:
-            ankles = ankle_positions(pose.globals(skeleton), rig, leg)
+            ankles = ankle_positions(rig.placements(pose, [leg.lower]), rig, leg)
             set_joint_positions(pose, rig, leg.foot, ankles)
     return pose
 
@@ -157,7 +157,7 @@ def set_joint_positions(pose: Pose, rig: Rig, joint: int, positions: Array) -> N
     """Move a joint of poses to positions (frames, 3) [m] in the skeleton's axes, in place."""
     parent = rig.skeleton.parents[joint]
     if parent >= 0:
-        above: Array = pose.globals(rig.skeleton)[:, parent]
+        above: Array = rig.placements(pose, [parent])[:, parent]
         from_parent = (positions - above[:, :3, 3])[..., None]
         positions = np.asarray(np.linalg.solve(above[:, :3, :3], from_parent)[..., 0], float)
     pose.translations[:, joint] = positions
@@ -178,7 +178,7 @@ def in_common_axes(rig: Rig, positions: Array) -> Array:
 
 def turns_from_rest(pose: Pose, rig: Rig, joints: Sequence[int]) -> Array:
     """Return how joints are turned from rest in the common axes, (frames, n, 4)."""
-    turns = global_rotations(pose.globals(rig.skeleton)[:, joints])
+    turns = global_rotations(rig.placements(pose, joints)[:, joints])
     turns = rotations.multiply(rig.common_from_skeleton, turns)
     return rotations.multiply(turns, rotations.conjugate(rig.rest_rotations[joints]))
 
@@ -193,10 +193,10 @@ def with_turns_from_rest(pose: Pose, rig: Rig, joints: Sequence[int], turns: Arr
         world = rotations.multiply(skeleton_from_common, world)
         parent = rig.skeleton.parents[joint]
         if parent >= 0:
-            above = global_rotations(turned.globals(rig.skeleton)[:, parent])
+            above = global_rotations(rig.placements(turned, [parent])[:, parent])
             world = rotations.multiply(rotations.conjugate(above), world)
-        own[:, joint] = world
-    return replace(pose, rotations=rotations.continuous(own))
+        own[:, joint] = rotations.continuous(world)
+    return turned
 
 
 def _local_rotations(turns: Array, parents: tuple[int, ...]) -> Array:
