@@ -107,6 +107,7 @@ class FootConstraint:
         self._speed = 0.0  # of the ball in the motion [body heights/s]
         self._shown = [0.0] * 4  # x, z, yaw, y of the offset
         self._velocity = [0.0] * 4
+        self._last_height = 0.0  # y of the offset one frame ago
         # The decaying offset: initial value and velocity, age and length.
         self._old, self._old_velocity = [0.0] * 4, [0.0] * 4
         self._age, self._decay_time = _OFFSET_DECAY_S, _OFFSET_DECAY_S
@@ -118,6 +119,7 @@ class FootConstraint:
         decayed, before = self._decayed(), self._shown
         self._shown = [a + b for a, b in zip(self._goal(points), decayed, strict=True)]
         self.offset = FootOffset(*self._shown)
+        self._last_height = before[3]
         if elapsed > 0.0:
             moved = 0.0 if self._ball is None else math.dist(self._ball, points.ball)
             self._speed = moved / (elapsed * self._body_height)
@@ -165,7 +167,11 @@ class FootConstraint:
         velocity = [
             min(max(v, -most), most) for v, most in zip(self._velocity, limits, strict=True)
         ]
+        # It stood still while its motion rose already; so that it does not drag, it makes up for it.
+        self._shown[3] = max(self._shown[3], self._last_height)
+        velocity[3] = max(velocity[3], 0.0)
         self._start_decay(self._shown, velocity, _QUICK_STEP_S if step else _OFFSET_DECAY_S)
+        self.offset.y = self._shown[3]
         self._last_stand = self.offset.shown(points, heel=False)
         self._step_length = self.offset.length
         self.step_time_left = _QUICK_STEP_S if step else 0.0

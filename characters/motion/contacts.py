@@ -46,7 +46,8 @@ def find_contacts(clip: Clip, skeleton: Skeleton, feet: Feet) -> NDArray[np.bool
     ground = find_ground(clip, tracks, joints)
     relative = tracks.velocities - ground.velocity_at(tracks.positions)
     body = _running_mean(np.linalg.norm(relative.mean(1), axis=-1), clip)[:, None]
-    speeds = _slip_speeds(relative[:, joints], ground.velocity_at(tracks.positions[:, joints]))
+    slips = _slip_speeds(relative[:, joints], ground.velocity_at(tracks.positions[:, joints]))
+    speeds = np.hypot(slips, _vertical_speeds(heights, clip))
     shares = _SPEED_SHARES if ground is FIXED_GROUND else _TREADMILL_SPEED_SHARES
     begin, stay = (
         (above < height * tracks.body_height) & (speeds < speed * tracks.body_height + share * body)
@@ -95,6 +96,14 @@ def _slip_speeds(relative: Array, ground: Array) -> Array:
     backward = along * np.maximum(ahead, 0.0) * (1 - _BACKWARD_SLIP_WEIGHT)
     slips: Array = np.linalg.norm(relative - backward, axis=-1)
     return slips
+
+
+def _vertical_speeds(heights: Array, clip: Clip) -> Array:
+    """Return how fast joints rise or fall, (frames, n) [m/s], between the frames around each."""
+    ends = (heights[-2:-1], heights[1:2]) if clip.loop else (heights[:1], heights[-1:])
+    padded = np.concatenate([ends[0], heights, ends[1]])
+    speeds: Array = np.abs(padded[2:] - padded[:-2]) * clip.rate / 2
+    return speeds
 
 
 def _grounded(

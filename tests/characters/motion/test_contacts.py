@@ -86,6 +86,15 @@ def test_contacts_do_not_depend_on_size_start_or_floor_height(human, shift, size
     assert (off(find_contacts(moved, skeleton, find_feet(skeleton)), down) <= 5).all()
 
 
+def test_feet_that_jump_leave_the_ground_at_once_and_touch_it_when_they_land(human):
+    clip, feet = human.clips["jump"], find_feet(human.skeleton)
+    found = find_contacts(clip, human.skeleton, feet)
+    heights = clip.poses.globals(human.skeleton)[:, [foot[-1] for foot in feet], 1, 3]
+    above = heights > heights[0] + 0.002
+    assert above.any()
+    assert ((found == above).sum(axis=0) <= 0.03 * clip.rate).all()  # 0.03 s
+
+
 def test_both_feet_have_contact_while_standing(human):
     assert find_contacts(human.clips["idle"], human.skeleton, find_feet(human.skeleton)).all()
 

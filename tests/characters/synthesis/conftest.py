@@ -15,7 +15,7 @@ def human() -> Character:
 
 @pytest.fixture(scope="session")
 def library(human: Character) -> MotionLibrary:
-    clips = [human.clips[name] for name in ("Walk", "WalkLeftMedium", "Run")]
+    clips = [human.clips[name] for name in ("Walk", "WalkLeftWide", "WalkLeftMedium", "Run")]
     idle = human.clips["idle"]
     poses = Pose(idle.poses.translations[:40], idle.poses.rotations[:40])
     clips.append(Clip("stand", idle.rate, poses, loop=False, root_motion=True))

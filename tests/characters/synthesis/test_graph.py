@@ -103,7 +103,7 @@ def test_candidates_are_the_local_minima_between_clips(library: MotionLibrary) -
 
 def test_every_kept_frame_reaches_every_other(stored: StoredGraph) -> None:
     graph = standard_graph(stored)
-    assert set(graph.joined_clips) == {"Walk", "WalkLeftMedium", "Run", "stand"}
+    assert set(graph.joined_clips) == {"Walk", "WalkLeftWide", "WalkLeftMedium", "Run", "stand"}
     count, _ = connected_components(
         _sparse(graph.edges)[graph.kept][:, graph.kept], connection="strong"
     )

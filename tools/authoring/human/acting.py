@@ -24,14 +24,20 @@ from tools.authoring.human.limbs import (
     rotation_deg,
 )
 from tools.authoring.human.secondary_motion import add_secondary_motion
-from tools.authoring.modelling.curves import soft_limited, spring_follow
+from tools.authoring.modelling.curves import smoothstep, soft_limited, spring_follow
 from tools.authoring.modelling.rig import PosedRig
 from tools.authoring.modelling.shapes import Array
 
-FRAME_RATE_HZ = 30.0
+FRAME_RATE_HZ = 60.0
 TOE_OUT_RAD = 0.14
 GAZE_PITCH_DEG = -9.0
 """Pitch of the level gaze [degrees]: the viewer looks from above the table."""
+
+MAX_REACH = 0.995
+"""Greatest leg extension over the length of a straight leg."""
+
+TOE_RELAX_M = 0.04
+"""Height above the ground at which the toes hang loose [m]."""
 
 FOOT_OFFSET_M = 0.118
 """Distance of a foot from the middle [m]."""
@@ -99,17 +105,22 @@ class ActingCurves:
 
 
 def clip_from_acting(
-    name: str, skeleton: Skeleton, seconds: float, score: ActingCurves, loop: bool
+    name: str,
+    skeleton: Skeleton,
+    seconds: float,
+    score: ActingCurves,
+    loop: bool,
+    rate: float = FRAME_RATE_HZ,
 ) -> Clip:
     """Return the clip of acting curves, (frames + 1,) each, whose ends are equal."""
-    frames = round(seconds * FRAME_RATE_HZ)
+    frames = round(seconds * rate)
     rig = PosedRig(skeleton, frames + 1)
     still = np.zeros(frames + 1)
     _stand(rig, score, still)
     _hold_trunk(rig, score, still, seconds)
     _hold_arms(rig, score, still, seconds)
     add_secondary_motion(rig, seconds)
-    return Clip(name, FRAME_RATE_HZ, pose_with_face(rig, score.mood), loop=loop, root_motion=True)
+    return Clip(name, rate, pose_with_face(rig, score.mood), loop=loop, root_motion=True)
 
 
 def pose_with_face(rig: PosedRig, mood: Mapping[str, Curve]) -> Pose:
@@ -129,7 +140,8 @@ def _stand(rig: PosedRig, score: ActingCurves, still: Array) -> None:
     rig.shift("hips", np.stack([0.042 * weight, drop, ahead], axis=-1))
     pitched = 90 * np.maximum(score.crouch + still, 0.0) + 0.35 * (score.lean + still)
     rig.turn("hips", rotation_deg(1 + pitched, -4 * weight, 3.6 * weight))
-    flat = air <= 0.0
+    relaxed = 1.0 - 0.5 * smoothstep(air / TOE_RELAX_M)
+    places = {}
     for name, sign in SIDES:
         facing = rotations.about("y", sign * TOE_OUT_RAD + still)
         heel = FOOT.ankle - FOOT.ball[0], -FOOT.ball[1]
@@ -139,8 +151,21 @@ def _stand(rig: PosedRig, score: ActingCurves, still: Array) -> None:
             [sign * FOOT_OFFSET_M + still, up + air, -0.012 + 0.014 * sign + still], axis=-1
         )
         ankle += rotations.rotate(facing, back[:, None] * [0.0, 0.0, 1.0])
-        foot = rotations.multiply(facing, rotations.about("x", pitch))
-        rig.place_foot(name, ankle, foot, np.where(flat, pitch, 0.5 * pitch))
+        places[name] = ankle, rotations.multiply(facing, rotations.about("x", pitch))
+    _stay_in_reach(rig, {name: ankle for name, (ankle, _) in places.items()})
+    for name, (ankle, foot) in places.items():
+        rig.place_foot(name, ankle, foot, relaxed * pitch)
+
+
+def _stay_in_reach(rig: PosedRig, ankles: Mapping[str, Array]) -> None:
+    """Lower the pelvis where a leg would be longer than `MAX_REACH`: its foot would slide."""
+    lower = 0.0
+    for side, ankle in ankles.items():
+        hip = rig.places(f"{side}UpLeg")
+        longest = MAX_REACH * np.linalg.norm(hip - ankle, axis=1) / rig.leg_extension(side, ankle)
+        apart = np.sum((hip - ankle)[:, [0, 2]] ** 2, axis=1)
+        lower = np.maximum(lower, hip[:, 1] - ankle[:, 1] - np.sqrt(longest**2 - apart))
+    rig.shift("hips", np.stack([0 * lower, -lower, 0 * lower], axis=-1))
 
 
 def _hold_trunk(rig: PosedRig, score: ActingCurves, still: Array, seconds: float) -> None:

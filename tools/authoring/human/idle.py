@@ -4,11 +4,12 @@ import numpy as np
 
 from characters.motion.clip import Clip
 from characters.skeleton.pose import Skeleton
-from tools.authoring.human.acting import FRAME_RATE_HZ, ActingCurves, clip_from_acting
+from tools.authoring.human.acting import ActingCurves, clip_from_acting
 from tools.authoring.human.limbs import HandTarget
 from tools.authoring.modelling.shapes import Array
 
 DURATION_S = 9.0
+FRAME_RATE_HZ = 30.0
 BREATHS_PER_LOOP = 3
 STRAP_GRIP_M = np.array([0.212, 1.0, 0.138])
 """Position of the left wrist when the hand holds its strap, in the rest pose [m]."""
@@ -44,7 +45,7 @@ def idle(skeleton: Skeleton) -> Clip:
             "surprised": 0.10 * up,
         },
     )
-    return clip_from_acting("idle", skeleton, DURATION_S, score, loop=True)
+    return clip_from_acting("idle", skeleton, DURATION_S, score, loop=True, rate=FRAME_RATE_HZ)
 
 
 def idle_weight(turn: Array) -> Array:

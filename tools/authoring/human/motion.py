@@ -12,7 +12,7 @@ import numpy as np
 from characters.motion.clip import Clip
 from characters.skeleton import rotations
 from characters.skeleton.pose import Skeleton
-from tools.authoring.human.acting import GAZE_PITCH_DEG, pose_with_face
+from tools.authoring.human.acting import FRAME_RATE_HZ, GAZE_PITCH_DEG, pose_with_face
 from tools.authoring.human.limbs import (
     FOOT,
     SIDES,
@@ -25,8 +25,6 @@ from tools.authoring.human.secondary_motion import GRAVITY_M_S2, add_secondary_m
 from tools.authoring.modelling.gait import Footfalls, FootMotion, GroundArc, foot_motion
 from tools.authoring.modelling.rig import PosedRig
 from tools.authoring.modelling.shapes import Array
-
-FRAME_RATE_HZ = 60.0
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from characters.model.mesh import Mesh
 from characters.motion.clip import Clip
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose, Skeleton
+from tests.bench.cast import Soles, film, sampled
 from tests.tools.authoring.clip_checks import check_same_clips
 from tools.authoring.human.character import build_human
 from tools.authoring.human.limbs import FOOT, rotation_deg
@@ -119,6 +120,15 @@ def test_a_planted_foot_does_not_slide(human: Character, name: str, side: str) -
         for stance in np.split(point, np.flatnonzero(np.diff(down)) + 1):
             if stance[0, 1] < 0.0005:
                 assert np.ptp(stance[:, [0, 2]], axis=0).max() < 0.002
+
+
+@pytest.mark.parametrize("name", ACTIONS)
+def test_feet_on_the_ground_do_not_skid_when_they_land_and_leave(
+    human: Character, name: str
+) -> None:
+    soles, clip = Soles(human), human.clips[name]
+    assert soles.slides(sampled(clip)).max() < 10.0
+    assert soles.slides(*film(human, name, 0.0, clip.duration)).max() < 10.0  # with the foot lock
 
 
 @pytest.mark.parametrize("name", ["idle", "Walk", "WalkLeftShort", "Run", "RunRightMedium", "jump"])
