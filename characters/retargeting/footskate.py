@@ -20,7 +20,7 @@ from characters.retargeting.ground_motion import GroundMotion
 from characters.retargeting.hips_shift import drop_to_reach, following_feet, with_moved_hips
 from characters.retargeting.leg_ik import place_ankle
 from characters.retargeting.rig import LegJoints, Rig
-from characters.retargeting.soles import tilted_to_fit, tilts
+from characters.retargeting.soles import stretched_to_fit, tilted_to_fit, tilts
 from characters.retargeting.transfer import (
     ankle_positions,
     clip_in_common_axes,
@@ -104,14 +104,15 @@ def hold_feet_in_contact(
         ankles = [at + ends[:, n] - balls[n] for n, at in enumerate(ankles)]
     if floor is not None:
         pose = _on_soles(pose, rig, legs, [at[:, 1] - floor for at in ankles], contacts, ground)
-    turns = turns_from_rest(pose, rig, [leg.foot for leg in legs])
+    feet = turns_from_rest(pose, rig, [leg.foot for leg in legs])
+    toes = turns_from_rest(pose, rig, [leg.end for leg in legs])
     paths, to_balls = [], []
     for number, leg in enumerate(legs):
-        sole, turn = rig.sole(leg), turns[:, number]
+        sole, turn = rig.sole(leg), feet[:, number]
         to_ball, to_heel = (rotations.rotate(turn, each) for each in (sole.ball, sole.heel))
         lowest = np.full(len(turn), -np.inf)
         if floor is not None:
-            lowest = floor + sole.clearance(turn) + to_ball[:, 1]
+            lowest = floor + sole.clearance(turn, toes[:, number]) + to_ball[:, 1]
         path = FootPath(
             ground.to_ground(ankles[number] + to_ball),
             ground.directions_to_ground(to_ball - to_heel),
@@ -153,7 +154,7 @@ def _on_soles(
     contacts: FootContacts,
     ground: GroundMotion,
 ) -> Pose:
-    """Return poses with feet tilted as there is room for; toes keep their turns.
+    """Return poses with feet and toes turned so that they reach the ground, but not below it.
 
     `heights` of the ankles above the ground are (frames,) [m] for each leg.
     """
@@ -167,6 +168,11 @@ def _on_soles(
         useful = np.clip(sole.highest_tilt / np.maximum(tilts(turns[:, 0]), 1e-3), 1.0, _MAX_TILT)
         greatest = 1.0 + (useful - 1.0) * on_ball[:, number]
         turns[:, 0] = tilted_to_fit(turns[:, 0], heights[number], sole.clearance, greatest)
+        if leg.toes is not None:
+            balls = heights[number] + rotations.rotate(turns[:, 0], sole.ball)[:, 1]
+            turns[:, 1] = stretched_to_fit(
+                turns[:, 1], turns[:, 0], balls, sole.toes_clearance, on_ball[:, number]
+            )
         pose = with_turns_from_rest(pose, rig, joints, turns)
     return pose
 

@@ -3,7 +3,7 @@
 A foot is longer or shorter than that of the motion's performer. So it cannot be turned just as far
 without going through the ground, or its ankle would have to rise and the knee to bend. The ankle
 keeps its height instead, and the foot turns as far as there is room: a shorter foot farther, as
-long as it stands on its ball.
+long as it stands on its ball, and then onto the tips of its toes.
 """
 
 from collections.abc import Callable, Sequence
@@ -18,7 +18,8 @@ from characters.skeleton.pose import Array
 
 _UP = np.array([0.0, 1.0, 0.0])
 _DIRECTIONS = 96  # in which the outermost points of a foot are kept
-_HALVINGS = 14  # of the range of tilts
+_HALVINGS = 14  # of the range of turns
+_TOLERANCE_M = 1e-9
 _MIN_WEIGHT = 0.5  # of a vertex that belongs to a foot
 # Without a skin: lengths per distance ahead from the ankle to the toes.
 _HEEL_LENGTH, _TOES_LENGTH = 0.35, 0.4
@@ -87,15 +88,16 @@ class Sole:
         """The tilt on the ball at which the ankle is highest [rad]."""
         return float(np.arctan2(np.hypot(self.ball[0], self.ball[2]), -self.ball[1]))
 
-    def clearance(self, turns: Array) -> Array:
+    def clearance(self, turns: Array, toes: Array | None = None) -> Array:
         """Return how high the ankle of a foot turned from rest (…, 4) is above the ground, (…) [m].
 
-        The sole touches the ground, and level toes are not below it.
+        `toes` are their turns from rest, (…, 4); left out, they are level.
         """
         down = rotations.rotate(rotations.conjugate(turns), -_UP)
         lowest = (down @ self.foot.T).max(-1)
         if len(self.toes):
-            lowest = np.maximum(lowest, down @ self.ball - self.toes[:, 1].min())
+            below = -self.toes[:, 1].min() if toes is None else self.toes_clearance(toes)
+            lowest = np.maximum(lowest, down @ self.ball + below)
         return np.asarray(lowest)
 
     def toes_clearance(self, turns: Array) -> Array:
@@ -130,20 +132,50 @@ def tilted_to_fit(
     """
     tilt = rotations.between(_UP, rotations.rotate(turns, _UP))
     level = rotations.multiply(rotations.conjugate(tilt), turns)
-    room = np.maximum(heights, clearance(level)) + 1e-9  # a level foot stands, even if too low
-    least, most = np.zeros(len(turns)), np.zeros(len(turns)) + greatest
-    fits = clearance(_tilted(level, tilt, most)) <= room
+    # A level foot stands, even if its joint is too low.
+    return _farthest(level, turns, np.maximum(heights, clearance(level)), clearance, greatest)
+
+
+def stretched_to_fit(
+    toes: Array, foot: Array, heights: Array, clearance: Callable[[Array], Array], greatest: Array
+) -> Array:
+    """Return the turns of toes (frames, 4), straighter if that is needed to reach the ground.
+
+    Parameters
+    ----------
+    toes, foot
+        Turns from rest, (frames, 4).
+    heights
+        Of the joint of the toes above the ground, (frames,) [m].
+    clearance
+        Gives the height at which turned toes touch the ground.
+    greatest
+        How far they may straighten, (frames,), 0…1.
+    """
+    fitting = tilted_to_fit(toes, heights, clearance)
+    room = np.maximum(heights, clearance(fitting))
+    return _farthest(fitting, foot, room, clearance, greatest)
+
+
+def _farthest(
+    start: Array,
+    end: Array,
+    room: Array,
+    clearance: Callable[[Array], Array],
+    greatest: Array | float,
+) -> Array:
+    """Return the turns (frames, 4) farthest from start to end whose clearance is within the room.
+
+    They go up to a share of the way, and less far if there is no room there.
+    """
+    least, most = np.zeros(len(start)), np.zeros(len(start)) + greatest
+    fits = clearance(rotations.slerp(start, end, most)) <= room + _TOLERANCE_M
     least[fits] = most[fits]
     for _ in range(_HALVINGS):
         middle = (least + most) / 2
-        fits = clearance(_tilted(level, tilt, middle)) <= room
+        fits = clearance(rotations.slerp(start, end, middle)) <= room + _TOLERANCE_M
         least, most = np.where(fits, middle, least), np.where(fits, most, middle)
-    return _tilted(level, tilt, least)
-
-
-def _tilted(level: Array, tilt: Array, shares: Array) -> Array:
-    part = rotations.slerp(rotations.IDENTITY, tilt, shares)
-    return rotations.multiply(part, level)
+    return rotations.slerp(start, end, least)
 
 
 def skin_of_joints(

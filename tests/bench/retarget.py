@@ -92,7 +92,7 @@ def feet(source: Recording, made: Clip, rig: Rig, height: float) -> tuple[float,
     pairs = leg_pairs(theirs, rig)
     down = find_foot_contacts(source.clip, theirs, [leg for leg, _ in pairs]).ball
     at = np.stack([ball_positions(made.poses, rig, leg) for _, leg in pairs], axis=1)
-    rest = np.array([rig.rest_positions[leg.foot, 1] + rig.sole(leg).ball[1] for _, leg in pairs])
+    rest = np.array([rig.standing_ankle_height(leg) + rig.sole(leg).ball[1] for _, leg in pairs])
     speeds = np.linalg.norm(np.diff(at[..., [0, 2]], axis=0), axis=-1) * made.rate
     held = speeds[down[1:] & down[:-1]] if down.any() else np.zeros(1)
     scale = 100 * PERSON_HEIGHT_M / height
