@@ -12,149 +12,34 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
-
-def _words(line: str) -> frozenset[str]:
-    return frozenset(line.split())
-
+from characters.skeleton.joint_words import (
+    ARM_FIT,
+    AUXILIARY_WORDS,
+    END_WORDS,
+    FILLER_WORDS,
+    FINGER_OF,
+    FORELEG_FIT,
+    FRONT_CORNERS,
+    FRONT_WORDS,
+    HIND_CORNERS,
+    HIND_WORDS,
+    HINDLEG_FIT,
+    JAPANESE,
+    JOINED_FILLERS,
+    KNOWN_WORDS,
+    LEFT_CORNERS,
+    LEG_FIT,
+    LEG_ROLE_OF_ARM,
+    LIMB_WORDS,
+    REAR_LEFT,
+    SIDE_OF,
+    TRUNK_OF,
+    UPPER_LOWER,
+)
 
 _NAME_WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
 _VERTEBRA = re.compile(r"(?i)v?([ltsc])\d+")  # "L5" and "vl5" are lumbar, "vc7" is cervical
-_SIDE_OF = {"left": "left", "l": "left", "lft": "left"} | {
-    "right": "right",
-    "r": "right",
-    "rt": "right",
-    "rgt": "right",
-}
-_FILLER_WORDS = _words(
-    "mixamorig bip bip01 bone bones b j jnt joint jt armature skeleton def org c center centre m x "
-    "valve valvebiped biped character rig sk humanoid bn cc base bend bind skin deform stretch "
-    "h"
-)
-# Helper joints: ends, twists, IK targets, cloth, meshes.
-_AUXILIARY_WORDS = _words(
-    "end nub site ik fk pole target twist roll helper socket prop weapon ctrl control "
-    "effector mch sec adj offset mesh geo hair skirt bust breast cloth top lid eyelid brow "
-    "eyebrow lash corner in inhand vis tweak platform footsteps part share pad heel tip"
-)
-_END_WORDS = _words("end nub site tip")
-_FRONT_WORDS, _HIND_WORDS = _words("front fore"), _words("back hind rear")
-# Two letters: a corner of an animal ("FL", "lf", "RB"), or a side and a word ("LUArm", "LFArm").
-_HIND_CORNERS = _words("lb rb bl br lh rh hl hr rr")
-_FRONT_CORNERS = _words("lf rf fl fr")
-_UPPER_LOWER = _words("lu ru lf rf")
-_LEFT_CORNERS = _words("lb bl lh hl rl lr lf fl")
-
-# Words of Japanese models, longest first: a foot is also the first letter of an ankle.
-_JAPANESE = {
-    "左": "left",
-    "右": "right",
-    "下半身": "hipjoint",
-    "上半身": "spine",
-    "足首": "ankle",
-    "手首": "wrist",
-    "つま先": "toe",
-    "腰キャンセル": "helper",
-    "センター": "hips",
-    "親指": "thumb",
-    "人指": "index",
-    "人差指": "index",
-    "中指": "middle",
-    "薬指": "ring",
-    "小指": "little",
-    "ひざ": "knee",
-    "ひじ": "elbow",
-    "捩": "twist",
-    "髪": "hair",
-    "スカート": "skirt",
-    "足": "thigh",
-    "腕": "upperarm",
-    "肩": "clavicle",
-    "首": "neck",
-    "頭": "head",
-    "目": "eye",
-    "先": "end",
-}
-
-LEG_ROLES = ("UpperLeg", "LowerLeg", "Foot", "Toes")
-"""Joints of a leg from the hip down."""
-
-ARM_ROLES = ("Shoulder", "UpperArm", "LowerArm", "Hand")
-"""Joints of an arm from the collarbone down."""
-
-_FINGER_OF = {
-    "thumb": "Thumb",
-    "index": "Index",
-    "pointer": "Index",
-    "middle": "Middle",
-    "mid": "Middle",
-    "ring": "Ring",
-    "pinky": "Little",
-    "little": "Little",
-    "pinkie": "Little",
-}
-
-# How well a word fits each role of a limb, 0…1. "Shoulder" is the collarbone in some rigs and the
-# upper arm in others; the rest of the limb decides.
-_LEG_WORDS: dict[str, dict[str, float]] = {
-    "upleg upperleg thigh femur upperthigh legupper legup highleg stifle": {"UpperLeg": 1.0},
-    "hip": {"UpperLeg": 0.7},
-    "lowerleg lowleg loleg shin calf tibia knee leglower leglow crus gaskin": {"LowerLeg": 1.0},
-    "leg": {"UpperLeg": 0.5, "LowerLeg": 0.6, "Foot": 0.3, "Toes": 0.25},
-    "foot feet paw hoof": {"Foot": 1.0, "Toes": 0.2},
-    "ankle talocrural legankle tarsus hock horselink": {"Foot": 1.1},
-    "toe toes toebase toetip ball football metatarsal metatarsals midtarsal phalanges legdigit "
-    "fetlock pastern": {"Toes": 1.0},
-}
-_ARM_WORDS: dict[str, dict[str, float]] = {
-    "clavicle clav collar collarbone armcollarbone scapula sternoclavicular": {"Shoulder": 1.0},
-    "acromioclavicular": {"Shoulder": 0.9},
-    "shoulder shldr": {"Shoulder": 0.9, "UpperArm": 0.7},
-    "uparm upperarm uarm humerus armupper armup bicep": {"UpperArm": 1.0},
-    "forearm farm lowerarm lowarm loarm elbow radius ulna armlower armlow": {"LowerArm": 1.0},
-    "arm": {"Shoulder": 0.2, "UpperArm": 0.6, "LowerArm": 0.45, "Hand": 0.3},
-    "wrist radiocarpal carpus": {"Hand": 0.6},
-    "metacarpus": {"Hand": 0.3},
-    "hand palm armpalm": {"Hand": 1.0},
-}
-# Animals stand on their toes, so what is named foot may be the toes below a heel.
-_ANIMAL_LEG_WORDS: dict[str, dict[str, float]] = {
-    "foot feet paw hoof hand": {"Foot": 0.6, "Toes": 0.6},
-    "metatarsus metacarpus": {"Foot": 0.5, "Toes": 0.6},
-}
-# Front legs are named as legs, as arms, or by their own words.
-_FORELEG_WORDS: dict[str, dict[str, float]] = {
-    "elbow": {"LowerLeg": 0.9},
-    "wrist carpus": {"Foot": 0.6},
-    "knee": {"LowerLeg": 0.4, "Foot": 0.5},
-}
-_TRUNK_WORDS: dict[str, str] = {
-    "hips hip pelvis lowertorso": "hips",
-    "spine lowerback upperback waist abdomen abdomenlower abdomenupper stomach torso body lumbar "
-    "uppertorso upperbody": "spine",
-    "chest thorax ribcage rib ribs chestlower": "chest",
-    "upperchest chestupper": "upperChest",
-    "neck lowerneck upperneck necklower neckupper cervical": "neck",
-    "head skull skullbase": "head",
-    "jaw mandible": "jaw",
-    "eye eyeball": "Eye",
-    "tail caudal": "tail",
-}
-
-
-def _by_word(table: dict[str, dict[str, float]]) -> dict[str, dict[str, float]]:
-    return {word: roles for words, roles in table.items() for word in words.split()}
-
-
-_LEG_FIT, _ARM_FIT = _by_word(_LEG_WORDS), _by_word(_ARM_WORDS)
-_HINDLEG_FIT = _LEG_FIT | _by_word(_ANIMAL_LEG_WORDS)
-_FORELEG_FIT = _HINDLEG_FIT | _by_word(_FORELEG_WORDS)
-_LEG_ROLE_OF_ARM = dict(zip(ARM_ROLES, ("Shoulder", *LEG_ROLES), strict=False))
-_TRUNK_OF = {word: part for words, part in _TRUNK_WORDS.items() for word in words.split()}
-_LIMB_WORDS = frozenset({*_ARM_FIT, *_FORELEG_FIT})
-_KNOWN_WORDS = frozenset({*_LIMB_WORDS, *_TRUNK_OF, *_FINGER_OF, "hipjoint", "fingers", "armdigit"})
-_GUESS = (
-    0.7  # how well a name fits if some of its words are unknown, relative to one of known words
-)
+_GUESS = 0.7  # of a name with unknown words, relative to one of known words
 _COMMON_SHARE = 0.8  # of the joints: a word in more names than that says nothing
 _MIN_COMMON = 6  # joints; of fewer, a word may be in all names and still say something
 
@@ -187,40 +72,40 @@ class JointName:
     @property
     def leg(self) -> dict[str, float]:
         """How well it fits each role of a leg; empty if it fits none."""
-        return self._fit(_LEG_FIT)
+        return self._fit(LEG_FIT)
 
     @property
     def arm(self) -> dict[str, float]:
         """How well it fits each role of an arm; empty if it fits none."""
-        return self._fit(_ARM_FIT)
+        return self._fit(ARM_FIT)
 
     @property
     def hindleg(self) -> dict[str, float]:
         """How well it fits each role of an animal's hind leg; empty if it fits none."""
-        return {} if self.word == "hand" else self._fit(_HINDLEG_FIT)
+        return {} if self.word == "hand" else self._fit(HINDLEG_FIT)
 
     @property
     def foreleg(self) -> dict[str, float]:
         """How well it fits each role of a front leg and its shoulder; empty if it fits none."""
-        as_arm = {_LEG_ROLE_OF_ARM[role]: fit for role, fit in self.arm.items()}
-        fit = as_arm | self._fit(_FORELEG_FIT)
+        as_arm = {LEG_ROLE_OF_ARM[role]: fit for role, fit in self.arm.items()}
+        fit = as_arm | self._fit(FORELEG_FIT)
         return {"Shoulder": 0.2} | fit if self.leg else fit
 
     @property
     def foot(self) -> float:
         """How well it fits a foot, 0…1, even if it is the target of inverse kinematics."""
         sure = 0.5 if self.auxiliary else 1.0
-        return 0.0 if self.end else _LEG_FIT.get(self.word, {}).get("Foot", 0.0) * sure
+        return 0.0 if self.end else LEG_FIT.get(self.word, {}).get("Foot", 0.0) * sure
 
     @property
     def known(self) -> bool:
         """Whether its word is a part of a body."""
-        return self.word in _KNOWN_WORDS
+        return self.word in KNOWN_WORDS
 
     @property
     def trunk(self) -> str:
         """The part of the trunk or head, "" if none."""
-        return "" if self.auxiliary else _TRUNK_OF.get(self.word, "")
+        return "" if self.auxiliary else TRUNK_OF.get(self.word, "")
 
     @property
     def finger(self) -> str:
@@ -228,7 +113,7 @@ class JointName:
         if self.auxiliary:
             return ""
         word = self.word.removeprefix("hand").removeprefix("finger").removesuffix("finger")
-        return _FINGER_OF.get(re.sub(r"(proximal|intermediate|distal|metacarpal)$", "", word), "")
+        return FINGER_OF.get(re.sub(r"(proximal|intermediate|distal|metacarpal)$", "", word), "")
 
     def _fit(self, table: dict[str, dict[str, float]]) -> dict[str, float]:
         if self.auxiliary:
@@ -241,15 +126,33 @@ def read_names(names: Sequence[str]) -> list[JointName]:
 
     Words that nearly all of them share, such as the name of the character, are left out.
 
-    >>> [name.word for name in read_names(["OrcArm_Head", *(f"OrcArm_{n}" for n in "abcde")])][0]
-    'head'
+    >>> names = read_names(["LeftOver_Head", *(f"LeftOver_Foot_{n}" for n in "RABCD")])
+    >>> names[0] == JointName("head"), names[1] == JointName("foot", "right")
+    (True, True)
     """
-    pieces = [tuple(_pieces(name)) for name in names]
-    counts = Counter(word for words in pieces for word in set(words) if word not in _SIDE_OF)
-    enough = max(_COMMON_SHARE * len(names), _MIN_COMMON)
-    common = frozenset(word for word, count in counts.items() if count >= enough)
-    corners = not _HIND_CORNERS.isdisjoint(counts)
+    pieces = _without_frame([list(_pieces(name)) for name in names])
+    counts = Counter(word for words in pieces for word in set(words) if word not in SIDE_OF)
+    common = frozenset(word for word, count in counts.items() if count >= _enough(names))
+    corners = not HIND_CORNERS.isdisjoint(counts)
     return [_read(words, common, corners) for words in pieces]
+
+
+def _enough(names: Sequence[object]) -> float:
+    return max(_COMMON_SHARE * len(names), _MIN_COMMON)
+
+
+def _without_frame(pieces: list[list[str]]) -> list[tuple[str, ...]]:
+    """Return the words of names without those with which nearly all of them begin or end."""
+    for end in (0, -1):
+        while True:
+            counts = Counter(words[end] for words in pieces if len(words) > 1)
+            word, count = max(counts.items(), key=lambda item: item[1], default=("", 0))
+            if count < _enough(pieces):
+                break
+            for words in pieces:
+                if len(words) > 1 and words[end] == word:
+                    del words[end]
+    return [tuple(words) for words in pieces]
 
 
 def read_name(name: str) -> JointName:
@@ -272,7 +175,7 @@ def _pieces(name: str) -> tuple[str, ...]:
     vertebra = _VERTEBRA.fullmatch(own)
     if vertebra:
         return ("neck" if vertebra[1].lower() == "c" else "spine",)
-    for word, english in _JAPANESE.items():
+    for word, english in JAPANESE.items():
         own = own.replace(word, f" {english} ")
     words = [word.lower() for word in _NAME_WORD.findall(own) if not word.isdigit()]
     return tuple(piece for word in words for piece in _split_joined(word))
@@ -282,21 +185,21 @@ def _pieces(name: str) -> tuple[str, ...]:
 def _read(words: tuple[str, ...], common: frozenset[str], corners: bool) -> JointName:
     words = tuple(word for word in words if word not in common) or words
     words = tuple(piece for word in words for piece in _split_corner(word, corners))
-    sides = [_SIDE_OF[word] for word in words if word in _SIDE_OF]
-    rest = [word for word in words if word not in _SIDE_OF and word not in _FILLER_WORDS]
+    sides = [SIDE_OF[word] for word in words if word in SIDE_OF]
+    rest = [word for word in words if word not in SIDE_OF and word not in FILLER_WORDS]
     part, unknown = _part_of(rest)
-    if part != "thumb" and part in _FINGER_OF and "metacarpal" in unknown:
+    if part != "thumb" and part in FINGER_OF and "metacarpal" in unknown:
         part = "metacarpal"  # the finger begins at the knuckle
-    end = not _END_WORDS.isdisjoint(unknown)
-    auxiliary = not _AUXILIARY_WORDS.isdisjoint(unknown) or any(
+    end = not END_WORDS.isdisjoint(unknown)
+    auxiliary = not AUXILIARY_WORDS.isdisjoint(unknown) or any(
         word.endswith("twist") for word in unknown
     )
-    limb = part in _LIMB_WORDS
-    front = limb and not _FRONT_WORDS.isdisjoint(unknown)
-    hind = limb and not _HIND_WORDS.isdisjoint(unknown)
+    limb = part in LIMB_WORDS
+    front = limb and not FRONT_WORDS.isdisjoint(unknown)
+    hind = limb and not HIND_WORDS.isdisjoint(unknown)
     if limb:
-        unknown = [word for word in unknown if word not in _FRONT_WORDS | _HIND_WORDS]
-    certain = all(word in _KNOWN_WORDS or word in "uf" for word in unknown)
+        unknown = [word for word in unknown if word not in FRONT_WORDS | HIND_WORDS]
+    certain = all(word in KNOWN_WORDS or word in "uf" for word in unknown)
     side = sides[0] if sides else ""
     return JointName(part, side, front, hind, auxiliary, end, 1.0 if certain else _GUESS)
 
@@ -310,34 +213,39 @@ def _part_of(words: Sequence[str]) -> tuple[str, list[str]]:
     for length in range(len(words), 0, -1):
         for start in range(len(words) - length, -1, -1):
             part = "".join(words[start : start + length])
-            if part in _KNOWN_WORDS:
+            if part in KNOWN_WORDS:
                 return part, [*words[:start], *words[start + length :]]
     return "".join(words), list(words)
 
 
 def _split_corner(word: str, corners: bool) -> list[str]:
     """Split two letters: of a corner if the names have corners, else of a side and a word."""
-    if corners and word in _FRONT_CORNERS | _HIND_CORNERS | {"rl", "lr"}:
-        side = "left" if word in _LEFT_CORNERS else "right"
-        return [side, "front" if word in _FRONT_CORNERS else "hind"]
-    if word in _UPPER_LOWER:
+    if corners and word in FRONT_CORNERS | HIND_CORNERS | REAR_LEFT:
+        side = "left" if word in LEFT_CORNERS else "right"
+        return [side, "front" if word in FRONT_CORNERS else "hind"]
+    if word in UPPER_LOWER:
         return list(word)
     return [word]
 
 
 def _split_joined(word: str) -> list[str]:
     """Split a word that joins a side, a row and a part: "lfemur", "leftfoot", "lefthindfoot"."""
-    if word in _KNOWN_WORDS:
+    if word in KNOWN_WORDS:
         return [word]
+    for filler in JOINED_FILLERS:
+        for inner in (word.removeprefix(filler), word.removesuffix(filler)):
+            pieces = _split_joined(inner) if inner != word else []
+            if not KNOWN_WORDS.isdisjoint(pieces):
+                return pieces
     for side in ("left", "right", "l", "r"):
         for inner in (word.removeprefix(side), word.removesuffix(side)):
-            if inner != word and (inner in _KNOWN_WORDS or len(_split_row(inner)) > 1):
+            if inner != word and (inner in KNOWN_WORDS or len(_split_row(inner)) > 1):
                 return [side, *_split_row(inner)]
     return _split_row(word)
 
 
 def _split_row(word: str) -> list[str]:
-    for row in (*_FRONT_WORDS, *_HIND_WORDS):
-        if word.startswith(row) and word[len(row) :] in _LIMB_WORDS:
+    for row in (*FRONT_WORDS, *HIND_WORDS):
+        if word.startswith(row) and word[len(row) :] in LIMB_WORDS:
             return [row, word[len(row) :]]
     return [word]

@@ -1,5 +1,7 @@
 """Joints are recognised however a program, a laboratory or an artist names them."""
 
+from dataclasses import replace
+
 import pytest
 
 from characters.skeleton.anatomy import Anatomy
@@ -201,6 +203,25 @@ def test_every_naming_convention_of_people_is_recognised(style):
     assert {part: name for part, name in found.items() if part[-3:] not in ("Eye", "jaw")} == truth
     assert anatomy.kind == "humanoid"
     assert anatomy.missing == ()
+
+
+FRAMES = (
+    "Left4Dead_{}",
+    "cat_head_{}",
+    "{}_jnt_end_0",
+    "jnt{}",
+    "Armature|MyHero {}.001",
+    "{}_DEF",
+)
+
+
+@pytest.mark.parametrize("frame", FRAMES)
+def test_what_all_names_share_does_not_matter(frame):
+    for style in PEOPLE:
+        skeleton, truth = named_body(PEOPLE[style], PERSON)
+        framed = replace(skeleton, names=tuple(frame.format(name) for name in skeleton.names))
+        found = Anatomy.guess(framed).joints
+        assert {part: skeleton.names[found[part]] for part in truth} == truth, style
 
 
 # As above, in the order of DOG.
