@@ -5,23 +5,28 @@ pose in which the body was modelled, upright on its feet. Only the turns of that
 skins may be bound to bones of other lengths, in other units, and each in a frame of its own.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.character import Character
+from characters.model.mesh import Mesh
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import SIDES
+from characters.skeleton.masks import subtree_sizes
 from characters.skeleton.pose import Array, Pose, Skeleton
+
+if TYPE_CHECKING:
+    from characters.model.character import Character
 
 _IDENTITY_TOLERANCE = 1e-5
 _MAX_REST_DISTANCE = 0.01  # body sizes; a bind pose closer to the rest pose is the rest pose
 _MIN_JOINTS = 3  # fewer do not show the axes of a skin
 
 
-def bind_placements(character: Character) -> tuple[Array, NDArray[np.bool_]]:
+def bind_placements(character: "Character") -> tuple[Array, NDArray[np.bool_]]:
     """Return the placements that joints were bound in, (joints, 4, 4), and which joints were.
 
     Rigid meshes are bound in their joint's own frame, which says nothing about its placement:
@@ -29,16 +34,16 @@ def bind_placements(character: Character) -> tuple[Array, NDArray[np.bool_]]:
     """
     skeleton = character.skeleton
     placements, bound = skeleton.rest.globals(skeleton).copy(), np.zeros(len(skeleton), bool)
-    for used, found in _skins(character):
+    for used, found in _skins(character.meshes):
         new = used[~bound[used]]
         placements[new], bound[new] = found[~bound[used]], True
     return placements, bound
 
 
-def _skins(character: Character) -> Iterator[tuple[NDArray[np.intp], Array]]:
+def _skins(meshes: Sequence[Mesh]) -> Iterator[tuple[NDArray[np.intp], Array]]:
     """Yield the joints of each skin and the placements that they were bound in, largest first."""
     skins: dict[bytes, tuple[Array, set[int]]] = {}
-    for mesh in character.meshes:
+    for mesh in meshes:
         used = np.unique(mesh.joints[mesh.weights > 0])
         rigid = np.abs(mesh.inverse_bind[used] - np.eye(4)).max((1, 2)) <= _IDENTITY_TOLERANCE
         key = mesh.inverse_bind.tobytes()
@@ -49,36 +54,48 @@ def _skins(character: Character) -> Iterator[tuple[NDArray[np.intp], Array]]:
         yield np.array(invertible, np.intp), np.asarray(placements, np.float64)
 
 
-def with_bind_pose(character: Character) -> Skeleton:
+def with_bind_pose(character: "Character") -> Skeleton:
     """Return the skeleton with the turns of the bind pose at rest; bones keep their lengths."""
-    skeleton = character.skeleton
+    return _at_rest_as_bound(character.skeleton, character.meshes, character.anatomy.joints)
+
+
+def bound_upright(skeleton: Skeleton, meshes: Sequence[Mesh]) -> Skeleton:
+    """Return the same of a body whose parts are not known yet; feet may be elsewhere."""
+    return _at_rest_as_bound(skeleton, meshes, {})
+
+
+def _at_rest_as_bound(
+    skeleton: Skeleton, meshes: Sequence[Mesh], parts: Mapping[str, int]
+) -> Skeleton:
     rest = skeleton.rest.globals(skeleton)
-    turns, bound = _bound_turns(character, rest)
+    turns, bound = _bound_turns(meshes, rest, subtree_sizes(skeleton))
     if not bound.any():
         return skeleton
     pose = replace(skeleton.rest, rotations=_local_turns(turns, bound, skeleton))
-    pose = _with_feet_at_shins(pose, character)
+    pose = _with_feet_at_shins(pose, skeleton, parts)
     size = float(np.ptp(rest[:, :3, 3], axis=0).max()) or 1.0
     distances = np.linalg.norm((pose.globals(skeleton) - rest)[:, :3, 3], axis=-1)
     if distances[bound].max() < _MAX_REST_DISTANCE * size:
         return skeleton
-    return replace(skeleton, rest=_standing(pose, character, bound))
+    return replace(skeleton, rest=_standing(pose, skeleton, bound))
 
 
-def _bound_turns(character: Character, rest: Array) -> tuple[Array, NDArray[np.bool_]]:
+def _bound_turns(
+    meshes: Sequence[Mesh], rest: Array, subtrees: NDArray[np.int_]
+) -> tuple[Array, NDArray[np.bool_]]:
     """Return the turns (joints, 4) of the bind pose in the rest pose's axes, and which are known.
 
     A skin has axes of its own. Those of the largest one differ from the rest pose's by quarter
     turns; the others show theirs by a joint that they share with a larger one.
     """
     turns, bound = np.tile(rotations.IDENTITY, (len(rest), 1)), np.zeros(len(rest), bool)
-    for used, placements in _skins(character):
+    for used, placements in _skins(meshes):
         own, shared = _turns(placements), np.flatnonzero(bound[used])
         if shared.size:
             first = shared[0]
             axes = rotations.multiply(turns[used[first]], rotations.conjugate(own[first]))
         elif len(used) >= _MIN_JOINTS:
-            axes = _axes(own, _turns(rest[used]))
+            axes = _axes(own, _turns(rest[used]), subtrees[used])
         else:
             continue
         new = ~bound[used]
@@ -86,19 +103,14 @@ def _bound_turns(character: Character, rest: Array) -> tuple[Array, NDArray[np.b
     return turns, bound
 
 
-def _axes(own: Array, rest: Array) -> Array:
+def _axes(own: Array, rest: Array, subtrees: NDArray[np.int_]) -> Array:
     """Return the rotation (4,) by quarter turns from a skin's axes to those of the rest pose.
 
-    Limbs are bent at rest, but to either side; most joints together show the axes.
+    Limbs are bent at rest; joints count by the number of joints that they carry.
     """
-    turn = rotations.to_matrix(rotations.multiply(rest, rotations.conjugate(own))).mean(0)
-    quarter_turns = np.zeros((3, 3))
-    for _ in range(3):  # the greatest entry first, then those of the other rows and columns
-        row, column = np.unravel_index(np.abs(turn).argmax(), turn.shape)
-        quarter_turns[row, column] = np.sign(turn[row, column])
-        turn[row], turn[:, column] = 0.0, 0.0
-    quarter_turns[row, column] *= np.linalg.det(quarter_turns)  # no mirror
-    return rotations.from_matrix(quarter_turns)
+    turns = rotations.to_matrix(rotations.multiply(rest, rotations.conjugate(own)))
+    turn = np.average(turns, axis=0, weights=subtrees)
+    return rotations.from_matrix(rotations.nearest_quarter_turns(turn))
 
 
 def _turns(placements: Array) -> Array:
@@ -119,9 +131,8 @@ def _local_turns(turns: Array, bound: NDArray[np.bool_], skeleton: Skeleton) -> 
     return local
 
 
-def _with_feet_at_shins(pose: Pose, character: Character) -> Pose:
+def _with_feet_at_shins(pose: Pose, skeleton: Skeleton, joints: Mapping[str, int]) -> Pose:
     """Return a pose whose feet are where shins end, if inverse kinematics has them elsewhere."""
-    skeleton, joints = character.skeleton, character.anatomy.joints
     rest = skeleton.rest.globals(skeleton)
     pose = replace(pose, translations=pose.translations.copy())
     for side in (side + front for front in ("", "Front") for side in SIDES):
@@ -135,9 +146,9 @@ def _with_feet_at_shins(pose: Pose, character: Character) -> Pose:
     return pose
 
 
-def _standing(pose: Pose, character: Character, bound: NDArray[np.bool_]) -> Pose:
+def _standing(pose: Pose, skeleton: Skeleton, bound: NDArray[np.bool_]) -> Pose:
     """Return a pose that stands on the ground of the rest pose, its middle at x = 0."""
-    skeleton, parents = character.skeleton, np.array(character.skeleton.parents)
+    parents = np.array(skeleton.parents)
     rest, now = (each.globals(skeleton)[bound, :3, 3] for each in (skeleton.rest, pose))
     middle = (now[:, 0].min() + now[:, 0].max()) / 2
     shift = np.array([-middle, rest[:, 1].min() - now[:, 1].min(), 0.0])

@@ -11,6 +11,7 @@ import numpy as np
 from characters.errors import CharacterError
 from characters.ik.reaching.upper_body import UpperBody
 from characters.model.ankles import with_ankles
+from characters.model.bind_pose import bound_upright
 from characters.model.constraints import JointConstraint
 from characters.model.facing import turned_ahead
 from characters.model.look_at import LookAt
@@ -22,7 +23,7 @@ from characters.model.standing import StandingFactory, recordings_beside, standi
 from characters.motion.clip import Clip
 from characters.motion.motion import StandingMotion
 from characters.motion.trees.plan import Plan
-from characters.skeleton.anatomy import Anatomy
+from characters.skeleton.anatomy import BODY_PARTS, Anatomy
 from characters.skeleton.pose import Array, Skeleton
 from characters.synthesis.gestures.library import GestureLibrary
 
@@ -145,11 +146,23 @@ class Character:
 
     @cached_property
     def anatomy(self) -> Anatomy:
-        """Which joint is which body part: as the file states, else guessed."""
+        """Which joint is which body part: as the file states, else guessed.
+
+        Files may rest in mid-stride, so the pose in which the skin was bound is looked at too.
+        """
+        upright = bound_upright(self.skeleton, self.meshes)
+        poses = [self.skeleton] if upright is self.skeleton else [upright, self.skeleton]
         try:
-            return Anatomy.guess(self.skeleton, self.semantics)
+            guesses = [Anatomy.guess(pose, self.semantics) for pose in poses]
         except CharacterError as error:
             raise CharacterError(f"{self.name}: {error}") from None
+        return min(guesses, key=lambda guess: (guess.kind == "other", len(guess.missing)))
+
+    @property
+    def with_stated_anatomy(self) -> "Character":
+        """The same character, whose body parts stay what they are if its skeleton changes."""
+        names = {part: self.skeleton.names[joint] for part, joint in self.anatomy.joints.items()}
+        return replace(self, semantics={**dict.fromkeys(BODY_PARTS, ""), **names})
 
     @cached_property
     def upper_body(self) -> UpperBody:

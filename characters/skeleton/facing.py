@@ -49,7 +49,10 @@ def _leg_ends(anatomy: Anatomy) -> list[int]:
 
 
 def _side_centre(positions: Array, anatomy: Anatomy, side: str) -> Array | None:
-    joints = [joint for part, joint in anatomy.joints.items() if part.startswith(side)]
+    """Return the centre (3,) of where limbs begin, which do not swing, or of all on a side."""
+    own = {part: joint for part, joint in anatomy.joints.items() if part.startswith(side)}
+    roots = [joint for part, joint in own.items() if part.endswith(("UpperLeg", "UpperArm"))]
+    joints = roots or list(own.values())
     return positions[joints].mean(0) if joints else None
 
 

@@ -5,6 +5,7 @@ from types import MappingProxyType
 from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from characters.errors import CharacterError
 from characters.skeleton.pose import Array, Skeleton
@@ -77,3 +78,12 @@ def _joint(skeleton: Skeleton, name: str, semantics: Mapping[str, int]) -> int:
     if name not in skeleton.names and name in semantics:
         return semantics[name]
     return skeleton.index(name)
+
+
+def subtree_sizes(skeleton: Skeleton) -> NDArray[np.int_]:
+    """Return how many joints each joint carries, itself included, (joints,)."""
+    sizes = np.ones(len(skeleton), int)
+    for joint in reversed(range(len(skeleton))):
+        if skeleton.parents[joint] >= 0:
+            sizes[skeleton.parents[joint]] += sizes[joint]
+    return sizes

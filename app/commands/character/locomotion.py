@@ -1,6 +1,5 @@
 """`cubeling character locomotion`."""
 
-import json
 import math
 from collections.abc import Sequence
 from functools import partial
@@ -86,7 +85,6 @@ def locomotion(
     speeds = {each.name: each.speed for each in result.clips}
     if speeds.get("Run", math.inf) < speeds["Walk"]:
         console.print("[yellow]![/] It runs slower than it walks: did you swap the recordings?")
-    _write_sidecar(console, result.character, target)
     name = escape(str(target))
     console.print(f"[bold]{name}[/] walks: [cyan]cubeling play follow --character {name}[/]")
 
@@ -134,19 +132,3 @@ def _turn(angular: float) -> str:
     if degrees < 2:
         return "straight"
     return f"{degrees}°/s {'right' if angular > 0 else 'left'}"
-
-
-def _write_sidecar(console: Console, character: Character, target: Path) -> None:
-    """Write the stated body parts to the sidecar file of the character."""
-    if not character.semantics:
-        return
-    sidecar = target.with_suffix(".toml")
-    name = escape(str(sidecar))
-    if sidecar.exists():
-        console.print(rf"[yellow]![/] {name} exists already: check its \[joints] table.")
-        return
-    # TOML quotes texts as JSON does.
-    joints = {part: json.dumps(j, ensure_ascii=False) for part, j in character.semantics.items()}
-    lines = [f"{part} = {joint}\n" for part, joint in joints.items()]
-    sidecar.write_text("[joints]\n" + "".join(lines), encoding="utf-8")
-    console.print(f"[bold]{name}[/] states which joint is which body part.")

@@ -17,9 +17,12 @@ from characters.formats.gltf.morphs import (
 from characters.formats.gltf.nodes import NodeTree
 from characters.formats.gltf.skins import VertexSkin, read_skin, rigid_skin
 from characters.model.mesh import Material, Mesh, Morph
+from characters.skeleton import rotations
+from characters.skeleton.masks import subtree_sizes
 from characters.skeleton.pose import Array
 
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
+_SAME_TURN, _SAME_PLACE = 1e-3, 1e-3  # of joints bound in the rest pose; the latter per size
 _MAX_PRIMITIVES = 4096  # small ones cost time, not bytes
 
 
@@ -31,6 +34,7 @@ def read_meshes(file: GltfFile, tree: NodeTree, table: MorphTable) -> list[tuple
         raise DamagedFileError(f"has {parts} primitives, more than {_MAX_PRIMITIVES}; join them")
     materials = read_materials(file)
     rest = tree.skeleton.rest.globals(tree.skeleton)
+    sizes = subtree_sizes(tree.skeleton)
     meshes: list[tuple[int, Mesh]] = []
     for number in tree.mesh_nodes:
         node = file.document["nodes"][number]
@@ -52,7 +56,8 @@ def read_meshes(file: GltfFile, tree: NodeTree, table: MorphTable) -> list[tuple
                 skin = _skin(file, primitive, number, tree, vertices, where)
                 morphs = read_morphs(file, primitive, targets, vertices, shared)
                 used = _without_unused_vertices(geometry, skin, morphs)
-                meshes.append((number, _in_character_frame(name, *used, mapped.material, rest)))
+                mesh_in_frame = _in_character_frame(name, *used, mapped.material, rest, sizes)
+                meshes.append((number, mesh_in_frame))
     return meshes
 
 
@@ -179,6 +184,40 @@ def _without_unused_vertices(
     )
 
 
+def _character_from_mesh(
+    rest: Array, inverse_bind: Array, used: NDArray[np.intp], subtrees: NDArray[np.int_]
+) -> Array:
+    """Return the frame (4, 4) of a mesh, from placements and bind matrices (joints, 4, 4).
+
+    A mesh bound in another pose than at rest gets the axes of that pose by quarter turns, as no
+    joint shows them exactly, and the middle of the joints at rest: those of the whole skin, so that
+    its meshes agree. Joints count by the number of joints that they carry: the trunk turns least.
+    """
+    if not used.size:
+        return np.eye(4)
+    placements = rest @ inverse_bind
+    first = np.asarray(placements[used[0]], np.float64)
+    size = float(np.abs(first[:3, 3]).max() + np.ptp(rest[:, :3, 3], axis=0).max())
+    tolerance = np.full((4, 4), _SAME_TURN)
+    tolerance[:3, 3] = _SAME_PLACE * size
+    if (np.abs(placements[used] - first) <= tolerance).all():
+        return first
+    bound = np.abs(inverse_bind - np.eye(4)).max((1, 2)) > 0
+    bound[used] = True
+    sizes = np.cbrt(np.abs(np.linalg.det(placements[:, :3, :3])))
+    bound &= sizes > 0
+    if not bound.any():
+        return first
+    frame = np.eye(4)
+    turn = rotations.nearest_quarter_turns(
+        (placements[bound, :3, :3] / sizes[bound, None, None]).mean(0)
+    )
+    frame[:3, :3] = float(np.median(sizes[bound])) * turn
+    at = np.linalg.inv(inverse_bind[bound])[:, :3, 3]
+    frame[:3, 3] = (rest[bound, :3, 3] - at @ frame[:3, :3].T).mean(0)
+    return frame
+
+
 def _in_character_frame(
     name: str,
     geometry: _Geometry,
@@ -186,15 +225,16 @@ def _in_character_frame(
     morphs: tuple[Morph, ...],
     material: Material,
     rest: Array,
+    subtrees: NDArray[np.int_],
 ) -> Mesh:
     """Return the mesh in the character frame.
 
-    The vertices of a skinned mesh may be in any frame. The rest placement of the first joint is
-    applied to them, so that a mesh bound in the rest pose, as most are, has its visible positions.
+    The vertices of a skinned mesh may be in any frame; a mesh bound in the rest pose, as most are,
+    gets its visible positions.
     """
     joints, weights, inverse_bind = skin
-    first = int(joints[0, 0]) if len(joints) else 0
-    character_from_mesh = rest[first] @ inverse_bind[first]
+    used = np.unique(joints[weights > 0])
+    character_from_mesh = _character_from_mesh(rest, inverse_bind, used, subtrees)
     positions, normals = geometry.positions, geometry.normals
     triangles = geometry.triangles
     if not np.allclose(character_from_mesh, np.eye(4), atol=1e-5):

@@ -43,7 +43,7 @@ def load_character(path: Path) -> Character:
             clips=read_clips(file, tree, table),
             meshes=tuple(mesh for _, mesh in parts),
             morphs=table.names,
-            semantics={part: joint for part, joint in semantics if joint in names},
+            semantics={part: joint for part, joint in semantics if joint in ("", *names)},
             springs=springs.bones(tree),
             constraints=constraints.of_joints(tree),
             look_at=read_look_at(file),

@@ -81,7 +81,7 @@ def make_locomotion(
     CharacterError
         If a recording does not fit the character, or contains no cycle.
     """
-    original = character
+    original = character = character.with_stated_anatomy
     character = replace(character, skeleton=with_bind_pose(character))
     walker = with_root_joint(character)
     clips, recordings, made = dict(walker.clips), [], []

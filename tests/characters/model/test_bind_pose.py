@@ -3,10 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from characters import Character
 from characters.model.bind_pose import with_bind_pose
 from characters.skeleton import rotations
+from characters.skeleton.anatomy import Anatomy
 
 
 def bone_lengths(skeleton):
@@ -42,3 +44,45 @@ def test_a_body_keeps_its_bones_whatever_bones_its_skins_were_bound_to():
     assert np.degrees(angles).max() < 0.1
     lowest = found.rest.globals(found)[skinned, 1, 3].min()
     assert abs(lowest - stride.globals(skeleton)[skinned, 1, 3].min()) < 1e-6
+
+
+def test_a_file_that_rests_in_mid_stride_stands_as_it_was_bound(tmp_path):
+    human = Character.load("human")
+    stride = human.clips["Walk"].in_place[5]
+    striding = replace(
+        human, skeleton=replace(human.skeleton, rest=stride), clips={}, standing=None
+    )
+    striding.save(tmp_path / "striding.glb")
+    loaded = Character.load(tmp_path / "striding.glb")
+    upright = with_bind_pose(loaded)
+    places = [pose.rest.globals(pose)[1:, :3, 3] for pose in (upright, human.skeleton)]
+    shift = (places[0] - places[1]).mean(0)
+    assert np.allclose(places[0] - shift, places[1], atol=0.005)
+    mesh, theirs = loaded.meshes[0], human.meshes[0]
+    assert np.ptp(mesh.positions, axis=0) == pytest.approx(
+        np.ptp(theirs.positions, axis=0), rel=1e-3
+    )
+
+
+def test_body_parts_are_guessed_as_the_skin_was_bound():
+    human = Character.load("human")
+    skeleton = human.skeleton
+    names = ("root", *(f"bone_{number}" for number in range(1, len(skeleton))))
+    folded = skeleton.rest.rotations.copy()
+    for side in ("left", "right"):
+        for part, angle in (("UpperLeg", -2.9), ("UpperArm", -0.9)):
+            folded[human.anatomy.joints[side + part]] = rotations.about("x", angle)
+    rest = replace(skeleton.rest, rotations=folded, translations=skeleton.rest.translations.copy())
+    lowest = [pose.globals(skeleton)[1:, 1, 3].min() for pose in (rest, skeleton.rest)]
+    rest.translations[human.anatomy.joints["hips"], 1] += lowest[1] - lowest[0]
+    body = replace(
+        human,
+        skeleton=replace(skeleton, names=names, rest=rest),
+        clips={},
+        semantics={},
+        springs=(),
+    )
+    standing = Anatomy.guess(replace(skeleton, names=names))
+    assert Anatomy.guess(body.skeleton) != standing
+    assert body.anatomy == standing
+    assert body.with_stated_anatomy.anatomy == body.anatomy
