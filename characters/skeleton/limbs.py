@@ -197,29 +197,33 @@ def _with_wrist(tree: JointTree, arm: Mapping[str, int]) -> dict[str, int]:
     return dict(arm)
 
 
-def limbs_by_shape(tree: JointTree) -> dict[str, int]:
-    """Return the limbs of a skeleton with uninformative names: mirrored chains of joints."""
-    found: dict[str, int] = {}
-    every = tree.mirrored_chains()
+def limbs_by_shape(tree: JointTree, found: Mapping[str, int]) -> dict[str, int]:
+    """Return limbs that names do not tell, beyond the `found` ones: mirrored chains of joints."""
+    named = set(found.values())
+    every = [pair for pair in tree.mirrored_chains() if not named & {*pair[0], *pair[1]}]
     pairs = [pair for pair in every if len(pair[0]) >= 3]
     legs = [pair for pair in pairs if any(map(tree.near_ground, pair[0][:5]))]
-    arms = [pair for pair in pairs if pair not in legs]
-    if not legs:  # that end at the shin
-        legs = [pair for pair in every if len(pair[0]) == 2 and tree.reaches_down(*pair[0])]
-    legs.sort(key=lambda pair: float(tree.positions[pair[0][0], 2]))
-    if len(legs) > 1:
-        found |= _as_limbs(tree, legs[-1], [f"Front{role}" for role in LEG_ROLES])
-    if legs:
-        found |= _as_limbs(tree, legs[0], LEG_ROLES)
-    if arms:  # ears and hair are shorter
-        both = max(arms, key=lambda pair: tree.length(pair[0]))
+    shapes: dict[str, int] = {}
+    if not {"leftUpperLeg", "rightUpperLeg"} <= found.keys():
+        standing = legs or [
+            pair for pair in every if len(pair[0]) == 2 and tree.reaches_down(*pair[0])
+        ]
+        standing.sort(key=lambda pair: float(tree.positions[pair[0][0], 2]))
+        if len(standing) > 1:
+            shapes |= _as_limbs(tree, standing[-1], [f"Front{role}" for role in LEG_ROLES])
+        if standing:
+            shapes |= _as_limbs(tree, standing[0], LEG_ROLES)
+    heads = {joint for joint, name in enumerate(tree.names) if name.trunk == "head"}
+    arms = [pair for pair in pairs if pair not in legs and not heads & set(tree.chains[pair[0][0]])]
+    if arms and not any(part.endswith(("UpperArm", "FrontUpperLeg")) for part in found):
+        both = max(arms, key=lambda pair: tree.length(pair[0]))  # ears and hair are shorter
         roles = ARM_ROLES if len(both[0]) > 3 else ARM_ROLES[1:]
-        found |= {
+        shapes |= {
             side + role: joint
             for side, chain in zip(("left", "right"), both, strict=True)
             for role, joint in zip(roles, chain, strict=False)
         }
-    return found
+    return shapes
 
 
 def _as_limbs(

@@ -24,8 +24,7 @@ def find_parts(skeleton: Skeleton, known: Mapping[str, int]) -> dict[str, int]:
     tree = JointTree(skeleton)
     found = dict(known)
     _add_missing(found, limbs_by_name(tree))
-    if not {"leftUpperLeg", "rightUpperLeg"} <= set(found):
-        _add_missing(found, limbs_by_shape(tree))
+    _add_missing(found, limbs_by_shape(tree, found))
     _add_missing(found, find_trunk(tree, found))
     if _on_all_fours(tree, found):
         found = {_as_front(part): joint for part, joint in found.items()} | dict(known)

@@ -189,6 +189,12 @@ PEOPLE = {
     "words of anatomy": "left right pelvis lumbar thorax cervical skull {}_clavicle {}_humerus "
     "{}_ulna {}_carpus {}_femur {}_tibia {}_tarsus {}_phalanges {}_patella<{}_tibia "
     "{}_fibula<{}_femur",
+    "German": "L R Becken Wirbel Brust Hals Kopf Schulter.{} Oberarm.{} Unterarm.{} Hand.{} "
+    "Oberschenkel.{} Unterschenkel.{} Fuss.{} Zehen.{}",
+    "French": "G D Bassin Colonne Poitrine Cou Tete Epaule_{} Bras_{} AvantBras_{} Main_{} "
+    "Cuisse_{} Tibia_{} Pied_{} Orteils_{}",
+    "only the feet and hands are named": "L R Hips Bone Bone.001 Neck Head - Bone.{}.001 "
+    "Bone.{}.002 Hand.{} Bone.{}.003 Bone.{}.004 Foot.{} -",
     "only the top of each limb is named": "L R Hips Bone Bone.001 Neck Head - Arm.{} "
     "Bone.{}.001 Bone.{}.002 Leg.{} Bone.{}.003 Bone.{}.004 -",
     "no names at all": "1 2 n0 n3 n4 n5 n6 a{}0 a{}1 a{}2 a{}3 b{}0 b{}1 b{}2 b{}3",
