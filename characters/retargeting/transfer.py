@@ -19,6 +19,7 @@ from characters.retargeting.root import ground_positions
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
 
+_FLAT_QUANTILE = 0.25  # of the heights of a standing ankle: later the heel rises
 _MAX_SINKING = 0.25  # of a leg's length: ankles always lower than that under rest have other ground
 
 
@@ -99,8 +100,8 @@ def _standing_ankle_height(rig: Rig) -> float | None:
 def _ankle_height(rig: Rig, clip: Clip) -> float:
     """Return the height of standing ankles in a clip [m].
 
-    It is that at rest on the feet, else the median in the clip; so also in a recording that never
-    comes near the ground of its rest, as those whose hips are recorded from their place at rest.
+    It is that at rest on the feet, else that of flat feet in the clip; so also in a recording that
+    never comes near the ground of its rest, as those whose hips count from their place at rest.
     """
     at_rest = _standing_ankle_height(rig)
     feet = [leg.foot for leg in rig.legs]
@@ -109,7 +110,9 @@ def _ankle_height(rig: Rig, clip: Clip) -> float:
     if at_rest is not None and heights.max() > at_rest - _MAX_SINKING * rig.leg_length:
         return at_rest
     contacts = find_contacts(clip, rig.skeleton, [[foot] for foot in feet])
-    return float(np.median(heights[contacts] if contacts.any() else heights.min(0)))
+    if not contacts.any():
+        return float(np.median(heights.min(0)))
+    return float(np.quantile(heights[contacts], _FLAT_QUANTILE))
 
 
 def clip_in_common_axes(clip: Clip, rig: Rig) -> Clip:
