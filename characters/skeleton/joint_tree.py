@@ -13,6 +13,7 @@ from characters.skeleton.pose import Array, Skeleton
 _MIN_SIDE_OFFSET = 0.02  # body sizes from the middle: beyond it, a joint has a side
 _MAX_FOOT_HEIGHT = 0.2  # body heights: limbs that end below it are legs
 
+_MIN_HEIGHT = 0.1  # body sizes: what is lower lies
 _MAX_KNEE_HEIGHT = 0.65  # of the hip's height
 _MAX_HIP_HEIGHT = 0.75  # body heights
 
@@ -28,7 +29,7 @@ class JointTree:
         self.positions[:, 0] -= self._middle()
         low, high = self.positions.min(0), self.positions.max(0)
         self.size = float(np.linalg.norm(high - low)) or 1.0
-        self._ground, self._height = float(low[1]), float(high[1] - low[1]) or 1.0
+        self._ground, self._height = float(low[1]), float(high[1] - low[1])
 
     def _middle(self) -> float:
         """Return x of the trunk as far as names tell it, else 0 [m]."""
@@ -71,7 +72,12 @@ class JointTree:
         return not {"left", "right"} <= {self.names[j].side for j in below}
 
     def in_middle(self, joint: int) -> bool:
-        """Return whether a joint is between the sides of the body."""
+        """Return whether a joint is between the sides of the body, or no name says it is not.
+
+        Places say nothing in the zero pose of a recording that lies.
+        """
+        if self._height < _MIN_HEIGHT * self.size:
+            return not any(self.names[above].side for above in self.chains[joint])
         return abs(float(self.positions[joint, 0])) < _MIN_SIDE_OFFSET * self.size
 
     def near_ground(self, joint: int) -> bool:
@@ -102,19 +108,22 @@ class JointTree:
 
     def mirrored_chains(self) -> list[tuple[list[int], list[int]]]:
         """Return pairs of chains, left and right, that have one parent and mirror each other."""
-        near = 3 * _MIN_SIDE_OFFSET * self.size
         pairs: list[tuple[list[int], list[int]]] = []
         for siblings in self.children.values():
             for left in siblings:
                 for right in siblings:
-                    image = self.positions[right] * [-1.0, 1.0, 1.0]
-                    apart = float(np.linalg.norm(self.positions[left] - image))
-                    both = self.positions[left, 0] > near / 3 > 0 > self.positions[right, 0]
-                    if both and apart < near:
-                        pairs.append(
-                            (
-                                longest_chain_below(left, self.children),
-                                longest_chain_below(right, self.children),
-                            )
-                        )
+                    if self._are_mirrored(left, right):
+                        chains = [longest_chain_below(j, self.children) for j in (left, right)]
+                        pairs.append((chains[0], chains[1]))
         return pairs
+
+    def _are_mirrored(self, left: int, right: int) -> bool:
+        """Return whether two joints are left and right, by name or place, and mirror each other."""
+        sides = (self.names[left].side, self.names[right].side)
+        if sides != ("left", "right"):
+            offsets = (self.positions[left, 0], -self.positions[right, 0])
+            if any(sides) or min(offsets) < _MIN_SIDE_OFFSET * self.size:
+                return False
+        image = self.positions[right] * [-1.0, 1.0, 1.0]
+        apart = float(np.linalg.norm(self.positions[left] - image))
+        return apart < 3 * _MIN_SIDE_OFFSET * self.size

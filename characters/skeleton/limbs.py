@@ -81,7 +81,7 @@ def _hind_first(
     heads = [j for j, name in enumerate(tree.names) if name.trunk == "head"]
     for side, rows in legs.items():
         tops = [next(iter(leg.values()), -1) for leg in rows]
-        named = any(tree.row(top) for top in tops if top >= 0)
+        named = any(tree.row(joint) for leg in rows for joint in leg.values())
         if len(rows) == 2 and min(tops) >= 0 and not named:
             keys = [
                 (
