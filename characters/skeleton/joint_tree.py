@@ -53,7 +53,7 @@ class JointTree:
         for above in reversed(self.chains[joint]):
             if self.names[above].side:
                 return self.names[above].side
-        if self.in_middle(joint):
+        if self.in_middle(joint) or not self.is_of_one_side(joint):
             return ""
         return "left" if self.positions[joint, 0] > 0 else "right"
 
@@ -68,8 +68,16 @@ class JointTree:
 
     def is_of_one_side(self, joint: int) -> bool:
         """Return whether all joints below a joint are of one side as far as names tell."""
-        below = [j for j in range(joint, len(self)) if self.is_below(j, joint)]
-        return not {"left", "right"} <= {self.names[j].side for j in below}
+        return len(self._sides_below[joint]) < 2
+
+    @cached_property
+    def _sides_below(self) -> Sequence[set[str]]:
+        """The sides that names tell of each joint and those below it."""
+        sides = [{name.side} - {""} for name in self.names]
+        for joint in reversed(range(len(self))):
+            if self.parents[joint] >= 0:
+                sides[self.parents[joint]] |= sides[joint]
+        return sides
 
     def in_middle(self, joint: int) -> bool:
         """Return whether a joint is between the sides of the body, or no name says it is not.

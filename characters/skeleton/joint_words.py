@@ -5,8 +5,12 @@ def _words(line: str) -> frozenset[str]:
     return frozenset(line.split())
 
 
-SIDE_OF = dict.fromkeys(("left", "l", "lft"), "left") | dict.fromkeys(
-    ("right", "r", "rt", "rgt"), "right"
+SIDE_OF = dict.fromkeys(
+    ("left", "l", "lft", "gauche", "links", "izquierda", "izquierdo", "sinistra", "esquerda"),
+    "left",
+) | dict.fromkeys(
+    ("right", "r", "rt", "rgt", "droite", "rechts", "derecha", "derecho", "destra", "direita"),
+    "right",
 )
 """Side by word."""
 

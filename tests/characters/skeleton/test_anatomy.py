@@ -137,20 +137,53 @@ def test_an_animal_may_stand_on_feet_of_inverse_kinematics(style):
         assert skeleton.names[anatomy.joints[part]] == truth[part]
 
 
-def test_names_are_read_whatever_the_zero_pose():
-    upright, truth = named_body(f"{PEOPLE['cgspeed']} Root>Hips@", PERSON)
-    along_x = np.zeros((len(upright), 3))
-    along_x[1:, 0] = 0.2
-    skeleton = Skeleton(upright.names, upright.parents, replace(upright.rest, translations=along_x))
-    anatomy = Anatomy.guess(skeleton)
-    assert {part: skeleton.names[joint] for part, joint in anatomy.joints.items()} == truth
+def along(axis):
+    """Every bone along one axis, as the zero poses of some recordings are."""
+
+    def zero_pose(skeleton):
+        offsets = np.zeros((len(skeleton), 3))
+        offsets[:, axis] = np.linalg.norm(skeleton.rest.translations, axis=-1)
+        return replace(skeleton, rest=replace(skeleton.rest, translations=offsets))
+
+    return zero_pose
+
+
+def turned(axis, angle):
+    """Turned about the origin, as models that face or stand elsewhere are."""
+
+    def rest_pose(skeleton):
+        offsets, turns = skeleton.rest.translations.copy(), skeleton.rest.rotations.copy()
+        roots = np.array(skeleton.parents) < 0
+        offsets[roots] = rotations.rotate(rotations.about(axis, angle), offsets[roots])
+        turns[roots] = rotations.about(axis, angle)
+        return replace(skeleton, rest=Pose(offsets, turns))
+
+    return rest_pose
+
+
+@pytest.mark.parametrize(
+    ("pose", "kinds"),
+    [
+        *((along(axis), [PEOPLE]) for axis in (0, 1, 2)),
+        (turned("x", np.pi / 2), [PEOPLE]),
+        *((turned("y", quarters * np.pi / 2), [PEOPLE, ANIMALS]) for quarters in (1, 2, 3)),
+    ],
+)
+def test_names_are_read_in_any_pose(pose, kinds):
+    silent = ("no names at all", "German", "French", "Rigify wolf")  # places tell some parts
+    for kind in kinds:
+        for style in kind:
+            if style not in silent:
+                skeleton, truth = named_body(kind[style], PERSON if kind is PEOPLE else DOG)
+                found = Anatomy.guess(pose(skeleton)).joints
+                assert {part: skeleton.names[found[part]] for part in truth} == truth, style
 
 
 @pytest.mark.parametrize("facing", [-1.0, 1.0])
 def test_legs_that_only_their_place_tells_apart_are_told_by_the_head(facing):
     skeleton, truth = named_body(ANIMALS["legs that only their place tells apart"], DOG)
-    turned = replace(skeleton.rest, translations=skeleton.rest.translations * [1, 1, facing])
-    anatomy = Anatomy.guess(replace(skeleton, rest=turned))
+    rest = replace(skeleton.rest, translations=skeleton.rest.translations * [1, 1, facing])
+    anatomy = Anatomy.guess(replace(skeleton, rest=rest))
     assert skeleton.names[anatomy.joints["leftFrontFoot"]] == truth["leftFrontFoot"]
 
 
