@@ -115,7 +115,10 @@ class JointTree:
         return [above for above in first if all(above in self.chains[j] for j in joints[1:])]
 
     def mirrored_chains(self) -> list[tuple[list[int], list[int]]]:
-        """Return pairs of chains, left and right, that have one parent and mirror each other."""
+        """Return pairs of chains, left and right, that have one parent and mirror each other.
+
+        What is no limb by name is left out.
+        """
         pairs: list[tuple[list[int], list[int]]] = []
         for siblings in self.children.values():
             for left in siblings:
@@ -127,6 +130,8 @@ class JointTree:
 
     def _are_mirrored(self, left: int, right: int) -> bool:
         """Return whether two joints are left and right, by name or place, and mirror each other."""
+        if self.names[left].auxiliary or self.names[right].auxiliary:
+            return False
         sides = (self.names[left].side, self.names[right].side)
         if sides != ("left", "right"):
             offsets = (self.positions[left, 0], -self.positions[right, 0])

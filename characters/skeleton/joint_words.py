@@ -26,9 +26,10 @@ JOINED_FILLERS = ("jnt", "joint", "bone")
 AUXILIARY_WORDS = _words(
     "end nub site ik fk pole target twist roll helper socket prop weapon ctrl control "
     "effector mch sec adj offset mesh geo hair skirt bust breast cloth top lid eyelid brow "
-    "eyebrow lash corner in inhand vis tweak platform footsteps part share pad heel tip"
+    "eyebrow lash corner in inhand vis tweak platform footsteps part share pad heel tip "
+    "wing ear horn antenna feather fin whisker beard mane ribbon cape cloak scarf"
 )
-"""Words of helper joints: ends, twists, IK targets, cloth, meshes."""
+"""Words of helper joints, as ends, twists and IK targets, and of what is no limb."""
 
 END_WORDS = _words("end nub site tip")
 """Those of the end of a bone."""

@@ -110,6 +110,25 @@ def test_a_body_may_stand_beside_the_origin():
     assert Anatomy.guess(moved).missing == ()
 
 
+@pytest.mark.parametrize(
+    "legs", ["Thigh.{} Shin.{} Tarsus.{} Toe.{}", "leg1.{} leg2.{} leg3.{} leg4.{}"]
+)
+def test_a_bird_walks_on_two_legs_and_its_wings_are_no_arms(legs):
+    bird = {part: DOG[part] for part in ("hips", "spine", "neck", "head")} | {
+        part: DOG[part] for part in ("UpperLeg", "LowerLeg", "Foot", "Toes")
+    }
+    bird |= {
+        f"Wing{k}": (f"Wing{k - 1}" if k else "spine", (0.1 + 0.2 * k, 0.6, 0)) for k in range(4)
+    }
+    wings = " ".join(f"wing{k}.{{}}" for k in range(4))
+    skeleton, truth = named_body(f"L R body spine neck head {legs} {wings}", bird)
+    anatomy = Anatomy.guess(skeleton)
+    found = {part: skeleton.names[joint] for part, joint in anatomy.joints.items()}
+    assert found == {part: name for part, name in truth.items() if "Wing" not in part}
+    assert anatomy.kind == "humanoid"
+    assert len(anatomy.feet) == 2
+
+
 # As in two much used sets of animals, whose paws have no leg above them.
 PAWS_APART = {
     "Body Torso Neck1 Head Tail1 Tail2 BackUpperLeg.{} BackLowerLeg.{} - - FrontShoulder.{} "
