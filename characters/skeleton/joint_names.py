@@ -91,11 +91,11 @@ class JointName:
         fit = as_arm | self._fit(FORELEG_FIT)
         return {"Shoulder": 0.2} | fit if self.leg else fit
 
-    @property
-    def foot(self) -> float:
-        """How well it fits a foot, 0…1, even if it is the target of inverse kinematics."""
+    def as_end_of_limb(self, role: str) -> float:
+        """Return how well it fits a "Foot" or "Hand", even if it is a target of IK."""
+        table = LEG_FIT if role == "Foot" else ARM_FIT
         sure = 0.5 if self.auxiliary else 1.0
-        return 0.0 if self.end else LEG_FIT.get(self.word, {}).get("Foot", 0.0) * sure
+        return 0.0 if self.end else table.get(self.word, {}).get(role, 0.0) * sure
 
     @property
     def known(self) -> bool:

@@ -22,7 +22,7 @@ _UNNAMED_FIT = 0.1  # of a joint whose name says nothing, to any part of a limb
 _SURE_FIT = 0.9  # names that fit so well are of one part only
 _REPEATED = 0.8  # how well the second joint of a bone fits, relative to its first
 _MIN_FOREARM = 0.75  # of the upper arm: a wrist nearer to the elbow is half way to the hand
-# Of the thigh's length: how far from the knee a foot may be that hangs elsewhere in the tree.
+# Of the bone above: how far from the knee a foot may be that hangs elsewhere in the tree.
 _SHIN_LENGTHS = (0.4, 1.8)
 _HIP_LINK = 0.5  # of the bone below: shorter bones above a chain of five link it to the body
 
@@ -113,10 +113,10 @@ def _limb(
             fits[-1] = {essential[-1]: _END_FIT}
         best = max(best, assign(chain, roles, essential, fits), key=_score)
     found = best[1]
-    hip, knee, foot = (found.get(role) for role in essential)
-    apart = essential[-1] == "Foot" and (foot is None or tree.names[foot].end)
-    if apart and hip is not None and knee is not None:
-        found |= _detached_foot(tree, hip, knee)
+    top, middle, end_joint = (found.get(role) for role in essential)
+    apart = end_joint is None or tree.names[end_joint].end
+    if apart and top is not None and middle is not None:
+        found |= _detached_end(tree, top, middle, essential[-1])
     if found and not set(essential) <= found.keys():
         found = max(best, _with_unnamed(tree, found, roles, essential, fit), key=_score)[1]
     return found
@@ -159,18 +159,18 @@ def _with_unnamed(
     return assign(chain, roles, essential, fits)
 
 
-def _detached_foot(tree: JointTree, hip: int, knee: int) -> dict[str, int]:
-    """Return the foot and toes that hang elsewhere in the tree, under a knee as a shin's end.
+def _detached_end(tree: JointTree, hip: int, knee: int, role: str) -> dict[str, int]:
+    """Return the foot and toes, or hand, that hang elsewhere in the tree, where a shin would end.
 
     So it is in rigs with inverse kinematics.
     """
     thigh = tree.positions[knee] - tree.positions[hip]
     low, high = np.array(_SHIN_LENGTHS) * float(np.linalg.norm(thigh))
     rows = {tree.row(knee), ""}
-    feet = [
+    ends = [
         joint
-        for joint in range(len(tree))
-        if tree.names[joint].foot
+        for joint, name in enumerate(tree.names)
+        if name.as_end_of_limb(role)
         and tree.side(joint) == tree.side(knee)
         and tree.row(joint) in rows
         and not tree.is_below(joint, hip)
@@ -178,11 +178,11 @@ def _detached_foot(tree: JointTree, hip: int, knee: int) -> dict[str, int]:
         and low < tree.distance(joint, knee) < high
         and float((tree.positions[joint] - tree.positions[knee]) @ thigh) > 0
     ]
-    if not feet:
+    if not ends:
         return {}
-    foot = max(feet, key=lambda joint: tree.names[joint].foot)
-    toes = [j for j in tree.children.get(foot, ()) if tree.names[j].leg.get("Toes", 0.0) > 0.5]
-    return {"Foot": foot} | ({"Toes": toes[0]} if toes else {})
+    end = max(ends, key=lambda joint: tree.names[joint].as_end_of_limb(role))
+    toes = [j for j in tree.children.get(end, ()) if tree.names[j].leg.get("Toes", 0.0) > 0.5]
+    return {role: end} | ({"Toes": toes[0]} if toes and role == "Foot" else {})
 
 
 def _with_wrist(tree: JointTree, arm: Mapping[str, int]) -> dict[str, int]:

@@ -140,6 +140,8 @@ PAWS_APART = {
     "FrontLowLeg.{} - - root>Body@ BackLeg.{}>BackUpLeg.{} BackLowLeg.{}_end<BackLowLeg.{}@Foot "
     "FrontLowLeg.{}_end<FrontLowLeg.{}@FrontFoot BackFoot.{}<root@Foot FrontFoot.{}<root@FrontFoot "
     "FrontFoot.{}_end<FrontFoot.{} Hips<Body Torso<Hips": ("BackFoot", "FrontFoot"),
+    "Hip Spine Neck Head Tail1 Tail2 Leg1.{} Leg2.{} - - - UpperArm.{} ForeArm.{} - - root>Hip@ "
+    "Foot.{}<root@Foot Hand.{}<root@FrontFoot": ("Foot", "Hand"),
 }
 
 
