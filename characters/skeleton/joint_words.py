@@ -15,7 +15,7 @@ SIDE_OF = dict.fromkeys(
 """Side by word."""
 
 FILLER_WORDS = _words(
-    "mixamorig bip bip01 bone bones b j jnt joint jt armature skeleton def org c center centre m x "
+    "mixamorig bip bip01 bone bones b j jnt joint jt armature skeleton def c center centre m x "
     "valve valvebiped biped character rig sk humanoid bn cc base bend bind skin deform stretch h"
 )
 """Words that say nothing about a part."""

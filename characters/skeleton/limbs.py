@@ -24,6 +24,7 @@ _REPEATED = 0.8  # how well the second joint of a bone fits, relative to its fir
 _MIN_FOREARM = 0.75  # of the upper arm: a wrist nearer to the elbow is half way to the hand
 # Of the bone above: how far from the knee a foot may be that hangs elsewhere in the tree.
 _SHIN_LENGTHS = (0.4, 1.8)
+_MIN_APART = 0.5  # of a thigh's length: how far hind and front legs are apart at least
 _HIP_LINK = 0.5  # of the bone below: shorter bones above a chain of five link it to the body
 
 Fit = Callable[[JointName], Mapping[str, float]]
@@ -55,9 +56,11 @@ def _legs(tree: JointTree, mine: Sequence[int]) -> list[dict[str, int]]:
     rows = {joint: tree.row(joint) for joint in mine if tree.names[joint].foreleg}
     if not any(row and tree.names[joint].certainty == 1.0 for joint, row in rows.items()):
         leg = _limb(tree, legs, LEG_ROLES, LEG_ROLES[:3], lambda name: name.leg)
-        others = [j for j in legs if leg and not set(leg.values()) & set(tree.chains[j])]
+        if not {"UpperLeg", "LowerLeg"} <= leg.keys():
+            return [leg]
+        others = [j for j in legs if not set(leg.values()) & set(tree.chains[j])]
         second = _hindleg(tree, others)
-        if not set(LEG_ROLES[:3]) <= second.keys():
+        if not set(LEG_ROLES[:3]) <= second.keys() or not _are_apart(tree, leg, second):
             return [leg]
         return [_hindleg(tree, [joint for joint in legs if joint not in others]), second]
     front_named = "front" in rows.values()
@@ -67,6 +70,12 @@ def _legs(tree: JointTree, mine: Sequence[int]) -> list[dict[str, int]]:
     roles = FORELEG_ROLES
     front = _limb(tree, fore, roles, roles[1:4], lambda name: name.foreleg)
     return [_hindleg(tree, hind), front]
+
+
+def _are_apart(tree: JointTree, leg: Mapping[str, int], other: Mapping[str, int]) -> bool:
+    """Return whether two legs begin at two places; a leg may have joints twice, for control."""
+    thigh = tree.distance(leg["UpperLeg"], leg["LowerLeg"])
+    return tree.distance(leg["UpperLeg"], other["UpperLeg"]) > _MIN_APART * thigh
 
 
 def _hindleg(tree: JointTree, joints: Sequence[int]) -> dict[str, int]:

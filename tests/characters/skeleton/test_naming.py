@@ -34,6 +34,9 @@ PEOPLE = {
     "{}つま先 全ての親>センター {}肩P>{}肩 {}肩C>{}腕 {}腕捩>{}ひじ {}手捩>{}手首 "
     "{}足ＩＫ<全ての親@Foot "
     "{}つま先ＩＫ<{}足ＩＫ@Toes 下半身>左足 腰キャンセル{}>{}足",
+    "MMD with joints twice": "左 右 センター 上半身 上半身2 首 頭 {}肩 {}腕 {}ひじ {}手首 {}足 "
+    "{}ひざ {}足首 {}つま先 下半身>左足 {}足D<下半身@UpperLeg {}ひざD<{}足D@LowerLeg "
+    "{}足首D<{}ひざD@Foot {}足先EX<{}足首D@Toes",
     "MMD, translated": "L R Center UpperBody UpperBody2 Neck Head Shoulder_{} Arm_{} Elbow_{} "
     "Wrist_{} Leg_{} Knee_{} Ankle_{} ToeTip_{} ParentNode>Center LegIK_{}<ParentNode@Foot",
     "Rigify": "L R spine spine.001 spine.002 spine.004 spine.006 shoulder.{} upper_arm.{} "
@@ -46,6 +49,13 @@ PEOPLE = {
     "Rigify, original": "L R ORG-spine ORG-spine.001 ORG-spine.002 ORG-spine.004 ORG-spine.006 "
     "ORG-shoulder.{} ORG-upper_arm.{} ORG-forearm.{} ORG-hand.{} ORG-thigh.{} ORG-shin.{} "
     "ORG-foot.{} ORG-toe.{} MCH-thigh_ik.{}<ORG-spine thigh_ik_target.{}<ORG-spine",
+    "Rigify, all joints": "L R DEF-spine DEF-spine.001 DEF-spine.002 DEF-spine.004 DEF-spine.006 "
+    "DEF-shoulder.{} DEF-upper_arm.{} DEF-forearm.{} DEF-hand.{} DEF-thigh.{} DEF-shin.{} "
+    "DEF-foot.{} DEF-toe.{} root>DEF-spine ORG-thigh.{}<root@UpperLeg "
+    "ORG-shin.{}<ORG-thigh.{}@LowerLeg ORG-foot.{}<ORG-shin.{}@Foot ORG-toe.{}<ORG-foot.{}@Toes thigh_fk.{}<root@UpperLeg "
+    "shin_fk.{}<thigh_fk.{}@LowerLeg foot_fk.{}<shin_fk.{}@Foot MCH-foot.{}<root@Foot "
+    "ORG-upper_arm.{}<root@UpperArm ORG-forearm.{}<ORG-upper_arm.{}@LowerArm "
+    "ORG-hand.{}<ORG-forearm.{}@Hand",
     "Rigify, old": "L R hips spine ribs neck head shoulder.{} upper_arm.{} forearm.{} hand.{} "
     "thigh.{} shin.{} foot.{} toe.{}",
     "Auto-Rig Pro": "l r root.x spine_01.x spine_02.x neck.x head.x shoulder.{} arm_stretch.{} "
