@@ -52,7 +52,8 @@ PEOPLE = {
     "Rigify, all joints": "L R DEF-spine DEF-spine.001 DEF-spine.002 DEF-spine.004 DEF-spine.006 "
     "DEF-shoulder.{} DEF-upper_arm.{} DEF-forearm.{} DEF-hand.{} DEF-thigh.{} DEF-shin.{} "
     "DEF-foot.{} DEF-toe.{} root>DEF-spine ORG-thigh.{}<root@UpperLeg "
-    "ORG-shin.{}<ORG-thigh.{}@LowerLeg ORG-foot.{}<ORG-shin.{}@Foot ORG-toe.{}<ORG-foot.{}@Toes thigh_fk.{}<root@UpperLeg "
+    "ORG-shin.{}<ORG-thigh.{}@LowerLeg ORG-foot.{}<ORG-shin.{}@Foot ORG-toe.{}<ORG-foot.{}@Toes "
+    "thigh_fk.{}<root@UpperLeg "
     "shin_fk.{}<thigh_fk.{}@LowerLeg foot_fk.{}<shin_fk.{}@Foot MCH-foot.{}<root@Foot "
     "ORG-upper_arm.{}<root@UpperArm ORG-forearm.{}<ORG-upper_arm.{}@LowerArm "
     "ORG-hand.{}<ORG-forearm.{}@Hand",
