@@ -50,13 +50,31 @@ def relaxed_rest(target: Rig, source: Rig, joints: NDArray[np.intp], turns: Arra
         hand.joint: {joint: moving[joint] for joint in hand.finger_joints if joint in moving}
         for hand in hands
     }
-    if _are_flat(source) and all(_are_still(moving.get(h), of) for h, of in fingers.items()):
+    if (
+        not _have_the_same_hands(source, target)
+        and _are_flat(source)
+        and all(_are_still(moving.get(hand), of) for hand, of in fingers.items())
+    ):
         fingers = {hand.joint: {} for hand in hands}
     for hand in hands:
         for joint, turn in hand.relaxing_turns():
             if not fingers[hand.joint].keys() & set(target.chain_to(joint)):
                 rest[joint] = rotations.multiply(turn, target.rest_rotations[joint])
     return rest
+
+
+def _have_the_same_hands(source: Rig, target: Rig) -> bool:
+    """Return whether two rigs are one body, whose own motions keep its fingers as they are."""
+    theirs, own = (
+        {
+            rig.skeleton.names[joint]: rig.skeleton.rest.translations[joint]
+            for side in SIDES
+            if (hand := _Hand.of(rig, side)) is not None
+            for joint in hand.finger_joints
+        }
+        for rig in (source, target)
+    )
+    return theirs.keys() == own.keys() and all(np.allclose(theirs[n], own[n]) for n in own)
 
 
 def _are_flat(rig: Rig) -> bool:

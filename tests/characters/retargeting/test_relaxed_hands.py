@@ -10,7 +10,7 @@ from characters.retargeting.retarget import retarget
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
 from tests.characters.skeleton.bodies import PERSON, named_body
-from tests.characters.skeleton.test_fingers import FINGERS, HAND, PARTS
+from tests.characters.skeleton.test_fingers import FINGERS, HAND, HANDS, PARTS
 from tests.characters.skeleton.test_naming import PEOPLE
 
 FLAT = f"{PEOPLE['Unity, VRM']} " + " ".join(f"{{}}{part}" for part in list(HAND)[len(PERSON) :])
@@ -96,9 +96,16 @@ def test_the_fingers_of_the_motion_win(flat):
 
 
 def test_fingers_that_a_motion_has_but_never_moves_are_relaxed(flat, fingerless):
-    clip = retarget(still(flat[0]), *flat, *flat, hold_feet=False)
+    mixamo = PEOPLE["Mixamo"].split()[: 2 + len(PERSON)]
+    skeleton, _ = named_body(" ".join([*mixamo, HANDS["Mixamo"]]), HAND)
+    clip = retarget(still(skeleton), skeleton, Anatomy.guess(skeleton), *flat, hold_feet=False)
     relaxed = retarget(*fingerless, *flat, hold_feet=False)
     assert clip.poses.rotations == pytest.approx(relaxed.poses.rotations, abs=1e-9)
+
+
+def test_the_own_motions_of_a_body_keep_its_flat_hands(flat):
+    clip = retarget(still(flat[0]), *flat, *flat, hold_feet=False)
+    assert clip.poses.rotations == pytest.approx(still(flat[0]).poses.rotations, abs=1e-9)
 
 
 def test_a_hand_that_is_a_fist_at_rest_stays_one(flat, fingerless):
