@@ -77,7 +77,8 @@ def _at_rest_as_bound(
     distances = np.linalg.norm((pose.globals(skeleton) - rest)[:, :3, 3], axis=-1)
     if distances[bound].max() < _MAX_REST_DISTANCE * size:
         return skeleton
-    return replace(skeleton, rest=_standing(pose, skeleton, bound))
+    feet = [joint for part, joint in parts.items() if part.endswith(("Foot", "Toes"))]
+    return replace(skeleton, rest=_standing(pose, skeleton, feet or np.flatnonzero(bound).tolist()))
 
 
 def _bound_turns(
@@ -146,10 +147,13 @@ def _with_feet_at_shins(pose: Pose, skeleton: Skeleton, joints: Mapping[str, int
     return pose
 
 
-def _standing(pose: Pose, skeleton: Skeleton, bound: NDArray[np.bool_]) -> Pose:
-    """Return a pose that stands on the ground of the rest pose, its middle at x = 0."""
+def _standing(pose: Pose, skeleton: Skeleton, feet: Sequence[int]) -> Pose:
+    """Return a pose that stands on the ground of the rest pose, its middle at x = 0.
+
+    `feet` are joints of the feet, or of the body if its feet are not known.
+    """
     parents = np.array(skeleton.parents)
-    rest, now = (each.globals(skeleton)[bound, :3, 3] for each in (skeleton.rest, pose))
+    rest, now = (each.globals(skeleton)[list(feet), :3, 3] for each in (skeleton.rest, pose))
     middle = (now[:, 0].min() + now[:, 0].max()) / 2
     shift = np.array([-middle, rest[:, 1].min() - now[:, 1].min(), 0.0])
     placements = pose.globals(skeleton)

@@ -64,6 +64,33 @@ def test_a_file_that_rests_in_mid_stride_stands_as_it_was_bound(tmp_path):
     )
 
 
+def test_a_body_with_a_skin_on_one_arm_stands_on_its_feet():
+    human = Character.load("human")
+    skeleton, joints = human.skeleton, human.anatomy.joints
+    arm = [joints[part] for part in ("leftUpperArm", "leftLowerArm", "leftHand")]
+    bones = np.zeros((3, 4), np.uint16)
+    bones[:, 0] = arm
+    sleeve = replace(
+        human.meshes[0],
+        positions=skeleton.rest.globals(skeleton)[arm, :3, 3].astype(np.float32),
+        normals=np.tile(np.array([0, 1, 0], np.float32), (3, 1)),
+        triangles=np.array([[0, 1, 2]], np.uint32),
+        joints=bones,
+        weights=np.eye(1, 4, dtype=np.float32).repeat(3, axis=0),
+        inverse_bind=np.linalg.inv(skeleton.rest.globals(skeleton)),
+        colors=None,
+        uvs=None,
+        morphs=(),
+    )
+    raised = skeleton.rest.rotations.copy()
+    raised[arm[0]] = rotations.multiply(rotations.about("z", 1.2), raised[arm[0]])
+    rest = replace(skeleton.rest, rotations=raised)
+    body = replace(human, skeleton=replace(skeleton, rest=rest), meshes=(sleeve,), clips={})
+    found = with_bind_pose(body)
+    at = found.rest.globals(found)[:, :3, 3]
+    assert np.allclose(at, skeleton.rest.globals(skeleton)[:, :3, 3], atol=1e-6)
+
+
 def test_body_parts_are_guessed_as_the_skin_was_bound():
     human = Character.load("human")
     skeleton = human.skeleton
