@@ -83,7 +83,7 @@ def test_a_body_with_a_skin_on_one_arm_stands_on_its_feet():
         morphs=(),
     )
     raised = skeleton.rest.rotations.copy()
-    raised[arm[0]] = rotations.multiply(rotations.about("z", 1.2), raised[arm[0]])
+    raised[arm[0]] = rotations.multiply(rotations.about("z", 0.6), raised[arm[0]])
     rest = replace(skeleton.rest, rotations=raised)
     body = replace(human, skeleton=replace(skeleton, rest=rest), meshes=(sleeve,), clips={})
     found = with_bind_pose(body)
