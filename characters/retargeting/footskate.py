@@ -17,7 +17,12 @@ from characters.motion.clip import Clip
 from characters.motion.contacts import find_contacts, spans
 from characters.retargeting.foot_path import FootPath
 from characters.retargeting.ground_motion import GroundMotion
-from characters.retargeting.hips_shift import drop_to_reach, following_feet, with_moved_hips
+from characters.retargeting.hips_shift import (
+    drop_to_reach,
+    following_feet,
+    missing_reach,
+    with_moved_hips,
+)
 from characters.retargeting.leg_ik import place_ankle
 from characters.retargeting.rig import LegJoints, Rig
 from characters.retargeting.soles import stretched_to_fit, tilted_to_fit, tilts
@@ -34,7 +39,8 @@ from characters.smoothing import gaussian_smoothed
 
 # Lengths in leg lengths.
 _MAX_BALL_RISE = 0.02  # of the ball of a standing foot above its lowest position
-_MAX_CORRECTION = 0.3  # a contact that needs a larger one is dropped
+_MAX_CORRECTION = 0.5  # a contact that needs a larger one is dropped
+_STEPPING_ROUNDS = 2  # a step nearer may be out of reach at its other end
 _MAX_TILT = 1.5  # of a foot on its ball, as a share, if it is short for its ankle's height
 _TILT_SMOOTHING_S = 0.04  # standard deviation
 _MAX_ROLL_S = 0.25  # from the heel onto the ball
@@ -125,15 +131,24 @@ def hold_feet_in_contact(
         paths.append(path)
         to_balls.append(to_ball)
     shift = following_feet(paths)
-    pose = with_moved_hips(pose, rig, ground.middle_cycle(shift))
-    places = [
-        ground.from_ground(path.held(shift)) - to for path, to in zip(paths, to_balls, strict=True)
-    ]
     standing = np.stack([ground.middle_cycle(path.standing) for path in paths], axis=1)
-    drop = drop_to_reach(pose, rig, legs, np.stack(places, axis=1), standing, ground)
+
+    def places() -> Array:
+        """Return where the ankles are to be, (frames, legs, 3)."""
+        held = (ground.from_ground(path.held(shift)) for path in paths)
+        return np.stack([at - to for at, to in zip(held, to_balls, strict=True)], axis=1)
+
+    pose = with_moved_hips(pose, rig, ground.middle_cycle(shift))
+    drop = drop_to_reach(pose, rig, legs, places(), standing, ground)
     pose = with_moved_hips(pose, rig, drop[:, None] * [0.0, -1.0, 0.0])
+    for _ in range(_STEPPING_ROUNDS):
+        missing = missing_reach(pose, rig, legs, places())
+        paths = [
+            path.stepping(ground.directions_to_ground(missing[:, number]))
+            for number, path in enumerate(paths)
+        ]
     skeleton_from_common = rotations.conjugate(rig.common_from_skeleton)
-    for leg, place in zip(legs, places, strict=True):
+    for leg, place in zip(legs, np.moveaxis(places(), 1, 0), strict=True):
         pose = place_ankle(pose, rig, leg, rotations.rotate(skeleton_from_common, place))
     return pose if floor is None else _with_toes_above(pose, rig, legs, floor)
 

@@ -21,7 +21,10 @@ _SMOOTHING_S = 0.3  # standard deviation; removes the sway of a stride
 
 
 def root_trajectory(clip: Clip, source: Rig, ratio: float) -> Array:
-    """Return the trajectory of the root, else of the smoothed hips, its lengths times a ratio."""
+    """Return the trajectory of the root, its lengths times a ratio.
+
+    Without a root, that of the smoothed hips of a person, or of what is between an animal's feet.
+    """
     if clip.root_motion:
         return clip.track * [ratio, ratio, 1.0]
     joint = source.anatomy.joints["hips"]
@@ -30,6 +33,10 @@ def root_trajectory(clip: Clip, source: Rig, ratio: float) -> Array:
     turned = rotations.multiply(source.common_from_skeleton, global_rotations(hips))
     from_rest = rotations.multiply(turned, rotations.conjugate(source.rest_rotations[joint]))
     yaw = np.unwrap(rotations.heading(from_rest))
+    if source.anatomy.kind == "quadruped":
+        feet = source.rest_positions[[leg.end for leg in source.legs]].mean(0)
+        behind = ratio * (source.rest_positions[joint] - feet)
+        positions = positions - rotations.rotate(rotations.about("y", yaw), behind)
     path = np.stack([positions[:, 0], positions[:, 2], yaw], axis=-1)
     return gaussian_smoothed(path, _SMOOTHING_S * clip.rate)
 
