@@ -177,7 +177,8 @@ def _grade(row: Row, name: str, motion: str) -> None:
         made = make_locomotion(replace(character, clips={}), [recording])
     except CharacterError as error:
         row.refused = str(error)
-        _grade_whole(row, character, recording)
+        if not motion.startswith(name):  # its own motions stay as they are
+            _grade_whole(row, character, recording)
         return
     row.cells["time"] = f"{time.perf_counter() - start:.1f} s"
     gaits = [*made.recordings, *made.clips]
