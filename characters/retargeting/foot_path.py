@@ -1,7 +1,7 @@
 """The path of one foot over the ground, constant while it stands."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -25,6 +25,7 @@ class FootPath:
     lowest: Array  # height of its end with the sole on the ground, (frames,) [m]; −inf without
     max_correction: float  # a contact that needs a larger correction is dropped [m]
     rate: float  # [Hz]
+    steps: Array | float = 0.0  # how contacts are moved into reach, (frames, 3) [m]
 
     @cached_property
     def contacts(self) -> list[tuple[int, int]]:
@@ -46,7 +47,19 @@ class FootPath:
         corrections = np.zeros_like(self.goal)
         for first, length in self.contacts:
             corrections[first : first + length] = self._wanted(first, length)
-        return corrections
+        return np.asarray(corrections + self.steps)
+
+    def stepping(self, missing: Array) -> "FootPath":
+        """Return the path with each contact moved by the farthest that it is out of reach.
+
+        `missing` leads from its end to where it can be, (frames, 3) [m].
+        """
+        steps = np.zeros_like(self.goal) + self.steps
+        for first, length in self.contacts:
+            span = slice(first, first + length)
+            farthest = np.linalg.norm(missing[span], axis=-1).argmax()
+            steps[span] += missing[span][farthest]
+        return replace(self, steps=steps)
 
     def held(self, shift: Array) -> Array:
         """Return the positions of its end, (frames, 3) [m], constant during contacts.

@@ -2,7 +2,8 @@
 
 A foot that is held in place is a little away from where the motion has it. The hips follow standing
 feet smoothly, as the root does in Kovar, Schreiner and Gleicher, "Footskate cleanup for motion
-capture editing", SCA 2002, section 4. What is still out of reach brings them down.
+capture editing", SCA 2002, section 4. What is still out of reach brings them down, and what is
+very far away, in a narrow curve, steps nearer.
 """
 
 from collections.abc import Sequence
@@ -22,7 +23,7 @@ from characters.smoothing import gaussian_smoothed
 _SMOOTHING_S = 0.05  # standard deviation of the shift with the feet
 _DROP_SMOOTHING_S = 0.04  # and of the drop
 # In leg lengths.
-_MAX_DROP = 0.2
+_MAX_DROP = 0.12
 _MAX_REACH = 0.998
 
 
@@ -37,6 +38,16 @@ def following_feet(paths: Sequence[FootPath]) -> Array:
     frames = np.arange(len(known))
     mean = np.stack([np.interp(frames, frames[known], each[known]) for each in mean.T], axis=-1)
     return gaussian_smoothed(mean, _SMOOTHING_S * paths[0].rate)
+
+
+def missing_reach(pose: Pose, rig: Rig, legs: Sequence[LegJoints], ankles: Array) -> Array:
+    """Return the level ways from ankles (frames, legs, 3) to where legs reach, the same shape."""
+    away, reach = _from_hips(pose, rig, legs, ankles)
+    level = away * [1.0, 0.0, 1.0]
+    length = np.linalg.norm(level, axis=-1)
+    possible = np.sqrt(np.maximum(reach**2 - away[..., 1] ** 2, 0.0))
+    share = np.clip(1.0 - possible / np.maximum(length, 1e-9), 0.0, 1.0)
+    return np.asarray(level * share[..., None])
 
 
 def drop_to_reach(
@@ -62,10 +73,7 @@ def drop_to_reach(
     ground
         The ground under the clip.
     """
-    thighs = [leg.upper for leg in legs]
-    hips = rig.placements(pose, thighs)[:, thighs][..., :3, 3]
-    away = in_common_axes(rig, hips) - ankles
-    reach = _MAX_REACH * np.array([sum(rig.bone_lengths(leg)) for leg in legs])
+    away, reach = _from_hips(pose, rig, legs, ankles)
     height = np.sqrt(np.maximum(reach**2 - np.square(away[..., [0, 2]]).sum(-1), 0.0))
     missing: Array = np.where(standing, away[..., 1] - height, 0.0).max(1)
     missing = np.clip(missing, 0.0, _MAX_DROP * rig.leg_length)
@@ -86,3 +94,13 @@ def with_moved_hips(pose: Pose, rig: Rig, shift: Array) -> Pose:
     own = rotations.rotate(rotations.conjugate(rig.common_from_skeleton), shift)
     set_joint_positions(moved, rig, hips, at + own)
     return moved
+
+
+def _from_hips(
+    pose: Pose, rig: Rig, legs: Sequence[LegJoints], ankles: Array
+) -> tuple[Array, Array]:
+    """Return the ways from ankles to hip joints, (frames, legs, 3), and how far legs reach [m]."""
+    thighs = [leg.upper for leg in legs]
+    hips = rig.placements(pose, thighs)[:, thighs][..., :3, 3]
+    reach = _MAX_REACH * np.array([sum(rig.bone_lengths(leg)) for leg in legs])
+    return in_common_axes(rig, hips) - ankles, reach

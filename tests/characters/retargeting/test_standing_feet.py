@@ -7,7 +7,12 @@ import pytest
 
 from characters import Character, Mesh, Pose
 from characters.retargeting import retarget
-from characters.retargeting.footskate import ball_positions, find_foot_contacts
+from characters.retargeting.footskate import (
+    FootContacts,
+    ball_positions,
+    find_foot_contacts,
+    hold_feet_in_contact,
+)
 from characters.retargeting.ground_motion import GroundMotion
 from characters.retargeting.hips_shift import drop_to_reach
 from characters.retargeting.measures import knee_quantiles, sole_dip
@@ -147,6 +152,24 @@ def test_knees_bend_as_in_the_source_whatever_thighs_and_shins(human, change, cl
     )
     made = on(body, human, human.clips[clip])
     assert knees_beyond(made, body, human, human.clips[clip]) < np.radians(5.0)
+
+
+def test_a_step_out_of_reach_is_nearer_and_does_not_slide(human):
+    """In narrow curves, the footprints of a long body are beside its straight trunk."""
+    rig, rest = Rig(human.skeleton, human.anatomy), human.skeleton.rest
+    frames = 40
+    pose = Pose(np.tile(rest.translations, (frames, 1, 1)), np.tile(rest.rotations, (frames, 1, 1)))
+    hips = human.anatomy.joints["hips"]
+    pose.translations[:, hips, 2] += np.linspace(-0.15, 0.15, frames)
+    ends = np.stack([ball_positions(pose, rig, leg) for leg in rig.legs], axis=1)
+    ends[:, 0] = ends[frames // 2, 0] + [0.45, 0.0, 0.0]
+    ball = np.zeros((frames, 2), bool)
+    ball[8:32, 0] = True
+    contacts = FootContacts(np.zeros_like(ball), ball)
+    ground = GroundMotion(np.zeros((frames, 3)), None, 30.0)
+    held = hold_feet_in_contact(pose, rig, rig.legs, contacts, ground, ends)
+    at = ball_positions(held, rig, rig.legs[0])[8:32]
+    assert np.ptp(at, axis=0).max() < 1e-3
 
 
 def test_a_foot_that_hovers_at_rest_stands_on_the_ground():
