@@ -39,7 +39,7 @@ from characters.smoothing import gaussian_smoothed
 
 # Lengths in leg lengths.
 _MAX_BALL_RISE = 0.02  # of the ball of a standing foot above its lowest position
-_MAX_CORRECTION = 0.3  # a contact that needs a larger one is dropped
+_MAX_CORRECTION = 0.5  # a contact that needs a larger one is dropped
 _STEPPING_ROUNDS = 2  # a step nearer may be out of reach at its other end
 _MAX_TILT = 1.5  # of a foot on its ball, as a share, if it is short for its ankle's height
 _TILT_SMOOTHING_S = 0.04  # standard deviation
