@@ -17,7 +17,7 @@ from characters.skeleton import rotations
 from characters.skeleton.pose import Array
 
 _UP = np.array([0.0, 1.0, 0.0])
-_DIRECTIONS = 96  # in which the outermost points of a foot are kept
+_DIRECTIONS = 256  # in which the outermost points of a foot are kept
 _HALVINGS = 14  # of the range of turns
 _TOLERANCE_M = 1e-9
 _MIN_WEIGHT = 0.5  # of a vertex that belongs to a foot
