@@ -1,8 +1,7 @@
 """Footskate cleanup: the target's foot stays in place while that of the source stands.
 
-Each contact gets one foot position. Between contacts the correction is interpolated smoothly.
-Hips and knees bend so that the foot reaches its position; where a leg is too short, the hips come
-down.
+The foot turns onto its sole, and each contact gets one foot position; see `soles` and `foot_path`.
+The hips follow the feet; see `hips_shift`. Hips and knees bend for what is left.
 
 Source: Kovar, Schreiner and Gleicher, "Footskate cleanup for motion capture editing", SCA 2002.
 """
@@ -102,25 +101,63 @@ def hold_feet_in_contact(
     `ends` are positions of the balls of the feet without contact, (frames, legs, 3) [m] in the
     common axes; left out, those of the poses.
     """
-    floor = rig.floor
+    ankles = _ankle_goals(pose, rig, legs, ends)
+    if rig.floor is not None:
+        heights = ankles[..., 1] - rig.floor
+        pose = _on_soles(pose, rig, legs, heights, contacts, ground)
+    to_balls, paths = _foot_paths(pose, rig, legs, ankles, contacts, ground)
+    standing = np.stack([ground.middle_cycle(path.standing) for path in paths], axis=1)
+    shift = following_feet(paths)
+    pose = with_moved_hips(pose, rig, ground.middle_cycle(shift))
+    places = _held_places(paths, shift, ground) - to_balls
+    drop = drop_to_reach(pose, rig, legs, places, standing, ground)
+    pose = with_moved_hips(pose, rig, drop[:, None] * [0.0, -1.0, 0.0])
+    for _ in range(_STEPPING_ROUNDS):
+        missing = np.moveaxis(missing_reach(pose, rig, legs, places), 1, 0)
+        paths = [
+            path.stepping(ground.directions_to_ground(way))
+            for path, way in zip(paths, missing, strict=True)
+        ]
+        places = _held_places(paths, shift, ground) - to_balls
+    skeleton_from_common = rotations.conjugate(rig.common_from_skeleton)
+    for number, leg in enumerate(legs):
+        place = rotations.rotate(skeleton_from_common, places[:, number])
+        pose = place_ankle(pose, rig, leg, place)
+    return pose if rig.floor is None else _with_toes_above(pose, rig, legs, rig.floor)
+
+
+def _ankle_goals(pose: Pose, rig: Rig, legs: Sequence[LegJoints], ends: Array | None) -> Array:
+    """Return the positions of the ankles without contact, (frames, legs, 3) [m]."""
     placements = rig.placements(pose, [leg.lower for leg in legs])
-    ankles = [in_common_axes(rig, ankle_positions(placements, rig, leg)) for leg in legs]
-    if ends is not None:
-        balls = [ball_positions(pose, rig, leg) for leg in legs]
-        ankles = [at + ends[:, n] - balls[n] for n, at in enumerate(ankles)]
-    if floor is not None:
-        pose = _on_soles(pose, rig, legs, [at[:, 1] - floor for at in ankles], contacts, ground)
+    ankles = np.stack([ankle_positions(placements, rig, leg) for leg in legs], axis=1)
+    ankles = in_common_axes(rig, ankles)
+    if ends is None:
+        return ankles
+    balls = np.stack([ball_positions(pose, rig, leg) for leg in legs], axis=1)
+    return np.asarray(ankles + ends - balls)
+
+
+def _foot_paths(
+    pose: Pose,
+    rig: Rig,
+    legs: Sequence[LegJoints],
+    ankles: Array,
+    contacts: FootContacts,
+    ground: GroundMotion,
+) -> tuple[Array, list[FootPath]]:
+    """Return the vectors from the ankles to the balls, (frames, legs, 3) [m], and the paths."""
     feet = turns_from_rest(pose, rig, [leg.foot for leg in legs])
     toes = turns_from_rest(pose, rig, [leg.end for leg in legs])
-    paths, to_balls = [], []
+    to_balls = np.empty_like(ankles)
+    paths: list[FootPath] = []
     for number, leg in enumerate(legs):
         sole, turn = rig.sole(leg), feet[:, number]
         to_ball, to_heel = (rotations.rotate(turn, each) for each in (sole.ball, sole.heel))
         lowest = np.full(len(turn), -np.inf)
-        if floor is not None:
-            lowest = floor + sole.clearance(turn, toes[:, number]) + to_ball[:, 1]
+        if rig.floor is not None:
+            lowest = rig.floor + sole.clearance(turn, toes[:, number]) + to_ball[:, 1]
         path = FootPath(
-            ground.to_ground(ankles[number] + to_ball),
+            ground.to_ground(ankles[:, number] + to_ball),
             ground.directions_to_ground(to_ball - to_heel),
             ground.repeat(contacts.heel[:, number]),
             ground.repeat(contacts.ball[:, number]),
@@ -129,28 +166,16 @@ def hold_feet_in_contact(
             ground.rate,
         )
         paths.append(path)
-        to_balls.append(to_ball)
-    shift = following_feet(paths)
-    standing = np.stack([ground.middle_cycle(path.standing) for path in paths], axis=1)
+        to_balls[:, number] = to_ball
+    return to_balls, paths
 
-    def places() -> Array:
-        """Return where the ankles are to be, (frames, legs, 3)."""
-        held = (ground.from_ground(path.held(shift)) for path in paths)
-        return np.stack([at - to for at, to in zip(held, to_balls, strict=True)], axis=1)
 
-    pose = with_moved_hips(pose, rig, ground.middle_cycle(shift))
-    drop = drop_to_reach(pose, rig, legs, places(), standing, ground)
-    pose = with_moved_hips(pose, rig, drop[:, None] * [0.0, -1.0, 0.0])
-    for _ in range(_STEPPING_ROUNDS):
-        missing = missing_reach(pose, rig, legs, places())
-        paths = [
-            path.stepping(ground.directions_to_ground(missing[:, number]))
-            for number, path in enumerate(paths)
-        ]
-    skeleton_from_common = rotations.conjugate(rig.common_from_skeleton)
-    for leg, place in zip(legs, np.moveaxis(places(), 1, 0), strict=True):
-        pose = place_ankle(pose, rig, leg, rotations.rotate(skeleton_from_common, place))
-    return pose if floor is None else _with_toes_above(pose, rig, legs, floor)
+def _held_places(paths: Sequence[FootPath], shift: Array, ground: GroundMotion) -> Array:
+    """Return where the balls are held, (frames, legs, 3) [m]; the hips are shifted by (frames, 3).
+
+    The shift is over the ground.
+    """
+    return np.stack([ground.from_ground(path.held(shift)) for path in paths], axis=1)
 
 
 def ball_positions(pose: Pose, rig: Rig, leg: LegJoints) -> Array:
@@ -165,13 +190,13 @@ def _on_soles(
     pose: Pose,
     rig: Rig,
     legs: Sequence[LegJoints],
-    heights: Sequence[Array],
+    heights: Array,
     contacts: FootContacts,
     ground: GroundMotion,
 ) -> Pose:
     """Return poses with feet and toes turned so that they reach the ground, but not below it.
 
-    `heights` of the ankles above the ground are (frames,) [m] for each leg.
+    `heights` are those of the ankles above the ground, (frames, legs) [m].
     """
     smoothing = _TILT_SMOOTHING_S * ground.rate
     on_ball = gaussian_smoothed(ground.repeat(contacts.ball.astype(float)), smoothing)
@@ -182,9 +207,9 @@ def _on_soles(
         turns = turns_from_rest(pose, rig, joints)
         useful = np.clip(sole.highest_tilt / np.maximum(tilts(turns[:, 0]), 1e-3), 1.0, _MAX_TILT)
         greatest = 1.0 + (useful - 1.0) * on_ball[:, number]
-        turns[:, 0] = tilted_to_fit(turns[:, 0], heights[number], sole.clearance, greatest)
+        turns[:, 0] = tilted_to_fit(turns[:, 0], heights[:, number], sole.clearance, greatest)
         if leg.toes is not None:
-            balls = heights[number] + rotations.rotate(turns[:, 0], sole.ball)[:, 1]
+            balls = heights[:, number] + rotations.rotate(turns[:, 0], sole.ball)[:, 1]
             turns[:, 1] = stretched_to_fit(
                 turns[:, 1], turns[:, 0], balls, sole.toes_clearance, on_ball[:, number]
             )
