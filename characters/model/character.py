@@ -10,10 +10,10 @@ import numpy as np
 
 from characters.errors import CharacterError
 from characters.ik.reaching.upper_body import UpperBody
-from characters.model.ankles import with_ankles
 from characters.model.bind_pose import bound_upright
 from characters.model.constraints import JointConstraint
 from characters.model.facing import turned_ahead
+from characters.model.limb_ends import with_limb_ends
 from characters.model.look_at import LookAt
 from characters.model.mesh import Mesh
 from characters.model.sidecar import Sidecar, read_sidecar
@@ -209,7 +209,9 @@ def _with_sidecar(character: Character, path: Path) -> Character:
         body_layers=sidecar.body_layers,
         springs=_springs(character, sidecar),
     )
-    skeleton, meshes, clips = with_ankles(found.skeleton, found.anatomy, found.meshes, found.clips)
+    skeleton, meshes, clips = with_limb_ends(
+        found.skeleton, found.anatomy, found.meshes, found.clips
+    )
     found = replace(found, skeleton=skeleton, meshes=meshes, clips=clips)
     skeleton, clips = turned_ahead(found.skeleton, found.anatomy, found.clips)
     found = replace(found, skeleton=skeleton, clips=clips, gestures=gestures_beside(path, skeleton))

@@ -128,6 +128,9 @@ def _limb(
         found |= _detached_end(tree, top, middle, essential[-1])
     if found and not set(essential) <= found.keys():
         found = max(best, _with_unnamed(tree, found, roles, essential, fit), key=_score)[1]
+    joints = list(found.values())
+    if len(joints) == 1 and essential[0] in fit(tree.names[joints[0]]):  # one for the whole limb
+        return {essential[0]: joints[0]}
     return found
 
 

@@ -23,6 +23,7 @@ STYLES = {
 }
 
 
+HUMAN = Character.load("human")
 FACES = ((0, 1, 2), (3, 4, 5), (6, 7, 0))
 
 
@@ -91,11 +92,32 @@ def test_a_foot_is_added_once(made):
     assert again.anatomy == loaded.anatomy
 
 
+def test_a_stiff_leg_gets_a_knee_and_a_foot_and_a_stiff_arm_an_elbow(tmp_path):
+    style = "left right root torso - - head - arm-{} - - leg-{} - - -"
+    skeleton, _ = named_body(style, PERSON)
+    blocky = Character("blocky", skeleton, {}, (boxes(skeleton, ["leg-left", "leg-right"]),))
+    blocky.save(tmp_path / "blocky.glb")
+    loaded = Character.load(tmp_path / "blocky.glb")
+    assert loaded.anatomy.kind == "humanoid"
+    assert loaded.anatomy.missing == ("leftHand", "rightHand")
+    places = loaded.skeleton.rest.globals(loaded.skeleton)[:, :3, 3]
+    hip, knee, foot = (
+        places[loaded.anatomy.joints[f"left{part}"]] for part in ("UpperLeg", "LowerLeg", "Foot")
+    )
+    assert foot[1] == pytest.approx(0.0, abs=1e-6)
+    assert knee == pytest.approx((hip + foot) / 2, abs=1e-6)
+    bodies = (loaded.skeleton, loaded.anatomy)
+    walk = retarget(HUMAN.clips["Walk"], HUMAN.skeleton, HUMAN.anatomy, *bodies)
+    steps = walk.poses.globals(loaded.skeleton)[..., :3, 3][:, list(loaded.anatomy.feet)]
+    assert steps[..., 1].min() > -0.02
+    assert np.ptp(steps[..., 2], axis=0).min() > 0.3
+
+
 @pytest.mark.parametrize("made", ["person"], indirect=True)
 def test_a_person_without_feet_walks_in_anothers_steps(made):
-    loaded, source = made[1], Character.load("human")
-    bodies = (source.skeleton, source.anatomy, loaded.skeleton, loaded.anatomy)
-    walk = retarget(source.clips["Walk"], *bodies)
+    loaded = made[1]
+    bodies = (HUMAN.skeleton, HUMAN.anatomy, loaded.skeleton, loaded.anatomy)
+    walk = retarget(HUMAN.clips["Walk"], *bodies)
     heights = walk.poses.globals(loaded.skeleton)[:, list(loaded.anatomy.feet), 1, 3]
     assert heights.min() > -0.02
     assert heights.max(0).min() > 0.05
