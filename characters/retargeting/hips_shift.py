@@ -24,7 +24,7 @@ _SMOOTHING_S = 0.05  # standard deviation of the shift with the feet
 _DROP_SMOOTHING_S = 0.04  # and of the drop
 # In leg lengths.
 _MAX_DROP = 0.12
-_MAX_REACH = 0.998
+_MAX_REACH = 0.999
 
 
 def following_feet(paths: Sequence[FootPath]) -> Array:
