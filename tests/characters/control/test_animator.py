@@ -136,7 +136,8 @@ def test_planted_feet_do_not_slide(human):
 
 def test_no_joint_jumps_whatever_is_asked(human):
     rng = np.random.default_rng(3)
-    rate, animator, frames, time = 60, Animator(human), [], 0.0
+    stiff = replace(human, springs=())  # hair may jump
+    rate, animator, frames, time = 60, Animator(stiff), [], 0.0
     for _ in range(25):
         length, speed = rng.uniform(0.1, 1.5), rng.choice([0.0, 1.0, 2.8, 3.2, 5.0])
         target = rng.uniform(-0.4, 0.4, 2)
@@ -281,7 +282,8 @@ def in_other_units(character, factor):
         character.skeleton, rest=replace(rest, translations=rest.translations * factor)
     )
     body = replace(character, skeleton=skeleton, clips=clips, meshes=tuple(meshes), morphs=())
-    return replace(body, standing=None)  # it was recorded on the other skeleton
+    # It was recorded on the other skeleton, as its springs were measured on that.
+    return replace(body, standing=None, springs=())
 
 
 @pytest.mark.parametrize("factor", [0.01, 100.0, 1000.0])

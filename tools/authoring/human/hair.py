@@ -35,11 +35,11 @@ def hair_parts() -> list[BodyPart]:
         _lock((-0.124, 1.650, 0.062), (-0.196, 1.545, 0.104), 0.056, 0.020),
     ]
     tufts = [
-        _lock((0.0, 1.625, -0.161), (0.025, 1.650, -0.280), 0.074, 0.020),
-        _lock((0.099, 1.501, -0.161), (0.137, 1.451, -0.255), 0.074, 0.020),
-        _lock((-0.099, 1.501, -0.161), (-0.124, 1.427, -0.248), 0.074, 0.020),
-        _lock((0.192, 1.476, 0.020), (0.214, 1.372, 0.052), 0.042, 0.018),
-        _lock((-0.192, 1.476, 0.020), (-0.214, 1.372, 0.052), 0.042, 0.018),
+        _lock((0.0, 1.625, -0.161), (0.025, 1.650, -0.280), 0.074, 0.020, "HairTop"),
+        _lock((0.099, 1.501, -0.161), (0.137, 1.451, -0.255), 0.074, 0.020, "LeftHairBack"),
+        _lock((-0.099, 1.501, -0.161), (-0.124, 1.427, -0.248), 0.074, 0.020, "RightHairBack"),
+        _lock((0.192, 1.476, 0.020), (0.214, 1.372, 0.052), 0.042, 0.018, "LeftHairSide"),
+        _lock((-0.192, 1.476, 0.020), (-0.214, 1.372, 0.052), 0.042, 0.018, "RightHairSide"),
     ]
     return [BodyPart(Union((whole, *fringe, *tufts), 0.025), 0.026)]
 
@@ -51,5 +51,5 @@ def cowlick(skeleton: Skeleton) -> list[Mesh]:
     return [tube(line, radii, HAIR, joints, skeleton, 9, 9) for line in COWLICK_LINES_M]
 
 
-def _lock(a: Vector, b: Vector, ra: float, rb: float) -> RoundCone:
-    return RoundCone(a, b, ra, rb, bones=("head",), color=HAIR)
+def _lock(a: Vector, b: Vector, ra: float, rb: float, joint: str = "head") -> RoundCone:
+    return RoundCone(a, b, ra, rb, bones=(joint,), color=HAIR)

@@ -1,13 +1,14 @@
-"""Secondary motion of the bundled explorer: backpack, hood, strings and cowlick.
+"""Secondary motion of the bundled explorer: backpack and hood.
 
 Each is a damped spring on an accelerated mount. Its response to a repeating motion has a closed
-form (`spring_follow`), so loops stay loops.
+form (`spring_follow`), so loops stay loops. Hair and strings are spring bones instead: see the file
+`human.toml` beside the character.
 """
 
 import numpy as np
 
 from characters.skeleton import rotations
-from tools.authoring.human.limbs import SIDES, rotation_deg
+from tools.authoring.human.limbs import rotation_deg
 from tools.authoring.modelling.curves import soft_limited, spring_follow
 from tools.authoring.modelling.rig import PosedRig
 from tools.authoring.modelling.shapes import Array
@@ -27,14 +28,6 @@ def add_secondary_motion(rig: PosedRig, seconds: float, aside: float = 0.0) -> N
     _swing_backpack(rig, back, seconds)
     flop = soft_limited(-0.9 * spring_follow(back[:, 1] - 0.5 * back[:, 2], seconds, 2.6, 0.35), 14)
     rig.turn("Hood", rotation_deg(x=_close_loop(-_soft_positive(flop, 4.0))))
-    front = _felt_acceleration(rig, "chest", (0.0, 1.09, 0.13), seconds, aside)
-    _swing_strings(rig, front, seconds)
-    crown = _felt_acceleration(rig, "head", (0.0, 1.74, -0.04), seconds, aside)
-    pitch = soft_limited(
-        -spring_follow(crown[:, 2] - 0.4 * crown[:, 1], seconds, 3.2, 0.22) * 0.55, 24
-    )
-    roll = soft_limited(spring_follow(crown[:, 0], seconds, 3.2, 0.22) * 0.55, 20)
-    rig.turn("Cowlick", rotation_deg(x=_close_loop(pitch), z=_close_loop(roll)))
 
 
 def _swing_backpack(rig: PosedRig, pull: Array, seconds: float) -> None:
@@ -46,16 +39,6 @@ def _swing_backpack(rig: PosedRig, pull: Array, seconds: float) -> None:
     rig.turn(
         "Backpack", rotation_deg(x=_close_loop(_soft_positive(away, 2.0)), z=_close_loop(sway))
     )
-
-
-def _swing_strings(rig: PosedRig, pull: Array, seconds: float) -> None:
-    """Swing the strings away from the chest, but not into it."""
-    for number, (side, _) in enumerate(SIDES):
-        hertz = 2.1 + 0.3 * number  # strings of different lengths
-        off = -spring_follow(4.0 * pull[:, 2] + 1.2 * pull[:, 1], seconds, hertz, 0.2)
-        aside = soft_limited(spring_follow(pull[:, 0], seconds, hertz, 0.2) * -1.4, 18)
-        off = _soft_positive(soft_limited(off, 40), 4.0)
-        rig.turn(f"{side}String", rotation_deg(x=-_close_loop(off), z=_close_loop(aside)))
 
 
 def _soft_positive(angle: Array, soft: float) -> Array:
