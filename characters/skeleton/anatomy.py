@@ -12,13 +12,11 @@ from functools import cached_property
 from typing import Literal
 
 from characters.errors import CharacterError
+from characters.skeleton.joint_words import SIDES as SIDES
 from characters.skeleton.parts import find_parts
 from characters.skeleton.pose import Skeleton
 
 Kind = Literal["humanoid", "quadruped", "other"]
-
-SIDES = ("left", "right")
-"""Both sides, as part names begin."""
 
 _TRUNK_PARTS = ("hips", "spine", "chest", "upperChest", "neck", "head", "jaw")
 _SIDED_PARTS = (

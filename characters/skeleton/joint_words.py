@@ -5,6 +5,9 @@ def _words(line: str) -> frozenset[str]:
     return frozenset(line.split())
 
 
+SIDES = ("left", "right")
+"""Both sides, as part names begin."""
+
 SIDE_OF = dict.fromkeys(
     ("left", "l", "lft", "gauche", "links", "izquierda", "izquierdo", "sinistra", "esquerda"),
     "left",

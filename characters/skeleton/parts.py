@@ -6,11 +6,13 @@ import numpy as np
 
 from characters.skeleton.fingers import find_fingers
 from characters.skeleton.joint_tree import JointTree
+from characters.skeleton.joint_words import SIDES
 from characters.skeleton.limbs import limbs_by_name, limbs_by_shape
 from characters.skeleton.pose import Skeleton
 from characters.skeleton.trunk import find_trunk
 
 _MAX_TRUNK_SLOPE = 1.0  # rise over run: below it, the trunk is horizontal
+_MAX_HOVERING = 0.5  # hip heights: paws that are farther above the hind feet are hands
 _FRONT_OF_ARM = {
     "Shoulder": "FrontShoulder",
     "UpperArm": "FrontUpperLeg",
@@ -25,9 +27,11 @@ def find_parts(skeleton: Skeleton, known: Mapping[str, int]) -> dict[str, int]:
     found = dict(known)
     _add_missing(found, limbs_by_name(tree))
     _add_missing(found, limbs_by_shape(tree, found))
+    if not _stands_in_front(tree, found):
+        found = _as_arms(found) | dict(known)
     _add_missing(found, find_trunk(tree, found))
     if _on_all_fours(tree, found):
-        found = {_as_front(part): joint for part, joint in found.items()} | dict(known)
+        found = _as_front_legs(found) | dict(known)
     _add_missing(found, find_fingers(tree, found))
     return found
 
@@ -52,9 +56,27 @@ def _on_all_fours(tree: JointTree, found: Mapping[str, int]) -> bool:
     return level and all(map(tree.near_ground, hands))
 
 
-def _as_front(part: str) -> str:
-    """Return the front-leg part for a part of an arm; other parts are unchanged."""
-    for side in ("left", "right"):
-        if part.removeprefix(side) in _FRONT_OF_ARM and part.startswith(side):
-            return side + _FRONT_OF_ARM[part.removeprefix(side)]
-    return part
+def _stands_in_front(tree: JointTree, found: Mapping[str, int]) -> bool:
+    """Return whether the front legs reach down as the hind legs do; else they are arms."""
+    feet = [found[p] for p in ("leftFoot", "rightFoot") if p in found]
+    paws = [found[p] for p in ("leftFrontFoot", "rightFrontFoot") if p in found]
+    tops = [found[p] for p in ("leftUpperLeg", "rightUpperLeg") if p in found]
+    if not (feet and paws and tops):
+        return True
+    ground, high = (float(tree.positions[joints, 1].mean()) for joints in (feet, tops))
+    hover = float(tree.positions[paws, 1].mean()) - ground
+    return hover < _MAX_HOVERING * (high - ground) or high <= ground
+
+
+def _as_arms(found: Mapping[str, int]) -> dict[str, int]:
+    """Return parts with the front legs as arms; hands have no toes."""
+    arm_of = {side + front: side + arm for arm, front in _FRONT_OF_ARM.items() for side in SIDES}
+    return {
+        arm_of.get(part, part): joint for part, joint in found.items() if "FrontToes" not in part
+    }
+
+
+def _as_front_legs(found: Mapping[str, int]) -> dict[str, int]:
+    """Return parts with the arms as front legs."""
+    leg_of = {side + arm: side + front for arm, front in _FRONT_OF_ARM.items() for side in SIDES}
+    return {leg_of.get(part, part): joint for part, joint in found.items()}

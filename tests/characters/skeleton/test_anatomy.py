@@ -33,7 +33,7 @@ def test_the_bundled_characters_have_all_parts(name):
         ("BrainStem", "humanoid", {"leftUpperLeg": "node4", "head": "node20"}),
         ("Fox", "quadruped", {"leftFrontFoot": "b_LeftHand_011", "tail3": "b_Tail03_014"}),
         ("dino_apatosaurus", "quadruped", {"leftFoot": "BackFoot.L", "tail5": "Tail5"}),
-        ("dino_t-rex", "quadruped", {"rightFrontFoot": "FrontFoot.R", "hips": "Body"}),
+        ("dino_t-rex", "humanoid", {"rightHand": "FrontFoot.R", "hips": "Body"}),
     ],
 )
 def test_third_party_models_are_recognised(file, kind, some):
@@ -127,6 +127,18 @@ def test_a_bird_walks_on_two_legs_and_its_wings_are_no_arms(legs):
     assert found == {part: name for part, name in truth.items() if "Wing" not in part}
     assert anatomy.kind == "humanoid"
     assert len(anatomy.feet) == 2
+
+
+def test_front_legs_that_do_not_reach_the_ground_are_arms():
+    short = {part: (up, (x, y / 3 + 0.4, z)) for part, (up, (x, y, z)) in DOG.items()}
+    rex = {part: short[part] if "Front" in part else DOG[part] for part in DOG}
+    skeleton, truth = named_body(ANIMALS["hind and front"], rex)
+    anatomy = Anatomy.guess(skeleton)
+    assert anatomy.kind == "humanoid"
+    assert anatomy.missing == ()
+    assert skeleton.names[anatomy.joints["leftHand"]] == truth["leftFrontFoot"]
+    assert skeleton.names[anatomy.joints["leftUpperArm"]] == truth["leftFrontUpperLeg"]
+    assert "leftFrontToes" not in anatomy.joints
 
 
 # As in two much used sets of animals, whose paws have no leg above them.
