@@ -225,6 +225,7 @@ def action_row(
         begins, ends = np.abs(at) < AROUND_S, np.abs(at - clip.duration) < AROUND_S
         acts = (at > AROUND_S) & (at < clip.duration - AROUND_S)
         cells += [f"{slides[part].max(initial=0.0):.1f}" for part in (begins, acts, ends)]
+        slide = max(slide, float(slides.max()))
     else:
         cells += ["", "", ""]
     head = poses.globals(character.skeleton)[:, character.anatomy.joints["head"], :3, :3]

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from characters.control.command import CharacterCommand, LocomotionIntent
 from characters.control.controllers.actions import WEIGHT_LAG_S, actions_of, next_action
 from characters.control.controllers.controller import ControllerFrame
+from characters.control.controllers.feet_in_transition import FeetInTransition
 from characters.model.character import Character
 from characters.motion.curves import ease
 from characters.motion.motion import Motion, RootDelta
 from characters.motion.phase import StaticPose
 from characters.motion.state_machine import StateMachine
+from characters.skeleton.pose import Pose
 from characters.skeleton.rotations import wrap
 from characters.smoothing import damped_spring, low_pass
 
@@ -54,6 +56,7 @@ class InPlaceController:
         idle = self._standing or _idle(character)
         states: dict[str, Motion] = {"idle": idle, **self._actions}
         self._machine = StateMachine(states, "idle")
+        self._feet = FeetInTransition(character)
         self._state = "idle"
         self._time = 0.0
         self._placed = place is not None
@@ -83,7 +86,7 @@ class InPlaceController:
         self._move(command.locomotion or LocomotionIntent(), elapsed)
         action = self._actions.get(self._state)
         return ControllerFrame(
-            self._machine.sample(self._time),
+            self._pose(),
             self._state,
             self._place,
             height=self._height,
@@ -91,6 +94,13 @@ class InPlaceController:
             acting=action is not None,
             shows_emotion=action is not None and action.shows_emotion,
         )
+
+    def _pose(self) -> Pose:
+        """Return what is played, with feet that do not skid in a transition."""
+        machine, pose = self._machine, self._machine.sample(self._time)
+        spent = self._time - machine.entered
+        own = pose if spent >= machine.length else machine.states[machine.state].sample(spent)
+        return self._feet.held(pose, own, machine.entered, spent, machine.length)
 
     def _act(self, command: CharacterCommand, elapsed: float, now: float) -> None:
         weight = min(max(command.weight, -1.0), 1.0)
