@@ -7,26 +7,39 @@ skins may be bound to bones of other lengths, in other units, and each in a fram
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from characters.model.mesh import Mesh
 from characters.skeleton import rotations
-from characters.skeleton.anatomy import SIDES
+from characters.skeleton.anatomy import SIDES, Anatomy
 from characters.skeleton.masks import subtree_sizes
 from characters.skeleton.pose import Array, Pose, Skeleton
-
-if TYPE_CHECKING:
-    from characters.model.character import Character
 
 _IDENTITY_TOLERANCE = 1e-5
 _MAX_REST_DISTANCE = 0.01  # body sizes; a bind pose closer to the rest pose is the rest pose
 _MIN_JOINTS = 3  # fewer do not show the axes of a skin
 
 
-def bind_placements(character: "Character") -> tuple[Array, NDArray[np.bool_]]:
+class SkinnedBody(Protocol):
+    """A `Character`, as far as its bind pose is concerned."""
+
+    @property
+    def skeleton(self) -> Skeleton:
+        """Its joints."""
+
+    @property
+    def meshes(self) -> Sequence[Mesh]:
+        """Its skinned geometry."""
+
+    @property
+    def anatomy(self) -> Anatomy:
+        """Which joint is which body part."""
+
+
+def bind_placements(character: SkinnedBody) -> tuple[Array, NDArray[np.bool_]]:
     """Return the placements that joints were bound in, (joints, 4, 4), and which joints were.
 
     Rigid meshes are bound in their joint's own frame, which says nothing about its placement:
@@ -54,7 +67,7 @@ def _skins(meshes: Sequence[Mesh]) -> Iterator[tuple[NDArray[np.intp], Array]]:
         yield np.array(invertible, np.intp), np.asarray(placements, np.float64)
 
 
-def with_bind_pose(character: "Character") -> Skeleton:
+def with_bind_pose(character: SkinnedBody) -> Skeleton:
     """Return the skeleton with the turns of the bind pose at rest; bones keep their lengths."""
     return _at_rest_as_bound(character.skeleton, character.meshes, character.anatomy.joints)
 
