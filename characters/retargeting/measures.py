@@ -1,7 +1,6 @@
 """What retargeting should keep: knees, bone lengths, soles on the ground, the way ahead."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -9,12 +8,12 @@ import numpy as np
 from characters.model.character import skin
 from characters.model.mesh import Mesh
 from characters.retargeting.rig import LegJoints, Rig
+from characters.retargeting.soles import parts_of_joints
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
 
 _KNEE_QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 _LIMBS = (("Arm", "Hand"), ("Leg", "Foot"))
-_MIN_FOOT_WEIGHT = 0.5  # of a vertex that belongs to a foot
 _MAX_SKINNED_FRAMES = 24
 
 
@@ -67,29 +66,24 @@ def facing_error(poses: Pose, rig: Rig) -> float:
     return float(np.arctan2(-z, x))
 
 
-def sole_dip(poses: Pose, rig: Rig, meshes: Sequence[Mesh]) -> float:
+def sole_dip(
+    poses: Pose, rig: Rig, meshes: Sequence[Mesh], most_frames: int = _MAX_SKINNED_FRAMES
+) -> float:
     """Return how deep the skin of the feet goes below the soles at rest [m]; 0 without a skin.
 
     Poses are of a character that stands and walks on one plane.
     """
     feet = {j for leg in rig.legs for j in (leg.foot, leg.toes) if j is not None}
     own = [j for j in range(len(rig.skeleton)) if feet & set(rig.chain_to(j))]
-    frames = np.linspace(0, len(poses.rotations) - 1, _MAX_SKINNED_FRAMES).round().astype(int)
-    placements = poses[np.unique(frames)].globals(rig.skeleton)
-    rest = rig.skeleton.rest.globals(rig.skeleton)
+    soles = parts_of_joints(meshes, own)
+    if not soles:
+        return 0.0
+    count = min(most_frames, len(poses.rotations))
+    frames = np.linspace(0, len(poses.rotations) - 1, count).round().astype(int)
     up = rotations.rotate(rotations.conjugate(rig.common_from_skeleton), np.array([0.0, 1.0, 0.0]))
-    at_rest, moving = [], []
-    for mesh in meshes:
-        shares = np.where(np.isin(mesh.joints, own), mesh.weights, 0.0).sum(1)
-        chosen = shares > _MIN_FOOT_WEIGHT
-        if chosen.any():
-            soles = replace(
-                mesh,
-                positions=mesh.positions[chosen],
-                joints=mesh.joints[chosen],
-                weights=mesh.weights[chosen],
-                morphs=(),
-            )
-            at_rest.append((skin(soles, rest) @ up).min())
-            moving += [(skin(soles, frame) @ up).min() for frame in placements]
-    return max(float(min(at_rest) - min(moving)), 0.0) if moving else 0.0
+    lowest = [
+        min(float((skin(sole, placements) @ up).min()) for sole in soles)
+        for pose in (rig.skeleton.rest[None], poses[frames])
+        for placements in pose.globals(rig.skeleton)
+    ]
+    return max(lowest[0] - min(lowest[1:]), 0.0)

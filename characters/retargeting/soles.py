@@ -185,7 +185,15 @@ def skin_of_joints(
 
     `placements` of all joints are (joints, 4, 4).
     """
-    found = [np.zeros((0, 3))]
+    parts = parts_of_joints(meshes, joints, others)
+    return np.concatenate([np.zeros((0, 3)), *(skin(part, placements) for part in parts)])
+
+
+def parts_of_joints(
+    meshes: Sequence[Mesh], joints: Sequence[int], others: Sequence[int] = ()
+) -> list[Mesh]:
+    """Return the parts of meshes, without triangles, that mostly follow these joints."""
+    found = []
     for mesh in meshes:
         own, other = (
             np.where(np.isin(mesh.joints, each), mesh.weights, 0.0).sum(1)
@@ -200,8 +208,8 @@ def skin_of_joints(
                 weights=mesh.weights[chosen],
                 morphs=(),
             )
-            found.append(skin(part, placements))
-    return np.concatenate(found)
+            found.append(part)
+    return found
 
 
 def _outermost(points: Array) -> Array:

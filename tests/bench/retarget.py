@@ -21,7 +21,7 @@ from characters.retargeting import Recording, load_recording, retarget
 from characters.retargeting.footskate import ball_positions, find_foot_contacts
 from characters.retargeting.ground_motion import find_ground_motion
 from characters.retargeting.locomotion.recorded_gait import extract_gait
-from characters.retargeting.measures import bone_change, knee_quantiles
+from characters.retargeting.measures import bone_change, knee_quantiles, sole_dip
 from characters.retargeting.rig import Rig, leg_pairs
 from characters.retargeting.root import with_root_joint
 from characters.skeleton import rotations
@@ -132,28 +132,6 @@ def hips_height(clip: Clip, rig: Rig) -> float:
     return found[0] / (found[1] if rig.anatomy.kind == "quadruped" else rig.leg_length)
 
 
-def dip(clip: Clip, character: Character) -> float:
-    """Return how deep the skin of feet goes below the soles at rest [m]; 0 without a skin."""
-    rig, rest = Rig(character.skeleton, character.anatomy), character.skeleton.rest
-    deepest = 0.0
-    feet = {j for leg in rig.legs for j in (leg.foot, leg.toes) if j is not None}
-    joints = [j for j in range(len(rig.skeleton)) if feet & set(rig.chain_to(j))]
-    for mesh in character.meshes:
-        own = np.where(np.isin(mesh.joints, joints), mesh.weights, 0).sum(1) > 0.5
-        if not own.any():
-            continue
-        points = np.concatenate([mesh.positions[own], np.ones((own.sum(), 1))], axis=1)
-        lowest = []
-        for placements in (rest.globals(rig.skeleton)[None], clip.poses.globals(rig.skeleton)):
-            heights = np.zeros((len(placements), len(points)))
-            for used, weights in zip(mesh.joints[own].T, mesh.weights[own].T, strict=True):
-                rows = np.einsum("fvi,vij->fvj", placements[:, used, 1], mesh.inverse_bind[used])
-                heights += weights * np.einsum("fvj,vj->fv", rows, points)
-            lowest.append(float(heights.min()))
-        deepest = max(deepest, lowest[0] - lowest[1])
-    return deepest
-
-
 def stature(source: Recording, made: Clip, body: Character) -> tuple[float, float, float, float]:
     """Return knees beyond the source [°], hips against it, dip [cm] and change of bones."""
     rig = Rig(body.skeleton, body.anatomy)
@@ -162,7 +140,7 @@ def stature(source: Recording, made: Clip, body: Character) -> tuple[float, floa
     return (
         knees_beyond(source, made, rig),
         hips_height(made, rig) / theirs,
-        dip(made, body) * scale,
+        sole_dip(made.poses, Rig(body.skeleton, body.anatomy), body.meshes, len(made)) * scale,
         bone_change(made.poses, rig),
     )
 
@@ -178,7 +156,8 @@ def gait_figures(source: Recording, character: Character) -> tuple[float, float,
         own = [knee_quantiles(gait.clip.poses, gait.rig, leg) for leg in gait.legs]
         knees = np.nan if gait.source_knees is None else float((own - gait.source_knees).max())
         scale = 100 * PERSON_HEIGHT_M / body.height
-        return float(np.degrees(knees)), dip(gait.clip, body) * scale, gait.mean_slide * scale
+        dip = sole_dip(gait.clip.poses, gait.rig, body.meshes, len(gait.clip))
+        return float(np.degrees(knees)), dip * scale, gait.mean_slide * scale
     return None
 
 
