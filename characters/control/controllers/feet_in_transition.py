@@ -18,6 +18,9 @@ _MAX_HEIGHT, _MAX_WAY = 0.01, 0.05
 """Of a foot that stands in both motions: its height above the rest pose's, and how far it goes in
 the transition [body heights]."""
 
+_LET_GO = 0.02
+"""How far a foot goes in the new motion until it is no longer held [body heights]."""
+
 
 class FeetInTransition:
     """The feet of a character without legs for inverse kinematics; advanced once a frame."""
@@ -31,6 +34,7 @@ class FeetInTransition:
         self._rest_heights = rest[self._feet, 1, 3]
         self._last: Pose | None = None
         self._entered = 0.0
+        self._start: Pose | None = None  # of the feet in the new motion
         self._transition: Inertialization | None = None
         self._standing = np.zeros(len(self._feet), bool)
 
@@ -54,20 +58,26 @@ class FeetInTransition:
             self._last = None
             return shown
         joints = shown.globals(self._skeleton)
-        feet = self._placed(own.globals(self._skeleton))
+        feet, free = self._placed(own.globals(self._skeleton)), self._placed(joints)
         if self._last is None or entered != self._entered:
-            old = self._last or self._placed(joints)
-            self._entered = entered
+            old = self._last or free
+            stand = self._stand(old, feet)
+            # A foot that is held already is not let go in between.
+            self._standing = stand | self._standing if self._last is not None else stand
+            self._entered, self._start = entered, feet
             self._transition = Inertialization.begin((old, old), (feet, feet), 1.0, length)
-            self._standing = self._stand(old, feet)
         assert self._transition is not None
+        assert self._start is not None
         held = self._transition.apply(feet, spent)
+        gone = np.linalg.norm(feet.translations - self._start.translations, axis=1)
+        share = np.maximum(1.0 - gone / (_LET_GO * self._height), 0.0) * self._standing
+        aims = _between(free, held, share)
         places, turns = shown.translations.copy(), shown.rotations.copy()
-        for number in np.flatnonzero(self._standing).tolist():
+        for number in np.flatnonzero(share).tolist():
             foot, above = self._feet[number], joints[self._above[number]]
-            places[foot] = np.linalg.solve(above, [*held.translations[number], 1.0])[:3]
+            places[foot] = np.linalg.solve(above, [*aims.translations[number], 1.0])[:3]
             turn = _turns(above[None])[0]
-            turns[foot] = rotations.multiply(rotations.conjugate(turn), held.rotations[number])
+            turns[foot] = rotations.multiply(rotations.conjugate(turn), aims.rotations[number])
         pose = Pose(places, turns, shown.scales, shown.morphs)
         self._last = self._placed(pose.globals(self._skeleton))
         return pose
@@ -85,6 +95,12 @@ class FeetInTransition:
             way < _MAX_WAY * self._height
         )
         return stand
+
+
+def _between(free: Pose, held: Pose, share: Array) -> Pose:
+    """Return placements between two, (n,), by the share of the second, 0…1."""
+    places = free.translations + share[:, None] * (held.translations - free.translations)
+    return Pose(places, rotations.slerp(free.rotations, held.rotations, share))
 
 
 def _turns(joints: Array) -> Array:
