@@ -216,7 +216,12 @@ def _grade_whole(row: Row, character: Character, recording: Recording) -> None:
         body = with_root_joint(replace(character, skeleton=with_bind_pose(character)))
         rig, theirs = Rig(body.skeleton, body.anatomy), Rig(recording.skeleton, recording.anatomy)
         clip = retarget(
-            recording.clip, recording.skeleton, recording.anatomy, rig.skeleton, rig.anatomy
+            recording.clip,
+            recording.skeleton,
+            recording.anatomy,
+            rig.skeleton,
+            rig.anatomy,
+            meshes=body.meshes,
         )
         slide = 0.0 if on_treadmill(recording) else feet(recording, clip, rig, body.height)[0]
         knees = 0.0
