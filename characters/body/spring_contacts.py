@@ -60,15 +60,18 @@ class Contacts:
         later = np.ones(self.reach.shape, bool)  # pairs whose turn is still to come
         while hits is not None:
             hitting, away, distances = hits
-            rows = np.flatnonzero((hitting & later).any(axis=1))
+            waiting = hitting & later
+            rows = waiting.any(axis=1).nonzero()[0]
             if not rows.size:
                 break
-            turns = (hitting & later)[rows].argmax(axis=1)
+            turns = waiting[rows].argmax(axis=1)
             later[rows] = np.arange(self.reach.shape[1]) > turns[:, None]
             bones, distance = self.bones[rows], distances[rows, turns]
             depth = (self.reach[rows, turns] - distance) / np.maximum(distance, 1e-9)
             pushed = way[bones] + away[rows, turns] * depth[:, None]
             way[bones] = with_length(pushed, lengths[bones])
+            if self.reach.shape[1] == 1:  # every bone had its turn
+                break
             tails[rows] = origins[bones] + way[bones]
             hits = self._hits(tails, ends)
         return way
