@@ -2,8 +2,10 @@
 
 import numpy as np
 
+from affect import Emotion
+from affect.words import WORD_LABELS
 from characters.control.layers.layer import FrameContext
-from characters.face.affect_display import AffectDisplay
+from characters.face.affect_display import EMOTIONAL_WORDS, FACE_RECIPES, AffectDisplay
 from characters.face.blink import BlinkTimer
 from characters.face.jaw import JawJoint
 from characters.face.lids import Lids, blink_shares
@@ -31,7 +33,8 @@ class FaceLayer:
     def update(self, pose: Pose, context: FrameContext) -> Pose:
         """Return the pose with lids and expression."""
         frame = context.frame
-        self._display.update(context.elapsed, None if frame.shows_emotion else context.emotion)
+        shown_by_action = frame.shows_emotion and not _is_finer(context.emotion, frame.state)
+        self._display.update(context.elapsed, None if shown_by_action else context.emotion)
         closed = self._blinks.update(
             context.elapsed, context.gaze_shift, context.expressivity.tempo
         )
@@ -64,3 +67,14 @@ class FaceLayer:
             self._speech.visemes = speech.profile.visemes
         emphasis = 0.0 if speech is None else speech.profile.face_emphasis
         self._speech.update(context.elapsed, said, context.command.timestamp, emphasis)
+
+
+def _is_finer(emotion: Emotion | None, action: str) -> bool:
+    """Return whether an emotion has another face than an action that stands for its mood.
+
+    A character that can act only angry is angry where it is afraid, but looks afraid.
+    """
+    word = (emotion and emotion.word) or ""
+    if not {word, action} <= EMOTIONAL_WORDS & WORD_LABELS.keys():
+        return False
+    return WORD_LABELS[word] == WORD_LABELS[action] and FACE_RECIPES[word] != FACE_RECIPES[action]
