@@ -61,7 +61,7 @@ class Contacts:
         while hits is not None:
             hitting, away, distances = hits
             waiting = hitting & later
-            rows = waiting.any(axis=1).nonzero()[0]
+            rows = np.flatnonzero(waiting.any(axis=1))
             if not rows.size:
                 break
             turns = waiting[rows].argmax(axis=1)

@@ -167,7 +167,7 @@ class FootConstraint:
         velocity = [
             min(max(v, -most), most) for v, most in zip(self._velocity, limits, strict=True)
         ]
-        # It stood still while its motion rose already; so that it does not drag, it makes up for it.
+        # It stood still while its motion rose already, and makes up for it, not to drag.
         self._shown[3] = max(self._shown[3], self._last_height)
         velocity[3] = max(velocity[3], 0.0)
         self._start_decay(self._shown, velocity, _QUICK_STEP_S if step else _OFFSET_DECAY_S)

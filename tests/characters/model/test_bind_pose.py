@@ -77,7 +77,7 @@ def test_a_body_with_a_skin_on_one_arm_stands_on_its_feet():
         triangles=np.array([[0, 1, 2]], np.uint32),
         joints=bones,
         weights=np.eye(1, 4, dtype=np.float32).repeat(3, axis=0),
-        inverse_bind=np.linalg.inv(skeleton.rest.globals(skeleton)),
+        inverse_bind=np.asarray(np.linalg.inv(skeleton.rest.globals(skeleton)), np.float64),
         colors=None,
         uvs=None,
         morphs=(),

@@ -34,8 +34,9 @@ def still(skeleton):
     return Clip("Still", 30.0, Pose.of_frames([skeleton.rest] * 3), loop=False)
 
 
-def bones(clip, skeleton, anatomy, side, finger):
+def bones(clip, body, side, finger):
     """Unit vectors along the bones of a finger, without the last, in the first frame."""
+    skeleton, anatomy = body
     parts = [f"{side}{finger}{part}" for part in PARTS]
     joints = [anatomy.joints[part] for part in parts if part in anatomy.joints]
     places = clip.poses.globals(skeleton)[0, joints, :3, 3]
@@ -43,8 +44,9 @@ def bones(clip, skeleton, anatomy, side, finger):
     return along / np.linalg.norm(along, axis=-1, keepdims=True)
 
 
-def bends_deg(clip, skeleton, anatomy, side, finger):
+def bends_deg(clip, body, side, finger):
     """Turn of each joint of a finger relative to the joint above [deg]."""
+    _, anatomy = body
     joints = [anatomy.joints[f"{side}{finger}{part}"] for part in PARTS]
     turns = rotations.to_rotation_vector(clip.poses.rotations[0, joints])
     return np.degrees(np.linalg.norm(turns, axis=-1))
@@ -54,16 +56,16 @@ def test_flat_fingers_curl_to_the_palm_without_data(flat, fingerless):
     clip = retarget(*fingerless, *flat, hold_feet=False)
     for side in ("left", "right"):
         for finger in FINGERS:
-            first, second = bones(clip, *flat, side, finger)
+            first, second = bones(clip, flat, side, finger)
             assert 0 > first[1] > second[1]  # palms are down
             assert abs(first[2]) < 1e-6  # and fingers stay side by side
-            assert np.all(bends_deg(clip, *flat, side, finger) > 14)
-            assert np.all(bends_deg(clip, *flat, side, finger) < 36)
+            assert np.all(bends_deg(clip, flat, side, finger) > 14)
+            assert np.all(bends_deg(clip, flat, side, finger) < 36)
 
 
 def test_the_index_bends_least_and_the_little_finger_most(flat, fingerless):
     clip = retarget(*fingerless, *flat, hold_feet=False)
-    sums = [bends_deg(clip, *flat, "left", finger).sum() for finger in FINGERS]
+    sums = [bends_deg(clip, flat, "left", finger).sum() for finger in FINGERS]
     assert sums == sorted(sums)
     assert sums[-1] > sums[0] + 20
 
@@ -117,7 +119,8 @@ def test_a_hand_that_is_a_fist_at_rest_stays_one(flat, fingerless):
                 joint = anatomy.joints[f"{side}{finger}{part}"]
                 turns[joint] = rotations.about("z", sign * 1.2)
     fists = replace(skeleton, rest=replace(skeleton.rest, rotations=turns))
-    clip = retarget(*fingerless, fists, anatomy, hold_feet=False)
+    moved, source, source_anatomy = fingerless
+    clip = retarget(moved, source, source_anatomy, fists, anatomy, hold_feet=False)
     fingers = [anatomy.joints[f"left{f}{part}"] for f in FINGERS for part in PARTS]
     alike = np.abs((clip.poses.rotations[0, fingers] * turns[fingers]).sum(-1))
     assert alike == pytest.approx(1.0, abs=1e-9)

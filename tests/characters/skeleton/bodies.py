@@ -95,7 +95,7 @@ def _add_helper(joints, helper, sign, tree):
 
 def skeleton_of(joints):
     """A skeleton from parents and places by name, in any order."""
-    order = []
+    order: list[str] = []
     while len(order) < len(joints):
         order += [n for n, (up, _) in joints.items() if n not in order and (not up or up in order)]
     names = tuple(order)
