@@ -12,8 +12,8 @@ from functools import cached_property
 from typing import Literal
 
 from characters.errors import CharacterError
-from characters.skeleton.joint_words import SIDES as SIDES
-from characters.skeleton.parts import find_parts
+from characters.skeleton.body_parts.joint_words import SIDES as SIDES
+from characters.skeleton.body_parts.parts import find_parts
 from characters.skeleton.pose import Skeleton
 
 Kind = Literal["humanoid", "quadruped", "other"]

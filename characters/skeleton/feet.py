@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from characters.skeleton.anatomy import SIDES, Anatomy
-from characters.skeleton.joint_names import JointName, read_names
+from characters.skeleton.body_parts.joint_names import JointName, read_names
 from characters.skeleton.masks import subtree
 from characters.skeleton.pose import Skeleton
 

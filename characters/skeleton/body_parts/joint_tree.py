@@ -6,8 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from characters.skeleton.body_parts.joint_names import JointName, read_names
 from characters.skeleton.joint_chains import chains_to_root, children_of, longest_chain_below
-from characters.skeleton.joint_names import JointName, read_names
 from characters.skeleton.pose import Array, Skeleton
 
 _MIN_SIDE_OFFSET = 0.02  # body sizes from the middle: beyond it, a joint has a side

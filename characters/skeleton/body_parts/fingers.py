@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from characters.skeleton.body_parts.joint_tree import JointTree
 from characters.skeleton.joint_chains import longest_chain_below, longest_chain_of
-from characters.skeleton.joint_tree import JointTree
 from characters.skeleton.pose import Array
 
 _FINGERS = ("Index", "Middle", "Ring", "Little")
