@@ -109,9 +109,9 @@ def _same(one: Path, other: Path) -> bool:
 def table(title: str, gaits: Sequence[GaitReport], seams: bool = False) -> Table:
     """Return a table of gaits."""
     rows = Table(title=title, title_justify="left", title_style="bold", box=SIMPLE_HEAD)
-    rows.add_column("recording" if seams else "clip", no_wrap=not seams)
+    rows.add_column("recording" if seams else "clip", no_wrap=not seams, overflow="fold")
     if not seams:
-        rows.add_column("from")
+        rows.add_column("from", overflow="fold")
     for heading in ("cycle", "speed", "turns", "slide"):
         rows.add_column(heading, justify="right", no_wrap=True)
     if seams:
