@@ -136,9 +136,15 @@ class AffectDisplay:
         """Whether there is an expression to be shown."""
         return self._able and self._visible
 
-    def update(self, elapsed: float, emotion: Emotion | None) -> None:
-        """Advance by a time [s] towards the face of an emotion; None for that of the clips."""
+    def update(self, elapsed: float, emotion: Emotion | None, acted: str = "") -> None:
+        """Advance by a time [s] towards the face of an emotion; None for that of the clips.
+
+        Clips that have the face of a word, `acted`, get only what the emotion adds to it.
+        """
         targets = _ZERO_WEIGHTS if emotion is None else expression_weights(emotion)
+        if acted:
+            shown = FACE_RECIPES[acted]
+            targets = tuple(max(own - part, 0.0) for own, part in zip(targets, shown, strict=True))
         asked = any(targets)
         if not self._visible and not asked:
             return

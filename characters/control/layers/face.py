@@ -33,8 +33,10 @@ class FaceLayer:
     def update(self, pose: Pose, context: FrameContext) -> Pose:
         """Return the pose with lids and expression."""
         frame = context.frame
-        shown_by_action = frame.shows_emotion and not _is_finer(context.emotion, frame.state)
-        self._display.update(context.elapsed, None if shown_by_action else context.emotion)
+        emotion, acted = context.emotion, frame.state if frame.shows_emotion else ""
+        if acted and not _is_finer(emotion, acted):
+            emotion, acted = None, ""
+        self._display.update(context.elapsed, emotion, acted)
         closed = self._blinks.update(
             context.elapsed, context.gaze_shift, context.expressivity.tempo
         )
