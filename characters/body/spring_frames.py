@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from characters.model.springs import SpringBone
 from characters.skeleton.pose import Array, Pose, Skeleton
+from characters.skeleton.skeleton_part import SkeletonPart
 
 _Indices = NDArray[np.intp]
 
@@ -92,7 +93,7 @@ class SpringFrames:
         own = self.joints.tolist()
         carriers = [joint_of[shape.joint] for shape in self.shapes]
         centers = [-1 if bone.center is None else joint_of[bone.center] for bone in self.bones]
-        self._part = _SkeletonPart.of(skeleton, [*own, *carriers, *centers])
+        self._part = SkeletonPart.of(skeleton, [*own, *carriers, *centers])
         self._own, self._carriers, self._centers = map(self._part.places, (own, carriers, centers))
 
     def placed(self, pose: Pose, world_from_character: Array) -> PlacedBones:
@@ -118,36 +119,6 @@ class SpringFrames:
             ends = moved(world_from_joint[self._carriers, None], ends)
         place = world_from_character[:3, 3].copy()
         return PlacedBones(frames, heads + reach, lengths, centers, ends, place)
-
-
-@dataclass(frozen=True)
-class _SkeletonPart:
-    """The joints on which some joints depend, as a skeleton of their own."""
-
-    skeleton: Skeleton
-    """These joints."""
-
-    joints: _Indices
-    """Their numbers in the whole skeleton."""
-
-    @staticmethod
-    def of(skeleton: Skeleton, joints: Sequence[int]) -> "_SkeletonPart":
-        kept = skeleton.with_ancestors(joint for joint in joints if joint >= 0)
-        places = {joint: number for number, joint in enumerate(kept)}
-        names = tuple(skeleton.names[joint] for joint in kept)
-        parents = tuple(places.get(skeleton.parents[joint], -1) for joint in kept)
-        rest = Pose(skeleton.rest.translations[kept], skeleton.rest.rotations[kept])
-        return _SkeletonPart(Skeleton(names, parents, rest), np.array(kept, np.intp))
-
-    def places(self, joints: Sequence[int]) -> _Indices:
-        """Return the numbers of joints in the part; any for −1."""
-        return np.searchsorted(self.joints, np.maximum(np.array(joints, np.intp), 0))
-
-    def globals(self, pose: Pose) -> Array:
-        """Return `character_from_joint` of its joints, (joints, 4, 4), in a pose of all."""
-        scales = None if pose.scales is None else pose.scales[self.joints]
-        own = Pose(pose.translations[self.joints], pose.rotations[self.joints], scales)
-        return own.globals(self.skeleton)
 
 
 def moved(matrices: Array, points: Array) -> Array:

@@ -12,7 +12,9 @@ from characters.retargeting.soles import Sole, skin_of_joints
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import SIDES, Anatomy
 from characters.skeleton.facing import common_from_skeleton
+from characters.skeleton.masks import subtree
 from characters.skeleton.pose import Array, Pose, Skeleton
+from characters.skeleton.skeleton_part import SkeletonPart
 
 _STANDING_HEIGHT = (-0.02, 0.12)  # of the lowest joint of a standing rest pose, in body sizes
 _MAX_HOVERING = 0.2  # of feet above the ground at rest, in leg lengths
@@ -101,17 +103,9 @@ class Rig:
 
         Those of the others are zero; legs are a few joints of many.
         """
-        chain = np.array(self.skeleton.with_ancestors(joints))
-        number = {joint: place for place, joint in enumerate(chain.tolist())}
-        parents = tuple(number.get(self.skeleton.parents[joint], -1) for joint in number)
-        names = tuple(self.skeleton.names[joint] for joint in number)
-        part = Pose(
-            pose.translations[..., chain, :],
-            pose.rotations[..., chain, :],
-            None if pose.scales is None else pose.scales[..., chain, :],
-        )
+        part = SkeletonPart.of(self.skeleton, joints)
         found = np.zeros((*pose.rotations.shape[:-1], 4, 4))
-        found[..., chain, :, :] = part.globals(Skeleton(names, parents, self.skeleton.rest[chain]))
+        found[..., part.joints, :, :] = part.globals(pose)
         return found
 
     def direction(self, start: str, end: str) -> Array | None:
@@ -202,9 +196,8 @@ class Rig:
         return {leg.foot: self._sole(leg) for leg in self.legs}
 
     def _sole(self, leg: LegJoints) -> Sole:
-        joints = range(len(self.skeleton))
-        toes = [j for j in joints if leg.toes is not None and leg.toes in self.chain_to(j)]
-        foot = [j for j in joints if leg.foot in self.chain_to(j) and j not in toes]
+        toes = [] if leg.toes is None else subtree(self.skeleton, leg.toes)
+        foot = [joint for joint in subtree(self.skeleton, leg.foot) if joint not in toes]
         ankle = self.rest_positions[leg.foot]
         ball = None if leg.toes is None else self.rest_positions[leg.toes] - ankle
         ahead = rotations.rotate(self.flat_foot(leg), [0.0, 0.0, 1.0])
