@@ -20,6 +20,7 @@ from characters.model.bind_pose import with_bind_pose
 from characters.retargeting import Recording, load_recording, retarget
 from characters.retargeting.footskate import ball_positions, find_foot_contacts
 from characters.retargeting.ground_motion import find_ground_motion
+from characters.retargeting.locomotion.grading import MAX_BONE_CHANGE, MAX_KNEE_EXCESS_DEG
 from characters.retargeting.locomotion.recorded_gait import extract_gait
 from characters.retargeting.measures import bone_change, knee_quantiles, sole_dip
 from characters.retargeting.rig import Rig, leg_pairs
@@ -60,8 +61,8 @@ CASES += [
     ("gltf/Fox.glb#Run", "gltf/dino_apatosaurus.glb"),
     ("gltf/dino_apatosaurus.glb#Armature|Apatosaurus_Walk", "gltf/Fox.glb"),
 ]
-MAX_KNEE_DEG, MAX_HIPS_SHARE, MAX_DIP_CM, MAX_BONE_SHARE = 8.0, 0.03, 0.5, 0.01
-"""The bars of issue 18."""
+MAX_HIPS_SHARE, MAX_DIP_CM = 0.03, 0.5
+"""Bars of this bench; those of knees and bones are the ones of made gaits."""
 
 
 def directions(clip: Clip, rig: Rig) -> NDArray[np.float64]:
@@ -140,7 +141,7 @@ def stature(source: Recording, made: Clip, body: Character) -> tuple[float, floa
     return (
         knees_beyond(source, made, rig),
         hips_height(made, rig) / theirs,
-        sole_dip(made.poses, Rig(body.skeleton, body.anatomy), body.meshes, len(made)) * scale,
+        sole_dip(made.poses, rig, body.meshes, len(made)) * scale,
         bone_change(made.poses, rig),
     )
 
@@ -163,8 +164,8 @@ def gait_figures(source: Recording, character: Character) -> tuple[float, float,
 
 def stature_table() -> Table:
     """Return the table of knees, hips and soles."""
-    bars = f"bars: {MAX_KNEE_DEG:.0f}°, ±{MAX_HIPS_SHARE:.0%}, {MAX_DIP_CM} cm, "
-    table = Table(title="Crouching and sinking", caption=bars + f"{MAX_BONE_SHARE:.0%}")
+    bars = f"bars: {MAX_KNEE_EXCESS_DEG:.0f}°, ±{MAX_HIPS_SHARE:.0%}, {MAX_DIP_CM} cm, "
+    table = Table(title="Crouching and sinking", caption=bars + f"{MAX_BONE_CHANGE:.0%}")
     table.add_column("motion")
     table.add_column("on")
     for heading in ("knee beyond", "hips", "soles dip", "bones", "gait: knee", "dips", "slides"):
@@ -193,10 +194,10 @@ def stature_table() -> Table:
         )
     knees, hips, dips, bones = np.array(found).T  # unknown figures are not beyond a bar
     over = [
-        (knees > MAX_KNEE_DEG).sum(),
+        (knees > MAX_KNEE_EXCESS_DEG).sum(),
         (np.abs(hips - 1) > MAX_HIPS_SHARE).sum(),
         (dips > MAX_DIP_CM).sum(),
-        (bones > MAX_BONE_SHARE).sum(),
+        (bones > MAX_BONE_CHANGE).sum(),
     ]
     table.add_section()
     worst = np.nanmax(knees), 1 + np.nanmax(np.abs(hips - 1)), dips.max(), np.nanmax(bones)

@@ -63,18 +63,14 @@ from characters.retargeting.locomotion.grading import (
 from characters.retargeting.measures import (
     bone_change,
     facing_error,
-    knee_quantiles,
     sole_dip,
 )
-from characters.retargeting.rig import Rig, leg_pairs
+from characters.retargeting.rig import Rig
 from characters.retargeting.root import with_root_joint
-from tests.bench.retarget import feet, on_treadmill
+from tests.bench.retarget import PERSON_HEIGHT_M, feet, knees_beyond, on_treadmill
 
 GAIT_NAME = re.compile(r"walk|run|jog|gallop|trot|stroll", re.IGNORECASE)
 """Clips of models that are taken as gaits."""
-
-PERSON_HEIGHT_M = 1.7
-"""Height of a person with legs of `PERSON_LEG_M`."""
 
 COLUMNS = ("load", "time", "faces", "size", "steps", "slide", "sinks", "knees", "seam")
 """Measures of a row, in the order of the table."""
@@ -214,7 +210,7 @@ def _grade_whole(row: Row, character: Character, recording: Recording) -> None:
     """Measure a motion that is no gait as it is retargeted, if it can be."""
     with suppress(CharacterError):
         body = with_root_joint(replace(character, skeleton=with_bind_pose(character)))
-        rig, theirs = Rig(body.skeleton, body.anatomy), Rig(recording.skeleton, recording.anatomy)
+        rig = Rig(body.skeleton, body.anatomy)
         clip = retarget(
             recording.clip,
             recording.skeleton,
@@ -224,19 +220,12 @@ def _grade_whole(row: Row, character: Character, recording: Recording) -> None:
             meshes=body.meshes,
         )
         slide = 0.0 if on_treadmill(recording) else feet(recording, clip, rig, body.height)[0]
-        knees = 0.0
-        if rig.anatomy.kind != "quadruped":
-            knees = max(
-                float((knee_quantiles(clip.poses, rig, own) - quantiles).max())
-                for other, own in leg_pairs(theirs, rig)
-                for quantiles in [knee_quantiles(recording.clip.poses, theirs, other)]
-            )
         _fill(
             row,
             size=bone_change(clip.poses, rig),
             slide=slide,
             sinks=100 * PERSON_HEIGHT_M / body.height * sole_dip(clip.poses, rig, body.meshes),
-            knees=max(math.degrees(knees), 0.0),
+            knees=np.fmax(knees_beyond(recording, clip, rig), 0.0),  # NaN for animals
         )
         row.body, row.clip = replace(body, clips={"whole": replace(clip, name="whole")}), "whole"
 
