@@ -234,7 +234,7 @@ def _springs(character: Character, sidecar: Sidecar) -> tuple[SpringBone, ...]:
 def skin(
     mesh: Mesh, character_from_joint: Array, morphs: Mapping[str, float] | None = None
 ) -> Array:
-    """Return the vertices of a mesh, (vertices, 3), for joint placements (joints, 4, 4).
+    """Return the vertices of a mesh, (…, vertices, 3), for joint placements (…, joints, 4, 4).
 
     Linear blend skinning on the CPU, for measurements; the renderer does it on the GPU.
     `morphs` are weights by name.
@@ -244,8 +244,8 @@ def skin(
     for morph in mesh.morphs:
         positions[morph.vertices] += (morphs or {}).get(morph.name, 0.0) * morph.displacements
     points = np.concatenate([positions, np.ones((len(positions), 1))], axis=1)
-    skinned = np.zeros((len(points), 3))
+    skinned = np.zeros((*matrices.shape[:-3], len(points), 3))
     for influence in range(mesh.joints.shape[1]):
-        each = matrices[mesh.joints[:, influence], :3]
+        each = matrices[..., mesh.joints[:, influence], :3, :]
         skinned += mesh.weights[:, influence, None] * (each @ points[:, :, None])[..., 0]
     return skinned

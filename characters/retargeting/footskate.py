@@ -19,7 +19,10 @@ from characters.retargeting.ground_motion import GroundMotion
 from characters.retargeting.hips_shift import (
     drop_to_reach,
     following_feet,
+    leg_extensions,
     missing_reach,
+    rise_to_extension,
+    smooth_bound,
     with_moved_hips,
 )
 from characters.retargeting.leg_ik import place_ankle
@@ -39,9 +42,11 @@ from characters.smoothing import gaussian_smoothed
 # Lengths in leg lengths.
 _MAX_BALL_RISE = 0.02  # of the ball of a standing foot above its lowest position
 _MAX_CORRECTION = 0.5  # a contact that needs a larger one is dropped
+_MAX_DROPS = (0.01, 0.12, 0.25)  # of the hips, before steps fall nearer and after
 _STEPPING_ROUNDS = 2  # a step nearer may be out of reach at its other end
 _MAX_TILT = 1.5  # of a foot on its ball, as a share, if it is short for its ankle's height
 _TILT_SMOOTHING_S = 0.04  # standard deviation
+_MAX_DEPTH = 0.005  # of soft skin of a foot below the ground
 _MAX_ROLL_S = 0.25  # from the heel onto the ball
 
 
@@ -105,25 +110,52 @@ def hold_feet_in_contact(
     if rig.floor is not None:
         heights = ankles[..., 1] - rig.floor
         pose = _on_soles(pose, rig, legs, heights, contacts, ground)
-    to_balls, paths = _foot_paths(pose, rig, legs, ankles, contacts, ground)
+    clearances = np.zeros(ankles.shape[:2])
+    held = _held(pose, rig, legs, ankles, contacts, ground, clearances)
+    depths = np.stack([rig.sole_depth(held, leg) for leg in legs], axis=1)
+    if (depths > _MAX_DEPTH * rig.leg_length).any():
+        deep = np.maximum(depths, 0.0).T
+        clearances = np.stack([smooth_bound(each, ground) for each in deep], axis=1)
+        held = _held(pose, rig, legs, ankles, contacts, ground, clearances)
+    return held if rig.floor is None else _with_toes_above(held, rig, legs, rig.floor)
+
+
+def _held(
+    pose: Pose,
+    rig: Rig,
+    legs: Sequence[LegJoints],
+    ankles: Array,
+    contacts: FootContacts,
+    ground: GroundMotion,
+    clearances: Array,
+) -> Pose:
+    """Return poses whose feet are held, their soles above the ground by (frames, legs) [m]."""
+    to_balls, paths = _foot_paths(pose, rig, legs, ankles, contacts, ground, clearances)
     standing = np.stack([ground.middle_cycle(path.standing) for path in paths], axis=1)
+    own = _ankle_goals(pose, rig, legs, None) if rig.anatomy.kind == "humanoid" else ankles
+    extensions = leg_extensions(pose, rig, legs, own)
     shift = following_feet(paths)
+    moved = with_moved_hips(pose, rig, ground.middle_cycle(shift))
+    places = _held_places(paths, shift, ground) - to_balls
+    rise = rise_to_extension(moved, rig, legs, places, extensions, standing, ground)
+    shift[:, 1] = ground.repeat(rise)
     pose = with_moved_hips(pose, rig, ground.middle_cycle(shift))
     places = _held_places(paths, shift, ground) - to_balls
-    drop = drop_to_reach(pose, rig, legs, places, standing, ground)
-    pose = with_moved_hips(pose, rig, drop[:, None] * [0.0, -1.0, 0.0])
-    for _ in range(_STEPPING_ROUNDS):
-        missing = np.moveaxis(missing_reach(pose, rig, legs, places), 1, 0)
-        paths = [
-            path.stepping(ground.directions_to_ground(way))
-            for path, way in zip(paths, missing, strict=True)
-        ]
-        places = _held_places(paths, shift, ground) - to_balls
+    for most in _MAX_DROPS:
+        drop = drop_to_reach(pose, rig, legs, places, standing, ground, most)
+        pose = with_moved_hips(pose, rig, drop[:, None] * [0.0, -1.0, 0.0])
+        for _ in range(_STEPPING_ROUNDS):
+            missing = np.moveaxis(missing_reach(pose, rig, legs, places), 1, 0)
+            paths = [
+                path.stepping(ground.directions_to_ground(way))
+                for path, way in zip(paths, missing, strict=True)
+            ]
+            places = _held_places(paths, shift, ground) - to_balls
     skeleton_from_common = rotations.conjugate(rig.common_from_skeleton)
     for number, leg in enumerate(legs):
         place = rotations.rotate(skeleton_from_common, places[:, number])
         pose = place_ankle(pose, rig, leg, place)
-    return pose if rig.floor is None else _with_toes_above(pose, rig, legs, rig.floor)
+    return pose
 
 
 def _ankle_goals(pose: Pose, rig: Rig, legs: Sequence[LegJoints], ends: Array | None) -> Array:
@@ -144,6 +176,7 @@ def _foot_paths(
     ankles: Array,
     contacts: FootContacts,
     ground: GroundMotion,
+    clearances: Array,
 ) -> tuple[Array, list[FootPath]]:
     """Return the vectors from the ankles to the balls, (frames, legs, 3) [m], and the paths."""
     feet = turns_from_rest(pose, rig, [leg.foot for leg in legs])
@@ -156,6 +189,7 @@ def _foot_paths(
         lowest = np.full(len(turn), -np.inf)
         if rig.floor is not None:
             lowest = rig.floor + sole.clearance(turn, toes[:, number]) + to_ball[:, 1]
+            lowest += clearances[:, number]
         path = FootPath(
             ground.to_ground(ankles[:, number] + to_ball),
             ground.directions_to_ground(to_ball - to_heel),

@@ -7,8 +7,9 @@ from functools import cached_property
 import numpy as np
 
 from characters.errors import CharacterError
+from characters.model.character import skin
 from characters.model.mesh import Mesh
-from characters.retargeting.soles import Sole, skin_of_joints
+from characters.retargeting.soles import Sole, shared_skin, skin_of_joints
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import SIDES, Anatomy
 from characters.skeleton.facing import common_from_skeleton
@@ -211,6 +212,31 @@ class Rig:
             return Sole.of(points - ankle, tips - origin, ball, ahead)
         height = float(ankle[1]) if self.rests_on_feet else self._assumed_ankle_height(leg)
         return Sole.assumed(ball, height, ahead, _FOOT_LENGTH * self.leg_length)
+
+    def sole_depth(self, pose: Pose, leg: LegJoints) -> Array:
+        """Return how deep skin that a foot shares with its shin is below the floor, (frames,) [m].
+
+        A `Sole` is rigid; shared skin goes elsewhere when the foot turns. Negative is above.
+        """
+        depth = np.full(len(pose.rotations), -np.inf)
+        if self.floor is None or not self._shared_skin[leg.foot]:
+            return depth
+        placements = pose.globals(self.skeleton)
+        for part in self._shared_skin[leg.foot]:
+            points = rotations.rotate(self.common_from_skeleton, skin(part, placements))
+            depth = np.maximum(depth, self.floor - points[..., 1].min(-1))
+        return depth
+
+    @cached_property
+    def _shared_skin(self) -> dict[int, list[Mesh]]:
+        """The skin that each foot shares with its shin, by joint."""
+        return {
+            leg.foot: shared_skin(
+                self.meshes,
+                [j for end in {leg.foot, leg.end} for j in subtree(self.skeleton, end)],
+            )
+            for leg in self.legs
+        }
 
     def _assumed_ankle_height(self, leg: LegJoints) -> float:
         """Return the height of an ankle whose ground is not known [m]."""

@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from characters.model.character import skin
 from characters.model.mesh import Mesh
@@ -21,6 +22,7 @@ _DIRECTIONS = 256  # in which the outermost points of a foot are kept
 _HALVINGS = 14  # of the range of turns
 _TOLERANCE_M = 1e-9
 _MIN_WEIGHT = 0.5  # of a vertex that belongs to a foot
+_RIGID_WEIGHT = 0.98  # of a vertex that moves with it alone
 # Without a skin: lengths per distance ahead from the ankle to the toes.
 _HEEL_LENGTH, _TOES_LENGTH = 0.35, 0.4
 _BALL_PART = 0.7  # of the way from the ankle to the tip of a foot without toes
@@ -201,15 +203,30 @@ def parts_of_joints(
         )
         chosen = (own + other > _MIN_WEIGHT) & (own >= other)
         if chosen.any():
-            part = replace(
-                mesh,
-                positions=mesh.positions[chosen],
-                joints=mesh.joints[chosen],
-                weights=mesh.weights[chosen],
-                morphs=(),
-            )
-            found.append(part)
+            found.append(_chosen(mesh, chosen))
     return found
+
+
+def shared_skin(meshes: Sequence[Mesh], joints: Sequence[int]) -> list[Mesh]:
+    """Return the parts of meshes that mostly follow these joints, but others too."""
+    parts = parts_of_joints(meshes, joints)
+    own = [np.where(np.isin(part.joints, joints), part.weights, 0.0).sum(1) for part in parts]
+    return [
+        _chosen(part, weights < _RIGID_WEIGHT)
+        for part, weights in zip(parts, own, strict=True)
+        if (weights < _RIGID_WEIGHT).any()
+    ]
+
+
+def _chosen(mesh: Mesh, vertices: NDArray[np.bool_]) -> Mesh:
+    """Return some vertices of a mesh, without triangles and morphs."""
+    return replace(
+        mesh,
+        positions=mesh.positions[vertices],
+        joints=mesh.joints[vertices],
+        weights=mesh.weights[vertices],
+        morphs=(),
+    )
 
 
 def _outermost(points: Array) -> Array:

@@ -14,7 +14,7 @@ from characters.retargeting.footskate import (
     hold_feet_in_contact,
 )
 from characters.retargeting.ground_motion import GroundMotion
-from characters.retargeting.hips_shift import drop_to_reach
+from characters.retargeting.hips_shift import drop_to_reach, leg_extensions, rise_to_extension
 from characters.retargeting.measures import knee_quantiles, sole_dip
 from characters.retargeting.rig import Rig
 from characters.skeleton import rotations
@@ -123,19 +123,47 @@ def test_balls_of_feet_of_any_length_do_not_slide(human, length, toes):
         assert speeds[down[1:, number] & down[:-1, number]].max() < 0.01
 
 
-def test_a_swinging_foot_out_of_reach_does_not_lower_the_hips(human):
-    rig = Rig(human.skeleton, human.anatomy)
+def at_rest(human, frames):
     rest = human.skeleton.rest
-    pose = Pose(np.tile(rest.translations, (30, 1, 1)), np.tile(rest.rotations, (30, 1, 1)))
+    return Pose(np.tile(rest.translations, (frames, 1, 1)), np.tile(rest.rotations, (frames, 1, 1)))
+
+
+@pytest.mark.parametrize("length", [1.0, 1.7])
+def test_skin_that_a_foot_shares_with_its_shin_stays_above_the_ground(human, length):
+    body, clip = with_feet(human, length, toes=False), human.clips["Walk"]
+    (shoes,) = body.meshes
+    weights, bones = shoes.weights.copy(), shoes.joints.copy()
+    for side, half in (("Left", slice(0, 16)), ("Right", slice(16, 32))):
+        weights[half, :2] = 0.75, 0.25
+        bones[half, 1] = human.skeleton.index(f"{side}Leg")
+    body = replace(body, meshes=(replace(shoes, weights=weights, joints=bones),))
+    made = on(body, human, clip)
+    assert sole_dip(made.poses, Rig(body.skeleton, body.anatomy), body.meshes) < MAX_DIP_M
+
+
+def test_hips_rise_with_feet_that_stand_higher(human):
+    rig, pose = Rig(human.skeleton, human.anatomy), at_rest(human, 30)
+    ankles = np.tile(rig.rest_positions[[leg.foot for leg in rig.legs]], (30, 1, 1))
+    extensions = leg_extensions(pose, rig, rig.legs, ankles)
+    ground = GroundMotion(np.zeros((30, 3)), None, 30.0)
+    standing = np.ones((30, 2), bool)
+    standing[:, 1] = False
+    raised = ankles + np.array([[0.0, 0.03, 0.0], [0.0, 0.1, 0.0]])  # the second one swings
+    rise = rise_to_extension(pose, rig, rig.legs, raised, extensions, standing, ground)
+    assert rise == pytest.approx(0.03, abs=1e-6)
+
+
+def test_a_swinging_foot_out_of_reach_does_not_lower_the_hips(human):
+    rig, pose = Rig(human.skeleton, human.anatomy), at_rest(human, 30)
     ankles = np.tile(rig.rest_positions[[leg.foot for leg in rig.legs]], (30, 1, 1))
     ankles[..., 1] += 0.02  # bent a little, as legs are in motion
     ankles[10:20, 0, 2] += 0.5 * rig.leg_length
     ground = GroundMotion(np.zeros((30, 3)), None, 30.0)
     standing = np.ones((30, 2), bool)
     standing[10:20, 0] = False
-    assert not drop_to_reach(pose, rig, rig.legs, ankles, standing, ground).any()
+    assert not drop_to_reach(pose, rig, rig.legs, ankles, standing, ground, 0.1).any()
     standing[:] = True
-    assert drop_to_reach(pose, rig, rig.legs, ankles, standing, ground).max() > 0.05
+    assert drop_to_reach(pose, rig, rig.legs, ankles, standing, ground, 0.1).max() > 0.05
 
 
 @pytest.mark.parametrize("clip", ["Walk", "Run"])
@@ -156,9 +184,8 @@ def test_knees_bend_as_in_the_source_whatever_thighs_and_shins(human, change, cl
 
 def test_a_step_out_of_reach_is_nearer_and_does_not_slide(human):
     """In narrow curves, the footprints of a long body are beside its straight trunk."""
-    rig, rest = Rig(human.skeleton, human.anatomy), human.skeleton.rest
-    frames = 40
-    pose = Pose(np.tile(rest.translations, (frames, 1, 1)), np.tile(rest.rotations, (frames, 1, 1)))
+    rig, frames = Rig(human.skeleton, human.anatomy), 40
+    pose = at_rest(human, frames)
     hips = human.anatomy.joints["hips"]
     pose.translations[:, hips, 2] += np.linspace(-0.15, 0.15, frames)
     ends = np.stack([ball_positions(pose, rig, leg) for leg in rig.legs], axis=1)
