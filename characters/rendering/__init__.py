@@ -1,7 +1,25 @@
 """Draws characters into the camera's picture: `Stage` and what it is given."""
 
 from characters.rendering.context import create_context
-from characters.rendering.scene import Box, FloorPath, Scene, SceneCharacter, View
+from characters.rendering.scene import (
+    Box,
+    Cover,
+    FloorPath,
+    MeasuredLight,
+    Scene,
+    SceneCharacter,
+    View,
+)
 from characters.rendering.stage import Stage
 
-__all__ = ["Box", "FloorPath", "Scene", "SceneCharacter", "Stage", "View", "create_context"]
+__all__ = [
+    "Box",
+    "Cover",
+    "FloorPath",
+    "MeasuredLight",
+    "Scene",
+    "SceneCharacter",
+    "Stage",
+    "View",
+    "create_context",
+]

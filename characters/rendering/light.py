@@ -1,17 +1,22 @@
 """How the scene is lit, estimated from the camera's own picture."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from characters.rendering.projection import NEAR_M, is_invertible, project
-from characters.rendering.scene import Box, View
+from characters.rendering.scene import Box, MeasuredLight, View
 from characters.skeleton.pose import Array
 
 TO_LIGHT = np.array([-0.42, 1.0, 0.34]) / np.linalg.norm([-0.42, 1.0, 0.34])
-"""Direction to the key light in the table frame: from above, from the left, and from the camera's
-side, as most desks are lit. The shadow falls to the right and to the back, where it is visible."""
+"""Direction to the key light in the table frame where none was measured: from above, from the left,
+and from the camera's side, as most desks are lit. The shadow falls to the right and to the back,
+where it is visible."""
+
+MIN_RISE = 0.6
+"""Least height of the direction to a measured light: shadows are at most 1.3 times as long as what
+casts them."""
 
 LUMA_WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
 """Weights of red, green and blue in luminance (Rec. 709)."""
@@ -42,7 +47,7 @@ class Light:
     """The light on a character, in linear RGB; 1 makes a white surface just white."""
 
     key: Array
-    """Key light from `TO_LIGHT`, (3,)."""
+    """Key light, (3,)."""
 
     sky: Array
     """Ambient light from the upper hemisphere, (3,)."""
@@ -50,10 +55,27 @@ class Light:
     ground: Array
     """Light reflected by the table, (3,)."""
 
+    to_light: Array
+    """Direction to the key light in the table frame, a unit vector, (3,)."""
+
     @property
     def white(self) -> Array:
         """Light that a white sheet on the table reflects, (3,)."""
-        return np.asarray(self.key * TO_LIGHT[1] + self.sky)
+        return np.asarray(self.key * self.to_light[1] + self.sky)
+
+    def mixed(self, other: "Light", share: float) -> "Light":
+        """Return this light with a share of another one."""
+        if share <= 0.0:
+            return self
+        key, sky, ground, to_light = (
+            own + share * (theirs - own)
+            for own, theirs in zip(self._values, other._values, strict=True)
+        )
+        return Light(key, sky, ground, to_light / np.linalg.norm(to_light))
+
+    @property
+    def _values(self) -> tuple[Array, Array, Array, Array]:
+        return self.key, self.sky, self.ground, self.to_light
 
 
 class LightEstimator:
@@ -90,11 +112,28 @@ class LightEstimator:
     def __init__(self) -> None:
         self._white: Array | None = None
         self._ground: Array | None = None
+        self._measured: Light | None = None
+        self._share = 0.0  # of the measured light
 
-    def update(self, picture: NDArray[np.uint8], paper: Array | None = None) -> Light:
+    def update(
+        self,
+        picture: NDArray[np.uint8],
+        paper: Array | None = None,
+        measured: MeasuredLight | None = None,
+        camera_from_table: Array | None = None,
+    ) -> Light:
         """Take a picture (height, width, 3) BGR into account and return the light.
 
-        `paper` is the linear RGB of white paper in the picture, (3,), if some was found.
+        Parameters
+        ----------
+        picture
+            The undistorted picture, (height, width, 3) BGR.
+        paper
+            Linear RGB of white paper in the picture, (3,), if some was found.
+        measured
+            The light in the room, if it was measured; the light changes to it smoothly.
+        camera_from_table
+            Pose of the table, (4, 4), which a measured light needs.
         """
         step = max(1, picture.shape[1] // 64)
         linear = LINEAR_FROM_SRGB[
@@ -113,7 +152,30 @@ class LightEstimator:
             self._white, self._ground = white, ground
         self._white = self._white + self.SMOOTHING_SHARE * (white - self._white)
         self._ground = self._ground + self.SMOOTHING_SHARE * (ground - self._ground)
-        return Light(key=0.72 * self._white, sky=0.36 * self._white, ground=0.6 * self._ground)
+        light = Light(0.72 * self._white, 0.36 * self._white, 0.6 * self._ground, TO_LIGHT)
+        target = 0.0
+        if measured is not None and camera_from_table is not None:
+            self._measured = self._on_table(measured, camera_from_table)
+            target = 1.0
+        if self._measured is None:
+            return light
+        self._share += self.SMOOTHING_SHARE * (target - self._share)
+        return light.mixed(replace(self._measured, ground=light.ground), self._share)
+
+    def _on_table(self, measured: MeasuredLight, camera_from_table: Array) -> Light:
+        """Return a measured light in the table frame, no darker or brighter than can be drawn."""
+        to_light = camera_from_table[:3, :3].T @ measured.to_light
+        to_light = to_light / np.linalg.norm(to_light)
+        if to_light[1] < MIN_RISE:
+            level = to_light[[0, 2]] / max(float(np.hypot(*to_light[[0, 2]])), 1e-9)
+            x, z = np.sqrt(1.0 - MIN_RISE**2) * level
+            to_light = np.array([x, MIN_RISE, z])
+        light = Light(measured.key, measured.ambient, np.zeros(3), to_light)
+        white = np.maximum(light.white, 1e-3)
+        luminance = float(white @ LUMA_WEIGHTS)
+        share = np.clip(luminance, *self.LUMINANCE_RANGE) / luminance
+        share = share * _reduce_cast(white, self.PAPER_CAST_SHARE) / white
+        return replace(light, key=share * light.key, sky=share * light.sky)
 
     def _white_from_picture(self, linear: Array) -> Array:
         """Return the colour of a white sheet, estimated from the whole picture."""

@@ -58,12 +58,12 @@ def _source(name: str, *defines: str) -> str:
     A line `#include "name"` is replaced by the text of that file; GLSL itself has no include.
     """
     version, text = _text(name).split("\n", 1)
-    text = re.sub(r'^#include "([\w.]+)"$', lambda match: _text(match[1]), text, flags=re.MULTILINE)
     return "\n".join([version, *(f"#define {define}" for define in defines), text])
 
 
 def _text(name: str) -> str:
-    return (SHADER_FOLDER / f"{name}.glsl").read_text(encoding="utf-8")
+    text = (SHADER_FOLDER / f"{name}.glsl").read_text(encoding="utf-8")
+    return re.sub(r'^#include "([\w.]+)"$', lambda match: _text(match[1]), text, flags=re.MULTILINE)
 
 
 def set_uniforms(

@@ -8,6 +8,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from characters.rendering.cover import PictureCover
 from characters.rendering.geometry.character_cache import CharacterInstance
 from characters.rendering.light import Light
 from characters.rendering.occlusion import CubeOutlines
@@ -61,6 +62,9 @@ class Region:
     outlines: CubeOutlines
     """Of the real cubes in this region. They hide what lies on the table."""
 
+    cover: PictureCover | None
+    """The hand, if it is in this region. It hides what lies on the table."""
+
     characters: CharacterLayer | None
     """For the characters; None if there are none in this region."""
 
@@ -69,7 +73,7 @@ class Region:
         self.target.use_picture((0, 0, self.area.width, self.area.height))
 
     def set_table_uniforms(self, program: moderngl.Program) -> None:
-        """Set the uniforms of a program that paints on the table, except where cubes hide it."""
+        """Set the uniforms of a program that paints on the table, except where it is hidden."""
         set_uniforms(
             program,
             clip_from_table=self.clip_from_table,
@@ -77,6 +81,8 @@ class Region:
             longest=self.outlines.longest,
             outlines=self.outlines.sides,
         )
+        if self.cover is not None:
+            self.cover.set_uniforms(program, self.area)
 
 
 @dataclass(frozen=True)
@@ -106,6 +112,9 @@ class FrameResources:
 
     cubes: tuple[tuple[Box, Rectangle], ...]
     """Real cubes in the picture, and where they are in it."""
+
+    cover: PictureCover | None
+    """The hand in front of the cube."""
 
     characters: tuple[CharacterInstance, ...]
     """The visible characters, skinned on the graphics card."""
@@ -157,6 +166,7 @@ class FrameResources:
             self.targets.at_least(area.width, area.height),
             clip_from_camera(self.camera_matrix, area) @ self.camera_from_table,
             CubeOutlines.of(self._cubes_in(area), self.camera_matrix, area),
+            self.cover if self.cover and self.cover.area.intersection(area) else None,
             None if inner is None else self._character_layer(inner),
         )
 

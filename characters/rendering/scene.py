@@ -24,6 +24,37 @@ class Box:
 
 
 @dataclass(frozen=True)
+class Cover:
+    """What is in front of a real cube, as the hand that holds it. It hides what is behind it."""
+
+    x: int
+    """First column of `share` in the camera's frame [px]."""
+
+    y: int
+    """First row [px]."""
+
+    share: NDArray[np.uint8]
+    """Share of each pixel that is covered, (height, width), 0…255."""
+
+    distance: float
+    """Of the surface behind it from the camera, along its axis [m]."""
+
+
+@dataclass(frozen=True)
+class MeasuredLight:
+    """The light in the room, as it falls on something known in the camera's picture."""
+
+    to_light: Array
+    """Unit vector towards the key light, in the camera's frame, (3,)."""
+
+    key: Array
+    """Light from there on a surface that faces it, (3,) linear RGB; 1 makes white just white."""
+
+    ambient: Array
+    """Light from all around, (3,) linear RGB."""
+
+
+@dataclass(frozen=True)
 class View:
     """The camera's picture and what is known about the scene in it."""
 
@@ -42,6 +73,12 @@ class View:
 
     occluders: tuple[Box, ...] = ()
     """Real cubes that hide what is behind them."""
+
+    cover: Cover | None = None
+    """The hand in front of the cube, if it is known."""
+
+    light: MeasuredLight | None = None
+    """The light in the room, if it was measured; left out, it is estimated from the picture."""
 
 
 class Drawable(Protocol):

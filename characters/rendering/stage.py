@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
+from characters.rendering.cover import CoverTexture
 from characters.rendering.geometry.character_cache import CharacterCache
 from characters.rendering.light import LightEstimator, paper_color
 from characters.rendering.occlusion import visible_cubes
@@ -14,6 +15,7 @@ from characters.rendering.passes.background import BackgroundPass
 from characters.rendering.passes.characters import CharacterPass
 from characters.rendering.passes.cube_occlusion import CubeOcclusionPass
 from characters.rendering.passes.floor_paths import FloorPathPass
+from characters.rendering.passes.hand_occlusion import HandOcclusionPass
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.passes.resolve import ResolvePass
 from characters.rendering.passes.shadows import ShadowPass
@@ -64,6 +66,7 @@ class Stage:
             ShadowPass(context, self.programs),
             CubeOcclusionPass(context, self.programs),
             CharacterPass(),
+            HandOcclusionPass(context, self.programs),
             ResolvePass(context, self.programs),
         ]
         """The passes, in the order in which they draw; the stage releases them."""
@@ -71,6 +74,7 @@ class Stage:
         self._undistorter = Undistorter(size)
         self._light = LightEstimator()
         self._targets = RenderTargets(context)
+        self._cover = CoverTexture(context)
         self._characters = CharacterCache(context, self.programs)
 
     def draw(
@@ -116,17 +120,22 @@ class Stage:
             render_pass.release()
         self._characters.release()
         self._targets.release()
+        self._cover.release()
         self.programs.release()
 
     def _frame(self, scene: Scene) -> tuple[Image, FrameResources | None]:
         """Return the undistorted picture, and the resources to draw on it if there is a table."""
         view = scene.view
         picture, matrix = self._undistorter.undistort(view)
-        light = self._light.update(picture, paper_color(picture, matrix, view))
         table = view.camera_from_table
-        if table is None or not is_pinhole(view.matrix) or not is_invertible(table):
+        if not is_invertible(table):
+            table = None
+        paper = paper_color(picture, matrix, view)
+        light = self._light.update(picture, paper, view.light, table)
+        if table is None or not is_pinhole(view.matrix):
             return picture, None
         self._targets.at_least(1, 1).use_picture((0, 0, 1, 1))
+        cover = None if view.cover is None else self._undistorter.cover_in_picture(view.cover)
         return picture, FrameResources(
             context=self._context,
             targets=self._targets,
@@ -136,5 +145,6 @@ class Stage:
             camera_from_table=np.asarray(table, float),
             light=light,
             cubes=visible_cubes(view.occluders, matrix, self.size),
+            cover=None if cover is None else self._cover.upload(cover),
             characters=self._characters.skin(scene.characters),
         )

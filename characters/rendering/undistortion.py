@@ -5,14 +5,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
-from characters.rendering.projection import is_pinhole
-from characters.rendering.scene import View
+from characters.rendering.projection import Rectangle, is_pinhole
+from characters.rendering.scene import Cover, View
 from characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
 
 BACKDROP_TOP_BGR, BACKDROP_BOTTOM_BGR = (226.0, 224.0, 222.0), (176.0, 180.0, 186.0)
 """Colours of the plain backdrop."""
+
+_STEPS = np.linspace(0.0, 1.0, 5)
+_RIM = np.array([(x, y) for x in _STEPS for y in _STEPS if x in (0, 1) or y in (0, 1)])
+"""Points along the rim of a unit square, (n, 2): a lens bends its sides."""
 
 
 class Undistorter:
@@ -30,6 +34,7 @@ class Undistorter:
         self._bgra = np.empty((0, 0, 4), np.uint8)
         self._undistorted_bgra = np.empty((size[1], size[0], 4), np.uint8)
         self._matrix = np.eye(3)
+        self._lens = np.eye(3), np.zeros(5)
         self._backdrop: Image | None = None
 
     def undistort(self, view: View) -> tuple[Image, Array]:
@@ -49,14 +54,50 @@ class Undistorter:
         if not is_pinhole(view.matrix):
             return self._fitted(image, frame_size), np.eye(3)
         matrix = np.asarray(view.matrix, float)
-        distortion = np.asarray(view.distortion, float).ravel()
+        distortion = _usable(np.asarray(view.distortion, float).ravel())
         camera_key = (matrix.tobytes(), distortion.tobytes(), bytes(repr(frame_size), "ascii"))
         if camera_key != self._camera_key:
             self._matrix, self._maps = self._make_maps(matrix, distortion, frame_size)
             self._camera_key = camera_key
+            self._lens = matrix, distortion
         if self._maps is None:
             return image.copy(), self._matrix
         return self._remapped(image, *self._maps), self._matrix
+
+    def cover_in_picture(self, cover: Cover) -> Cover | None:
+        """Return the cover of the last view's frame as it is in the picture, or None outside of it.
+
+        It has an empty rim, so that it ends softly.
+        """
+        height, width = cover.share.shape
+        if not height or not width:
+            return None
+        around = self._area_in_picture(cover.x, cover.y, width, height)
+        area = around.intersection(Rectangle(0, 0, *self._size))
+        if area is None:
+            return None
+        if self._maps is None:
+            rows, columns = np.mgrid[area.slices].astype(np.float32)
+        else:
+            columns, rows = (each[area.slices] for each in self._maps)
+        share = cv2.remap(
+            cover.share,
+            columns - np.float32(cover.x),
+            rows - np.float32(cover.y),
+            cv2.INTER_LINEAR,
+            borderMode=cv2.BORDER_CONSTANT,
+        )
+        return Cover(area.x, area.y, np.asarray(share, np.uint8), cover.distance)
+
+    def _area_in_picture(self, x: int, y: int, width: int, height: int) -> Rectangle:
+        """Return the area of the picture around a rectangle of the last view's frame."""
+        columns, rows = x + width * _RIM[:, 0], y + height * _RIM[:, 1]
+        points = np.stack([columns, rows], axis=1)[:, None]
+        if self._maps is not None:
+            points = cv2.undistortPoints(points, *self._lens, P=self._matrix)
+        low = np.floor(points.min((0, 1))).astype(int) - 2
+        high = np.ceil(points.max((0, 1))).astype(int) + 3
+        return Rectangle(int(low[0]), int(low[1]), *(high - low).tolist())
 
     def _remapped(
         self, image: Image, columns: NDArray[np.float32], rows: NDArray[np.float32]
@@ -79,17 +120,12 @@ class Undistorter:
         self, matrix: Array, distortion: Array, frame_size: tuple[int, int]
     ) -> tuple[Array, tuple[NDArray[np.float32], NDArray[np.float32]] | None]:
         """Return the picture's matrix and, if it needs any, the maps from it to the frame."""
-        distorted = bool(
-            distortion.size in (4, 5, 8, 12, 14)
-            and np.isfinite(distortion).all()
-            and distortion.any()
-        )
-        if not distorted and frame_size == self._size:
+        if not distortion.any() and frame_size == self._size:
             return matrix, None
         fitted = _fit(frame_size, self._size) @ matrix
         columns, rows = cv2.initUndistortRectifyMap(
             matrix,
-            distortion if distorted else np.zeros(5),
+            distortion,
             np.eye(3),
             fitted,
             self._size,
@@ -113,6 +149,12 @@ class Undistorter:
             rows = (top + (bottom - top) * share).round().astype(np.uint8)
             self._backdrop = np.ascontiguousarray(np.broadcast_to(rows, (height, width, 3)))
         return self._backdrop.copy()
+
+
+def _usable(distortion: Array) -> Array:
+    """Return distortion coefficients, or those of an ideal lens for a count that none has."""
+    known = distortion.size in (4, 5, 8, 12, 14) and np.isfinite(distortion).all()
+    return distortion if known else np.zeros(5)
 
 
 def _checked(image: Image) -> Image:

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 import moderngl
 
-from characters.rendering.light import TO_LIGHT
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import set_uniforms
 from characters.rendering.projection import Rectangle
@@ -39,7 +38,7 @@ class CharacterPass(RenderPass):
                         program,
                         clip_from_table=clip_from_table,
                         eye=eye,
-                        to_light=TO_LIGHT,
+                        to_light=light.to_light,
                         key=light.key,
                         sky=light.sky,
                         ground=light.ground,

@@ -30,13 +30,14 @@ class FloorPathPass(RenderPass):
     """Paints the floor paths on the table."""
 
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
-        self._program = programs.load("floor_paths", "floor_paths")
         self._buffer = context.buffer(reserve=1 << 14, dynamic=True)
-        self._array = context.vertex_array(
-            self._program, [(self._buffer, "2f 2f 3f 3f", "position", "local", "shape", "color")]
-        )
+        content = [(self._buffer, "2f 2f 3f 3f", "position", "local", "shape", "color")]
+        self._arrays = [
+            context.vertex_array(programs.load("floor_paths", "floor_paths", *defines), content)
+            for defines in ((), ("COVERED",))
+        ]
         self._count = 0
-        self.owned = (self._array, self._buffer)
+        self.owned = (*self._arrays, self._buffer)
 
     def prepare(self, frame: FrameResources) -> Sequence[Rectangle]:
         """Upload the paths, and return the areas around them; what lies between is left out."""
@@ -54,15 +55,16 @@ class FloorPathPass(RenderPass):
         return merge_rectangles([area for area in areas if area is not None])
 
     def draw(self, frame: FrameResources, region: Region) -> None:
-        """Paint the paths, except where real cubes hide them."""
+        """Paint the paths, except where real cubes or a hand hide them."""
         if not self._count:
             return
         region.use()
         frame.context.enable_only(moderngl.BLEND)
         frame.context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-        region.set_table_uniforms(self._program)
-        set_uniforms(self._program, light=frame.light.white)
-        self._array.render(moderngl.TRIANGLES, vertices=self._count)
+        array = self._arrays[region.cover is not None]
+        region.set_table_uniforms(array.program)
+        set_uniforms(array.program, light=frame.light.white)
+        array.render(moderngl.TRIANGLES, vertices=self._count)
 
 
 def _marks(path: FloorPath) -> list[NDArray[np.float32]]:

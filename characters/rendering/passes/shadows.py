@@ -6,7 +6,7 @@ import moderngl
 import numpy as np
 
 from characters.rendering.geometry.character_cache import CharacterInstance
-from characters.rendering.light import TO_LIGHT
+from characters.rendering.light import Light
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.projection import Rectangle
@@ -18,9 +18,6 @@ MAP_SIDE = 80
 
 BLUR_TAPS = 10
 """Taps of the blur on each side; `BLUR_TAPS` in `shadow_blur.frag` too."""
-
-SHADOW_SLOPE = TO_LIGHT[[0, 2]] / TO_LIGHT[1]
-"""Horizontal offset (x, z) of a point from its shadow, for each metre of the point's height."""
 
 SHADOW_LEVELS = (0.0, 0.1, 0.4, 1.0)
 """Heights whose shadows are blurred separately, as shares of the character's height."""
@@ -45,9 +42,11 @@ class ShadowPass(RenderPass):
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
         self._context = context
         self._programs = programs
-        self._program = programs.load("shadow", "shadow")
-        self._table = context.vertex_array(self._program, [])
-        self.owned = (self._table,)
+        self._tables = [
+            context.vertex_array(programs.load("shadow", "shadow", *defines), [])
+            for defines in ((), ("COVERED",))
+        ]
+        self.owned = self._tables
         self._maps: list[ShadowMap] = []
         self._count = 0
         self._area: Rectangle | None = None
@@ -59,9 +58,8 @@ class ShadowPass(RenderPass):
             return ()
         while len(self._maps) < self._count:
             self._maps.append(ShadowMap(self._context, self._programs))
-        key_share = frame.light.key * TO_LIGHT[1] / frame.light.white
         corners = [
-            shadow.render(character, key_share)
+            shadow.render(character, frame.light)
             for shadow, character in zip(self._maps, frame.characters, strict=False)
         ]
         bodies = [character.enclosing for character in frame.characters]
@@ -69,17 +67,18 @@ class ShadowPass(RenderPass):
         return () if self._area is None else (self._area,)
 
     def draw(self, frame: FrameResources, region: Region) -> None:
-        """Darken the table, except where real cubes hide it."""
+        """Darken the table, except where real cubes or a hand hide it."""
         if self._area is None or not self._area.intersection(region.area):
             return
         region.use()
         frame.context.enable_only(moderngl.BLEND)
         frame.context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
-        region.set_table_uniforms(self._program)
+        table = self._tables[region.cover is not None]
+        region.set_table_uniforms(table.program)
         for shadow in self._maps[: self._count]:
-            set_uniforms(self._program, area=shadow.area, extent=shadow.extent)
+            set_uniforms(table.program, area=shadow.area, extent=shadow.extent)
             shadow.texture.use(0)
-            self._table.render(moderngl.TRIANGLE_STRIP, vertices=4)
+            table.render(moderngl.TRIANGLE_STRIP, vertices=4)
 
     def release(self) -> None:
         """Release the maps too; a second call does nothing."""
@@ -109,16 +108,15 @@ class ShadowMap:
         self.extent = np.zeros(4)
         """Lowest x and z, highest x and z that the shadow can reach [m]."""
 
-    def render(self, character: CharacterInstance, key_share: Array) -> Array:
-        """Render the map of a character, and return the corners (4, 3) that its shadow can reach.
-
-        `key_share` (3,) is the share of the key light in the light on the table.
-        """
+    def render(self, character: CharacterInstance, light: Light) -> Array:
+        """Render the map of a character; return the corners (4, 3) that its shadow can reach."""
         height = character.height
-        self.extent = _extent(character.enclosing, height)
+        # Horizontal offset (x, z) of a point from its shadow, for each metre of the point's height.
+        slope = light.to_light[[0, 2]] / light.to_light[1]
+        self.extent = _extent(character.enclosing, height, slope)
         self.area = _map_area(self.extent, height)
         context = self._context
-        set_uniforms(self._caster, area=self.area, slope=SHADOW_SLOPE, levels=SHADOW_LEVELS)
+        set_uniforms(self._caster, area=self.area, slope=slope, levels=SHADOW_LEVELS)
         for target in reversed(self._targets):
             target.use()
             target.viewport = (0, 0, 2 * MAP_SIDE, MAP_SIDE)
@@ -135,7 +133,7 @@ class ShadowMap:
         context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
         context.enable_only(moderngl.NOTHING)
         self._soften(height)
-        self._combine(key_share)
+        self._combine(light.key * light.to_light[1] / light.white)
         x, z = self.extent[[0, 2, 2, 0]], self.extent[[1, 1, 3, 3]]
         return np.stack([x, np.zeros(4), z], axis=1)
 
@@ -158,7 +156,10 @@ class ShadowMap:
                 self._blur_triangle.render(moderngl.TRIANGLES, vertices=3)
 
     def _combine(self, key_share: Array) -> None:
-        """Write what is left of both lights to one map: it has fewer texels than the table."""
+        """Write what is left of both lights to one map: it has fewer texels than the table.
+
+        `key_share` (3,) is the share of the key light in the light on the table.
+        """
         set_uniforms(self._factor, side=MAP_SIDE, key=key_share, sky_occlusion=SKY_OCCLUSION)
         self._targets[1].use()
         x, z, width, depth = self._used_texels()
@@ -183,10 +184,10 @@ class ShadowMap:
             texture.release()
 
 
-def _extent(enclosing: Array, height: float) -> Array:
+def _extent(enclosing: Array, height: float, slope: Array) -> Array:
     """Return lowest x and z, highest x and z that a character's shadow can reach [m]."""
     below = enclosing[:, [0, 2]]
-    shadow = below - SHADOW_SLOPE * np.maximum(enclosing[:, 1:2], 0.0)
+    shadow = below - slope * np.maximum(enclosing[:, 1:2], 0.0)
     low = np.minimum(below.min(axis=0), shadow.min(axis=0)) - BLUR_MARGIN * height
     high = np.maximum(below.max(axis=0), shadow.max(axis=0)) + BLUR_MARGIN * height
     return np.concatenate([low, high])

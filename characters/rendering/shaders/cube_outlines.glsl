@@ -1,5 +1,9 @@
-// Share of a pixel on the table that no real cube hides: it is outside of all outlines. A side of an outline
-// gives the distance inside of it [px]; the transition is one pixel wide.
+#ifdef COVERED
+#include "cover"
+#endif
+
+// Share of a pixel on the table that neither a real cube hides, being outside of all outlines, nor a hand.
+// A side of an outline gives the distance inside of it [px]; the transition is one pixel wide.
 const int MAX_CUBES = 8, MAX_SIDES = 10;
 uniform int cube_count;      // number of outlines
 uniform int longest;    // number of sides of the longest
@@ -14,5 +18,8 @@ float not_hidden() {
             inside = min(inside, dot(outlines[cube * MAX_SIDES + side], here) + 0.5);
         share *= 1.0 - max(inside, 0.0);
     }
+#ifdef COVERED
+    share *= 1.0 - covered(gl_FragCoord.xy);
+#endif
     return share;
 }

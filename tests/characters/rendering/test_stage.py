@@ -10,7 +10,14 @@ import numpy as np
 import pytest
 
 from characters.errors import CharacterError
-from characters.rendering import FloorPath, SceneCharacter, Stage, View
+from characters.rendering import (
+    Cover,
+    FloorPath,
+    MeasuredLight,
+    SceneCharacter,
+    Stage,
+    View,
+)
 from characters.rendering.passes.render_pass import RenderPass
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -86,6 +93,60 @@ def test_a_pawn_in_front_of_the_cube_is_not_hidden(stage, view, pawn, cube):
     red = free[..., 2] - free[..., 1] > 60
     assert red.sum() > 300
     assert (hidden[..., 2] - hidden[..., 1] > 40)[red].mean() > 0.98
+
+
+def band(distance, share=255):
+    """A cover of some columns right of the middle, from top to bottom."""
+    return Cover(150, 0, np.full((180, 60), share, np.uint8), distance)
+
+
+def test_a_hand_hides_pawn_shadow_and_path(stage, view, pawn):
+    free = stage.draw(view, [pawn.posed()], [LOOP])
+    hidden = stage.draw(replace(view, cover=band(0.3)), [pawn.posed()], [LOOP])
+    inside = np.s_[:, 151:209]
+    assert np.abs(free.astype(int) - view.image)[inside].max() > 60
+    assert np.array_equal(hidden[inside], view.image[inside])
+    outside = np.delete(np.arange(320), np.arange(149, 211))
+    assert np.array_equal(hidden[:, outside], free[:, outside])
+
+
+def test_half_a_hand_hides_half_of_the_pawn(stage, view, pawn):
+    free = stage.draw(view, [pawn.posed()]).astype(int)
+    half = stage.draw(replace(view, cover=band(0.3, share=128)), [pawn.posed()]).astype(int)
+    red = free[..., 2] - free[..., 1] > 60
+    red[:, :152], red[:, 208:], red[80:] = False, False, False  # its shadow is further down
+    mean = (free + view.image) / 2
+    assert red.sum() > 300
+    assert np.abs(half - mean)[red].max() <= 2
+
+
+def test_a_pawn_in_front_of_the_hand_is_not_hidden(stage, view, pawn):
+    free = stage.draw(view, [pawn.posed()]).astype(int)
+    seen = stage.draw(replace(view, cover=band(0.6)), [pawn.posed()]).astype(int)
+    red = free[..., 2] - free[..., 1] > 60
+    assert np.array_equal(seen[red], free[red])
+
+
+@pytest.mark.parametrize("corner", [(150, 0), (-30, -20), (300, 170), (2000, 50), (-500, -500)])
+def test_an_empty_cover_changes_nothing_wherever_it_is(stage, view, pawn, corner):
+    free = stage.draw(view, [pawn.posed()], [LOOP])
+    empty = Cover(*corner, np.zeros((50, 60), np.uint8), 0.3)
+    assert np.array_equal(stage.draw(replace(view, cover=empty), [pawn.posed()], [LOOP]), free)
+
+
+def test_a_measured_light_turns_the_shadow(stage, view, pawn):
+    from_the_right = view.camera_from_table[:3, :3] @ [0.6, 0.8, 0.0]
+    light = MeasuredLight(from_the_right, np.full(3, 0.8), np.full(3, 0.2))
+    for _ in range(80):
+        picture = stage.draw(replace(view, light=light), [pawn.posed()])
+    lit = picture.astype(float).mean(axis=2) / view.image.mean(axis=2)
+
+    def at(x, z):
+        u, v = np.rint(on_screen(view, [x, 0.0, z])).astype(int)
+        return lit[v - 1 : v + 2, u - 1 : u + 2].mean()
+
+    assert at(-0.06, 0.0) < 0.7
+    assert at(0.07, 0.0) > 0.97
 
 
 def test_the_shadow_is_darkest_at_the_foot_and_falls_to_the_right(stage, view, pawn):
@@ -177,7 +238,9 @@ def test_five_hundred_pictures_leak_no_memory(ctx, view, pawn, cube):
 
     def draw(frames):
         for frame in range(frames):
-            stage.draw(small, [pawn.posed(0.01 * frame, at=(0.0004 * frame - 0.1, 0.0))], [LOOP])
+            share = np.full((20 + frame % 60, 30), 255, np.uint8)
+            seen = replace(small, cover=Cover(frame % 300, 60, share, 0.3))
+            stage.draw(seen, [pawn.posed(0.01 * frame, at=(0.0004 * frame - 0.1, 0.0))], [LOOP])
         gc.collect()
 
     draw(50)

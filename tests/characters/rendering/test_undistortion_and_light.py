@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 from characters.rendering.context import create_context
-from characters.rendering.light import LightEstimator, paper_color
+from characters.rendering.light import MIN_RISE, LightEstimator, paper_color
+from characters.rendering.scene import Cover, MeasuredLight
 from characters.rendering.undistortion import Undistorter
 
+SIZE = (320, 180)
 BENT = np.array([0.12, -0.2, 0.001, -0.002, 0.05])
 
 
@@ -50,6 +52,34 @@ def test_the_maps_are_computed_once_for_each_camera(view, monkeypatch):
     undistorter.undistort(bent)
     with pytest.raises(TypeError):
         undistorter.undistort(replace(view, distortion=2 * BENT))
+
+
+@pytest.mark.parametrize(("distortion", "size"), [(BENT, SIZE), (np.zeros(5), (640, 400))])
+def test_a_cover_lies_on_the_same_pixels_as_the_picture(view, distortion, size):
+    frame = np.zeros((180, 320, 3), np.uint8)
+    cv2.circle(frame, (250, 140), 20, (255, 255, 255), -1, cv2.LINE_AA)
+    cover = Cover(220, 110, np.ascontiguousarray(frame[110:175, 220:290, 0]), 0.5)
+    undistorter = Undistorter(size)
+    picture, _ = undistorter.undistort(replace(view, image=frame, distortion=distortion))
+    found = undistorter.cover_in_picture(cover)
+    shown = np.zeros_like(picture[..., 0])
+    shown[found.y :, found.x :][: found.share.shape[0], : found.share.shape[1]] = found.share
+    assert shown.max() == 255
+    assert np.abs(shown.astype(int) - picture[..., 0]).max() <= 2
+
+
+def test_a_low_light_is_raised_so_that_shadows_stay_short(view):
+    low = view.camera_from_table[:3, :3] @ [1.0, -0.1, 0.0]
+    measured = MeasuredLight(low / np.linalg.norm(low), np.full(3, 0.7), np.full(3, 0.3))
+    estimate = LightEstimator()
+    for _ in range(150):
+        light = estimate.update(view.image, None, measured, view.camera_from_table)
+    assert light.to_light[1] == pytest.approx(MIN_RISE, abs=0.01)
+    assert light.to_light[0] > 0.7
+    assert light.white == pytest.approx(0.7 * MIN_RISE + 0.3, rel=0.01)
+    for _ in range(150):
+        light = estimate.update(view.image)
+    assert light.to_light == pytest.approx(LightEstimator().update(view.image).to_light, abs=0.01)
 
 
 def test_a_darker_and_redder_picture_gives_a_darker_and_redder_light(view):

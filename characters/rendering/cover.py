@@ -1,0 +1,70 @@
+"""The hand in front of a cube, on the graphics card: it hides what is drawn behind it."""
+
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+
+from characters.rendering.programs import set_uniforms
+from characters.rendering.projection import Rectangle
+from characters.rendering.scene import Cover
+from characters.rendering.target import SIZE_STEP_PX
+
+COVER_UNIT = 7
+"""Texture unit of the cover."""
+
+
+@dataclass(frozen=True)
+class PictureCover:
+    """A cover of the picture, uploaded."""
+
+    area: Rectangle
+    """Where it is in the picture."""
+
+    distance: float
+    """Of the surface behind it from the camera, along its axis [m]."""
+
+    texture: moderngl.Texture
+    """Share of each pixel that is covered, in the first texels."""
+
+    def set_uniforms(self, program: moderngl.Program, area: Rectangle) -> None:
+        """Bind the texture, and set the uniforms of a program that draws an area of the picture."""
+        self.texture.use(COVER_UNIT)
+        set_uniforms(
+            program,
+            cover=COVER_UNIT,
+            cover_corner=(self.area.x - area.x, self.area.y - area.y),
+            cover_size=(self.area.width, self.area.height),
+        )
+
+
+class CoverTexture:
+    """Keeps one texture that grows with the covers written to it."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self._context = context
+        self._texture: moderngl.Texture | None = None
+
+    def upload(self, cover: Cover) -> PictureCover:
+        """Return a cover, given in pixels of the picture, uploaded."""
+        height, width = cover.share.shape
+        texture = self._at_least(width, height)
+        texture.write(np.ascontiguousarray(cover.share), viewport=(0, 0, width, height))
+        return PictureCover(Rectangle(cover.x, cover.y, width, height), cover.distance, texture)
+
+    def _at_least(self, width: int, height: int) -> moderngl.Texture:
+        kept = self._texture
+        if kept is not None and kept.width >= width and kept.height >= height:
+            return kept
+        if kept is not None:
+            width, height = max(width, kept.width), max(height, kept.height)
+        self.release()
+        columns, rows = (-(-length // SIZE_STEP_PX) * SIZE_STEP_PX for length in (width, height))
+        self._texture = self._context.texture((columns, rows), 1, alignment=1)
+        return self._texture
+
+    def release(self) -> None:
+        """Release the texture; a second call does nothing."""
+        if self._texture is not None:
+            self._texture.release()
+            self._texture = None

@@ -1,0 +1,48 @@
+"""The hand that holds the cube, in front of the characters behind it."""
+
+import moderngl
+
+from characters.rendering.passes.render_pass import RenderPass
+from characters.rendering.programs import ShaderPrograms, set_uniforms
+from characters.rendering.resources import FrameResources, Region
+from characters.rendering.target import SUPERSAMPLING
+
+HAND_DEPTH_M = 0.05
+"""Depth of a hand in front of the cube that it holds: what is nearer still stands before it."""
+
+
+class HandOcclusionPass(RenderPass):
+    """Takes from the character layer what the hand covers, with a soft edge."""
+
+    def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
+        self._program = programs.load("cover", "cover")
+        self._rectangle = context.vertex_array(self._program, [])
+        self.owned = (self._rectangle,)
+
+    def draw(self, frame: FrameResources, region: Region) -> None:
+        """Clear the character layer behind the hand."""
+        layer, cover = region.characters, frame.cover
+        if layer is None or cover is None:
+            return
+        shared = cover.area.intersection(layer.area)
+        if shared is None:
+            return
+        framebuffer = layer.use()
+        left, top = shared.x - layer.area.x, shared.y - layer.area.y
+        size = layer.area.width, layer.area.height, layer.area.width, layer.area.height
+        ends = left, top, left + shared.width, top + shared.height
+        clip = layer.clip_from_camera[2:] @ [0.0, 0.0, cover.distance - HAND_DEPTH_M, 1.0]
+        cover.set_uniforms(self._program, layer.area)
+        set_uniforms(
+            self._program,
+            clip_area=[2.0 * end / side - 1.0 for end, side in zip(ends, size, strict=True)],
+            depth=float(clip[0] / clip[1]),
+            fineness=float(SUPERSAMPLING),
+        )
+        framebuffer.depth_mask = False
+        framebuffer.use()  # the mask takes effect here
+        frame.context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
+        frame.context.blend_func = moderngl.ZERO, moderngl.ONE_MINUS_SRC_ALPHA
+        self._rectangle.render(moderngl.TRIANGLE_STRIP, vertices=4)
+        framebuffer.depth_mask = True
+        framebuffer.use()
