@@ -1,0 +1,72 @@
+"""Blur and noise of a picture, measured on a cube that was drawn with both known."""
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+from tests.tracking.drawn import WIDE, held, photograph, scene
+from tracking import CubeModel, CubeState
+from tracking.appearance.picture_quality import QualityMeter
+
+CUBE = CubeModel.load("locomotion")
+POSE = held(0.35, 0.5, 0.1, at=(0.01, 0.0, 0.3))
+STILL = CubeState(True, POSE, np.zeros(6), np.zeros((6, 6)), "markers", (), 0.1, 0.0)
+
+
+@pytest.fixture(scope="module")
+def light():
+    return scene((CUBE, POSE), camera=WIDE)
+
+
+def measure(light, state=STILL, blur=0.0, noise=0.0, frames=60):
+    if blur:
+        light = cv2.GaussianBlur(light, (0, 0), blur)
+    meter = QualityMeter(CUBE, WIDE)
+    for seed in range(frames):
+        quality = meter.update(photograph(light, noise=noise, seed=seed), state)
+    return quality
+
+
+@pytest.mark.parametrize("blur", [0.6, 0.9, 1.3, 1.8])
+def test_blur_is_measured_within_a_tenth_of_a_pixel(light, blur):
+    own = measure(light).blur  # of the drawing: `scene` blurs by 0.6
+    assert own == pytest.approx(0.66, abs=0.08)
+    assert measure(light, blur=blur, noise=2.0).blur == pytest.approx(np.hypot(own, blur), abs=0.1)
+
+
+@pytest.mark.parametrize("noise", [1.0, 3.0, 6.0])
+def test_noise_is_measured_whatever_the_blur(light, noise):
+    for blur in (0.0, 1.2):
+        found = measure(light, blur=blur, noise=noise).noise
+        assert found == pytest.approx(np.hypot(noise, 0.29), rel=0.12, abs=0.25)
+
+
+def test_grain_of_the_paper_is_no_noise(light):
+    grain = 1 + 0.05 * np.random.default_rng(0).standard_normal(light.shape)
+    noisy = measure((light * grain).astype(np.float32), noise=2.0).noise
+    assert noisy == pytest.approx(2.0, rel=0.12)
+
+
+def test_a_moving_cube_tells_nothing(light):
+    moving = replace(STILL, velocity=np.array([0.1, 0, 0, 0, 0, 0]))
+    assert measure(light, moving) is None
+
+
+def test_an_unseen_cube_tells_nothing(light):
+    assert measure(light, replace(STILL, visible=False)) is None
+    assert measure(light, replace(STILL, camera_from_cube=None)) is None
+
+
+def test_clipped_white_is_not_taken_for_a_sharp_border(light):
+    assert measure(2.5 * light) is None
+
+
+def test_a_cube_partly_out_of_the_picture_is_measured_where_it_is_seen(light):
+    shift = np.array([[1.0, 0.0, -560.0], [0.0, 1.0, 0.0]])
+    moved = cv2.warpAffine(light, shift, (1280, 720))
+    pose = POSE.copy()
+    pose[0, 3] -= 560 / 900 * pose[2, 3]
+    found = measure(moved, replace(STILL, camera_from_cube=pose), noise=1.0)
+    assert found is None or 0.3 < found.blur < 1.2

@@ -1,0 +1,183 @@
+"""How soft and how noisy the camera's picture is, measured on the borders of a cube's markers."""
+
+import math
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from tracking.cube.faces import FacePlanes
+from tracking.cube.marker import cell_size
+from tracking.cube.model import CubeModel
+from tracking.geometry.arrays import Array, Floats, Image
+from tracking.geometry.intrinsics import Intrinsics
+from tracking.geometry.projection import Projection
+from tracking.geometry.state import CubeState
+
+LINES_PER_SIDE = 9
+"""Lines that cross each side of a marker."""
+
+REACH_PX, STEP_PX = 3.5, 0.5
+"""How far a line reaches to each side of the border, and the distance of its samples [px]."""
+
+MIN_CELL_PX = 6.0
+"""Size of a cell from which on a line ends in flat black and in flat white [px]."""
+
+MIN_COSINE = 0.5
+"""Cosine between a face's normal and the line of sight, from which on it is measured."""
+
+MAX_SPEED_PX_S = 10.0
+"""Faster cubes are not measured: motion blurs them, and moves them from frame to frame."""
+
+SATURATED, MIN_CONTRAST = 250.0, 40.0
+"""Grey value from which on white is clipped, and least difference of white and black."""
+
+MIN_FIT = 0.995
+"""Correlation with a blurred step, from which on a side counts: fingers and shadows have less."""
+
+GAMMA = 2.2
+"""Light is the grey value to this power in nearly every camera (sRGB)."""
+
+INTERVAL = 4
+"""Only one frame of so many is measured: a lens changes slowly."""
+
+SMOOTHING_SHARE = 0.2
+"""Share of the way to a new measurement."""
+
+_OFFSETS = np.arange(-REACH_PX, REACH_PX + STEP_PX / 2, STEP_PX)
+_BLURS = np.arange(0.45, 2.8, 0.05)
+_SHIFTS = np.arange(-1.0, 1.01, 0.1)
+_INTERPOLATION_VARIANCE = 1 / 6  # of a linear interpolation between pixels [px²]
+_INTERPOLATED_NOISE = 2 / 3  # share of the noise that such an interpolation leaves
+_ROUNDING_VARIANCE = 1 / 12  # of samples, which are whole grey values
+_OUTLIERS = 0.97  # quantile of the steps, above which they are cut off
+_FLAT = 4  # samples at each end of a line
+_ALONG = np.linspace(0.12, 0.88, LINES_PER_SIDE)
+
+
+def _blurred_steps() -> Array:
+    """Return steps of each blur and shift, with mean 0 and length 1, (blurs × shifts, samples)."""
+    blurs, shifts = (each.ravel() for each in np.meshgrid(_BLURS, _SHIFTS, indexing="ij"))
+    erf = np.vectorize(math.erf, otypes=[float])
+    return _normalized(erf((_OFFSETS - shifts[:, None]) / blurs[:, None] / math.sqrt(2.0)))
+
+
+def _normalized(profiles: Array) -> Array:
+    centred = profiles - profiles.mean(-1, keepdims=True)
+    return np.asarray(
+        centred / np.maximum(np.linalg.norm(centred, axis=-1, keepdims=True), 1e-9), np.float64
+    )
+
+
+_STEPS = _blurred_steps()
+
+
+@dataclass(frozen=True)
+class PictureQuality:
+    """How soft and how noisy a picture is."""
+
+    blur: float
+    """Standard deviation of the blur that lens and sensor add to sharp edges [px]."""
+
+    noise: float
+    """Standard deviation of the noise of each pixel, in grey values of 0…255."""
+
+
+class QualityMeter:
+    """Measures blur and noise while the cube is still, smoothed over frames.
+
+    `cube` is the cube as printed, `intrinsics` the camera.
+    """
+
+    def __init__(self, cube: CubeModel, intrinsics: Intrinsics) -> None:
+        self._planes = FacePlanes(cube)
+        self._corners = np.stack([face.corners for face in cube.faces])
+        self._cell = cell_size(cube)
+        self._projection = Projection(intrinsics)
+        self._quality: PictureQuality | None = None
+        self._last: Image | None = None
+        self._frames = 0
+
+    def update(self, image: Image, state: CubeState) -> PictureQuality | None:
+        """Take a frame (height, width, 3) BGR into account; None until something was measured."""
+        before, self._last = self._last, image
+        self._frames += 1
+        if self._quality is not None and self._frames % INTERVAL:
+            return self._quality
+        places = self._places(state, image)
+        if before is None or before.shape != image.shape or places is None:
+            return self._quality
+        measured = _measured(*(_sampled(each, places) for each in (before, image)))
+        if measured is not None:
+            last = self._quality or measured
+            self._quality = PictureQuality(
+                last.blur + SMOOTHING_SHARE * (measured.blur - last.blur),
+                last.noise + SMOOTHING_SHARE * (measured.noise - last.noise),
+            )
+        return self._quality
+
+    def _places(self, state: CubeState, image: Image) -> Floats | None:
+        """Return pixels across the sides of markers, (sides, lines, samples, 2), black first."""
+        pose = state.camera_from_cube
+        if pose is None or not state.visible or self._moves(pose, state):
+            return None
+        faces = list(self._planes.facing(pose, MIN_COSINE))
+        if not faces:
+            return None
+        corners = self._corners[faces] @ pose[:3, :3].T + pose[:3, 3]
+        after = np.roll(corners, -1, axis=1)
+        sides = (after - corners)[:, :, None]
+        points = np.asarray(corners[:, :, None] + sides * _ALONG[:, None], np.float64)
+        outwards = (corners + after)[:, :, None] / 2 - corners.mean(1)[:, None, None]
+        outwards *= self._cell / np.linalg.norm(outwards, axis=-1, keepdims=True)
+        start, end = (
+            self._projection.project(each.reshape(-1, 3)).reshape(-1, LINES_PER_SIDE, 2)
+            for each in (points, points + outwards)
+        )
+        along = start[:, -1:] - start[:, :1]
+        normal = np.stack([along[..., 1], -along[..., 0]], axis=-1)
+        normal /= np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-9)
+        across = ((end - start) * normal).sum(-1)  # how wide a cell is seen [px]
+        normal = normal * np.sign(across)[..., None]
+        at = start[..., None, :] + normal[..., None, :] * _OFFSETS[:, None]
+        height, width = image.shape[:2]
+        inside = ((at > 1) & (at < [width - 2, height - 2])).all((1, 2, 3))
+        usable = at[inside & (np.abs(across).min(1) > MIN_CELL_PX)]
+        return np.asarray(usable, np.float32) if len(usable) else None
+
+    def _moves(self, pose: Array, state: CubeState) -> bool:
+        """Return whether the motion of a cube blurs it."""
+        focal, depth = self._projection.matrix[0, 0], max(float(pose[2, 3]), 1e-3)
+        arm = float(np.abs(self._corners).max())
+        speed = np.linalg.norm(state.velocity[:3]) + arm * np.linalg.norm(state.velocity[3:])
+        return bool(speed * focal / depth > MAX_SPEED_PX_S)
+
+
+def _sampled(image: Image, places: Floats) -> Floats:
+    """Return the grey values at places (…, samples, 2)."""
+    flat = places.reshape(-1, *places.shape[-2:])
+    sampled = cv2.remap(image, flat[..., 0], flat[..., 1], cv2.INTER_LINEAR)
+    grey = np.asarray(cv2.cvtColor(sampled, cv2.COLOR_BGR2GRAY), np.float32)
+    return np.asarray(grey.reshape(places.shape[:-1]), np.float32)
+
+
+def _measured(before: Floats, profiles: Floats) -> PictureQuality | None:
+    """Return blur and noise of profiles (sides, lines, samples), or None if no side is clear.
+
+    The noise is what differs from the profiles of the frame before.
+    """
+    means = profiles.mean(1)
+    black, white = means[:, :_FLAT].mean(1), means[:, -_FLAT:].mean(1)
+    # Lenses blur light, not grey values.
+    light = (profiles / np.float32(255.0)) ** np.float32(GAMMA)
+    fits = _normalized(np.asarray(light.mean(1), np.float64)) @ _STEPS.T
+    clear = (fits.max(1) > MIN_FIT) & (white < SATURATED) & (white - black > MIN_CONTRAST)
+    if not clear.any():
+        return None
+    blurs = _BLURS[fits.argmax(1)[clear] // len(_SHIFTS)]
+    blur = math.sqrt(max(float(np.median(blurs)) ** 2 - _INTERPOLATION_VARIANCE, 0.0))
+    change = np.abs(profiles - before)[clear]
+    change = np.delete(change, np.s_[_FLAT:-_FLAT], axis=-1)
+    mean = float(np.minimum(change, np.quantile(change, _OUTLIERS)).mean())
+    variance = max(math.pi / 2 * mean**2 / 2 - _ROUNDING_VARIANCE, 0.0)
+    return PictureQuality(blur, math.sqrt(variance) / _INTERPOLATED_NOISE)
