@@ -8,6 +8,7 @@ from characters.rendering.scene import (
     MeasuredLight,
     Scene,
     SceneCharacter,
+    Softness,
     View,
 )
 from characters.rendering.stage import Stage
@@ -19,6 +20,7 @@ __all__ = [
     "MeasuredLight",
     "Scene",
     "SceneCharacter",
+    "Softness",
     "Stage",
     "View",
     "create_context",

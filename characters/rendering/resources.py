@@ -120,6 +120,11 @@ class FrameResources:
     """The visible characters, skinned on the graphics card."""
 
     @property
+    def scale(self) -> float:
+        """Size of a pixel of the camera's frame in the picture [px]."""
+        return float(self.camera_matrix[1, 1] / self.scene.view.matrix[1, 1])
+
+    @property
     def whole(self) -> Rectangle:
         """The whole picture."""
         return Rectangle(0, 0, self.picture.shape[1], self.picture.shape[0])

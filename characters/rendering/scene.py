@@ -55,6 +55,17 @@ class MeasuredLight:
 
 
 @dataclass(frozen=True)
+class Softness:
+    """How soft and how noisy the camera's picture is; what is drawn becomes so too."""
+
+    blur: float
+    """Standard deviation of the blur of lens and sensor [px of the frame]."""
+
+    noise: float
+    """Standard deviation of the noise of a pixel, in values of 0…255."""
+
+
+@dataclass(frozen=True)
 class View:
     """The camera's picture and what is known about the scene in it."""
 
@@ -79,6 +90,9 @@ class View:
 
     light: MeasuredLight | None = None
     """The light in the room, if it was measured; left out, it is estimated from the picture."""
+
+    softness: Softness | None = None
+    """Blur and noise of the frame, if they were measured; left out, characters are drawn sharp."""
 
 
 class Drawable(Protocol):

@@ -1,12 +1,32 @@
 #version 330 core
 
 // The supersampled characters: halfway between four texels, the linear filter returns their mean.
+// SOFT: blurred and with noise, as the camera's picture is. Four means around the pixel blur enough.
 
 uniform sampler2D characters;
 uniform vec2 corner;    // of their area in the region [px]
+#ifdef SOFT
+uniform float spread;   // of the four means [px]
+uniform sampler2D grain;
+uniform ivec2 shift;    // of the grain, new in each picture
+uniform float noise;    // of the picture's values, for a grain of the whole range
+#endif
 
 out vec4 color;
 
+vec4 mean_at(vec2 pixel) {
+    return texture(characters, 2.0 * pixel / vec2(textureSize(characters, 0)));
+}
+
 void main() {
-    color = texture(characters, 2.0 * (gl_FragCoord.xy - corner) / vec2(textureSize(characters, 0)));
+    vec2 pixel = gl_FragCoord.xy - corner;
+#ifdef SOFT
+    vec2 aside = vec2(spread, -spread);
+    color = 0.25 * (mean_at(pixel + aside.xx) + mean_at(pixel + aside.xy)
+                  + mean_at(pixel + aside.yx) + mean_at(pixel + aside.yy));
+    ivec2 at = (ivec2(gl_FragCoord.xy) + shift) % textureSize(grain, 0);
+    color.rgb += color.a * noise * (texelFetch(grain, at, 0).rgb - 0.5);
+#else
+    color = mean_at(pixel);
+#endif
 }
