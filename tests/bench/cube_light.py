@@ -41,7 +41,12 @@ Floats = NDArray[np.float32]
 Picture = NDArray[np.uint8]
 
 MAX_DIRECTION_DEG, MAX_RATIO_ERROR, MAX_MS = 10.0, 0.10, 0.2
-RATE = 30.0
+RATE, MOVED_S = 30.0, 1.5
+"""Frames per second, and when the light moves in some rooms [s]."""
+
+MIDDLE = np.array([0.0, 0.1, 0.0])
+"""Middle of the cube's ways, in the table frame [m]."""
+
 CAMERA = Intrinsics(
     np.array([[905.0, 0, 645.8], [0, 906.0, 355.9], [0, 0, 1]]),
     np.array([-0.11, 0.055, 0.0006, -0.0004, -0.012]),
@@ -79,6 +84,15 @@ class Room:
     second: Array = field(default_factory=lambda: np.zeros(3))
     """Towards a second light, as long as its strength beside the key light, (3,)."""
 
+    ground: float = 1.0
+    """Ambient light on a surface that faces down, beside one that faces up."""
+
+    lamp_m: float = np.inf
+    """Distance of the key light from the middle of the cube's ways [m]."""
+
+    moved: Array | None = None
+    """Towards the key light after `MOVED_S`, or None where it stays, (3,)."""
+
     hand: bool = False
     """Whether a hand covers and shades parts of the faces."""
 
@@ -93,17 +107,29 @@ class Room:
 
     @property
     def ratio(self) -> float:
-        """Ambient light as a share of all."""
-        return float(self.ambient.sum() / (self.ambient + self.key).sum())
+        """Ambient light, in the mean of up and down, as a share of all."""
+        ambient = self.ambient * (1 + self.ground) / 2
+        return float(ambient.sum() / (ambient + self.key).sum())
 
-    def irradiance(self, normal: Array, shaded: bool = False) -> Array:
-        """Light on a surface, linear RGB, (3,); `normal` is in the table frame."""
-        second = max(0.0, float(normal @ self.second)) * self.key
+    def at(self, seconds: float) -> Array:
+        """Towards the key light at a time, in the table frame, (3,)."""
+        late = self.moved is not None and seconds >= MOVED_S
+        return self.moved if self.moved is not None and late else self.to_light
+
+    def irradiance(
+        self, normal: Array, place: Array, seconds: float, shaded: bool = False
+    ) -> Array:
+        """Light on a surface, linear RGB, (3,); `normal` and `place` are in the table frame."""
+        around = 1 + (self.ground - 1) * (1 - float(normal[1])) / 2
+        light = self.ambient * around + max(0.0, float(normal @ self.second)) * self.key
         if shaded:
-            return np.asarray(self.ambient + second)
-        return np.asarray(
-            self.ambient + second + max(0.0, float(normal @ self.to_light)) * self.key
-        )
+            return np.asarray(light)
+        to_lamp, nearness = self.at(seconds), 1.0
+        if np.isfinite(self.lamp_m):
+            way = (MIDDLE + to_lamp * self.lamp_m - place) / self.lamp_m
+            nearness = 1 / float(way @ way)
+            to_lamp = way * np.sqrt(nearness)
+        return np.asarray(light + nearness * max(0.0, float(normal @ to_lamp)) * self.key)
 
     def camera_from_cube(self, seconds: float) -> Array:
         """Pose of the cube at a time, (4, 4)."""
@@ -150,6 +176,16 @@ def second_light(seed: int) -> Room:
     return replace(room, second=0.25 * other)
 
 
+def uneven(seed: int) -> Room:
+    """A lamp 0.8 m away, and less than half as much ambient light from below as from above."""
+    return replace(coloured(seed), ground=0.4, lamp_m=0.8)
+
+
+def moved(seed: int) -> Room:
+    """A lamp that jumps to another direction."""
+    return replace(coloured(seed), moved=plain(seed + 2000).to_light)
+
+
 def hand(seed: int) -> Room:
     """A hand that covers and shades a part of each face, and all of some."""
     return replace(coloured(seed), hand=True)
@@ -171,7 +207,10 @@ def resting(seed: int) -> Room:
     return replace(coloured(seed), resting=True)
 
 
-KINDS = (plain, coloured, second_light, hand, automatic, poor, resting)
+KINDS = (plain, coloured, second_light, uneven, hand, automatic, poor, moved, resting)
+
+OWN_ROWS = (moved, resting)
+"""Kinds that the bars do not count."""
 
 
 class Drawing:
@@ -210,7 +249,9 @@ class Drawing:
             x, y, w, h = (random.uniform(0, 1, 4) * (1280, 720, 240, 160)).astype(int).tolist()
             colour = random.uniform(0.03, 0.7, 3).tolist()
             cv2.rectangle(albedo, (x, y), (x + w, y + h), colour, -1)
-        return np.asarray(albedo * room.irradiance(np.array([0, 1.0, 0])), np.float32)
+        return np.asarray(
+            albedo * room.irradiance(np.array([0, 1.0, 0]), np.zeros(3), 0.0), np.float32
+        )
 
     def _add_cube(self, image: Floats, room: Room, pose: Array, seconds: float) -> None:
         signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
@@ -218,7 +259,6 @@ class Drawing:
         region = self._rays.region_around(self._rays.pixels(corners), 3)
         rays = self._rays.rays(region, SAMPLES)
         drawn = np.zeros((*rays.shape[:2], 4), np.float32)
-        table_from_camera = room.camera_from_table[:3, :3].T
         for number, (name, (right, up)) in enumerate(FACE_AXES.items()):
             axes = pose[:3, :3] @ np.array([right, up, np.cross(right, up)], float).T
             centre = pose[:3, 3] + axes[:, 2] * self._cube.edge / 2
@@ -232,11 +272,16 @@ class Drawing:
             albedo = cv2.remap(
                 self._textures[name], x, y, cv2.INTER_LINEAR, None, cv2.BORDER_REPLICATE
             )
-            normal = table_from_camera @ axes[:, 2]
-            light = np.broadcast_to(room.irradiance(normal), albedo.shape)
+            table = se3.inverse(room.camera_from_table)
+            where = (
+                table[:3, :3] @ axes[:, 2],
+                table[:3, :3] @ centre + table[:3, 3],
+                seconds,
+            )
+            light = np.broadcast_to(room.irradiance(*where), albedo.shape)
             if room.hand:
                 covered, shaded = _hand_on(places, number, seconds, room.seed)
-                light = np.where(shaded[..., None], room.irradiance(normal, True), light)
+                light = np.where(shaded[..., None], room.irradiance(*where, True), light)
                 albedo = np.where(covered[..., None], SKIN, albedo)
             drawn[inside, :3] = (albedo * light)[inside]
             drawn[inside, 3] = 1
@@ -325,7 +370,7 @@ def measure(room: Room, cube: CubeModel, drawing: Drawing, frames: int, tracked:
         start = time.perf_counter()
         light = meter.update(picture, state)
         seconds.append(time.perf_counter() - start)
-        errors.append(_direction_error(room, light))
+        errors.append(_direction_error(room, light, index / RATE))
     late = np.flatnonzero(np.array(errors) > MAX_DIRECTION_DEG)
     first = 0 if not len(late) else late[-1] + 1
     ratio = 1.0
@@ -346,10 +391,10 @@ def _true_state(room: Room, index: int) -> CubeState:
     return CubeState(True, pose, velocity, np.zeros((6, 6)), "markers", (), 0.0, index / RATE)
 
 
-def _direction_error(room: Room, light: MeasuredLight | None) -> float:
+def _direction_error(room: Room, light: MeasuredLight | None, seconds: float) -> float:
     if light is None:
         return 90.0
-    cosine = float(light.to_light @ (room.camera_from_table[:3, :3] @ room.to_light))
+    cosine = float(light.to_light @ (room.camera_from_table[:3, :3] @ room.at(seconds)))
     return float(np.rad2deg(np.arccos(np.clip(cosine, -1, 1))))
 
 
@@ -408,7 +453,7 @@ def main() -> int:
         ]
         seconds += [s for result in results for s in result.seconds]
         table.add_row(*_row(kind.__name__.replace("_", " "), results))
-        if kind is not resting:
+        if kind not in OWN_ROWS:
             turned += results
     if turned:
         table.add_section()

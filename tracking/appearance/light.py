@@ -33,12 +33,16 @@ the table and the hand, vignetting, and paper that is not flat."""
 SHADOW_SHARE = 0.16
 """A patch darker than its model by this share of the mean light is in a shadow."""
 
+MIN_LIT_PATCHES = 4
+"""Fewer patches cannot tell that another one is in a shadow."""
+
 SETTLING_S, MEMORY_S, SMOOTHING_S = 0.2, 60.0, 0.4
 """Time in which the mean of an orientation settles, in which it is forgotten, and in which the
 light that is reported follows the fit."""
 
-FIT_INTERVAL_S = 0.15
-"""Time from one fit to the next."""
+MEASURING_INTERVAL_S, FIT_INTERVAL_S = 0.06, 0.2
+"""Time from one measurement of the paper to the next, and from one fit to the next: never both in
+the same picture."""
 
 MAX_STEP_S = 0.2
 """A longer gap between two pictures counts as this long: one picture proves no more."""
@@ -66,12 +70,13 @@ def _disc() -> Array:
     return np.concatenate([np.zeros((1, 2)), *points])
 
 
-DIRECTIONS, ORIENTATIONS, DISC = sphere(256), sphere(192), _disc()
+DIRECTIONS, ORIENTATIONS, DISC = sphere(128), sphere(192), _disc()
 """Directions that a light is searched in, orientations that are remembered apart, and how the best
 direction is refined."""
 
-MIN_SPREAD, MAX_SPREAD = np.radians(2.5), np.radians(20.0)
-"""Spread of directions [rad] around which they are refined."""
+REFINED_SPREADS, MIN_REFINED, MAX_REFINED = 2.5, np.radians(12.0), np.radians(50.0)
+"""How far around the mean direction it is refined, in standard deviations, and the least and the
+most of it [rad]: no less than the distance of two directions, and only where one is the best."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +117,7 @@ class LightMeter:
         self._memory = _PatchMemory()
         self._light: MeasuredLight | None = None
         self._time = -np.inf
-        self._fitted = -np.inf
+        self._fitted = self._measured = -np.inf
 
     def update(
         self, image: Image, state: CubeState, up: Array | None = None
@@ -137,19 +142,28 @@ class LightMeter:
         self._time = state.timestamp
         gain = self._exposure.update(image, step)
         self._memory.age(step)
-        if state.visible and state.camera_from_cube is not None and self._still(state):
-            patches = self._sampler.measure(image, state.camera_from_cube)
-            self._memory.add(patches, patches.irradiance / gain, step)
-            since = self._time - self._fitted
-            if since >= FIT_INTERVAL_S - 1e-6 and self._memory.weights.any():
-                self._fitted = self._time
-                self._light = _blend(self._light, self._memory.fit(_prior(up)), since)
+        since = self._time - self._fitted
+        if self._measured > self._fitted and since >= FIT_INTERVAL_S - 1e-6:
+            self._fitted = self._time
+            self._light = _blend(self._light, self._memory.fit(_prior(up)), since)
+        elif self._time - self._measured >= MEASURING_INTERVAL_S - 1e-6:
+            self._measure(image, state, gain)
         light = self._light
         if light is None:
             return None
         return MeasuredLight(
             light.to_light, light.key * gain, light.ambient * gain, light.certainty
         )
+
+    def _measure(self, image: Image, state: CubeState, gain: Array) -> None:
+        """Take the paper that is seen into the memory."""
+        if not state.visible or state.camera_from_cube is None or not self._still(state):
+            return
+        patches = self._sampler.measure(image, state.camera_from_cube)
+        if len(patches.normals):
+            step = min(state.timestamp - self._measured, MAX_STEP_S)
+            self._memory.add(patches, patches.irradiance / gain, step)
+            self._measured = state.timestamp
 
     def _still(self, state: CubeState) -> bool:
         """Whether paper and ink are apart in the picture in spite of the cube's motion."""
@@ -179,9 +193,10 @@ def fit_light(
     """
     mean = max(float(weights @ irradiance.sum(axis=1)) / (3 * float(weights.sum())), 1e-6)
     scaled = irradiance / mean
-    directions, spread = DIRECTIONS, np.inf
+    directions = DIRECTIONS
     for _ in range(2):
-        cost, ambients, keys = _least_squares(normals @ directions.T, scaled, weights)
+        lit = np.maximum(normals @ directions.T, 0)
+        cost, ambients, keys = _least_squares(lit, scaled, weights)
         log = directions @ log_prior - cost / (2 * IRRADIANCE_ERROR**2)
         likely = np.exp(log - log.max())
         likely /= likely.sum()
@@ -189,23 +204,24 @@ def fit_light(
         length = float(np.sqrt(centre @ centre))
         to_light = centre / max(length, 1e-9)
         ambient, key = likely @ ambients, likely @ keys
-        spread = min(spread, float(np.sqrt(2 * max(1 - length, 0))))
-        if spread > MAX_SPREAD:
+        spread = float(np.sqrt(2 * max(1 - length, 0)))
+        radius = max(REFINED_SPREADS * spread, MIN_REFINED)
+        if radius > MAX_REFINED:
             break
-        directions = _around(to_light, 2.5 * max(spread, MIN_SPREAD))
+        directions = _around(to_light, radius)
     certainty = float(np.clip(1 - spread / _prior_spread(log_prior), 0, 1))
-    model = ambient + np.maximum(normals @ to_light, 0)[:, None] * key
+    model = ambient + lit @ (likely[:, None] * keys)
     darker = (model - scaled).mean(axis=1)
     return MeasuredLight(to_light, key * mean, ambient * mean, certainty), darker
 
 
-def _least_squares(cosines: Array, values: Array, weights: Array) -> tuple[Array, Array, Array]:
+def _least_squares(lit: Array, values: Array, weights: Array) -> tuple[Array, Array, Array]:
     """Fit ambient and key light, both at least 0, for each direction.
 
-    `cosines` are those between patches and directions, (N, G), `values` (N, 3), `weights` (N,).
+    `lit` are the cosines of patches and directions, at least 0, (N, G), `values` (N, 3), `weights`
+    (N,).
     Returns the weighted sum of squares (G,), ambient and key light (G, 3).
     """
-    lit = np.maximum(cosines, 0)
     weighted = weights[:, None] * values
     # What is expected of the ambient share is one more measurement, of a weight next to nothing.
     share, trust = EXPECTED_AMBIENT_SHARE, (IRRADIANCE_ERROR / (2 * AMBIENT_SHARE_SPREAD)) ** 2
@@ -306,7 +322,7 @@ class _PatchMemory:
         weights = self.weights[known]
         light, darker = fit_light(normals, irradiance, weights, log_prior)
         shadowed = darker > SHADOW_SHARE
-        if shadowed.any() and not shadowed.all():
+        if shadowed.any() and len(shadowed) - shadowed.sum() >= MIN_LIT_PATCHES:
             light, _ = fit_light(normals, irradiance, weights * ~shadowed, log_prior)
         return light
 

@@ -25,7 +25,7 @@ TEXELS_PER_CELL = 12
 MIN_COSINE = 0.2
 """Cosine of the viewing angle below which paper shines and its cells run into each other."""
 
-MIN_CLEARANCE_PX = 1.7
+MIN_CLEARANCE_PX = 1.2
 """Least distance of a sample from ink, as the camera sees it."""
 
 MAX_VALUE = 250
