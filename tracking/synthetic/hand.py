@@ -11,12 +11,6 @@ from tracking.synthetic.camera_rays import CameraRays, PixelRegion
 Shader = Callable[[Floats, Floats, Floats, Floats], Floats]
 """From light, slope towards the camera, blush and position along the capsule to a BGR colour."""
 
-SKIN_BGR = np.array([128.0, 162.0, 224.0], np.float32)
-"""Colour of the skin."""
-
-SLEEVE_BGR = np.array([118.0, 84.0, 60.0], np.float32)
-"""Colour of the sleeve."""
-
 AWAY_OFFSET_M = np.array([0.34, 0.16, -0.06])
 """Position of the hand relative to the cube when it is away."""
 
@@ -51,6 +45,12 @@ class Hand:
 
     sleeve: tuple[Capsule, ...]
     """Cuff and forearm, always drawn in front of the wrist."""
+
+    skin_bgr: tuple[float, float, float] = (128.0, 162.0, 224.0)
+    """Colour of the skin, or of a glove."""
+
+    sleeve_bgr: tuple[float, float, float] = (118.0, 84.0, 60.0)
+    """Colour of the sleeve."""
 
 
 def hand_at(position: Array, edge: float, grip: float) -> Hand:
@@ -116,26 +116,34 @@ def draw_hand(
     skin = _CapsuleLayer(camera, region, hand.skin)
     cloth = _CapsuleLayer(camera, region, hand.sleeve)
     over = cloth.cover[..., None]
-    colour = skin.shaded(_skin_colour, to_light) * (1 - over)
-    colour += cloth.shaded(_cloth_colour, to_light) * over
+    colour = skin.shaded(_skin_shader(hand.skin_bgr), to_light) * (1 - over)
+    colour += cloth.shaded(_cloth_shader(hand.sleeve_bgr), to_light) * over
     depth = np.where(cloth.cover > 0.5, cloth.depth(), skin.depth())
     return colour, np.maximum(skin.cover, cloth.cover), depth
 
 
-def _skin_colour(light: Floats, slope: Floats, blush: Floats, along: Floats) -> Floats:
+def _skin_shader(skin_bgr: tuple[float, float, float]) -> Shader:
     """Shade skin: light scatters round it, and its rims are redder, not only darker."""
-    rim = np.clip(1.0 - slope, 0.0, 1.0) ** 2
-    colour = SKIN_BGR * (0.40 + 0.62 * light)[..., None]
-    colour *= 1.0 - rim[..., None] * np.array([0.34, 0.28, 0.12], np.float32)
-    colour *= 1.0 - blush[..., None] * np.array([0.15, 0.11, 0.0], np.float32)
-    return np.asarray(colour + 16.0 * (light**6)[..., None], np.float32)
+
+    def shade(light: Floats, slope: Floats, blush: Floats, along: Floats) -> Floats:
+        rim = np.clip(1.0 - slope, 0.0, 1.0) ** 2
+        colour = np.array(skin_bgr, np.float32) * (0.40 + 0.62 * light)[..., None]
+        colour *= 1.0 - rim[..., None] * np.array([0.34, 0.28, 0.12], np.float32)
+        colour *= 1.0 - blush[..., None] * np.array([0.15, 0.11, 0.0], np.float32)
+        return np.asarray(colour + 16.0 * (light**6)[..., None], np.float32)
+
+    return shade
 
 
-def _cloth_colour(light: Floats, slope: Floats, blush: Floats, along: Floats) -> Floats:
+def _cloth_shader(sleeve_bgr: tuple[float, float, float]) -> Shader:
     """Shade wool: soft folds across the arm, and no gloss."""
-    folds = 0.05 * np.sin(34 * along + 3.0 * slope) + 0.035 * np.sin(81 * along - 5.0 * slope)
-    shade = 0.42 + 0.60 * light + folds * slope
-    return np.asarray(SLEEVE_BGR * shade[..., None], np.float32)
+
+    def shade(light: Floats, slope: Floats, blush: Floats, along: Floats) -> Floats:
+        folds = 0.05 * np.sin(34 * along + 3.0 * slope) + 0.035 * np.sin(81 * along - 5.0 * slope)
+        shade = 0.42 + 0.60 * light + folds * slope
+        return np.asarray(np.array(sleeve_bgr, np.float32) * shade[..., None], np.float32)
+
+    return shade
 
 
 class _CapsuleLayer:
