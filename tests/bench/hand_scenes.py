@@ -1,0 +1,176 @@
+"""Pictures of hands of many skins and gloves at the synthetic cube, with the true mask."""
+
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+
+from tracking.cube.model import CubeModel
+from tracking.geometry import se3
+from tracking.geometry.arrays import Array, Floats, Image
+from tracking.geometry.frame import Frame
+from tracking.geometry.intrinsics import Intrinsics
+from tracking.synthetic.camera_rays import CameraRays
+from tracking.synthetic.choreography import UP, Choreography, SceneState
+from tracking.synthetic.exposure import ExposureRenderer, shutter_samples
+from tracking.synthetic.hand import Capsule, Hand, draw_hand, hand_region
+from tracking.synthetic.options import SyntheticOptions
+from tracking.synthetic.paper_cube import PaperCube
+from tracking.synthetic.source import EYE_M, LOOK_AT_M, look_at, webcam
+
+SKINS = {
+    "Monk 01": "f6ede4",
+    "Monk 02": "f3e7db",
+    "Monk 03": "f7ead0",
+    "Monk 04": "eadaba",
+    "Monk 05": "d7bd96",
+    "Monk 06": "a07e56",
+    "Monk 07": "825c43",
+    "Monk 08": "604134",
+    "Monk 09": "3a312a",
+    "Monk 10": "292420",
+}
+"""The Monk Skin Tone Scale (Monk, 2019; skintone.google, CC BY 4.0), red, green, blue."""
+
+GLOVES = {"blue nitrile": "3f6fc4", "black wool": "26262b", "yellow rubber": "e6c229"}
+"""Colours of gloves, red, green, blue."""
+
+RATE_HZ = 12.0
+"""Frames a second of a scene."""
+
+
+@dataclass(frozen=True)
+class HandView:
+    """How a hand comes, and under what light and lens it is seen."""
+
+    skin: str
+    """Colour of skin or glove, six hexadecimal digits."""
+
+    azimuth_deg: float = 0.0
+    """Where the arm comes from, about the vertical: 0 is the far right, negative nearer."""
+
+    seed: int = 1
+    """Seed of desk, sensor noise and the texture of the skin."""
+
+    gradient: float = 0.0
+    """How much darker the left of the picture is than the right, 0…1."""
+
+    defocus: float = 0.6
+    """Standard deviation of the lens blur [px]."""
+
+    texture: float = 0.04
+    """Standard deviation of the skin's brightness."""
+
+    gloss: float = 0.5
+    """Strength of specular spots, 0…1."""
+
+    hand: bool = True
+    """Whether there is a hand at all."""
+
+
+class HandScene:
+    """A cube that a hand takes, turns and slides."""
+
+    def __init__(self, view: HandView, cube: CubeModel) -> None:
+        self.view, self.cube = view, cube
+        self.options = SyntheticOptions(seed=view.seed, defocus=view.defocus, hand=view.hand)
+        self.intrinsics: Intrinsics = webcam(self.options)
+        self.camera_from_table = look_at(EYE_M, LOOK_AT_M)
+        self._camera = CameraRays(self.intrinsics, self.camera_from_table)
+        self._paper = PaperCube(cube, self._camera, view.seed)
+        self._renderer = _HandRenderer(self._camera, self._paper, self.options, view)
+        random = np.random.default_rng([view.seed, 3])
+        x, z, heading = random.uniform((-0.1, -0.05, -45), (0.1, 0.12, 45))
+        c = Choreography(cube.edge, x, z, heading).rest(1.0).hold(0.5).turn(60, 0.9)
+        c.carry(0.04, 0.05, 0.06, 1.4).turn(-100, 1.2).slide(x, z, 0.8).hold(0.3)
+        self._choreography = c
+        self.count = round(c.length * RATE_HZ)
+        """Number of frames."""
+
+    def state(self, index: int) -> SceneState:
+        """Cube and hand in the middle of a frame's exposure."""
+        return self._choreography.at(index / RATE_HZ)
+
+    def truth(self, index: int) -> Array:
+        """`camera_from_cube`, (4, 4)."""
+        return np.asarray(self.camera_from_table @ self.state(index).table_from_cube)
+
+    def frame(self, index: int) -> tuple[Frame, Floats]:
+        """Return a frame, and what the hand covers of each pixel, (H, W) 0…1."""
+        time, half = index / RATE_HZ, self.options.blur / 2
+        ends = [self._choreography.at(time + shift) for shift in (-half, half)]
+        corners = [self._paper.corners(self._posed(state)) for state in ends]
+        shifts = np.linspace(-half, half, shutter_samples(self._camera, corners))
+        states = [self._choreography.at(time + float(shift)) for shift in shifts]
+        poses = [self._posed(state) for state in states]
+        image = self._renderer.draw(states, poses, index, False)
+        return Frame(image, time, index), self._renderer.covered
+
+    def _posed(self, state: SceneState) -> Array:
+        return np.asarray(self.camera_from_table @ state.table_from_cube)
+
+
+class _HandRenderer(ExposureRenderer):
+    """Draws hands of another skin, from another side, and keeps what they cover."""
+
+    def __init__(
+        self, camera: CameraRays, cube: PaperCube, options: SyntheticOptions, view: HandView
+    ) -> None:
+        super().__init__(camera, cube, options)
+        self._view = view
+        self.covered = np.zeros(camera.size[::-1], np.float32)
+        random = np.random.default_rng([view.seed, 11])
+        width, height = camera.size
+        self._mottle = np.ones((height, width), np.float32)
+        for cell, share in ((24, 0.6), (6, 0.8)):
+            grain = random.standard_normal((height // cell, width // cell)).astype(np.float32)
+            grain = cv2.resize(grain, (width, height), interpolation=cv2.INTER_CUBIC)
+            self._mottle += view.texture * share * grain
+        spots = random.standard_normal((height // 10, width // 10)).astype(np.float32)
+        spots = cv2.resize(spots, (width, height), interpolation=cv2.INTER_CUBIC)
+        self._spots = np.clip(spots - 1.7, 0, 1) * 90.0 * view.gloss
+        self._light = np.linspace(1 - view.gradient, 1, width, dtype=np.float32)[:, None]
+
+    def draw(
+        self, states: list[SceneState], poses: list[Array], index: int, in_air: bool
+    ) -> Image:
+        self.covered = np.zeros_like(self.covered)
+        return super().draw(states, poses, index, in_air)
+
+    def _add_hand(self, image: Floats, hand: Hand, camera_from_cube: Array) -> None:
+        at = self._table_position(camera_from_cube)
+        hand = turned(hand, at, self._view.azimuth_deg)
+        red, green, blue = bytes.fromhex(self._view.skin)
+        hand = replace(hand, skin_bgr=(float(blue), float(green), float(red)))
+        region = hand_region(self._camera, hand)
+        if region.empty:
+            return
+        colour, cover, depth = draw_hand(self._camera, region, hand, self._to_light)
+        colour = colour * self._mottle[region.index][..., None]
+        colour += (self._spots[region.index] * (cover > 0.9))[..., None]
+        behind = depth - self._cube.depth(region, camera_from_cube)
+        cover = cover * (1.0 - np.clip(behind / 0.0015, 0.0, 1.0))
+        part = image[region.index]
+        part += (colour - part) * cover[..., None]
+        self.covered[region.index] = cover
+
+    def _table_position(self, camera_from_cube: Array) -> Array:
+        return np.asarray((se3.inverse(self._camera.camera_from_table) @ camera_from_cube)[:3, 3])
+
+    def _sensor_image(self, image: Floats, index: int) -> Image:
+        return super()._sensor_image(image * self._light, index)
+
+
+def turned(hand: Hand, centre: Array, degrees: float) -> Hand:
+    """Return the hand turned about the vertical through a point of the table frame."""
+    turn = se3.rotation(-np.deg2rad(degrees) * UP)
+
+    def part(capsule: Capsule) -> Capsule:
+        start, end = (turn @ (point - centre) + centre for point in (capsule.start, capsule.end))
+        return replace(capsule, start=start, end=end)
+
+    return replace(
+        hand,
+        skin=tuple(part(each) for each in hand.skin),
+        sleeve=tuple(part(each) for each in hand.sleeve),
+    )
