@@ -67,7 +67,7 @@ def main() -> None:
                 if scene.state(index).grip > 0.99:
                     shares.append(iou(mask, truth, window))
                     seen.append(mask is not None)
-                    if arguments.output and index % 8 == 0:
+                    if arguments.output and index % 12 == 0:
                         write(arguments.output / f"{name} {number} {index}.png", frame.image, mask, truth, window)
             scenes.append(np.mean(shares[3:]))
             frames += shares[3:]

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from tracking.appearance.background import Background
 from tracking.appearance.face_pattern import FacePattern, SeenPattern
 from tracking.appearance.skin_model import FLOOR, ColourHistogram, colour_bins
 from tracking.cube.model import CubeModel
@@ -34,6 +35,16 @@ MIN_EVIDENCE_EDGES2 = 0.004
 
 MIN_CONTRAST = 25.0
 """Least difference between paper and ink with which a face is compared [CIELab bytes]."""
+
+
+MIN_LEARNED = 60
+"""Pixels of a hand from which on its colours are known."""
+
+MIN_TOUCH_EDGES2, MIN_AREA_EDGES2 = 0.01, 0.15
+"""Least area beside the cube, and in all, of a hand that hides no face [square edges]."""
+
+SMALL = np.ones((3, 3), np.uint8)
+"""The neighbours of a pixel."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +89,7 @@ class HandFinder:
         self._edge = cube.edge
         signs = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
         self._corners = np.array(signs, np.float64) * cube.edge / 2
+        self._background = Background()
         self._hand, self._behind = ColourHistogram(), ColourHistogram()
 
     def update(self, image: Image, state: CubeState) -> HandMask | None:
@@ -93,31 +105,61 @@ class HandFinder:
         window = self._window(image, pose)
         if window is None:
             return None
-        height, width = window.lab.shape[:2]
+        lab, edge = window.lab, window.edge
+        height, width = lab.shape[:2]
         origin = np.array([window.left, window.top], np.float64)
         seen = self._pattern.seen(pose, origin, window.scale, (width, height))
-        evidence = disagreement(window.lab, seen, window.edge)
-        bins = colour_bins(window.lab)
-        cube = cv2.dilate((seen.face > 0).astype(np.uint8), np.ones((5, 5), np.uint8)) > 0
-        if np.count_nonzero(evidence) > 8:
-            self._hand.learn(bins, evidence)
-        self._behind.learn(bins, ~cube)
-        if self._hand.weight < 30:
-            return None
-        ratio = np.log((self._hand.density() + FLOOR) / (self._behind.density() + FLOOR))
-        score = np.clip(ratio[bins] - 0.3, -3, 3)
-        score[cube] = -3
-        score[evidence] = 3
-        score = cv2.GaussianBlur(score, (0, 0), 1.2)
-        grown = connected(score > 0, evidence)
+        evidence = disagreement(lab, seen, edge)
+        cube = (seen.face > 0).astype(np.uint8)
+        inner, outer = cv2.erode(cube, SMALL) > 0, cv2.dilate(cube, SMALL, iterations=2) > 0
+        column, row = window.left // window.scale, window.top // window.scale
+        box = np.s_[row : row + height, column : column + width]
+        columns, rows = (side // window.scale for side in self._projection.size)
+        self._background.match_size(columns, rows)
+        by_place, trust = self._background.odds(lab, box, ~outer)
+        if trust == 0:
+            self._background.forget()
+        bins = colour_bins(lab)
+        by_colour = self._colour_odds()[bins]
+        odds = by_colour + by_place
+        odds[outer] = by_colour[outer] * 0.5
+        odds[inner] = -4.0
+        odds[evidence] = 4.0
+        odds = cv2.GaussianBlur(odds, (0, 0), 1.0)
+        grown = self._grown(odds > 0, evidence, cube > 0, edge)
+        wide = cv2.dilate(grown.astype(np.uint8), SMALL, iterations=2) > 0
+        sure = grown & (odds > 1.5) & ~outer & (by_place > 0) | evidence
+        if np.count_nonzero(sure) > 8:
+            self._hand.learn(bins, sure)
+        free = ~outer & ~wide
+        self._behind.learn(bins, free)
+        self._background.learn(lab, box, free, by_place)
         if not grown.any():
             return None
-        soft = np.clip(score * 0.5 + 0.5, 0, 1) * cv2.dilate(grown.astype(np.uint8), np.ones((3, 3)))
+        soft = np.clip(odds * 0.4 + 0.5, 0, 1) * (cv2.dilate(grown.astype(np.uint8), SMALL) > 0)
         size = (width * window.scale, height * window.scale)
         cover = cv2.resize(np.rint(255 * soft).astype(np.uint8), size)
         hidden = seen.depth[evidence]
         distance = float(hidden.min()) if len(hidden) else float(pose[2, 3])
         return HandMask(window.left, window.top, np.asarray(cover, np.uint8), distance)
+
+    def _colour_odds(self) -> Floats:
+        """What each colour speaks for a hand, as the logarithm of odds."""
+        if self._hand.weight < MIN_LEARNED:
+            return np.zeros(len(self._hand.density()), np.float32)
+        ratio = np.log((self._hand.density() + FLOOR) / (self._behind.density() + FLOOR))
+        return np.asarray(np.clip(ratio, -2.5, 2.5), np.float32)
+
+    def _grown(self, hand: Flags, evidence: Flags, cube: Flags, edge: float) -> Flags:
+        """Choose the components that hold evidence, or that touch the cube on a long line."""
+        count, labels, stats, _ = cv2.connectedComponentsWithStats(hand.astype(np.uint8))
+        area = stats[:, cv2.CC_STAT_AREA]
+        beside = cv2.dilate(cube.astype(np.uint8), SMALL, iterations=4) > 0
+        touching = np.bincount(labels[beside], minlength=count)
+        keep = (touching > MIN_TOUCH_EDGES2 * edge**2) & (area > MIN_AREA_EDGES2 * edge**2)
+        keep[labels[evidence & hand]] = True
+        keep[0] = False
+        return np.asarray(keep[labels])
 
     def region(self, camera_from_cube: Array | None) -> tuple[slice, slice] | None:
         """Rows and columns of the image in which the hand is looked for at a pose of the cube."""
@@ -133,7 +175,7 @@ class HandFinder:
             return None
         pixels = self._projection.project(points)
         edge = self._edge * float(self._projection.matrix[0, 0]) / float(pose[2, 3])
-        scale = max(1, int(np.ceil(edge / WORKING_EDGE_PX)))
+        scale = 1 if edge < 40 else 2 if edge < 100 else 4
         size = np.array(self._projection.size)
         reach = REACH_EDGES * edge
         low = np.clip(np.floor((pixels.min(axis=0) - reach) / scale) * scale, 0, size)
