@@ -15,8 +15,11 @@ STEP, CHANGED_STEP = 0.1, 0.015
 """Share of a frame in the background, where it looks as before and where it does not: what stays
 for a hundred frames belongs to it."""
 
-UNCHANGED, CHANGED, SHADED, UNKNOWN = -3.0, 2.0, -0.7, 0.0
+UNCHANGED, CHANGED, SHADED, UNKNOWN = -3.0, 2.0, -1.2, -0.7
 """What a pixel speaks for a hand, as the logarithm of odds."""
+
+MIN_ROUGH, MAX_ROUGH, ROUGH = 0.02**2, 0.05**2, 1.0
+"""Variance of the gain in a shadow at most, and that of something else, and what it speaks then."""
 
 MIN_KNOWN, LOST_SHARE, TRUSTED_SHARE = 0.2, 0.25, 0.45
 """Share of a window that must be known; and of that, how much must look as before to trust the
@@ -62,14 +65,19 @@ class Background:
         lightness = change[..., 0] - mean[..., 0]
         unchanged = same_colour & (np.abs(lightness) < LIGHTNESS_TOLERANCE)
         shaded = same_colour & (gain > MIN_SHADE) & (lightness < LIGHTNESS_TOLERANCE)
-        odds = np.where(unchanged, UNCHANGED, np.where(shaded, SHADED, CHANGED))
+        # A shadow keeps the texture of what it falls on, so the gain is smooth.
+        mean_gain = cv2.blur(gain, (5, 5))
+        rough = cv2.blur(gain * gain, (5, 5)) - mean_gain * mean_gain
+        smooth = np.clip((rough - MIN_ROUGH) / (MAX_ROUGH - MIN_ROUGH), 0, 1)
+        as_shade = SHADED + (ROUGH - SHADED) * smooth
+        odds = np.where(unchanged, UNCHANGED, np.where(shaded, as_shade, CHANGED))
         odds = np.where(known, odds, UNKNOWN).astype(np.float32)
         total, all_outside = np.count_nonzero(known), np.count_nonzero(outside)
         if total < MIN_KNOWN * max(all_outside, 1):
             return odds, 0.0
         same = np.count_nonzero(unchanged & known) / total
         trust = float(np.clip((same - LOST_SHARE) / (TRUSTED_SHARE - LOST_SHARE), 0, 1))
-        return odds * np.float32(trust), trust
+        return np.where(known, odds * np.float32(trust), odds), trust
 
     def learn(self, lab: Image, box: tuple[slice, slice], free: Flags, odds: Floats) -> None:
         """Learn the pixels of a window that are free of cube and hand."""

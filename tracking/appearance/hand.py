@@ -33,8 +33,8 @@ LIGHTNESS_TOLERANCE = 22.0
 MIN_EVIDENCE_EDGES2 = 0.004
 """Least area of a face that must disagree with its print [square edges]."""
 
-MIN_CONTRAST = 25.0
-"""Least difference between paper and ink with which a face is compared [CIELab bytes]."""
+TINT_STEP = 0.1
+"""Share of a frame in the learned tint of paper."""
 
 
 MIN_LEARNED = 60
@@ -89,6 +89,7 @@ class HandFinder:
         self._edge = cube.edge
         signs = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
         self._corners = np.array(signs, np.float64) * cube.edge / 2
+        self._faces = FaceCheck()
         self._background = Background()
         self._hand, self._behind = ColourHistogram(), ColourHistogram()
 
@@ -109,7 +110,7 @@ class HandFinder:
         height, width = lab.shape[:2]
         origin = np.array([window.left, window.top], np.float64)
         seen = self._pattern.seen(pose, origin, window.scale, (width, height))
-        evidence = disagreement(lab, seen, edge)
+        evidence = self._faces.disagreement(lab, seen, edge)
         cube = (seen.face > 0).astype(np.uint8)
         inner, outer = cv2.erode(cube, SMALL) > 0, cv2.dilate(cube, SMALL, iterations=2) > 0
         column, row = window.left // window.scale, window.top // window.scale
@@ -125,18 +126,20 @@ class HandFinder:
         odds[outer] = by_colour[outer] * 0.5
         odds[inner] = -4.0
         odds[evidence] = 4.0
-        odds = cv2.GaussianBlur(odds, (0, 0), 1.0)
-        grown = self._grown(odds > 0, evidence, cube > 0, edge)
+        odds = cv2.GaussianBlur(odds, (5, 5), 1.0)
+        grown = self._grown(closed(odds > 0), evidence, cube > 0, edge)
         wide = cv2.dilate(grown.astype(np.uint8), SMALL, iterations=2) > 0
         sure = grown & (odds > 1.5) & ~outer & (by_place > 0) | evidence
         if np.count_nonzero(sure) > 8:
             self._hand.learn(bins, sure)
         free = ~outer & ~wide
-        self._behind.learn(bins, free)
+        self._behind.learn(bins, free & (by_place <= 0))
         self._background.learn(lab, box, free, by_place)
         if not grown.any():
             return None
+        core = cv2.erode(grown.astype(np.uint8), SMALL) > 0
         soft = np.clip(odds * 0.4 + 0.5, 0, 1) * (cv2.dilate(grown.astype(np.uint8), SMALL) > 0)
+        soft[core] = 1.0
         size = (width * window.scale, height * window.scale)
         cover = cv2.resize(np.rint(255 * soft).astype(np.uint8), size)
         hidden = seen.depth[evidence]
@@ -148,7 +151,7 @@ class HandFinder:
         if self._hand.weight < MIN_LEARNED:
             return np.zeros(len(self._hand.density()), np.float32)
         ratio = np.log((self._hand.density() + FLOOR) / (self._behind.density() + FLOOR))
-        return np.asarray(np.clip(ratio, -2.5, 2.5), np.float32)
+        return np.asarray(np.clip(ratio, -2.0, 2.0), np.float32)
 
     def _grown(self, hand: Flags, evidence: Flags, cube: Flags, edge: float) -> Flags:
         """Choose the components that hold evidence, or that touch the cube on a long line."""
@@ -196,44 +199,75 @@ class HandFinder:
         return _Window(left, top, scale, lab, edge)
 
 
-def disagreement(lab: Image, seen: SeenPattern, edge: float) -> Flags:
-    """Return which pixels of the faces do not look like their print, (h, w).
+class FaceCheck:
+    """Finds pixels of faces that do not look like their print."""
 
-    Parameters
-    ----------
-    lab
-        CIELab of the window, bytes, (h, w, 3).
-    seen
-        The print there.
-    edge
-        Apparent edge of the cube [px].
-    """
-    kernel = np.ones((3, 3), np.uint8)
-    most, least = cv2.dilate(seen.ink, kernel), cv2.erode(seen.ink, kernel)
-    found = np.zeros(seen.face.shape, bool)
-    inner = cv2.erode((seen.face > 0).astype(np.uint8), kernel) > 0
-    lightness = lab[..., 0].astype(np.float32)
-    for number in np.unique(seen.face[seen.face > 0]).tolist():
-        face = (seen.face == number) & inner
-        paper, ink = face & (most < 0.1) & ~seen.icon, face & (least > 0.9)
-        if min(np.count_nonzero(paper), np.count_nonzero(ink)) < 12:
-            continue
-        white = float(np.quantile(lightness[paper], 0.6))
-        black = float(np.quantile(lightness[ink], 0.4))
-        if white - black < MIN_CONTRAST:
-            continue
-        bright = paper & (lightness > 0.75 * white)
-        tint = np.median(lab[bright][:, 1:], axis=0) - 128.0
-        top = MAX_SHADE * (white - least * (white - black)) + LIGHTNESS_TOLERANCE
-        bottom = MIN_SHADE * (white - most * (white - black)) - LIGHTNESS_TOLERANCE
-        off = (lightness > top) | (lightness < bottom)
+    def __init__(self) -> None:
+        self._tint: Floats | None = None
+
+    def disagreement(self, lab: Image, seen: SeenPattern, edge: float) -> Flags:
+        """Return which pixels of the faces do not look like their print, (h, w).
+
+        Parameters
+        ----------
+        lab
+            CIELab of the window, bytes, (h, w, 3).
+        seen
+            The print there.
+        edge
+            Apparent edge of the cube [px].
+        """
+        most, least = cv2.dilate(seen.ink, SMALL), cv2.erode(seen.ink, SMALL)
+        found = np.zeros(seen.face.shape, bool)
+        inner = cv2.erode((seen.face > 0).astype(np.uint8), SMALL) > 0
+        lightness = lab[..., 0].astype(np.float32)
+        chroma = lab[..., 1:].astype(np.float32) - 128.0
+        all_paper = inner & (most < 0.1) & ~seen.icon
+        tint = self._paper_tint(lightness, chroma, all_paper)
+        if tint is None:
+            return found
         # Light scales L + 16 and the chroma by the same factor.
-        share = (lightness + 41.0) / (white + 41.0)
-        chroma = lab[..., 1:].astype(np.float32) - 128.0 - share[..., None] * tint
-        off |= ((chroma**2).sum(axis=-1) > CHROMA_TOLERANCE**2) & ~seen.icon
-        found |= off & face
-    opened = cv2.morphologyEx(found.astype(np.uint8), cv2.MORPH_OPEN, np.ones((2, 2), np.uint8))
-    return connected_from_outside(opened > 0, seen.face > 0, MIN_EVIDENCE_EDGES2 * edge * edge)
+        off_tint = chroma - (lightness[..., None] + 41.0) * tint
+        coloured = (off_tint**2).sum(axis=-1) > CHROMA_TOLERANCE**2
+        for number in np.unique(seen.face[inner]).tolist():
+            face = (seen.face == number) & inner
+            paper, ink = face & all_paper, face & (least > 0.9)
+            plain, dark = paper & ~coloured, ink & ~coloured
+            if np.count_nonzero(plain) < 8:
+                found |= face & coloured & ~seen.icon
+                continue
+            white = float(np.quantile(lightness[plain], 0.7))
+            black = 0.25 * white
+            if np.count_nonzero(dark) > 8:
+                black = min(float(np.quantile(lightness[dark], 0.3)), 0.6 * white)
+            top = MAX_SHADE * (white - least * (white - black)) + LIGHTNESS_TOLERANCE
+            bottom = MIN_SHADE * (white - most * (white - black)) - LIGHTNESS_TOLERANCE
+            off = (lightness > top) | (lightness < bottom) | coloured & ~seen.icon
+            found |= off & face
+        opened = cv2.morphologyEx(found.astype(np.uint8), cv2.MORPH_OPEN, np.ones((2, 2), np.uint8))
+        found = connected_from_outside(opened > 0, seen.face > 0, MIN_EVIDENCE_EDGES2 * edge * edge)
+        self._learn_tint(lightness, chroma, all_paper & ~coloured & ~found)
+        return found
+
+    def _paper_tint(self, lightness: Floats, chroma: Floats, paper: Flags) -> Floats | None:
+        """Chroma of paper per L + 16, as learned, or from the brighter half of what is paper."""
+        if self._tint is None:
+            if np.count_nonzero(paper) < 12:
+                return None
+            bright = paper & (lightness >= np.quantile(lightness[paper], 0.5))
+            self._tint = np.median(chroma[bright] / (lightness[bright][:, None] + 41.0), axis=0)
+        return self._tint
+
+    def _learn_tint(self, lightness: Floats, chroma: Floats, paper: Flags) -> None:
+        if np.count_nonzero(paper) > 30 and self._tint is not None:
+            now = np.median(chroma[paper] / (lightness[paper][:, None] + 41.0), axis=0)
+            self._tint = np.asarray(self._tint + TINT_STEP * (now - self._tint), np.float32)
+
+
+def closed(flags: Flags) -> Flags:
+    """Fill gaps of a few pixels, and drop specks."""
+    mask = cv2.morphologyEx(flags.astype(np.uint8), cv2.MORPH_OPEN, SMALL)
+    return cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8)) > 0
 
 
 def connected(flags: Flags, seeds: Flags) -> Flags:
