@@ -25,11 +25,12 @@ from app.pipeline.scenario_errors import checked, scenario_errors
 from app.pipeline.spoken_line import SpokenLine
 from app.pipeline.step import Rect, ReplayInputs, Step
 from app.pipeline.subjects import character_region, cube_region
+from app.pipeline.surroundings import REALISM_CHOICES, Surroundings
 from app.pipeline.things import Body, BodyParts
 from characters import Animator, Character, CharacterCommand, PosedCharacter, RootDelta
 from characters.control.command import SpeechIntent
 from characters.control.controllers import ControllerFactory, first_suitable
-from characters.rendering import Box, SceneCharacter, Stage, View
+from characters.rendering import SceneCharacter, Stage
 from tracking import (
     CubeControls,
     CubeGestures,
@@ -88,6 +89,8 @@ class Playground:
         Called at the end of each part of `step` with its name, to measure its time.
     controller
         Makes the controller of the characters; see `choose_controller`.
+    realism
+        What of the camera's picture the drawing follows, of `REALISM_CHOICES`.
 
     Raises
     ------
@@ -110,13 +113,14 @@ class Playground:
         known_cubes: Sequence[CubeModel] = (),
         lap: Lap = lambda part: None,
         controller: ControllerFactory = first_suitable,
+        realism: Sequence[str] = tuple(REALISM_CHOICES),
     ) -> None:
         if isinstance(scenario, str):
             scenario = make_scenario(scenario, cube)
         self.intrinsics = intrinsics
         self.known_cubes = tuple(known_cubes)
         self._look, self._context, self._lap = look, context, lap
-        self._controller = controller
+        self._controller, self._realism = controller, tuple(realism)
         self.fixed = fixed
         """Whether the scenario cannot be changed now, so that the player is not told how."""
         self._stage = None if context is None else Stage(context, intrinsics.size)
@@ -138,6 +142,7 @@ class Playground:
         self.scenario, self.cube, self.character = scenario, cube, character
         self._tracker = CubeTracker(cube, self.intrinsics)
         self._gestures = CubeGestures(cube)
+        self._surroundings = Surroundings(cube, self.intrinsics, self._realism)
         self._animator, self._parts = animator, BodyParts.of(character, animator.scale)
         self._posed: PosedCharacter | None = None
         self._body: Body | None = None
@@ -317,16 +322,7 @@ class Playground:
         """Draw the picture; return None without a graphics context."""
         if self._stage is None:
             return None
-        boxes: tuple[Box, ...] = ()
-        if state.camera_from_cube is not None:
-            boxes = (Box(state.camera_from_cube, self.cube.edge),)
-        view = View(
-            frame.image,
-            self.intrinsics.matrix,
-            self.intrinsics.distortion,
-            controls.camera_from_table,
-            boxes,
-        )
+        view = self._surroundings.view(frame, state, controls)
         seen = posed.visible and controls.camera_from_table is not None
         characters = [SceneCharacter(self.character, posed)] if seen else []
         if seen and outcome.things:

@@ -123,6 +123,7 @@ def open_session(
             known_cubes=cubes,
             lap=monitor.times.lap,
             controller=controller,
+            realism=options.realism,
         )
         closing.callback(playground.close)
         is_session = options.source.endswith(".mcap")

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
 
+from app.pipeline.surroundings import REALISM_CHOICES
 from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
 
 
@@ -61,6 +62,9 @@ class SessionOptions:
 
     look: str = "auto"
     """What the character's eyes follow: one of `LOOK_CHOICES`."""
+
+    realism: tuple[str, ...] = tuple(REALISM_CHOICES)
+    """What of the camera's picture the drawing follows, of `REALISM_CHOICES`."""
 
     robot: str = "sim"
     """URL of the robot, as `RobotLine.open` takes it."""

@@ -11,6 +11,7 @@ from app.commands.output import OverwriteOption
 from app.commands.session.preference_options import GivenPreferences, with_preferences
 from app.commands.session.progress import play_session
 from app.errors import AppError
+from app.pipeline.surroundings import NO_REALISM, REALISM_CHOICES, realism
 from app.running.network import DEFAULT_SITE
 from app.scenarios import find_scenario, scenario_names
 from app.scenarios.roles import check_cubes
@@ -103,6 +104,16 @@ VoiceOption = Annotated[
         envvar=VOICE_VARIABLE,
     ),
 ]
+RealismOption = Annotated[
+    str,
+    typer.Option(
+        "--realism",
+        help="What of the camera's picture the drawing follows, separated by commas: "
+        + "; ".join(f"{name}, {meaning}" for name, meaning in REALISM_CHOICES.items())
+        + f"; or {NO_REALISM}.",
+    ),
+]
+ALL_REALISM = ",".join(REALISM_CHOICES)
 PersonalityOption = Annotated[
     str | None,
     typer.Option(help="A bundled personality, or your own .toml file."),
@@ -192,6 +203,7 @@ def play(
         str, typer.Option(help="Where the character looks: auto, cube, hand, camera or none.")
     ] = "auto",
     pictures: PicturesOption = True,
+    followed: RealismOption = ALL_REALISM,
     sounds: SoundsOption = None,
     folder: FolderOption = None,
     mqtt: Broker = None,
@@ -223,6 +235,7 @@ def play(
         voice=voice,
         profile=DEFAULT_PROFILE if profile is None else SpeechProfile.load(profile),
         look=look,
+        realism=realism(followed),
         robot=robot,
         robot_settings=robot_settings,
         record=record,

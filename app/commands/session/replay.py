@@ -11,6 +11,7 @@ from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publ
 from app.commands.output import OverwriteOption
 from app.commands.session.part import EndOption, LoopOption, StartOption
 from app.commands.session.play import (
+    ALL_REALISM,
     CharacterOption,
     CodecOption,
     FolderOption,
@@ -19,6 +20,7 @@ from app.commands.session.play import (
     OutputOption,
     PersonalityOption,
     PicturesOption,
+    RealismOption,
     RecordOption,
     RobotOption,
     RobotSettingsOption,
@@ -27,6 +29,7 @@ from app.commands.session.play import (
 from app.commands.session.preference_options import GivenPreferences, with_preferences
 from app.commands.session.progress import ProgressLines, play_session
 from app.errors import AppError
+from app.pipeline.surroundings import realism
 from app.running.network import DEFAULT_SITE
 from app.running.replay_check import check_session
 from app.session import session_info
@@ -51,6 +54,7 @@ def replay(
     output: OutputOption = None,
     overwrite: OverwriteOption = False,
     pictures: PicturesOption = True,
+    followed: RealismOption = ALL_REALISM,
     sounds: SoundsOption = None,
     start: StartOption = 0.0,
     end: EndOption = None,
@@ -109,6 +113,7 @@ def replay(
         output=output,
         overwrite=overwrite,
         pictures=pictures and not check and (output is not None or has_display()),
+        realism=realism(followed),
         sounds=sounds,
         fast=fast,
         salvage=salvage,

@@ -1,0 +1,90 @@
+"""What the camera's picture tells the drawing: the hand, the light, its blur and its noise.
+
+It changes nothing but the picture.
+"""
+
+from collections.abc import Sequence
+
+from app.errors import AppError
+from characters.rendering import Box, Cover, MeasuredLight, Softness, View
+from tracking import CubeControls, CubeModel, CubeState, Frame, Intrinsics
+from tracking.appearance.hand import HandFinder
+from tracking.appearance.light import LightMeter
+from tracking.appearance.picture_quality import QualityMeter
+
+REALISM_CHOICES = {
+    "hand": "the hand that holds the cube hides what is behind it",
+    "light": "light and shadow fall as on the cube",
+    "softness": "characters are as soft and as noisy as the picture",
+}
+"""What of the camera's picture the drawing follows, and what that means."""
+
+NO_REALISM = "none"
+"""The name of none of `REALISM_CHOICES`."""
+
+
+def realism(text: str) -> tuple[str, ...]:
+    """Return the choices in a text, separated by commas.
+
+    >>> realism("hand, light")
+    ('hand', 'light')
+    >>> realism("none")
+    ()
+
+    Raises
+    ------
+    AppError
+        One of them is none of `REALISM_CHOICES`.
+    """
+    names = tuple(part.strip() for part in text.split(","))
+    if names == (NO_REALISM,):
+        return ()
+    for name in names:
+        if name not in REALISM_CHOICES:
+            known = ", ".join(REALISM_CHOICES)
+            raise AppError(f"a picture cannot follow '{name}': choose of {known}, or {NO_REALISM}")
+    return names
+
+
+class Surroundings:
+    """Measures what the drawing follows, frame by frame.
+
+    Parameters
+    ----------
+    cube, intrinsics
+        The cube in play, and the camera.
+    chosen
+        Which of `REALISM_CHOICES` are measured.
+    """
+
+    def __init__(self, cube: CubeModel, intrinsics: Intrinsics, chosen: Sequence[str]) -> None:
+        self._cube, self._intrinsics = cube, intrinsics
+        self._hand = HandFinder(cube, intrinsics) if "hand" in chosen else None
+        self._light = LightMeter(cube, intrinsics) if "light" in chosen else None
+        self._quality = QualityMeter(cube, intrinsics) if "softness" in chosen else None
+
+    def view(self, frame: Frame, state: CubeState, controls: CubeControls) -> View:
+        """Return the camera's picture with all that is known of the scene in it."""
+        pose = state.camera_from_cube
+        return View(
+            frame.image,
+            self._intrinsics.matrix,
+            self._intrinsics.distortion,
+            controls.camera_from_table,
+            () if pose is None else (Box(pose, self._cube.edge),),
+            self._cover(frame, state),
+            self._measured_light(frame, state),
+            self._softness(frame, state),
+        )
+
+    def _cover(self, frame: Frame, state: CubeState) -> Cover | None:
+        found = None if self._hand is None else self._hand.update(frame.image, state)
+        return None if found is None else Cover(found.x, found.y, found.cover, found.distance)
+
+    def _measured_light(self, frame: Frame, state: CubeState) -> MeasuredLight | None:
+        found = None if self._light is None else self._light.update(frame.image, state)
+        return None if found is None else MeasuredLight(found.to_light, found.key, found.ambient)
+
+    def _softness(self, frame: Frame, state: CubeState) -> Softness | None:
+        found = None if self._quality is None else self._quality.update(frame.image, state)
+        return None if found is None else Softness(found.blur, found.noise)
