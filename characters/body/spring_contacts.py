@@ -52,44 +52,36 @@ class Contacts:
         `ends` are both ends of the axes of all colliders, (colliders, 2, 3). Each tail leaves its
         colliders in turn, and is put back to its distance from the joint each time.
         """
-        tails = (origins + way)[self.bones]
-        hits = self._hits(tails, ends)
-        if hits is None:
-            return way
-        way = way.copy()
-        later = np.ones(self.reach.shape, bool)  # pairs whose turn is still to come
-        while hits is not None:
-            hitting, away, distances = hits
-            waiting = hitting & later
-            rows = np.flatnonzero(waiting.any(axis=1))
-            if not rows.size:
+        own, turn, pushed = way.take(self.bones, 0), 0, False
+        origins, lengths = origins.take(self.bones, 0), lengths.take(self.bones, 0)
+        while turn < self.reach.shape[1]:
+            away, distances = self._from_axes(origins + own, ends, turn)
+            depths = self.reach[:, turn:] - distances
+            deepest = depths.max(axis=0)
+            if deepest.max() <= 0.0:
                 break
-            turns = waiting[rows].argmax(axis=1)
-            later[rows] = np.arange(self.reach.shape[1]) > turns[:, None]
-            bones, distance = self.bones[rows], distances[rows, turns]
-            depth = (self.reach[rows, turns] - distance) / np.maximum(distance, 1e-9)
-            pushed = way[bones] + away[rows, turns] * depth[:, None]
-            way[bones] = with_length(pushed, lengths[bones])
-            if self.reach.shape[1] == 1:  # every bone had its turn
-                break
-            tails[rows] = origins[bones] + way[bones]
-            hits = self._hits(tails, ends)
+            skipped = int((deepest > 0.0).argmax())  # turns in which no tail is in a collider
+            shares = np.maximum(depths[:, skipped], 0.0) / np.maximum(distances[:, skipped], 1e-9)
+            own = with_length(own + away[:, skipped] * shares[:, None], lengths)
+            turn, pushed = turn + skipped + 1, True
+        if pushed:
+            way = way.copy()
+            way[self.bones] = own
         return way
 
-    def _hits(self, tails: Array, ends: Array) -> tuple[NDArray[np.bool_], Array, Array] | None:
-        """Return which pairs hit, the ways from the axes to the tails, and their lengths.
+    def _from_axes(self, tails: Array, ends: Array, turn: int) -> tuple[Array, Array]:
+        """Return the ways from the axes of the colliders from a turn on to tails, and lengths.
 
-        They are (n, turns), (n, turns, 3) and (n, turns); None if none hits.
+        They are (n, turns, 3) and (n, turns).
         """
-        start = ends[self.colliders, 0]
+        colliders = self.colliders[:, turn:]
+        start = ends[:, 0].take(colliders, 0)
         away = tails[:, None] - start
         if not self.are_spheres:
-            along = ends[self.colliders, 1] - start
+            along = ends[:, 1].take(colliders, 0) - start
             shares = np.vecdot(away, along) / np.maximum(np.vecdot(along, along), 1e-18)
             away -= np.clip(shares, 0.0, 1.0)[..., None] * along
-        distances = np.sqrt(np.vecdot(away, away))
-        hitting = distances < self.reach
-        return (hitting, away, distances) if hitting.any() else None
+        return away, np.sqrt(np.vecdot(away, away))
 
 
 def with_length(vectors: Array, lengths: Array) -> Array:

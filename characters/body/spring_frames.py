@@ -28,7 +28,8 @@ class PlacedBones:
     """Of the bones, (bones, 1) [m]."""
 
     centers: Array
-    """Rotations and origins of the centres in the world, (bones, 3, 4) [m]; any for none."""
+    """Rotations and origins of the centres in the world, (bones, 3, 4) [m]: of any joint for a bone
+    without a centre, and of none if no bone has one."""
 
     colliders: Array
     """Both ends of the colliders' axes in the world, (colliders, 2, 3) [m]."""
@@ -43,19 +44,23 @@ class PlacedBones:
         frames[first, :, 3] += matrices[first, :3, 3]
         return replace(self, frames=frames, tails=moved(matrices, self.tails))
 
-    def between(self, before: "PlacedBones", share: float, first: slice) -> "PlacedBones":
-        """Return the bones with their first level on its way from an earlier placement."""
-        if share >= 1.0:
-            return self
-        frames = self.frames.copy()
-        mixed = before.frames[first] + share * (frames[first] - before.frames[first])
+    def steps_from(self, before: "PlacedBones", steps: int, first: slice) -> tuple[Array, Array]:
+        """Return frames and colliders at each of equal steps from an earlier placement to this.
+
+        They are copies, (steps, bones, 3, 5) and (steps, colliders, 2, 3). The first level moves.
+        """
+        frames = np.repeat(self.frames[None], steps, 0)
+        if steps == 1:
+            return frames, self.colliders[None]
+        shares = (np.arange(1.0, steps + 1) / steps)[:, None, None, None]
+        earlier = before.frames[first]
+        mixed = earlier + shares[:-1] * (self.frames[first] - earlier)
         # One Newton step of the polar decomposition makes the mixture a rotation again.
         turns = mixed[..., :3]
-        grown = turns.swapaxes(1, 2) @ mixed[..., [0, 1, 2, 4]]
-        mixed[..., [0, 1, 2, 4]] = 1.5 * mixed[..., [0, 1, 2, 4]] - 0.5 * turns @ grown
-        frames[first] = mixed
-        colliders = before.colliders + share * (self.colliders - before.colliders)
-        return replace(self, frames=frames, colliders=colliders)
+        straight = 1.5 * mixed - 0.5 * turns @ (turns.swapaxes(-1, -2) @ mixed)
+        straight[..., 3] = mixed[..., 3]
+        frames[:-1, first] = straight
+        return frames, before.colliders + shares * (self.colliders - before.colliders)
 
 
 class SpringFrames:
@@ -82,43 +87,48 @@ class SpringFrames:
         for level in self.levels[1:]:
             self.roots[level] = self.roots[self.parents[level]]
         tails = rows([bone.tail for bone in self.bones])
-        self._tails = tails[:, :, None]
         self._lengths = np.linalg.norm(tails, axis=1, keepdims=True)
         self.axes = tails / self._lengths
         """Directions of the bones in their joints' frames, (bones, 3)."""
+        # Columns of rotation, origin, direction and tail of each bone in its joint's frame.
+        self._columns = np.zeros((len(tails), 4, 6))
+        self._columns[:, :, :4] = np.eye(4)
+        self._columns[:, :3, 4], self._columns[:, :3, 5] = self.axes, tails
+        self._columns[:, 3, 5] = 1.0
         self.shapes = list(dict.fromkeys(each for bone in self.bones for each in bone.colliders))
         """The colliders."""
-        ends = [[shape.start, shape.end] for shape in self.shapes]
-        self._ends = np.array(ends).reshape(-1, 2, 3)
-        own = self.joints.tolist()
-        carriers = [joint_of[shape.joint] for shape in self.shapes]
-        centers = [-1 if bone.center is None else joint_of[bone.center] for bone in self.bones]
-        self._part = SkeletonPart.of(skeleton, [*own, *carriers, *centers])
-        self._own, self._carriers, self._centers = map(self._part.places, (own, carriers, centers))
+        ends = np.array([[shape.start, shape.end] for shape in self.shapes]).reshape(-1, 2, 3)
+        self._ends = np.concatenate([ends.swapaxes(1, 2), np.ones((len(ends), 1, 2))], 1)
+        centers = [None if bone.center is None else joint_of[bone.center] for bone in self.bones]
+        self.has_center = np.array([center is not None for center in centers])
+        """Which bones have a centre."""
+        wanted = [*self.joints.tolist(), *(joint_of[shape.joint] for shape in self.shapes)]
+        if self.has_center.any():
+            wanted += [center or 0 for center in centers]
+        self._part = SkeletonPart.of(skeleton, wanted)
+        self._wanted = self._part.places(wanted)
 
     def placed(self, pose: Pose, world_from_character: Array) -> PlacedBones:
         """Return where the pose has the bones."""
-        world_from_joint = world_from_character @ self._part.globals(pose)
-        own = world_from_joint[self._own]
-        turns, heads = own[:, :3, :3], own[:, :3, 3]
-        reach = (turns @ self._tails)[..., 0]
-        lengths = self._lengths
-        centers = world_from_joint[self._centers, :3]
+        bones, carriers = len(self.bones), len(self.bones) + len(self.shapes)
+        placed = world_from_character[:3] @ self._part.globals(pose).take(self._wanted, 0)
+        columns = placed[:bones] @ self._columns
+        frames, tails, lengths = columns[..., :5], columns[..., 5], self._lengths
+        centers = placed[carriers:]
         if pose.scales is not None:
-            turns, centers[..., :3] = _unscaled(turns), _unscaled(centers[..., :3])
+            reach = tails - frames[..., 3]
             lengths = np.maximum(np.linalg.norm(reach, axis=1, keepdims=True), 1e-9)
-        frames = np.empty((len(own), 3, 5))
-        frames[..., :3], frames[..., 3], frames[..., 4] = turns, heads, reach / lengths
+            frames[..., :3], frames[..., 4] = _unscaled(frames[..., :3]), reach / lengths
+            centers[..., :3] = _unscaled(centers[..., :3])
         first = self.levels[0].stop
-        if first < len(frames):
-            above = self.parents[first:]
-            frames[first:, :, 3] -= heads[above]
-            frames[first:] = turns[above].swapaxes(1, 2) @ frames[first:]
-        ends = self._ends
-        if len(ends):
-            ends = moved(world_from_joint[self._carriers, None], ends)
-        place = world_from_character[:3, 3].copy()
-        return PlacedBones(frames, heads + reach, lengths, centers, ends, place)
+        if first < bones:
+            above = frames.take(self.parents[first:], 0)
+            frames[first:, :, 3] -= above[..., 3]
+            frames[first:] = above[..., :3].swapaxes(1, 2) @ frames[first:]
+        ends = (placed[bones:carriers] @ self._ends).swapaxes(1, 2)
+        return PlacedBones(
+            frames, tails, lengths, centers, ends, world_from_character[:3, 3].copy()
+        )
 
 
 def moved(matrices: Array, points: Array) -> Array:

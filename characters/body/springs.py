@@ -59,11 +59,11 @@ class SpringBody:
         bones = self._frames.bones
         self._half_turns = _half_turns(self._frames.axes)
         self._stiffness = rows([bone.stiffness for bone in bones])
-        self._kept = 1.0 - rows([bone.drag for bone in bones])
+        self._kept = np.repeat(1.0 - rows([bone.drag for bone in bones]), 3, axis=1)
         self._gravity = rows([bone.gravity for bone in bones])
         self._stillness = 1.0 - rows([bone.wind for bone in bones])
         self._has_still_air = bool(self._stillness.any())
-        self._has_center = np.array([bone.center is not None for bone in bones])
+        self._has_center = bool(self._frames.has_center.any())
         shapes = self._frames.shapes
         self._contacts = [Contacts.of(bones[level], shapes) for level in self._frames.levels]
         self._last: PlacedBones | None = None
@@ -91,13 +91,17 @@ class SpringBody:
             before = self._carried(self._last, placed, elapsed)
         self._last = placed
         steps = max(math.ceil(elapsed * REFERENCE_RATE - 1e-6), 1)
-        air = None
-        if self._has_still_air:
-            air = (placed.place - before.place) / steps * self._stillness
         length = elapsed * REFERENCE_RATE / steps
-        for number in range(1, steps + 1):
-            on_its_way = placed.between(before, number / steps, self._frames.levels[0])
-            directions = self._advance(on_its_way, length, air)
+        kept, falling, pulled = self._step_factors(length)
+        if self._has_still_air:  # the air moves along, and its tails with it
+            air = (placed.place - before.place) / steps * self._stillness
+            falling = falling + air * (1.0 - kept)
+        frames, colliders = placed.steps_from(before, steps, self._frames.levels[0])
+        for own, ends in zip(frames, colliders, strict=True):
+            free = self._free(length, kept) + falling
+            self._now = self._advance(free, pulled, own, placed.lengths, ends)
+        aimed = (self._now - own[..., 3]) / placed.lengths
+        directions = (aimed[:, None] @ own[..., :3])[:, 0]
         turned = pose.rotations.copy()
         turned[self._frames.joints] = rotations.multiply(
             turned[self._frames.joints], self._turns(directions)
@@ -116,10 +120,11 @@ class SpringBody:
     def _carried(self, before: PlacedBones, now: PlacedBones, elapsed: float) -> PlacedBones:
         """Carry along what does not swing, tails included; return the earlier placement then."""
         first = self._frames.levels[0]
-        if self._has_center.any():
+        if self._has_center:
             moves = rigid_moves(before.centers, now.centers)
-            before = self._moved_along(before, moves, self._has_center)
-        jumps = np.linalg.norm(now.tails - before.tails, axis=1) > self._most_speed * elapsed
+            before = self._moved_along(before, moves, self._frames.has_center)
+        ways = now.tails - before.tails
+        jumps = np.vecdot(ways, ways) > (self._most_speed * elapsed) ** 2
         if jumps.any():
             chains = np.isin(self._frames.roots, self._frames.roots[jumps])
             moves = rigid_moves(before.frames[first], now.frames[first])
@@ -134,52 +139,48 @@ class SpringBody:
         self._now, self._before = moved(matrices, self._now), moved(matrices, self._before)
         return before.carried(matrices, self._frames.levels[0])
 
-    def _advance(self, placed: PlacedBones, length: float, air: Array | None) -> Array:
-        """Make a step of a length [1 / REFERENCE_RATE]; return where the bones point.
-
-        `air` is how far the air about each tail moves meanwhile, if it does. The directions,
-        (bones, 3), are in the frames of the joints in the pose.
-        """
-        kept, falling, pulled = self._step_factors(length)
-        drift = (self._now - self._before) * (length / self._step)
-        if air is not None:
-            drift = drift - air
-        free = self._now + drift * kept + falling
-        if air is not None:
-            free += air
-        tails, directions = np.empty_like(free), np.empty_like(free)
-        # Rotations and origins of the swung bones, (bones, 3, 4).
-        swung = np.empty((len(free), 3, 4))
-        for number, level in enumerate(self._frames.levels):
-            frames, lengths, axes = (
-                placed.frames[level],
-                placed.lengths[level],
-                self._frames.axes[level],
-            )
-            if number:
-                above = swung.take(self._frames.parents[level], 0)
-                frames = above[..., :3] @ frames
-                frames[..., 3] += above[..., 3]
-            turns, origins, rest = frames[..., :3], frames[..., 3], frames[..., 4]
-            way = with_length(free[level] + pulled[level] * rest - origins, lengths)
-            contacts = self._contacts[number]
-            if contacts is not None:
-                way = contacts.pushed_out(way, origins, lengths, placed.colliders)
-            aimed = way / lengths
-            tails[level] = origins + way
-            inner = directions[level] = (aimed[:, None] @ turns)[:, 0]
-            if number + 1 < len(self._frames.levels):
-                swung[level, :, :3] = _swung(turns, axes, inner, rest, aimed)
-                swung[level, :, 3] = origins
+    def _free(self, length: float, kept: Array) -> Array:
+        """Return where the tails' own speeds take them in a step, and forget the step before."""
+        drift = self._now - self._before
+        if length != self._step:
+            drift *= length / self._step
         if length > 0.0:
             self._before, self._step = self._now, length
-        self._now = tails
-        return directions
+        drift *= kept
+        drift += self._now
+        return drift
+
+    def _advance(
+        self, free: Array, pulled: Array, frames: Array, lengths: Array, colliders: Array
+    ) -> Array:
+        """Return where the tails are after a step, (bones, 3).
+
+        `free` is where they are without stiffness, and `pulled` is how far that pulls them [m].
+        The frames, (bones, 3, 5), become those in the world of all levels, before they swing.
+        """
+        tails, levels = np.empty_like(free), self._frames.levels
+        swung = np.empty((len(free), 3, 4))  # rotations and origins
+        for number, level in enumerate(levels):
+            own, reach = frames[level], lengths[level]
+            if number:
+                above = swung.take(self._frames.parents[level], 0)
+                own[:] = above[..., :3] @ own
+                own[..., 3] += above[..., 3]
+            origins, rest = own[..., 3], own[..., 4]
+            way = with_length(free[level] + pulled[level] * rest - origins, reach)
+            contacts = self._contacts[number]
+            if contacts is not None:
+                way = contacts.pushed_out(way, origins, reach, colliders)
+            np.add(origins, way, out=tails[level])
+            if number + 1 < len(levels):
+                swung[level, :, :3] = _swung(own, self._frames.axes[level], way / reach)
+                swung[level, :, 3] = origins
+        return tails
 
     def _step_factors(self, length: float) -> tuple[Array, Array, Array]:
         """Return the part of the speed that is kept, and the ways by gravity and stiffness [m].
 
-        They are (bones, 1), (bones, 3) and (bones, 1) for a step [1 / REFERENCE_RATE].
+        They are (bones, 3) for a step [1 / REFERENCE_RATE].
         """
         if self._factors is None or self._factors[0] != length:
             lost = 1.0 - self._kept
@@ -190,19 +191,21 @@ class SpringBody:
         return self._factors[1]
 
 
-def _swung(frames: Array, axes: Array, inner: Array, rest: Array, aimed: Array) -> Array:
-    """Return frames, (bones, 3, 3), turned by the smallest angle from `rest` to `aimed`.
+def _swung(frames: Array, axes: Array, aimed: Array) -> Array:
+    """Return the rotations of frames, (bones, 3, 3), turned by the smallest angle to `aimed`.
 
     A turn is two reflections: M + 2 b aᵀ − s (a + Mᵀb)ᵀ / (1 + rest·b), with a = Mᵀ rest, b the
-    new direction and s = rest + b; the axes are a, and `inner` is Mᵀb.
+    new direction and s = rest + b; the axes are a.
     """
+    turns, rest = frames[..., :3], frames[..., 4]
+    inner = (aimed[:, None] @ turns)[:, 0]
     cosine = np.vecdot(rest, aimed)
     columns, rows = np.empty((len(rest), 3, 2)), np.empty((len(rest), 2, 3))
     np.multiply(aimed, 2.0, out=columns[..., 0])
     np.add(rest, aimed, out=columns[..., 1])
     rows[:, 0] = axes
     np.divide(axes + inner, -np.maximum(1.0 + cosine, 1e-9)[:, None], out=rows[:, 1])
-    turned: Array = frames + columns @ rows
+    turned: Array = turns + columns @ rows
     return turned
 
 
