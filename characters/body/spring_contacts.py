@@ -46,28 +46,27 @@ class Contacts:
         are_spheres = all(shape.start == shape.end for shape in shapes)
         return Contacts(np.array(own, np.intp), colliders, reach, are_spheres)
 
-    def pushed_out(self, way: Array, origins: Array, lengths: Array, ends: Array) -> Array:
-        """Return the ways from joints to tails, (bones, 3), with the tails out of colliders.
+    def push_out(self, ways: Array, origins: Array, lengths: Array, ends: Array) -> None:
+        """Change the ways from joints to tails, (bones, 3), so that the tails leave colliders.
 
         `ends` are both ends of the axes of all colliders, (colliders, 2, 3). Each tail leaves its
         colliders in turn, and is put back to its distance from the joint each time.
         """
-        own, turn, pushed = way.take(self.bones, 0), 0, False
-        origins, lengths = origins.take(self.bones, 0), lengths.take(self.bones, 0)
-        while turn < self.reach.shape[1]:
+        own, lengths = ways.take(self.bones, 0), lengths.take(self.bones, 0)
+        origins = origins.take(self.bones, 0)
+        turn, turns = 0, self.reach.shape[1]
+        while turn < turns:
             away, distances = self._from_axes(origins + own, ends, turn)
             depths = self.reach[:, turn:] - distances
-            deepest = depths.max(axis=0)
-            if deepest.max() <= 0.0:
+            if depths.max() <= 0.0:
                 break
-            skipped = int((deepest > 0.0).argmax())  # turns in which no tail is in a collider
-            shares = np.maximum(depths[:, skipped], 0.0) / np.maximum(distances[:, skipped], 1e-9)
-            own = with_length(own + away[:, skipped] * shares[:, None], lengths)
-            turn, pushed = turn + skipped + 1, True
-        if pushed:
-            way = way.copy()
-            way[self.bones] = own
-        return way
+            # The first turn in which a tail is in a collider.
+            first = int((depths > 0.0).any(axis=0).argmax()) if turn + 1 < turns else 0
+            shares = np.maximum(depths[:, first], 0.0) / np.maximum(distances[:, first], 1e-9)
+            own = with_length(own + away[:, first] * shares[:, None], lengths)
+            turn += first + 1
+        if turn:
+            ways[self.bones] = own
 
     def _from_axes(self, tails: Array, ends: Array, turn: int) -> tuple[Array, Array]:
         """Return the ways from the axes of the colliders from a turn on to tails, and lengths.

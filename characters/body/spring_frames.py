@@ -49,7 +49,8 @@ class PlacedBones:
 
         They are copies, (steps, bones, 3, 5) and (steps, colliders, 2, 3). The first level moves.
         """
-        frames = np.repeat(self.frames[None], steps, 0)
+        frames = np.empty((steps, *self.frames.shape))
+        frames[:] = self.frames
         if steps == 1:
             return frames, self.colliders[None]
         shares = (np.arange(1.0, steps + 1) / steps)[:, None, None, None]
@@ -57,9 +58,9 @@ class PlacedBones:
         mixed = earlier + shares[:-1] * (self.frames[first] - earlier)
         # One Newton step of the polar decomposition makes the mixture a rotation again.
         turns = mixed[..., :3]
-        straight = 1.5 * mixed - 0.5 * turns @ (turns.swapaxes(-1, -2) @ mixed)
-        straight[..., 3] = mixed[..., 3]
-        frames[:-1, first] = straight
+        straight = turns @ (turns.swapaxes(-1, -2) @ mixed)
+        np.subtract(1.5 * mixed, 0.5 * straight, out=frames[:-1, first])
+        frames[:-1, first, :, 3] = mixed[..., 3]
         return frames, before.colliders + shares * (self.colliders - before.colliders)
 
 

@@ -69,7 +69,7 @@ class SpringBody:
         self._last: PlacedBones | None = None
         self._now = self._before = np.zeros((0, 3))  # tails in the world, after the last two steps
         self._step = 1.0  # length of the last step [1 / REFERENCE_RATE]
-        self._factors: tuple[float, tuple[Array, Array, Array]] | None = None  # of a length
+        self._factors: tuple[float, tuple[Array, Array, Array, Array]] | None = None  # of a length
 
     def update(self, pose: Pose, world_from_character: Array, elapsed: float) -> Pose:
         """Advance by a time [s] and return the pose with its spring bones swung.
@@ -92,10 +92,9 @@ class SpringBody:
         self._last = placed
         steps = max(math.ceil(elapsed * REFERENCE_RATE - 1e-6), 1)
         length = elapsed * REFERENCE_RATE / steps
-        kept, falling, pulled = self._step_factors(length)
-        if self._has_still_air:  # the air moves along, and its tails with it
-            air = (placed.place - before.place) / steps * self._stillness
-            falling = falling + air * (1.0 - kept)
+        kept, falling, pulled, taken_along = self._step_factors(length)
+        if self._has_still_air:
+            falling = falling + taken_along * ((placed.place - before.place) / steps)
         frames, colliders = placed.steps_from(before, steps, self._frames.levels[0])
         for own, ends in zip(frames, colliders, strict=True):
             free = self._free(length, kept) + falling
@@ -104,7 +103,7 @@ class SpringBody:
         directions = (aimed[:, None] @ own[..., :3])[:, 0]
         turned = pose.rotations.copy()
         turned[self._frames.joints] = rotations.multiply(
-            turned[self._frames.joints], self._turns(directions)
+            turned.take(self._frames.joints, 0), self._turns(directions)
         )
         return Pose(pose.translations, turned, pose.scales, pose.morphs)
 
@@ -170,24 +169,27 @@ class SpringBody:
             way = with_length(free[level] + pulled[level] * rest - origins, reach)
             contacts = self._contacts[number]
             if contacts is not None:
-                way = contacts.pushed_out(way, origins, reach, colliders)
+                contacts.push_out(way, origins, reach, colliders)
             np.add(origins, way, out=tails[level])
             if number + 1 < len(levels):
                 swung[level, :, :3] = _swung(own, self._frames.axes[level], way / reach)
                 swung[level, :, 3] = origins
         return tails
 
-    def _step_factors(self, length: float) -> tuple[Array, Array, Array]:
-        """Return the part of the speed that is kept, and the ways by gravity and stiffness [m].
+    def _step_factors(self, length: float) -> tuple[Array, Array, Array, Array]:
+        """Return what a step of a length [1 / REFERENCE_RATE] does to tails, (bones, 3) each.
 
-        They are (bones, 3) for a step [1 / REFERENCE_RATE].
+        It is the part of the speed that is kept, the ways by gravity and stiffness [m], and the
+        part of its way by which the character takes them along with the air.
         """
         if self._factors is None or self._factors[0] != length:
             lost = 1.0 - self._kept
             kept = self._kept**length
             gained = np.where(lost > 1e-9, (1.0 - kept) / np.maximum(lost, 1e-9), length)
             gained = gained * length / REFERENCE_RATE
-            self._factors = length, (kept, self._gravity * gained, self._stiffness * gained)
+            taken_along = self._stillness * (1.0 - kept)
+            ways = self._gravity * gained, self._stiffness * gained
+            self._factors = length, (kept, *ways, taken_along)
         return self._factors[1]
 
 

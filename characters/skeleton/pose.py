@@ -64,7 +64,7 @@ class Pose:
         matrices[..., :-1, :, :] = locals_
         matrices[..., -1, :, :] = np.eye(4)
         for ancestors in skeleton.doubled_ancestors:
-            matrices = matrices[..., ancestors, :, :] @ matrices
+            matrices = matrices.take(ancestors, -3) @ matrices
         return matrices[..., :-1, :, :]
 
     def __getitem__(self, frames: "int | slice | NDArray[np.intp] | None") -> "Pose":
