@@ -34,17 +34,20 @@ def _multiplication_table() -> Array:
 
 
 def _matrix_table() -> Array:
-    """Return (16, 9): the rotation matrix of q, row by row, as a combination of ``outer(q, q)``."""
+    """Return (10, 9): the rotation matrix of q, row by row, from the products of `_PAIRS`."""
     x, y, z, w = range(4)
     table = np.zeros((4, 4, 3, 3))
     for row in range(3):
         for i in range(4):
             table[i, i, row, row] = 1.0 if i in (row, w) else -1.0
-    for row, column, i, j, k in [(0, 1, x, y, z), (1, 2, y, z, x), (2, 0, z, x, y)]:
+    for row, column, i, j, k in [(0, 1, x, y, z), (1, 2, y, z, x), (2, 0, x, z, y)]:
         table[i, j, row, column] = table[i, j, column, row] = 2.0
         table[k, w, row, column], table[k, w, column, row] = -2.0, 2.0
-    return table.reshape(16, 9)
+    return table.reshape(4, 4, 9)[_PAIRS]
 
+
+_PAIRS = np.triu_indices(4)
+"""Numbers of the components in the ten different products of two components of one quaternion."""
 
 _PRODUCT_TABLE = _multiplication_table()
 _MATRIX_TABLE = _matrix_table()
@@ -211,7 +214,8 @@ def to_matrix(q: ArrayLike) -> Array:
     [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
     """
     q = np.asarray(q, float)
-    rows: Array = _outer(q, q) @ _MATRIX_TABLE
+    first, second = _PAIRS
+    rows: Array = (q.take(first, -1) * q.take(second, -1)) @ _MATRIX_TABLE
     return rows.reshape((*q.shape[:-1], 3, 3))
 
 
