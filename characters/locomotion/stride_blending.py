@@ -9,6 +9,7 @@ foot of a body that only turns, then s p + (1 − s) r stands still under a body
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from characters.locomotion.foot_trajectories import FootTrajectories
 from characters.motion.motion import RootDelta
@@ -46,7 +47,7 @@ class StrideBlend(PhaseDriven):
     rate: float = 1.0
     """Factor of the speed of the clips."""
 
-    @property
+    @cached_property
     def duration(self) -> float:
         """Length of one cycle [s]."""
         motions = self.trajectories.motions
@@ -85,12 +86,16 @@ class StrideBlend(PhaseDriven):
         balls: list[Vector] = []
         facings: list[Quaternion] = []
         for leg, (foot, still) in enumerate(zip(feet, self.trajectories.stance, strict=True)):
+            x, y, z, *facing = foot[:7]
+            if self.share == self.stride == 1.0:
+                balls.append((x, y, z))
+                facings.append(normalize(facing))
+                continue
             homes = [
                 (self.trajectories.homes[number][leg], weight)
                 for number, weight in self.contributions
             ]
             home = [sum(h[k] * weight for h, weight in homes) for k in range(7)]
-            x, y, z, *facing = foot[:7]
             if self.share < 1.0:
                 higher = (y - home[1]) * self.share**_HEIGHT_EXPONENT
                 x, _, z, *facing = _interpolated(still, foot, self.share)
