@@ -18,6 +18,7 @@ from characters.model.look_at import LookAt
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Pose, Skeleton
 from characters.skeleton.scalar_quaternions import (
+    Quaternion,
     Vector,
     conjugate,
     from_rotation_vector,
@@ -111,12 +112,14 @@ class Gaze:
         if joints is None:
             return pose
         joints.place(pose)
-        held = _angles(rotate(conjugate(joints.body), rotate(joints.head.facing, _AHEAD)))
+        body = joints.body
+        back = conjugate(body)
+        held = _angles(rotate(back, rotate(joints.head.facing, _AHEAD)))
         point: Vector | None = None
         if target is not None:
             x, y, z = target.tolist()
             point = (x, y, z)
-        aim = self._aimed(joints, point)
+        aim = self._aimed(joints, back, point)
         self.shift = 0.0 if aim is None or self._aim is None else math.dist(aim, self._aim)
         self._aim = aim
         turn = (0.0, 0.0) if aim is None else _head_turn(aim, held, head_share)
@@ -128,10 +131,10 @@ class Gaze:
             self._pitch, self._pitch_speed, turn[1], elapsed, lag
         )
         aimed = held[0] + self._yaw, held[1] + self._pitch - head_drop
-        self._turned = rotate(joints.body, _turn_between(held, aimed))
+        self._turned = rotate(body, _turn_between(held, aimed))
         if head_turn is not None and head_turn.any():
             x, y, z = head_turn.tolist()
-            besides = from_rotation_vector(rotate(joints.body, (x, y, z)))
+            besides = from_rotation_vector(rotate(body, (x, y, z)))
             both = multiply(besides, from_rotation_vector(self._turned))
             self._turned = to_rotation_vector(both)
         local, weights = pose.rotations.copy(), pose.morphs
@@ -148,11 +151,15 @@ class Gaze:
             self._morphs.look(weights, *self._morph_parts(joints, point, share, elapsed))
         return Pose(pose.translations, local, pose.scales, weights)
 
-    def _aimed(self, joints: HeadJoints, point: Vector | None) -> tuple[float, float] | None:
-        """Return yaw and pitch of a point relative to the chest; None if it is ignored."""
+    def _aimed(
+        self, joints: HeadJoints, back: Quaternion, point: Vector | None
+    ) -> tuple[float, float] | None:
+        """Return yaw and pitch of a point relative to the chest; None if it is ignored.
+
+        `back` turns the character's frame to the chest's.
+        """
         if point is None:
             return None
-        back = conjugate(joints.body)
         # Whether a point is behind does not depend on the head, or a head that turns away from it
         # and back would never come to rest.
         at_rest = middle([eye.place for eye in joints.eyes or [joints.head]])
@@ -174,7 +181,8 @@ class Gaze:
 
         Without a point the eyes go back to where they are in the pose.
         """
-        from_head = conjugate(joints.head.facing)
+        facing = joints.head.facing
+        from_head = conjugate(facing)
         back = multiply(from_head, conjugate(from_rotation_vector(self._turned)))
         kept = math.exp(-elapsed / EYE_LAG_S)
         places = joints.eye_places(self._turned)
@@ -192,7 +200,7 @@ class Gaze:
             yaw, pitch = (w + (b - w) * kept for w, b in zip(target, before, strict=True))
             self._eye_turns[number] = yaw, pitch
             turn = _turn_between(held, (held[0] + yaw, held[1] + pitch))
-            joints.turn(local, eye, rotate(joints.head.facing, turn))
+            joints.turn(local, eye, rotate(facing, turn))
 
     def _morph_parts(
         self, joints: HeadJoints, point: Vector | None, share: float, elapsed: float

@@ -37,8 +37,8 @@ class Joint:
     parent: int
     """Index of its parent among these joints; −1 for none."""
 
-    rest: Quaternion
-    """Its rotation at rest, in the character frame."""
+    from_rest: Quaternion
+    """The inverse of its rotation at rest, in the character frame."""
 
     turn: Quaternion = IDENTITY
     """Its present rotation, in the character frame."""
@@ -52,7 +52,7 @@ class Joint:
     @property
     def facing(self) -> Quaternion:
         """The body's axes as this joint turns them."""
-        return multiply(self.turn, conjugate(self.rest))
+        return multiply(self.turn, self.from_rest)
 
 
 class HeadJoints:
@@ -160,7 +160,7 @@ def _with_ancestors(skeleton: Skeleton, joints: list[int]) -> list[Joint]:
     sizes = np.linalg.norm(matrices, axis=1, keepdims=True)
     rest = from_matrix(matrices / np.where(sizes > 0, sizes, 1.0)).tolist()
     return [
-        Joint(joint, place[skeleton.parents[joint]], tuple(turned))
+        Joint(joint, place[skeleton.parents[joint]], conjugate(turned))
         for joint, turned in zip(order, rest, strict=True)
     ]
 
