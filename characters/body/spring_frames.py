@@ -58,9 +58,9 @@ class PlacedBones:
         mixed = earlier + shares[:-1] * (self.frames[first] - earlier)
         # One Newton step of the polar decomposition makes the mixture a rotation again.
         turns = mixed[..., :3]
-        straight = turns @ (turns.swapaxes(-1, -2) @ mixed)
-        np.subtract(1.5 * mixed, 0.5 * straight, out=frames[:-1, first])
-        frames[:-1, first, :, 3] = mixed[..., 3]
+        straight = 1.5 * mixed - 0.5 * turns @ (turns.swapaxes(-1, -2) @ mixed)
+        straight[..., 3] = mixed[..., 3]
+        frames[:-1, first] = straight
         return frames, before.colliders + shares * (self.colliders - before.colliders)
 
 

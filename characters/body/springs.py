@@ -123,8 +123,9 @@ class SpringBody:
             moves = rigid_moves(before.centers, now.centers)
             before = self._moved_along(before, moves, self._frames.has_center)
         ways = now.tails - before.tails
-        jumps = np.vecdot(ways, ways) > (self._most_speed * elapsed) ** 2
-        if jumps.any():
+        squares, most = np.vecdot(ways, ways), (self._most_speed * elapsed) ** 2
+        if squares.max() > most:
+            jumps = squares > most
             chains = np.isin(self._frames.roots, self._frames.roots[jumps])
             moves = rigid_moves(before.frames[first], now.frames[first])
             before = self._moved_along(before, moves[self._frames.roots], chains)

@@ -12,6 +12,8 @@ from characters.skeleton import rotations
 
 Array = NDArray[np.float64]
 
+_WORLD: Array = np.eye(4)
+
 
 @dataclass(frozen=True)
 class Pose:
@@ -62,7 +64,7 @@ class Pose:
         shape = (*locals_.shape[:-3], len(skeleton.parents) + 1, 4, 4)
         matrices = np.empty(shape)
         matrices[..., :-1, :, :] = locals_
-        matrices[..., -1, :, :] = np.eye(4)
+        matrices[..., -1, :, :] = _WORLD
         for ancestors in skeleton.doubled_ancestors:
             matrices = matrices.take(ancestors, -3) @ matrices
         return matrices[..., :-1, :, :]
