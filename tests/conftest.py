@@ -5,4 +5,8 @@ import os
 for name in ("FORCE_COLOR", "GITHUB_ACTIONS", "PY_COLORS"):
     os.environ.pop(name, None)  # with them, Typer prints colours without a terminal
 
+# OpenCV reads it when it is imported. The suite keeps all cores busy by itself; two processes whose
+# threads wait for each other take twice as long for the frames of a session.
+os.environ.setdefault("OPENCV_FOR_THREADS_NUM", "1")
+
 import app as app  # noqa: E402  before numpy, whose rounding it sets
