@@ -113,12 +113,21 @@ def cubeling(monkeypatch, capsys, tmp_path):
 @pytest.fixture(scope="session")
 def short_session(tmp_path_factory: pytest.TempPathFactory, bundled_session: Path) -> Path:
     """The first two seconds of a bundled session, recorded again."""
-    path = tmp_path_factory.mktemp("sessions") / "short.mcap"
+    return _first_frames(bundled_session, 60, tmp_path_factory.mktemp("sessions") / "short.mcap")
+
+
+@pytest.fixture(scope="session")
+def lifting_session(tmp_path_factory: pytest.TempPathFactory, bundled_session: Path) -> Path:
+    """The first four seconds of a bundled session, in which the cube is lifted."""
+    return _first_frames(bundled_session, 120, tmp_path_factory.mktemp("sessions") / "lift.mcap")
+
+
+def _first_frames(session: Path, count: int, path: Path) -> Path:
     about = {"scenario": "companion", "cube": "companion"}
-    with open_source(str(bundled_session)) as source, Recorder(path, about) as recorder:
+    with open_source(str(session)) as source, Recorder(path, about) as recorder:
         playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
         recorder.camera(playground.intrinsics, 0.0)
-        for frame in itertools.islice(source, 60):
+        for frame in itertools.islice(source, count):
             recorder.write(playground.step(frame))
     return path
 

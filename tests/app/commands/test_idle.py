@@ -1,5 +1,6 @@
 """`cubeling idle`, and characters that stand as a person does."""
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,7 +18,7 @@ from characters.synthesis.idle.storage import load_person, save_person
 RATE = 25.0
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def swaying() -> Clip:
     """A person who shifts her balance every three seconds: her hips go from side to side."""
     human = Character.load("human")
@@ -29,19 +30,27 @@ def swaying() -> Clip:
     return Clip("swaying", RATE, Pose(moved, turns), root_motion=True)
 
 
-@pytest.fixture
-def anna(swaying: Clip, tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def saved_anna(swaying: Clip, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The file of that person."""
     human = Character.load("human")
     rig = Rig(human.skeleton, human.anatomy)
-    poses = swaying.poses
+    poses = replace(swaying.poses, translations=swaying.poses.translations.copy())
     poses.translations[:, human.anatomy.joints["hips"], 1] -= 0.02  # bent knees let her sway
     for leg in rig.legs:  # her feet stay where they are
         ankle = np.broadcast_to(rig.rest_positions[leg.foot], (len(swaying), 3))
         poses = place_ankle(poses, rig, leg, ankle)
     clip = Clip("anna", RATE, poses, root_motion=True)
     recording = read_standing(clip, human.skeleton, human.anatomy)
-    save_person((human.skeleton, human.anatomy, (recording,)), tmp_path / "anna.idle")
-    return tmp_path / "anna.idle"
+    path = tmp_path_factory.mktemp("anna") / "anna.idle"
+    save_person((human.skeleton, human.anatomy, (recording,)), path)
+    return path
+
+
+@pytest.fixture
+def anna(saved_anna: Path, tmp_path: Path) -> Path:
+    """A copy of it, for one test."""
+    return Path(shutil.copy(saved_anna, tmp_path))
 
 
 def test_a_person_comes_back_from_her_file(anna: Path) -> None:

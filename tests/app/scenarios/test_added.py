@@ -76,12 +76,12 @@ def test_the_example_of_the_page_waves_and_cheers(install, hand):
     assert [action(controls) for controls in hand.wait(3.0)][-1] == "idle"
 
 
-def test_the_example_of_the_page_is_listed_and_plays(install, cubeling):
+def test_the_example_of_the_page_is_listed_and_plays(install, cubeling, lifting_session):
     install(TOML, PYTHON)
     code, out, _ = cubeling("play", "--help")
     assert code == 0
     assert "greet: lift the cube and the character waves" in " ".join(out.split())
-    session = ["-s", bundled("companion"), "--record", "greet.mcap", "--robot", "none"]
+    session = ["-s", lifting_session, "--record", "greet.mcap", "--robot", "none"]
     code, _, err = cubeling("play", "greet", *session, "--no-pictures")
     assert (code, err) == (0, "")
     recorded = (
