@@ -1,5 +1,7 @@
 """Sessions on disk: exact, append-only, and readable after damage."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -135,8 +137,8 @@ def messages_of(data, folder):
     return list(messages(copy, "/camera/image"))
 
 
-@pytest.fixture
-def recorder_steps(hand):
+@pytest.fixture(scope="module")
+def recorder_steps():
     """Return a function that records so many steps of a real pipeline, without pictures."""
     import dataclasses
 
@@ -158,16 +160,30 @@ def recorder_steps(hand):
     return write
 
 
-@pytest.fixture
-def recorded(tmp_path, recorder_steps):
-    """Record a session of noise; return its path and the frames that the tracker saw."""
+@pytest.fixture(scope="module")
+def recordings(tmp_path_factory, recorder_steps):
+    """Record a session of noise, once for each choice; return its bytes and what was tracked."""
 
-    def record(codec, count=20, robot_after_s=0.0):
-        path = tmp_path / "session.mcap"
+    @cache
+    def record(codec, count, robot_after_s):
+        path = tmp_path_factory.mktemp("recorded") / "session.mcap"
         with Recorder(path, {"scenario": "follow", "cube": "locomotion"}) as recorder:
             frames_written = recorder_steps(recorder, count, codec)
             recorder.wire("rx", b"\0", frames_written[-1].timestamp + robot_after_s)
         assert recorder.problem is None
+        return path.read_bytes(), frames_written
+
+    return record
+
+
+@pytest.fixture
+def recorded(tmp_path, recordings):
+    """Record a session of noise; return its path and the frames that the tracker saw."""
+
+    def record(codec, count=20, robot_after_s=0.0):
+        data, frames_written = recordings(codec, count, robot_after_s)
+        path = tmp_path / "session.mcap"
+        path.write_bytes(data)
         return path, frames_written
 
     return record
