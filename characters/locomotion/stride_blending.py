@@ -92,10 +92,10 @@ class StrideBlend(PhaseDriven):
                 facings.append(normalize(facing))
                 continue
             homes = [
-                (self.trajectories.homes[number][leg], weight)
+                [weight * value for value in self.trajectories.homes[number][leg]]
                 for number, weight in self.contributions
             ]
-            home = [sum(h[k] * weight for h, weight in homes) for k in range(7)]
+            home = [sum(values) for values in zip(*homes, strict=True)]
             if self.share < 1.0:
                 higher = (y - home[1]) * self.share**_HEIGHT_EXPONENT
                 x, _, z, *facing = _interpolated(still, foot, self.share)
