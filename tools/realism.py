@@ -1,0 +1,106 @@
+"""Draws what `--realism` does, each part off and on: `python -m tools.realism`."""
+
+import math
+from collections.abc import Sequence
+from contextlib import ExitStack
+from pathlib import Path
+
+import cv2
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+
+from app.pipeline.surroundings import REALISM_CHOICES, Surroundings
+from app.ui.contact_sheets import save
+from characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
+from characters.rendering import SceneCharacter, Stage, create_context
+from tracking import CubeControls, CubeGestures, CubeState, CubeTracker, Frame
+from tracking.synthetic import SyntheticSource, open_synthetic
+
+Image = NDArray[np.uint8]
+
+PATH = Path(__file__).parent.parent / "docs" / "pictures" / "realism.jpg"
+
+SCENE = "companion"
+"""The synthetic scene: a hand turns the cube."""
+
+FRAMES = 175
+"""Frames before the picture: the cube lies, and a hand has taken it."""
+
+PLACE = RootDelta(0.1, -0.1, -0.4)
+"""Place of the character: behind cube and hand."""
+
+ROWS: tuple[tuple[str, ...], ...] = ((), ("hand",), ("hand", "light"), tuple(REALISM_CHOICES))
+"""What each picture follows."""
+
+CROP = (slice(150, 560), slice(440, 1010))
+"""The part of each picture that is shown: rows and columns."""
+
+MAX_BYTES = 300_000
+"""Size of the file."""
+
+
+def main() -> None:
+    """Write the picture."""
+    source = open_synthetic(SCENE)
+    seen = _seen(source)
+    with ExitStack() as closing:
+        context = create_context()
+        closing.callback(context.release)
+        parts = [_drawn(context, source, seen, chosen)[CROP] for chosen in ROWS]
+    captions = ["off", *(" + ".join(chosen) for chosen in ROWS[1:])]
+    labelled = [_labelled(part, text) for part, text in zip(parts, captions, strict=True)]
+    picture = np.vstack([np.hstack(labelled[:2]), np.hstack(labelled[2:])])
+    save(picture, PATH, MAX_BYTES)
+    Console().print(f"{PATH.name}: {PATH.stat().st_size / 1e3:.0f} kB")
+
+
+def _seen(source: SyntheticSource) -> list[tuple[Frame, CubeState, CubeControls]]:
+    """Return the frames, and what was tracked in them."""
+    assert source.intrinsics is not None
+    tracker, gestures = CubeTracker(source.cube, source.intrinsics), CubeGestures(source.cube)
+    found = []
+    for index in range(FRAMES):
+        frame = source.frame(index)
+        state = tracker.update(frame)
+        found.append((frame, state, gestures.update(state)))
+    return found
+
+
+def _drawn(
+    context: moderngl.Context,
+    source: SyntheticSource,
+    seen: Sequence[tuple[Frame, CubeState, CubeControls]],
+    chosen: Sequence[str],
+) -> Image:
+    """Return the last picture of the scene with a character."""
+    assert source.intrinsics is not None
+    character = Character.load("human")
+    animator = Animator(character, place=PLACE)
+    surroundings = Surroundings(source.cube, source.intrinsics, chosen)
+    stage = Stage(context, source.intrinsics.size)
+    gaze = np.array([0.0, 0.25, 0.6])
+    for frame, state, controls in seen:
+        command = CharacterCommand(frame.timestamp, action=ActionIntent("idle"), gaze=gaze)
+        posed = animator.update(command)
+        view = surroundings.view(frame, state, controls)
+        picture = stage.draw(view, [SceneCharacter(character, posed)])
+    stage.release()
+    return picture
+
+
+def _labelled(picture: Image, text: str) -> Image:
+    """Return a picture with a caption below and a white rim."""
+    height, width = picture.shape[:2]
+    page = np.full((height + 44, width + 8, 3), 255, np.uint8)
+    page[4 : height + 4, 4 : width + 4] = picture
+    scale, font = 0.62, cv2.FONT_HERSHEY_SIMPLEX
+    (length, _), _ = cv2.getTextSize(text, font, scale, 1)
+    at = (math.ceil((width - length) / 2), height + 30)
+    cv2.putText(page, text, at, font, scale, (70, 60, 60), 1, cv2.LINE_AA)
+    return page
+
+
+if __name__ == "__main__":
+    main()
