@@ -30,7 +30,7 @@ from app.pipeline.things import Body, BodyParts
 from characters import Animator, Character, CharacterCommand, PosedCharacter, RootDelta
 from characters.control.command import SpeechIntent
 from characters.control.controllers import ControllerFactory, first_suitable
-from characters.rendering import SceneCharacter, Stage
+from characters.rendering import FULL, Quality, SceneCharacter, Stage
 from tracking import (
     CubeControls,
     CubeGestures,
@@ -124,6 +124,7 @@ class Playground:
         self.fixed = fixed
         """Whether the scenario cannot be changed now, so that the player is not told how."""
         self._stage = None if context is None else Stage(context, intrinsics.size)
+        self._quality = FULL
         self.play(scenario, cube, character)
 
     def play(
@@ -181,7 +182,19 @@ class Playground:
         if self._context is not None and intrinsics.size != self.intrinsics.size:
             self.close()
             self._stage = Stage(self._context, intrinsics.size)
+            self._stage.quality = self._quality
         self.intrinsics = intrinsics
+
+    @property
+    def quality(self) -> Quality:
+        """How finely characters are drawn."""
+        return self._quality
+
+    @quality.setter
+    def quality(self, quality: Quality) -> None:
+        self._quality = quality
+        if self._stage is not None:
+            self._stage.quality = quality
 
     def checkpoint(self) -> Checkpoint:
         """Return a copy of the state after the last frame, for `restore`; see its errors."""

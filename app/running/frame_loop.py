@@ -7,7 +7,9 @@ from app.pipeline.scenario import Inputs
 from app.pipeline.spoken_line import SpokenLine
 from app.pipeline.step import ReplayInputs, Step
 from app.running.opened_session import OpenedSession
+from app.running.quality_control import AUTO_QUALITY, QualityControl
 from app.running.summary import Summary
+from characters.rendering import QUALITIES
 from tracking import Frame
 
 
@@ -23,6 +25,12 @@ class FrameLoop:
         self._replay: ReplayInputs | None = None
         self._hidden: Step | None = None
         self._shown_index = 0
+        options = session.options
+        self._quality: QualityControl | None = None
+        if options.quality != AUTO_QUALITY:
+            session.playground.quality = QUALITIES[options.quality]
+        elif options.windowed and (session.source.live or session.pace is not None):
+            self._quality = QualityControl(session.source.rate)
 
     def step(self, frame: Frame) -> Step:
         """Process one frame and show it."""
@@ -95,6 +103,8 @@ class FrameLoop:
             session.sound.play(step, character, started_over=inputs.clear)
             lap("sound")
         self._summary.add(step, view, seconds, follows=follows)
+        if self._quality is not None:
+            session.playground.quality = self._quality.update(time.perf_counter() - began)
 
     def _take_start_over(self) -> bool:
         start_over, self._start_over = self._start_over, False

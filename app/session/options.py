@@ -66,6 +66,10 @@ class SessionOptions:
     realism: tuple[str, ...] = tuple(REALISM_CHOICES)
     """What of the camera's picture the drawing follows, of `REALISM_CHOICES`."""
 
+    quality: str = "auto"
+    """How finely characters are drawn: one of `characters.rendering.QUALITIES`, or "auto" for the
+    best that holds the camera's rate. Videos are always drawn in the best, unless one is named."""
+
     robot: str = "sim"
     """URL of the robot, as `RobotLine.open` takes it."""
 

@@ -1,6 +1,7 @@
 """Draws characters into the camera's picture: `Stage` and what it is given."""
 
 from characters.rendering.context import create_context
+from characters.rendering.quality import FULL, QUALITIES, Quality
 from characters.rendering.scene import (
     Box,
     Cover,
@@ -14,10 +15,13 @@ from characters.rendering.scene import (
 from characters.rendering.stage import Stage
 
 __all__ = [
+    "FULL",
+    "QUALITIES",
     "Box",
     "Cover",
     "FloorPath",
     "MeasuredLight",
+    "Quality",
     "Scene",
     "SceneCharacter",
     "Softness",

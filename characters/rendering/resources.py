@@ -14,7 +14,7 @@ from characters.rendering.light import Light
 from characters.rendering.occlusion import CubeOutlines
 from characters.rendering.programs import set_uniforms
 from characters.rendering.projection import Rectangle, bounding_rectangle, clip_from_camera
-from characters.rendering.scene import Box, Scene
+from characters.rendering.scene import Box, Scene, Softness
 from characters.rendering.target import RenderTarget, RenderTargets
 from characters.skeleton.pose import Array
 
@@ -109,6 +109,9 @@ class FrameResources:
 
     light: Light
     """What lights the scene."""
+
+    softness: Softness | None
+    """Blur and noise of the characters."""
 
     cubes: tuple[tuple[Box, Rectangle], ...]
     """Real cubes in the picture, and where they are in it."""

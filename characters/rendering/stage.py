@@ -21,12 +21,16 @@ from characters.rendering.passes.resolve import ResolvePass
 from characters.rendering.passes.shadows import ShadowPass
 from characters.rendering.programs import ShaderPrograms
 from characters.rendering.projection import is_invertible, is_pinhole
+from characters.rendering.quality import FULL, QUALITIES, Quality
 from characters.rendering.resources import FrameResources
-from characters.rendering.scene import FloorPath, Scene, SceneCharacter, View
-from characters.rendering.target import SUPERSAMPLING, RenderTargets
+from characters.rendering.scene import FloorPath, Scene, SceneCharacter, Softness, View
+from characters.rendering.target import RenderTargets
 from characters.rendering.undistortion import Undistorter
 
 Image = NDArray[np.uint8]
+
+COARSE_SOFTNESS = Softness(0.45, 0.0)
+"""Blur of a layer as coarse as the picture: it hides the steps along edges."""
 
 
 class Stage:
@@ -50,7 +54,8 @@ class Stage:
     """
 
     def __init__(self, context: moderngl.Context, size: tuple[int, int]) -> None:
-        limit = context.info["GL_MAX_TEXTURE_SIZE"] // SUPERSAMPLING
+        finest = max(each.fineness for each in QUALITIES.values())
+        limit = context.info["GL_MAX_TEXTURE_SIZE"] // finest
         if min(size) < 1 or max(size) > limit:
             raise CharacterError(
                 f"cannot draw a picture of {size[0]}×{size[1]} pixels: this graphics card "
@@ -73,9 +78,23 @@ class Stage:
         self._context = context
         self._undistorter = Undistorter(size)
         self._light = LightEstimator()
-        self._targets = RenderTargets(context)
+        self._quality = FULL
+        self._targets = RenderTargets(context, FULL.fineness)
         self._cover = CoverTexture(context)
         self._characters = CharacterCache(context, self.programs)
+
+    @property
+    def quality(self) -> Quality:
+        """How finely characters are drawn; it may change between pictures."""
+        return self._quality
+
+    @quality.setter
+    def quality(self, quality: Quality) -> None:
+        if quality != self._quality:
+            self._context.detect_framebuffer(0).use()
+            self._targets.release()
+            self._targets = RenderTargets(self._context, quality.fineness)
+            self._quality = quality
 
     def draw(
         self, view: View, characters: Sequence[SceneCharacter], floor: Sequence[FloorPath] = ()
@@ -123,6 +142,10 @@ class Stage:
         self._cover.release()
         self.programs.release()
 
+    def _softness(self, view: View) -> Softness | None:
+        """Return the blur and noise of what is drawn; a coarse layer is blurred to be smooth."""
+        return view.softness if self._quality.matched else COARSE_SOFTNESS
+
     def _frame(self, scene: Scene) -> tuple[Image, FrameResources | None]:
         """Return the undistorted picture, and the resources to draw on it if there is a table."""
         view = scene.view
@@ -144,6 +167,7 @@ class Stage:
             camera_matrix=matrix,
             camera_from_table=np.asarray(table, float),
             light=light,
+            softness=self._softness(view),
             cubes=visible_cubes(view.occluders, matrix, self.size),
             cover=None if cover is None else self._cover.upload(cover),
             characters=self._characters.skin(scene.characters),

@@ -9,11 +9,6 @@ from numpy.typing import NDArray
 
 Image = NDArray[np.uint8]
 
-SUPERSAMPLING = 2
-"""Resolution of the character layer relative to the picture, along each side. A character's
-triangles are about as large as a pixel; multisampling then costs software rendering more than
-supersampling does."""
-
 SIZE_STEP_PX = 64
 """Sizes are rounded up to a multiple, so that a walking character does not need a new target in
 each picture."""
@@ -29,13 +24,15 @@ MAX_TARGETS = 12
 class RenderTarget:
     """Two layers that a region is drawn in: the camera's picture, and the characters above it.
 
-    `size` is (width, height) [px].
+    `size` is (width, height) [px], `fineness` that of the characters' layer, see `Quality`.
     """
 
-    def __init__(self, context: moderngl.Context, size: tuple[int, int]) -> None:
-        fine_size = (SUPERSAMPLING * size[0], SUPERSAMPLING * size[1])
+    def __init__(self, context: moderngl.Context, size: tuple[int, int], fineness: int) -> None:
+        self.fineness = fineness
+        """Texels of the characters' layer for each pixel, along each side."""
+        fine_size = (fineness * size[0], fineness * size[1])
         self.characters_texture = _texture(context, fine_size)
-        """The characters on a transparent ground, premultiplied, `SUPERSAMPLING` times as large."""
+        """The characters on a transparent ground, premultiplied, `fineness` times as large."""
         self._depth = context.depth_renderbuffer(fine_size)
         self._characters = context.framebuffer([self.characters_texture], self._depth)
         self.picture_texture = _texture(context, size)
@@ -50,7 +47,7 @@ class RenderTarget:
     def use_characters(self, width: int, height: int) -> moderngl.Framebuffer:
         """Draw on the character layer, whose first texels stand for width × height pixels."""
         self._characters.use()
-        self._characters.viewport = (0, 0, SUPERSAMPLING * width, SUPERSAMPLING * height)
+        self._characters.viewport = (0, 0, self.fineness * width, self.fineness * height)
         return self._characters
 
     def write(self, bgra: Image) -> None:
@@ -73,8 +70,8 @@ class RenderTarget:
 class RenderTargets:
     """Keeps targets of a few sizes; the least recently used is released first."""
 
-    def __init__(self, context: moderngl.Context) -> None:
-        self._context = context
+    def __init__(self, context: moderngl.Context, fineness: int) -> None:
+        self._context, self._fineness = context, fineness
         self._kept: OrderedDict[tuple[int, int], RenderTarget] = OrderedDict()
 
     def at_least(self, width: int, height: int) -> RenderTarget:
@@ -88,7 +85,7 @@ class RenderTargets:
             and kept[0] * kept[1] <= MAX_WASTE * size[0] * size[1]
         ]
         chosen = min(fitting, key=lambda kept: kept[0] * kept[1], default=size)
-        target = self._kept.pop(chosen, None) or RenderTarget(self._context, chosen)
+        target = self._kept.pop(chosen, None) or RenderTarget(self._context, chosen, self._fineness)
         self._kept[chosen] = target
         if len(self._kept) > MAX_TARGETS:
             self._kept.popitem(last=False)[1].release()

@@ -38,9 +38,7 @@ def main() -> None:
     arguments = parser.parse_args()
     cube = CubeModel.load("locomotion")
     table = Table("hand", "IoU", "lowest scene", "lowest frame", "seen", "ms", "false cover")
-    detector = cv2.aruco.ArucoDetector(
-        cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
-    )
+    detector = cv2.aruco.ArucoDetector(cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50))
     for name, skin in (SKINS | GLOVES).items():
         if arguments.only not in name:
             continue
@@ -68,12 +66,24 @@ def main() -> None:
                     shares.append(iou(mask, truth, window))
                     seen.append(mask is not None)
                     if arguments.output and index % 12 == 0:
-                        write(arguments.output / f"{name} {number} {index}.png", frame.image, mask, truth, window)
+                        write(
+                            arguments.output / f"{name} {number} {index}.png",
+                            frame.image,
+                            mask,
+                            truth,
+                            window,
+                        )
             scenes.append(np.mean(shares[3:]))
             frames += shares[3:]
-        table.add_row(name, f"{np.mean(scenes):.3f}", " ".join(f"{s:.2f}" for s in scenes),
-                      f"{min(frames):.2f}", f"{np.mean(seen):.2f}",
-                      f"{np.median(times):.2f} ({np.median(times) / np.median(aruco):.2f}×)", f"{false:.0f}")
+        table.add_row(
+            name,
+            f"{np.mean(scenes):.3f}",
+            " ".join(f"{s:.2f}" for s in scenes),
+            f"{min(frames):.2f}",
+            f"{np.mean(seen):.2f}",
+            f"{np.median(times):.2f} ({np.median(times) / np.median(aruco):.2f}×)",
+            f"{false:.0f}",
+        )
     Console(width=120).print(table)
     sys.exit(0)
 
@@ -88,7 +98,10 @@ def write(path, image, mask, truth, window):
     green = np.array([0, 255, 0], np.float32)
     cut = shown * (1 - 0.7 * found[..., None]) + 0.7 * found[..., None] * green
     wrong = np.stack([truth * 255, truth * 0, found * 255], axis=-1)
-    cv2.imwrite(str(path), np.hstack([image[window], cut[window].astype(np.uint8), wrong[window].astype(np.uint8)]))
+    cv2.imwrite(
+        str(path),
+        np.hstack([image[window], cut[window].astype(np.uint8), wrong[window].astype(np.uint8)]),
+    )
 
 
 if __name__ == "__main__":

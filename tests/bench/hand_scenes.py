@@ -131,9 +131,7 @@ class _HandRenderer(ExposureRenderer):
         self._spots = np.clip(spots - 1.7, 0, 1) * 90.0 * view.gloss
         self._light = np.linspace(1 - view.gradient, 1, width, dtype=np.float32)[:, None]
 
-    def draw(
-        self, states: list[SceneState], poses: list[Array], index: int, in_air: bool
-    ) -> Image:
+    def draw(self, states: list[SceneState], poses: list[Array], index: int, in_air: bool) -> Image:
         self.covered = np.zeros_like(self.covered)
         return super().draw(states, poses, index, in_air)
 

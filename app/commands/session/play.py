@@ -13,6 +13,7 @@ from app.commands.session.progress import play_session
 from app.errors import AppError
 from app.pipeline.surroundings import NO_REALISM, REALISM_CHOICES, realism
 from app.running.network import DEFAULT_SITE
+from app.running.quality_control import AUTO_QUALITY, checked_quality
 from app.scenarios import find_scenario, scenario_names
 from app.scenarios.roles import check_cubes
 from app.session import SessionOptions
@@ -20,6 +21,7 @@ from app.speaking.voices import VOICE_VARIABLE
 from app.ui.display import has_display
 from characters import CONTROLLER_CHOICES
 from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
+from characters.rendering import QUALITIES
 
 DEFAULT_CAMERA = "camera:0"
 
@@ -114,6 +116,13 @@ RealismOption = Annotated[
     ),
 ]
 ALL_REALISM = ",".join(REALISM_CHOICES)
+QualityOption = Annotated[
+    str,
+    typer.Option(
+        help="How finely characters are drawn: auto, the best that holds the camera's rate, "
+        f"{' or '.join(QUALITIES)}."
+    ),
+]
 PersonalityOption = Annotated[
     str | None,
     typer.Option(help="A bundled personality, or your own .toml file."),
@@ -204,6 +213,7 @@ def play(
     ] = "auto",
     pictures: PicturesOption = True,
     followed: RealismOption = ALL_REALISM,
+    quality: QualityOption = AUTO_QUALITY,
     sounds: SoundsOption = None,
     folder: FolderOption = None,
     mqtt: Broker = None,
@@ -236,6 +246,7 @@ def play(
         profile=DEFAULT_PROFILE if profile is None else SpeechProfile.load(profile),
         look=look,
         realism=realism(followed),
+        quality=checked_quality(quality),
         robot=robot,
         robot_settings=robot_settings,
         record=record,

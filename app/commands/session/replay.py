@@ -20,6 +20,7 @@ from app.commands.session.play import (
     OutputOption,
     PersonalityOption,
     PicturesOption,
+    QualityOption,
     RealismOption,
     RecordOption,
     RobotOption,
@@ -31,6 +32,7 @@ from app.commands.session.progress import ProgressLines, play_session
 from app.errors import AppError
 from app.pipeline.surroundings import realism
 from app.running.network import DEFAULT_SITE
+from app.running.quality_control import AUTO_QUALITY, checked_quality
 from app.running.replay_check import check_session
 from app.session import session_info
 from app.ui.display import has_display
@@ -55,6 +57,7 @@ def replay(
     overwrite: OverwriteOption = False,
     pictures: PicturesOption = True,
     followed: RealismOption = ALL_REALISM,
+    quality: QualityOption = AUTO_QUALITY,
     sounds: SoundsOption = None,
     start: StartOption = 0.0,
     end: EndOption = None,
@@ -114,6 +117,7 @@ def replay(
         overwrite=overwrite,
         pictures=pictures and not check and (output is not None or has_display()),
         realism=realism(followed),
+        quality=checked_quality(quality),
         sounds=sounds,
         fast=fast,
         salvage=salvage,

@@ -34,6 +34,7 @@ def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
     )
     return (
         Fact("A frame", f"{1e3 * total:.1f} ms, {1 / total:.0f} frames/s" if total else "0 ms"),
+        Fact("Quality", monitor.quality),
         ShareBar(shares),
     )
 

@@ -9,6 +9,7 @@ from app.session import SessionOptions
 from app.ui.panels.trace import Trace
 from app.ui.panels.wire_log import WireLog
 from characters.control.speech_profile import DEFAULT_PROFILE
+from characters.rendering import FULL
 from characters.synthesis.gestures.graph import GestureGraph
 from tracking import Intrinsics, LensEstimate
 
@@ -74,6 +75,8 @@ class SessionMonitor:
         """The robot at the last step."""
         self.lens = LensEstimate()
         """What the cube has shown of the lens."""
+        self.quality = FULL.name
+        """How finely characters are drawn."""
         self.intrinsics: Intrinsics | None = None
         """Of the camera; None before the first step."""
 
@@ -81,6 +84,7 @@ class SessionMonitor:
         """Take what a frame gave; who has the session keeps the other attributes up to date."""
         self.step, self.robot = step, robot
         self.lens, self.intrinsics = playground.lens, playground.intrinsics
+        self.quality = playground.quality.name
         now, state, feels = step.frame.timestamp, step.state, step.emotion.emotion
         shown = robot.shown
         theirs = (np.nan, np.nan) if shown is None else (shown.valence, shown.arousal)

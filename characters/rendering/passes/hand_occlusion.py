@@ -5,7 +5,6 @@ import moderngl
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.resources import FrameResources, Region
-from characters.rendering.target import SUPERSAMPLING
 
 HAND_DEPTH_M = 0.05
 """Depth of a hand in front of the cube that it holds: what is nearer still stands before it."""
@@ -37,7 +36,7 @@ class HandOcclusionPass(RenderPass):
             self._program,
             clip_area=[2.0 * end / side - 1.0 for end, side in zip(ends, size, strict=True)],
             depth=float(clip[0] / clip[1]),
-            fineness=float(SUPERSAMPLING),
+            fineness=float(layer.target.fineness),
         )
         framebuffer.depth_mask = False
         framebuffer.use()  # the mask takes effect here

@@ -42,13 +42,13 @@ class ResolvePass(RenderPass):
         layer = region.characters
         if layer is None:
             return
-        softness = frame.scene.view.softness
+        softness = frame.softness
         triangle = self._sharp if softness is None else self._soft
         corner = layer.area.x - region.area.x, layer.area.y - region.area.y
         region.target.use_picture((*corner, layer.area.width, layer.area.height))
         frame.context.enable_only(moderngl.BLEND)
         frame.context.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
-        set_uniforms(triangle.program, corner=corner)
+        set_uniforms(triangle.program, corner=corner, fineness=float(layer.target.fineness))
         if softness is not None:
             self._soften(triangle.program, softness, frame)
         layer.target.characters_texture.use(0)

@@ -1,10 +1,11 @@
 #version 330 core
 
-// The supersampled characters: halfway between four texels, the linear filter returns their mean.
+// The characters' layer; where it is twice as fine, the linear filter returns the mean of four texels.
 // SOFT: blurred and with noise, as the camera's picture is. Four means around the pixel blur enough.
 
 uniform sampler2D characters;
 uniform vec2 corner;    // of their area in the region [px]
+uniform float fineness; // texels for each pixel, along each side
 #ifdef SOFT
 uniform float spread;   // of the four means [px]
 uniform sampler2D grain;
@@ -15,7 +16,7 @@ uniform float noise;    // of the picture's values, for a grain of the whole ran
 out vec4 color;
 
 vec4 mean_at(vec2 pixel) {
-    return texture(characters, 2.0 * pixel / vec2(textureSize(characters, 0)));
+    return texture(characters, fineness * pixel / vec2(textureSize(characters, 0)));
 }
 
 void main() {

@@ -11,6 +11,7 @@ import pytest
 
 from characters.errors import CharacterError
 from characters.rendering import (
+    QUALITIES,
     Cover,
     FloorPath,
     MeasuredLight,
@@ -351,3 +352,14 @@ def resident() -> int:
     """Return the resident memory of this process in bytes, or 0 if it is unknown."""
     statm = Path("/proc/self/statm")
     return int(statm.read_text().split()[1]) * 4096 if statm.exists() else 0
+
+
+def test_reduced_quality_is_coarser_but_the_same_picture(stage, view, pawn):
+    full = stage.draw(view, [pawn.posed()]).astype(int)
+    stage.quality = QUALITIES["reduced"]
+    reduced = stage.draw(view, [pawn.posed()]).astype(int)
+    difference = np.abs(full - reduced).max(axis=2)
+    assert 0.0 < difference.mean() < 1.0
+    assert (difference > 60).mean() < 0.002
+    stage.quality = QUALITIES["full"]
+    assert np.array_equal(stage.draw(view, [pawn.posed()]), full)

@@ -20,6 +20,7 @@ from app.ui.panels import PANELS, SessionMonitor
 from app.ui.panels.content import Choice, Fact, Note, Plot, ShareBar, Slider
 from app.ui.panels.tracking import REFUSALS, stated_error
 from characters import CharacterCommand
+from characters.rendering import QUALITIES
 from robot import LinkCounts, Telemetry
 from tracking import CubeState, Frame, Intrinsics, LensEstimate
 
@@ -41,7 +42,9 @@ STATE = CubeState(
 
 def feed(*frames, options=OPTIONS, lens=NO_LENS):
     """Feed a monitor with one step a frame: changes of its state, an emotion, and a robot."""
-    playground: Any = SimpleNamespace(lens=lens, intrinsics=Intrinsics.guess((1280, 720)))
+    playground: Any = SimpleNamespace(
+        lens=lens, intrinsics=Intrinsics.guess((1280, 720)), quality=QUALITIES["reduced"]
+    )
     nothing: Any = None
     monitor = SessionMonitor(options, FrameTimes(itertools.count(step=0.01).__next__))
     for number, (changes, emotion, robot) in enumerate(frames):
@@ -164,6 +167,7 @@ def test_frame_time_shows_the_mean_of_each_part():
         monitor.times.end_frame()
     facts, (bar,) = shown("frame-time", monitor)
     assert facts["A frame"].value == "40.0 ms, 25 frames/s"
+    assert facts["Quality"].value == "reduced"
     assert isinstance(bar, ShareBar)
     assert [(share.name, share.value) for share in bar.shares] == [
         ("tracking", "20.0 ms"),

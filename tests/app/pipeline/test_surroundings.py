@@ -1,0 +1,68 @@
+"""What the drawing follows of the camera's picture, and that nothing else changes by it."""
+
+import numpy as np
+import pytest
+
+from app.errors import AppError
+from app.pipeline.playground import Playground
+from app.pipeline.surroundings import REALISM_CHOICES, Surroundings, realism
+from app.running.opening import intrinsics_for
+from tracking import CubeGestures, CubeTracker
+from tracking.synthetic import open_synthetic
+
+FRAMES = 12
+
+
+@pytest.fixture(scope="module")
+def source():
+    return open_synthetic("static")
+
+
+@pytest.fixture(scope="module")
+def seen(source):
+    tracker, gestures = CubeTracker(source.cube, source.intrinsics), CubeGestures(source.cube)
+    found = []
+    for index in range(FRAMES):
+        frame = source.frame(index)
+        state = tracker.update(frame)
+        found.append((frame, state, gestures.update(state)))
+    return found
+
+
+def last_view(source, seen, chosen):
+    surroundings = Surroundings(source.cube, source.intrinsics, chosen)
+    return [surroundings.view(*each) for each in seen][-1]
+
+
+def test_only_what_was_chosen_is_measured(source, seen):
+    plain = last_view(source, seen, ())
+    assert plain.cover is None
+    assert plain.light is None
+    assert plain.softness is None
+    assert len(plain.occluders) == 1
+    full = last_view(source, seen, tuple(REALISM_CHOICES))
+    assert full.softness.blur == pytest.approx(0.5, abs=0.25)
+    assert full.cover is None  # no hand is near yet
+    assert np.array_equal(full.image, plain.image)
+
+
+def test_the_picture_alone_depends_on_it(source, seen):
+    intrinsics = intrinsics_for(source.intrinsics, source.size)
+    plain, real = (
+        Playground("companion", intrinsics, realism=chosen) for chosen in ((), REALISM_CHOICES)
+    )
+    for frame, _, _ in seen[:20]:
+        first, second = plain.step(frame), real.step(frame)
+        assert first.emotion == second.emotion
+        assert np.array_equal(first.posed.pose.rotations, second.posed.pose.rotations)
+
+
+def test_choices_are_names_separated_by_commas():
+    assert realism("light,hand") == ("light", "hand")
+    assert realism("none") == ()
+
+
+@pytest.mark.parametrize("text", ["", "shadow", "hand,", "none,hand", "Hand"])
+def test_another_name_is_refused_in_one_line(text):
+    with pytest.raises(AppError, match="choose of hand, light, softness, or none"):
+        realism(text)
