@@ -67,8 +67,8 @@ class LegIK:
 
     def frames(self, pose: Pose) -> LegFrames:
         """Return the global frames of the joints in one pose."""
-        turns: list[Quaternion] = pose.rotations.take(self.indices, 0).tolist()
-        positions: list[Vector] = pose.translations.take(self.indices, 0).tolist()
+        turns: list[Quaternion] = pose.rotations[self.indices].tolist()
+        positions: list[Vector] = pose.translations[self.indices].tolist()
         for joint, parent in enumerate(self.skeleton.parents):
             if parent >= 0:
                 above, (x, y, z) = turns[parent], positions[parent]
@@ -85,7 +85,7 @@ class LegIK:
         Hips and knees bend as far as the legs reach.
         """
         frames = self.frames(pose)
-        offsets = pose.translations.take(self._toes, 0).tolist()
+        offsets = pose.translations[self.indices[self.joints[:, 4]]].tolist()
         ankles, turns = [], []
         for (*_, ankle, _), offset, ball, facing in zip(
             self._joints, offsets, balls, facings, strict=True
@@ -122,7 +122,7 @@ class LegIK:
             rows.append(multiply(conjugate(thigh), shin))
             rows.append(multiply(conjugate(shin), multiply(foot, frames.rotations[ankle])))
         bent = pose.rotations.copy()
-        bent[self._bent] = rows
+        bent[self.indices[self.joints[:, 1:4]].ravel()] = rows
         return Pose(pose.translations, bent, pose.scales, pose.morphs)
 
     def lower_pelvis(
@@ -141,16 +141,6 @@ class LegIK:
             x, y, z = positions[joint]
             positions[joint] = (x, y - distance, z)
         return replace(pose, translations=moved), LegFrames(frames.rotations, positions)
-
-    @cached_property
-    def _bent(self) -> NDArray[np.intp]:
-        """Hip, knee and ankle of each leg, one after the other, in the whole skeleton."""
-        return self.indices[self.joints[:, 1:4]].ravel()
-
-    @cached_property
-    def _toes(self) -> NDArray[np.intp]:
-        """The toes of each leg, in the whole skeleton."""
-        return self.indices[self.joints[:, 4]]
 
     @cached_property
     def _joints(self) -> list[list[int]]:

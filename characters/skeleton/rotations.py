@@ -91,7 +91,7 @@ def normalize(q: ArrayLike) -> Array:
     ([0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0])
     """
     q = np.asarray(q, float)
-    squared = np.vecdot(q, q)[..., None]
+    squared = np.einsum("...i,...i->...", q, q)[..., None]
     if squared.size and squared.min() < 1e-24:
         return np.where(squared < 1e-24, IDENTITY, q / np.sqrt(np.maximum(squared, 1e-24)))
     unit: Array = q / np.sqrt(squared)
@@ -154,7 +154,7 @@ def between(start: ArrayLike, end: ArrayLike) -> Array:
     b = b / np.linalg.norm(b, axis=-1, keepdims=True)
     half = np.empty((*a.shape[:-1], 4))
     half[..., :3] = cross(a, b)
-    half[..., 3] = 1 + np.vecdot(a, b)
+    half[..., 3] = 1 + np.einsum("...i,...i->...", a, b)
     opposite = half[..., 3] < 1e-9
     if opposite.any():  # any perpendicular axis will do
         across = cross(a, np.eye(3)[np.abs(a).argmin(-1)])
@@ -184,7 +184,7 @@ def from_rotation_vector(vector: ArrayLike) -> Array:
     True
     """
     vector = np.asarray(vector, float)
-    half = np.sqrt(np.vecdot(vector, vector))[..., None] / 2
+    half = np.sqrt(np.einsum("...i,...i->...", vector, vector))[..., None] / 2
     # Near zero the sine equals its angle to the last bit.
     safe = np.maximum(half, 1e-9)
     q = np.empty((*vector.shape[:-1], 4))
@@ -201,7 +201,7 @@ def to_rotation_vector(q: ArrayLike) -> Array:
     """
     q = np.asarray(q, float)
     q = np.where(q[..., 3:] < 0, -q, q)
-    sine = np.sqrt(np.vecdot(q[..., :3], q[..., :3]))[..., None]
+    sine = np.sqrt(np.einsum("...i,...i->...", q[..., :3], q[..., :3]))[..., None]
     angle = 2 * np.arctan2(sine, q[..., 3:])
     vector: Array = q[..., :3] * np.where(sine > 1e-9, angle / np.maximum(sine, 1e-9), 2.0)
     return vector
@@ -253,7 +253,7 @@ def align(q: ArrayLike, reference: ArrayLike) -> Array:
     [-0.0, -0.0, -0.0, 1.0]
     """
     q = np.asarray(q, float)
-    dots = np.vecdot(q, np.asarray(reference, float))[..., None]
+    dots = np.einsum("...i,...i->...", q, np.asarray(reference, float))[..., None]
     return np.where(dots < 0, -q, q)
 
 

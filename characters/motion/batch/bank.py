@@ -177,7 +177,7 @@ class ClipBank:
             self._mix_sign_ambiguous(np.array([rows]), share[None], mixed[None])
         rotation_end, translation_end, scale_end, morph_end = self.column_ends
         turns = mixed[:rotation_end].reshape(-1, 4)
-        turns = turns / np.sqrt(np.vecdot(turns, turns))[:, None]
+        turns = turns / np.sqrt(np.einsum("ji,ji->j", turns, turns))[:, None]
         translations, scales = self.constant.translations.copy(), self.constant.scales
         translations[self.moving] = mixed[rotation_end:translation_end].reshape(-1, 3)
         if scales is not None:
@@ -219,7 +219,7 @@ class ClipBank:
         count, joints = len(rows), len(self.skeleton)
         turns, shifts, scales, morphs, _ = np.split(rows, self.column_ends, axis=1)
         turns = turns.reshape(count, joints, 4)
-        turns = turns / np.sqrt(np.vecdot(turns, turns))[..., None]
+        turns = turns / np.sqrt(np.einsum("cji,cji->cj", turns, turns))[..., None]
         translations = np.tile(self.constant.translations, (count, 1, 1))
         translations[:, self.moving] = shifts.reshape(count, -1, 3)
         all_scales = None
