@@ -30,15 +30,24 @@ IRRADIANCE_ERROR = 0.035
 """Standard deviation of a patch's light from the model, as a share of the mean light: light from
 the table and the hand, vignetting, and paper that is not flat."""
 
-SHADOW_SHARE = 0.16
+INDEPENDENT_PATCHES = 8.0
+"""How many independent measurements many patches make at most: neighbours share their errors."""
+
+SHADOW_SHARE = 0.11
 """A patch darker than its model by this share of the mean light is in a shadow."""
 
-MIN_LIT_PATCHES = 4
-"""Fewer patches cannot tell that another one is in a shadow."""
+MAX_REFITS, MIN_LIT_PATCHES = 3, 4
+"""How often the light is fitted again without such patches; and fewer than this cannot tell that
+another one is in a shadow."""
 
-SETTLING_S, MEMORY_S, SMOOTHING_S = 0.2, 60.0, 0.4
-"""Time in which the mean of an orientation settles, in which it is forgotten, and in which the
-light that is reported follows the fit."""
+SETTLING_S, DARKENING_S, MEMORY_S, SMOOTHING_S = 0.2, 1.5, 60.0, 0.4
+"""Time in which the mean of an orientation settles, in which it does where that is darker, as in
+the shadow of a hand that passes, in which it is forgotten, and in which the light that is reported
+follows the fit."""
+
+CONTRADICTED_S, MIN_KNOWN, CONTRADICTION = 0.25, 0.6, 0.12
+"""Time in which all is forgotten while the faces contradict a light whose direction is certain to
+this degree, and by how much of all light half of them do so at least."""
 
 MEASURING_INTERVAL_S, FIT_INTERVAL_S = 0.06, 0.2
 """Time from one measurement of the paper to the next, and from one fit to the next: never both in
@@ -162,7 +171,10 @@ class LightMeter:
         patches = self._sampler.measure(image, state.camera_from_cube)
         if len(patches.normals):
             step = min(state.timestamp - self._measured, MAX_STEP_S)
-            self._memory.add(patches, patches.irradiance / gain, step)
+            irradiance = patches.irradiance / gain
+            if self._light is not None and _contradict(self._light, patches.normals, irradiance):
+                self._memory.age(step * MEMORY_S / CONTRADICTED_S)
+            self._memory.add(patches, irradiance, step)
             self._measured = state.timestamp
 
     def _still(self, state: CubeState) -> bool:
@@ -170,6 +182,15 @@ class LightMeter:
         moved, turned = state.velocity[:3], state.velocity[3:]
         speed = np.sqrt(moved @ moved) + self._reach * np.sqrt(turned @ turned)
         return state.source != "predicted" and bool(speed * EXPOSURE_S < self._max_travel)
+
+
+def _contradict(light: MeasuredLight, normals: Array, irradiance: Array) -> bool:
+    """Whether faces are lit otherwise than known: more than one of them, as hands shade one."""
+    if light.certainty < MIN_KNOWN or len(normals) < 2:
+        return False
+    model = light.ambient + np.maximum(normals @ light.to_light, 0)[:, None] * light.key
+    off = np.sort(np.abs(irradiance - model).sum(axis=1))
+    return bool(off[(len(off) - 1) // 2] > CONTRADICTION * (light.ambient + light.key).sum())
 
 
 def fit_light(
@@ -191,13 +212,16 @@ def fit_light(
     -------
     The light, and how much darker each patch is than its model, as a share of the mean light, (N,).
     """
-    mean = max(float(weights @ irradiance.sum(axis=1)) / (3 * float(weights.sum())), 1e-6)
+    total = float(weights.sum())
+    mean = max(float(weights @ irradiance.sum(axis=1)) / (3 * total), 1e-6)
+    independent = min(1.0, INDEPENDENT_PATCHES / total)
     scaled = irradiance / mean
     directions = DIRECTIONS
     for _ in range(2):
         lit = np.maximum(normals @ directions.T, 0)
         cost, ambients, keys = _least_squares(lit, scaled, weights)
-        log = directions @ log_prior - cost / (2 * IRRADIANCE_ERROR**2)
+        variance = max(IRRADIANCE_ERROR**2, float(cost.min()) / (3 * max(total - 2, 1.0)))
+        log = directions @ log_prior - cost * (independent / (2 * variance))
         likely = np.exp(log - log.max())
         likely /= likely.sum()
         centre = likely @ directions
@@ -233,7 +257,7 @@ def _least_squares(lit: Array, values: Array, weights: Array) -> tuple[Array, Ar
     key = np.where(ak * key > a, k / kk, np.maximum(key, 0))  # no negative ambient light
     ambient = np.maximum(a - ak * key, 0) / aa
     cost = aa * ambient**2 + 2 * ak * ambient * key + kk * key**2 - 2 * (ambient * a + key * k)
-    return cost.sum(axis=1), ambient, key
+    return cost.sum(axis=1) + float((weighted * values).sum()), ambient, key
 
 
 def _around(centre: Array, radius: float) -> Array:
@@ -307,8 +331,10 @@ class _PatchMemory:
         if not len(irradiance):
             return
         near = (ORIENTATIONS @ patches.normals.T).argmax(axis=0)
-        share = 1 - np.exp(-max(seconds, 1e-3) / SETTLING_S)
+        seconds = max(seconds, 1e-3)
         weights = self.weights[near]
+        darker = irradiance.sum(axis=1) < (1 - SHADOW_SHARE) * self._irradiance[near].sum(axis=1)
+        share = 1 - np.exp(-seconds / np.where(darker, DARKENING_S, SETTLING_S))
         weights += share * (1 - weights)
         self.weights[near] = weights
         gain = (share / weights)[:, None]
@@ -321,9 +347,11 @@ class _PatchMemory:
         normals, irradiance = self._normals[known], self._irradiance[known]
         weights = self.weights[known]
         light, darker = fit_light(normals, irradiance, weights, log_prior)
-        shadowed = darker > SHADOW_SHARE
-        if shadowed.any() and len(shadowed) - shadowed.sum() >= MIN_LIT_PATCHES:
-            light, _ = fit_light(normals, irradiance, weights * ~shadowed, log_prior)
+        for _ in range(MAX_REFITS):
+            shadowed = darker > SHADOW_SHARE
+            if not shadowed.any() or len(shadowed) - shadowed.sum() < MIN_LIT_PATCHES:
+                break
+            light, darker = fit_light(normals, irradiance, weights * ~shadowed, log_prior)
         return light
 
 
