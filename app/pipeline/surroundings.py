@@ -5,6 +5,8 @@ It changes nothing but the picture.
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from app.errors import AppError
 from characters.rendering import Box, Cover, MeasuredLight, Softness, View
 from tracking import CubeControls, CubeModel, CubeState, Frame, Intrinsics
@@ -18,6 +20,9 @@ REALISM_CHOICES = {
     "softness": "characters are as soft and as noisy as the picture",
 }
 """What of the camera's picture the drawing follows, and what that means."""
+
+CERTAINTIES = 0.5, 0.8
+"""Certainties of the light's direction from which on it is used at all, and fully."""
 
 NO_REALISM = "none"
 """The name of none of `REALISM_CHOICES`."""
@@ -83,7 +88,10 @@ class Surroundings:
 
     def _measured_light(self, frame: Frame, state: CubeState) -> MeasuredLight | None:
         found = None if self._light is None else self._light.update(frame.image, state)
-        return None if found is None else MeasuredLight(found.to_light, found.key, found.ambient)
+        if found is None:
+            return None
+        weight = float(np.interp(found.certainty, CERTAINTIES, (0.0, 1.0)))
+        return MeasuredLight(found.to_light, found.key, found.ambient, weight)
 
     def _softness(self, frame: Frame, state: CubeState) -> Softness | None:
         found = None if self._quality is None else self._quality.update(frame.image, state)

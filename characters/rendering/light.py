@@ -156,7 +156,7 @@ class LightEstimator:
         target = 0.0
         if measured is not None and camera_from_table is not None:
             self._measured = self._on_table(measured, camera_from_table)
-            target = 1.0
+            target = measured.weight
         if self._measured is None:
             return light
         self._share += self.SMOOTHING_SHARE * (target - self._share)

@@ -53,6 +53,9 @@ class MeasuredLight:
     ambient: Array
     """Light from all around, (3,) linear RGB."""
 
+    weight: float = 1.0
+    """How far this light replaces the usual one, 0…1: less where its direction is uncertain."""
+
 
 @dataclass(frozen=True)
 class Softness:

@@ -49,7 +49,8 @@ def test_only_what_was_chosen_is_measured(source, seen):
 def test_the_picture_alone_depends_on_it(source, seen):
     intrinsics = intrinsics_for(source.intrinsics, source.size)
     plain, real = (
-        Playground("companion", intrinsics, realism=chosen) for chosen in ((), REALISM_CHOICES)
+        Playground("companion", intrinsics, realism=chosen)
+        for chosen in ((), tuple(REALISM_CHOICES))
     )
     for frame, _, _ in seen[:20]:
         first, second = plain.step(frame), real.step(frame)

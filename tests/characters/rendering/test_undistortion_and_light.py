@@ -77,6 +77,10 @@ def test_a_low_light_is_raised_so_that_shadows_stay_short(view):
     assert light.to_light[1] == pytest.approx(MIN_RISE, abs=0.01)
     assert light.to_light[0] > 0.7
     assert light.white == pytest.approx(0.7 * MIN_RISE + 0.3, rel=0.01)
+    guess = LightEstimator().update(view.image)
+    uncertain = replace(measured, weight=0.0)
+    first = LightEstimator().update(view.image, None, uncertain, view.camera_from_table)
+    assert np.array_equal(first.to_light, guess.to_light)
     for _ in range(150):
         light = estimate.update(view.image)
     assert light.to_light == pytest.approx(LightEstimator().update(view.image).to_light, abs=0.01)
