@@ -25,7 +25,7 @@ PATH = Path(__file__).parent.parent / "docs" / "pictures" / "realism.jpg"
 SCENE = "companion"
 """The synthetic scene: a hand turns the cube."""
 
-FRAMES = 175
+FRAMES = 215
 """Frames before the picture: the cube lies, and a hand has taken it."""
 
 PLACE = RootDelta(0.1, -0.1, -0.4)
