@@ -154,7 +154,9 @@ class LightMeter:
         since = self._time - self._fitted
         if self._measured > self._fitted and since >= FIT_INTERVAL_S - 1e-6:
             self._fitted = self._time
-            self._light = _blend(self._light, self._memory.fit(_prior(up)), since)
+            self._light = _blend(
+                self._light, self._memory.fit(DEFAULT_UP if up is None else up), since
+            )
         elif self._time - self._measured >= MEASURING_INTERVAL_S - 1e-6:
             self._measure(image, state, gain)
         light = self._light
@@ -191,6 +193,26 @@ def _contradict(light: MeasuredLight, normals: Array, irradiance: Array) -> bool
     model = light.ambient + np.maximum(normals @ light.to_light, 0)[:, None] * light.key
     off = np.sort(np.abs(irradiance - model).sum(axis=1))
     return bool(off[(len(off) - 1) // 2] > CONTRADICTION * (light.ambient + light.key).sum())
+
+
+def fit_patches(normals: Array, irradiance: Array, weights: Array, up: Array) -> MeasuredLight:
+    """Fit the light to patches; those that turn out to be in a shadow count for nothing.
+
+    Parameters
+    ----------
+    normals, irradiance, weights
+        Of each patch: unit normal, (N, 3); linear RGB, (N, 3); and weight 0…1, (N,).
+    up
+        Unit vector away from the ground, (3,).
+    """
+    log_prior = _prior(up)
+    light, darker = fit_light(normals, irradiance, weights, log_prior)
+    for _ in range(MAX_REFITS):
+        shadowed = darker > SHADOW_SHARE
+        if not shadowed.any() or len(shadowed) - shadowed.sum() < MIN_LIT_PATCHES:
+            break
+        light, darker = fit_light(normals, irradiance, weights * ~shadowed, log_prior)
+    return light
 
 
 def fit_light(
@@ -282,9 +304,8 @@ def _around(centre: Array, radius: float) -> Array:
     return np.asarray(around / np.sqrt((around * around).sum(axis=1))[:, None], np.float64)
 
 
-def _prior(up: Array | None) -> Array:
+def _prior(up: Array) -> Array:
     """Gradient of the log of the prior likelihood by the direction, (3,)."""
-    up = DEFAULT_UP if up is None else up
     towards = np.array([0.0, 0.0, -1.0]) + up[2] * up  # horizontally to the camera
     lean = up + CAMERA_SIDE * towards / max(float(np.sqrt(towards @ towards)), 0.1)
     return np.asarray(PRIOR_CONCENTRATION * lean / np.sqrt(lean @ lean), np.float64)
@@ -341,18 +362,11 @@ class _PatchMemory:
         self._normals[near] += gain * (patches.normals - self._normals[near])
         self._irradiance[near] += gain * (irradiance - self._irradiance[near])
 
-    def fit(self, log_prior: Array) -> MeasuredLight:
-        """Fit the light; patches that turn out to be in a shadow count for nothing."""
+    def fit(self, up: Array) -> MeasuredLight:
+        """Fit the light to what is known."""
         known = np.flatnonzero(self.weights > MIN_WEIGHT)
         normals, irradiance = self._normals[known], self._irradiance[known]
-        weights = self.weights[known]
-        light, darker = fit_light(normals, irradiance, weights, log_prior)
-        for _ in range(MAX_REFITS):
-            shadowed = darker > SHADOW_SHARE
-            if not shadowed.any() or len(shadowed) - shadowed.sum() < MIN_LIT_PATCHES:
-                break
-            light, darker = fit_light(normals, irradiance, weights * ~shadowed, log_prior)
-        return light
+        return fit_patches(normals, irradiance, self.weights[known], up)
 
 
 class _ExposureGain:
