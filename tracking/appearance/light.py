@@ -36,7 +36,7 @@ INDEPENDENT_PATCHES = 8.0
 SHADOW_SHARE = 0.11
 """A patch darker than its model by this share of the mean light is in a shadow."""
 
-MAX_REFITS, MIN_LIT_PATCHES = 3, 4
+MAX_REFITS, MIN_LIT_PATCHES = 2, 4
 """How often the light is fitted again without such patches; and fewer than this cannot tell that
 another one is in a shadow."""
 
@@ -49,7 +49,7 @@ CONTRADICTED_S, MIN_KNOWN, CONTRADICTION = 0.25, 0.6, 0.12
 """Time in which all is forgotten while the faces contradict a light whose direction is certain to
 this degree, and by how much of all light half of them do so at least."""
 
-MEASURING_INTERVAL_S, FIT_INTERVAL_S = 0.06, 0.2
+MEASURING_INTERVAL_S, FIT_INTERVAL_S = 0.1, 0.3
 """Time from one measurement of the paper to the next, and from one fit to the next: never both in
 the same picture."""
 
@@ -125,8 +125,8 @@ class LightMeter:
         self._exposure = _ExposureGain()
         self._memory = _PatchMemory()
         self._light: MeasuredLight | None = None
-        self._time = -np.inf
-        self._fitted = self._measured = -np.inf
+        self._looked = self._fitted = self._measured = -np.inf
+        self._gain = np.ones(3)
 
     def update(
         self, image: Image, state: CubeState, up: Array | None = None
@@ -147,33 +147,32 @@ class LightMeter:
         -------
         None until any paper was measured. See `MeasuredLight.certainty` for how far to trust it.
         """
-        step = min(state.timestamp - self._time, MAX_STEP_S)
-        self._time = state.timestamp
-        gain = self._exposure.update(image, step)
-        self._memory.age(step)
-        since = self._time - self._fitted
-        if self._measured > self._fitted and since >= FIT_INTERVAL_S - 1e-6:
-            self._fitted = self._time
-            self._light = _blend(
-                self._light, self._memory.fit(DEFAULT_UP if up is None else up), since
-            )
-        elif self._time - self._measured >= MEASURING_INTERVAL_S - 1e-6:
-            self._measure(image, state, gain)
+        now = state.timestamp
+        if self._measured > self._fitted and now - self._fitted >= FIT_INTERVAL_S - 1e-6:
+            fitted = self._memory.fit(DEFAULT_UP if up is None else up)
+            self._light = _blend(self._light, fitted, now - self._fitted)
+            self._fitted = now
+        elif now - self._looked >= MEASURING_INTERVAL_S - 1e-6:
+            step = min(now - self._looked, MAX_STEP_S)
+            self._looked = now
+            self._gain = self._exposure.update(image, step)
+            self._memory.age(step)
+            self._measure(image, state)
         light = self._light
         if light is None:
             return None
         return MeasuredLight(
-            light.to_light, light.key * gain, light.ambient * gain, light.certainty
+            light.to_light, light.key * self._gain, light.ambient * self._gain, light.certainty
         )
 
-    def _measure(self, image: Image, state: CubeState, gain: Array) -> None:
+    def _measure(self, image: Image, state: CubeState) -> None:
         """Take the paper that is seen into the memory."""
         if not state.visible or state.camera_from_cube is None or not self._still(state):
             return
         patches = self._sampler.measure(image, state.camera_from_cube)
         if len(patches.normals):
             step = min(state.timestamp - self._measured, MAX_STEP_S)
-            irradiance = patches.irradiance / gain
+            irradiance = patches.irradiance / self._gain
             if self._light is not None and _contradict(self._light, patches.normals, irradiance):
                 self._memory.age(step * MEMORY_S / CONTRADICTED_S)
             self._memory.add(patches, irradiance, step)
