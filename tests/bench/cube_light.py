@@ -13,7 +13,8 @@ Then the photographs of a hand-held dodecahedron in `shared/data`, where they ar
 light is not known, but one half of them must explain the other.
 
 Exits with 1 if, over all rooms in which the cube is turned, the median of the direction exceeds
-10° or that of the ambient ratio 10 %, or the median time 0.2 ms. In most pictures the meter has nothing to do: see the mean, too.
+10° or that of the ambient ratio 10 %, or the median time 0.2 ms. In most pictures the meter has
+nothing to do: see the mean, too.
 """
 
 import argparse

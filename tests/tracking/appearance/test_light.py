@@ -200,6 +200,21 @@ def test_automatic_exposure_scales_the_light_and_does_not_turn_it():
     np.testing.assert_allclose(after.key, 0.7 * before.key, rtol=0.06)
 
 
+def test_a_lamp_that_moves_is_followed():
+    other = TO_LIGHT * (-1, 1, 1)
+
+    def elsewhere(normal: Array) -> Array:
+        return np.asarray(AMBIENT + max(0.0, float(normal @ other)) * KEY)
+
+    meter, light = LightMeter(CUBE, WIDE), None
+    for index in range(200):
+        pose = turned(index / 20)
+        image = picture(pose, lit_one if index < 60 else elsewhere)
+        light = meter.update(image, state(pose, index / 20))
+    assert light is not None
+    assert degrees(light, other) < 10
+
+
 def test_nothing_is_said_before_paper_is_measured():
     meter, image = LightMeter(CUBE, WIDE), np.zeros((720, 1280, 3), np.uint8)
     unseen = CubeState(False, None, np.zeros(6), np.eye(6), "predicted", (), np.nan, 0.0)
