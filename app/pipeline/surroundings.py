@@ -21,7 +21,7 @@ REALISM_CHOICES = {
 }
 """What of the camera's picture the drawing follows, and what that means."""
 
-CERTAINTIES = 0.5, 0.8
+CERTAINTIES = 0.6, 0.8
 """Certainties of the light's direction from which on it is used at all, and fully."""
 
 NO_REALISM = "none"
@@ -78,7 +78,7 @@ class Surroundings:
             controls.camera_from_table,
             () if pose is None else (Box(pose, self._cube.edge),),
             self._cover(frame, state),
-            self._measured_light(frame, state),
+            self._measured_light(frame, state, controls),
             self._softness(frame, state),
         )
 
@@ -86,8 +86,13 @@ class Surroundings:
         found = None if self._hand is None else self._hand.update(frame.image, state)
         return None if found is None else Cover(found.x, found.y, found.cover, found.distance)
 
-    def _measured_light(self, frame: Frame, state: CubeState) -> MeasuredLight | None:
-        found = None if self._light is None else self._light.update(frame.image, state)
+    def _measured_light(
+        self, frame: Frame, state: CubeState, controls: CubeControls
+    ) -> MeasuredLight | None:
+        if self._light is None:
+            return None
+        table = controls.camera_from_table
+        found = self._light.update(frame.image, state, None if table is None else table[:3, 1])
         if found is None:
             return None
         weight = float(np.interp(found.certainty, CERTAINTIES, (0.0, 1.0)))

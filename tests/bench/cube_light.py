@@ -37,7 +37,8 @@ from tests.bench.photographs.dodecahedron import (
     photograph,
     reference,
 )
-from tracking.appearance.light import DEFAULT_UP, LightMeter, MeasuredLight, fit_patches
+from tracking.appearance.light import DEFAULT_UP, LightMeter
+from tracking.appearance.light_fit import MeasuredLight, fit_patches
 from tracking.appearance.patches import PaperSampler
 from tracking.cube.icons import FOLD_GAP_SHARE, ICON_COLOURS, ICON_SHARE, icon_mask
 from tracking.cube.marker import marker_cells

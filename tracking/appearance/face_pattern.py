@@ -92,9 +92,7 @@ class FacePattern:
         near_icon = cv2.dilate(shown[..., ICON], np.ones((5, 5), np.uint8)) > 12
         return SeenPattern(label, shown[..., INK].astype(np.float32) / 255, near_icon, depth)
 
-    def _depth(
-        self, points: Array, low: Array, high: Array, origin: Array, scale: float
-    ) -> Floats:
+    def _depth(self, points: Array, low: Array, high: Array, origin: Array, scale: float) -> Floats:
         """Depth of a face's plane at each pixel of a box; lens distortion hardly matters."""
         normal = np.cross(points[1] - points[0], points[3] - points[0])
         x = (np.arange(low[0], high[0]) + 0.5) * scale + origin[0] - 0.5

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from tests.tracking.drawn import WIDE, held
-from tracking.appearance.light import LightMeter, MeasuredLight, fit_light
+from tracking.appearance.light import LightMeter
+from tracking.appearance.light_fit import MeasuredLight, fit_light
 from tracking.appearance.patches import PAPER_ALBEDO, PaperSampler, white_points
 from tracking.cube.faces import FacePlanes
 from tracking.cube.model import FACE_AXES, CubeModel

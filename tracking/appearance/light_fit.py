@@ -1,0 +1,201 @@
+"""Fitting ambient light and one direction to patches of paper."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tracking.geometry.arrays import Array
+
+PRIOR_CONCENTRATION = 1.5
+"""How much likelier light comes from above than from elsewhere: as von Mises and Fisher's κ."""
+
+CAMERA_SIDE = 0.34
+"""How far the expected light leans to the camera's side, beside 1 upwards."""
+
+EXPECTED_AMBIENT_SHARE, AMBIENT_SHARE_SPREAD = 0.5, 0.3
+"""Share of the light from all around before anything is measured, and its standard deviation."""
+
+IRRADIANCE_ERROR = 0.035
+"""Standard deviation of a patch's light from the model, as a share of the mean light: light from
+the table and the hand, vignetting, and paper that is not flat."""
+
+INDEPENDENT_PATCHES = 8.0
+"""How many independent measurements many patches make at most: neighbours share their errors."""
+
+SHADOW_SHARE = 0.11
+"""A patch darker than its model by this share of the mean light is in a shadow."""
+
+MAX_REFITS, MIN_LIT_PATCHES = 2, 4
+"""How often the light is fitted again without such patches; and fewer than this cannot tell that
+another one is in a shadow."""
+
+
+def sphere(count: int) -> Array:
+    """Return directions that are spread evenly, (count, 3): a Fibonacci lattice.
+
+    >>> bool(np.abs(sphere(100).mean(axis=0)).max() < 0.01)
+    True
+    """
+    number = np.arange(count) + 0.5
+    z, angle = 1 - 2 * number / count, np.pi * (1 + np.sqrt(5)) * number
+    radius = np.sqrt(1 - z * z)
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle), z], axis=1)
+
+
+def _disc() -> Array:
+    """Return points in the unit disc: the middle and three rings, (37, 2)."""
+    rings = [np.arange(6 * n) * np.pi / (3 * n) for n in (1, 2, 3)]
+    points = [np.stack([np.cos(a), np.sin(a)], axis=1) * n / 3 for n, a in enumerate(rings, 1)]
+    return np.concatenate([np.zeros((1, 2)), *points])
+
+
+DIRECTIONS, DISC = sphere(128), _disc()
+"""Directions that a light is searched in, and how the best one is refined."""
+
+REFINED_SPREADS, MIN_REFINED, MAX_REFINED = 2.5, np.radians(12.0), np.radians(50.0)
+"""How far around the mean direction it is refined, in standard deviations, and the least and the
+most of it [rad]: no less than the distance of two directions, and only where one is the best."""
+
+
+@dataclass(frozen=True)
+class MeasuredLight:
+    """Light from one direction, and from all around."""
+
+    to_light: Array
+    """Unit vector towards the key light, in the camera's frame, (3,)."""
+
+    key: Array
+    """Irradiance from it on a surface that faces it, linear RGB, (3,); 1 makes a white surface just
+    white."""
+
+    ambient: Array
+    """Irradiance from all around, linear RGB, (3,)."""
+
+    certainty: float
+    """How well the faces seen so far determine the direction, 0…1.
+
+    One less the spread of the directions that explain the paper, as a share of the spread before
+    anything was seen. At 0.5 that is about 30°, and `to_light` is half a guess.
+    """
+
+
+def fit_patches(normals: Array, irradiance: Array, weights: Array, up: Array) -> MeasuredLight:
+    """Fit the light to patches; those that turn out to be in a shadow count for nothing.
+
+    Parameters
+    ----------
+    normals, irradiance, weights
+        Of each patch: unit normal, (N, 3); linear RGB, (N, 3); and weight 0…1, (N,).
+    up
+        Unit vector away from the ground, (3,).
+    """
+    log_prior = _prior(up)
+    light, darker = fit_light(normals, irradiance, weights, log_prior)
+    for _ in range(MAX_REFITS):
+        shadowed = darker > SHADOW_SHARE
+        if not shadowed.any() or len(shadowed) - shadowed.sum() < MIN_LIT_PATCHES:
+            break
+        light, darker = fit_light(normals, irradiance, weights * ~shadowed, log_prior)
+    return light
+
+
+def fit_light(
+    normals: Array, irradiance: Array, weights: Array, log_prior: Array
+) -> tuple[MeasuredLight, Array]:
+    """Fit ambient light and one direction to patches.
+
+    The likelihood of each direction on a grid follows by non-negative least squares of ambient and
+    key light; the result is the mean, first over the sphere, then around the best.
+
+    Parameters
+    ----------
+    normals, irradiance, weights
+        Of each patch: unit normal, (N, 3); linear RGB, (N, 3); and weight 0…1, (N,).
+    log_prior
+        Gradient of the log of the prior likelihood by the direction, (3,).
+
+    Returns
+    -------
+    The light, and how much darker each patch is than its model, as a share of the mean light, (N,).
+    """
+    total = float(weights.sum())
+    mean = max(float(weights @ irradiance.sum(axis=1)) / (3 * total), 1e-6)
+    independent = min(1.0, INDEPENDENT_PATCHES / total)
+    scaled = irradiance / mean
+    directions = DIRECTIONS
+    for _ in range(2):
+        lit = np.maximum(normals @ directions.T, 0)
+        cost, ambients, keys = _least_squares(lit, scaled, weights)
+        variance = max(IRRADIANCE_ERROR**2, float(cost.min()) / (3 * max(total - 2, 1.0)))
+        log = directions @ log_prior - cost * (independent / (2 * variance))
+        likely = np.exp(log - log.max())
+        likely /= likely.sum()
+        centre = likely @ directions
+        length = float(np.sqrt(centre @ centre))
+        to_light = centre / max(length, 1e-9)
+        ambient, key = likely @ ambients, likely @ keys
+        spread = float(np.sqrt(2 * max(1 - length, 0)))
+        radius = max(REFINED_SPREADS * spread, MIN_REFINED)
+        if radius > MAX_REFINED:
+            break
+        directions = _around(to_light, radius)
+    certainty = float(np.clip(1 - spread / _prior_spread(log_prior), 0, 1))
+    model = ambient + lit @ (likely[:, None] * keys)
+    darker = (model - scaled).mean(axis=1)
+    return MeasuredLight(to_light, key * mean, ambient * mean, certainty), darker
+
+
+def _least_squares(lit: Array, values: Array, weights: Array) -> tuple[Array, Array, Array]:
+    """Fit ambient and key light, both at least 0, for each direction.
+
+    `lit` are the cosines of patches and directions, at least 0, (N, G), `values` (N, 3), `weights`
+    (N,).
+    Returns the weighted sum of squares (G,), ambient and key light (G, 3).
+    """
+    weighted = weights[:, None] * values
+    # What is expected of the ambient share is one more measurement, of a weight next to nothing.
+    share, trust = EXPECTED_AMBIENT_SHARE, (IRRADIANCE_ERROR / (2 * AMBIENT_SHARE_SPREAD)) ** 2
+    aa = float(weights.sum()) + trust * (1 - share) ** 2
+    ak = (weights @ lit)[:, None] - trust * share * (1 - share)
+    kk = (weights @ (lit * lit))[:, None] + trust * share**2
+    a, k = weighted.sum(axis=0), lit.T @ weighted
+    key = (aa * k - ak * a) / (aa * kk - ak * ak)
+    key = np.where(ak * key > a, k / kk, np.maximum(key, 0))  # no negative ambient light
+    ambient = np.maximum(a - ak * key, 0) / aa
+    cost = aa * ambient**2 + 2 * ak * ambient * key + kk * key**2 - 2 * (ambient * a + key * k)
+    return cost.sum(axis=1) + float((weighted * values).sum()), ambient, key
+
+
+def _around(centre: Array, radius: float) -> Array:
+    """Return directions around one, up to `radius` [rad] from it, (37, 3)."""
+    side = np.eye(3)[np.abs(centre).argmin()]
+    right = np.array(
+        [
+            centre[1] * side[2] - centre[2] * side[1],
+            centre[2] * side[0] - centre[0] * side[2],
+            centre[0] * side[1] - centre[1] * side[0],
+        ]
+    )
+    right /= np.sqrt(right @ right)
+    down = np.array(
+        [
+            centre[1] * right[2] - centre[2] * right[1],
+            centre[2] * right[0] - centre[0] * right[2],
+            centre[0] * right[1] - centre[1] * right[0],
+        ]
+    )
+    around = centre + DISC * np.tan(radius) @ np.stack([right, down])
+    return np.asarray(around / np.sqrt((around * around).sum(axis=1))[:, None], np.float64)
+
+
+def _prior(up: Array) -> Array:
+    """Gradient of the log of the prior likelihood by the direction, (3,)."""
+    towards = np.array([0.0, 0.0, -1.0]) + up[2] * up  # horizontally to the camera
+    lean = up + CAMERA_SIDE * towards / max(float(np.sqrt(towards @ towards)), 0.1)
+    return np.asarray(PRIOR_CONCENTRATION * lean / np.sqrt(lean @ lean), np.float64)
+
+
+def _prior_spread(log_prior: Array) -> float:
+    """Spread of directions before anything is measured [rad]."""
+    kappa = float(np.sqrt(log_prior @ log_prior))
+    return float(np.sqrt(2 * (1 - (1 / np.tanh(kappa) - 1 / kappa))))
