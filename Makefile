@@ -70,6 +70,8 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.symbolic_gestures
 	$(BIN)/python -m tests.bench.bml
 	$(BIN)/python -m tests.bench.picture
+	-$(BIN)/python -m tests.bench.hand_mask
+	-$(BIN)/python -m tests.bench.cube_light --rooms 2
 	$(BIN)/python -m tests.bench.panels
 	$(BIN)/python -m tests.bench.looks
 	$(BIN)/python -m tests.bench.wire
