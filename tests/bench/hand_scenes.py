@@ -35,7 +35,7 @@ SKINS = {
 GLOVES = {"blue nitrile": "3f6fc4", "black wool": "26262b", "yellow rubber": "e6c229"}
 """Colours of gloves, red, green, blue."""
 
-RATE_HZ = 12.0
+RATE_HZ = 8.0
 """Frames a second of a scene."""
 
 

@@ -38,6 +38,10 @@ class SeenPattern:
     depth: Floats
     """Distance of the surface along the camera's axis [m], (h, w); 0 outside the cube."""
 
+    def cropped(self, box: tuple[slice, slice]) -> "SeenPattern":
+        """Return some rows and columns of it."""
+        return SeenPattern(self.face[box], self.ink[box], self.icon[box], self.depth[box])
+
 
 class FacePattern:
     """Draws the print of one cube's faces for one camera."""
