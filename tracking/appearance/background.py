@@ -4,25 +4,36 @@ import cv2
 import numpy as np
 
 from tracking.geometry.arrays import Flags, Floats
+from tracking.geometry.robust_statistics import quantile
 
-MIN_SHADE = 0.55
-"""Least light on the background relative to the light before, as (L + 16) of CIELab: a shadow."""
+MIN_GAIN, MAX_GAIN = 0.45, 2.0
+"""Least and most light on the background relative to the light before, as L + 16 of CIELab: a
+shadow that comes or goes."""
 
-CHROMA_TOLERANCE, LIGHTNESS_TOLERANCE = 6.0, 10.0
-"""Difference to the background that noise makes [CIELab bytes]."""
+MIN_CHROMA_NOISE, MIN_GAIN_NOISE = 0.6, 0.006
+"""Least deviation of chroma [CIELab] and of the gain that noise makes at working resolution."""
+
+NOISE_LIMIT = 3.5
+"""Deviations of noise from which on a pixel is something else."""
+
+MAX_NOISE_RATIO = 3.0
+"""Most noise that is believed, relative to the least."""
+
+SMALL = np.ones((3, 3), np.uint8)
+"""A pixel and its neighbours."""
+
+SAME_LIGHTNESS = 9.0
+"""Change of lightness below which a pixel looks as before [CIELab bytes]."""
 
 STEP, CHANGED_STEP = 0.1, 0.015
 """Share of a frame in the background, where it looks as before and where it does not: what stays
 for a hundred frames belongs to it."""
 
-UNCHANGED, CHANGED, SHADED, UNKNOWN = -3.0, 2.0, -1.2, -0.7
+UNCHANGED, CHANGED, SHADED, UNKNOWN = -3.0, 2.5, -1.2, -0.7
 """What a pixel speaks for a hand, as the logarithm of odds."""
 
-FULL_AGE = 20
-"""Frames after which a pixel that looks as before speaks in full."""
-
-MIN_ROUGH, MAX_ROUGH, ROUGH = 0.02**2, 0.05**2, 1.0
-"""Variance of the gain in a shadow at most, and that of something else, and what it speaks then."""
+FULL_AGE = 10
+"""Frames after which a pixel is known for sure."""
 
 MIN_KNOWN, LOST_SHARE, TRUSTED_SHARE = 0.2, 0.25, 0.45
 """Share of a window that must be known; and of that, how much must look as before to trust the
@@ -73,27 +84,28 @@ class Background:
         where so little looks as before that the camera must have moved.
         """
         mean, age = self._mean[:, box[0], box[1]], self._age[box]
-        known = (age > 0) & outside
-        gain = (lab[0] + BLACK) / (mean[0] + BLACK)
-        off_a = lab[1] - 128 - gain * (mean[1] - 128)
-        off_b = lab[2] - 128 - gain * (mean[2] - 128)
-        same_colour = off_a * off_a + off_b * off_b < CHROMA_TOLERANCE**2
-        lightness = lab[0] - mean[0]
-        unchanged = same_colour & (np.abs(lightness) < LIGHTNESS_TOLERANCE)
+        # The neighbours take part in what follows.
+        known = cv2.erode(((age > 0) & outside).astype(np.uint8), SMALL) > 0
         total = np.count_nonzero(known)
         if total < MIN_KNOWN * max(np.count_nonzero(outside), 1):
             return np.full(age.shape, UNKNOWN, np.float32), np.zeros(age.shape, bool), True
+        gain = (lab[0] + BLACK) / (mean[0] + BLACK)
+        off_a = cv2.blur(lab[1] - 128 - gain * (mean[1] - 128), (3, 3))
+        off_b = cv2.blur(lab[2] - 128 - gain * (mean[2] - 128), (3, 3))
+        chroma = off_a * off_a + off_b * off_b
+        # A shadow keeps the texture of what it falls on, so the gain is smooth.
+        detail = gain - cv2.blur(gain, (3, 3))
+        rough = cv2.erode(cv2.blur(detail * detail, (3, 3)), SMALL)
+        foreign = np.maximum(
+            chroma / _limit(chroma[known], MIN_CHROMA_NOISE),
+            rough / _limit(rough[known], MIN_GAIN_NOISE),
+        )
+        lit = (gain > MIN_GAIN) & (gain < MAX_GAIN) & (foreign < 1)
+        unchanged = lit & (np.abs(lab[0] - mean[0]) < SAME_LIGHTNESS)
         same = np.count_nonzero(unchanged & known) / total
         trust = float(np.clip((same - LOST_SHARE) / (TRUSTED_SHARE - LOST_SHARE), 0, 1))
-        shaded = same_colour & (gain > MIN_SHADE) & (lightness < LIGHTNESS_TOLERANCE)
-        # A shadow keeps the texture of what it falls on, so the gain is smooth.
-        middle = cv2.blur(gain, (5, 5))
-        rough = cv2.blur(gain * gain, (5, 5)) - middle * middle
-        odds = np.clip((rough - MIN_ROUGH) * ((ROUGH - SHADED) / (MAX_ROUGH - MIN_ROUGH)), 0, None)
-        odds = np.minimum(odds + SHADED, ROUGH)
-        odds[~shaded] = CHANGED
-        as_before = np.minimum(age * (1 / FULL_AGE), 1) * (UNCHANGED - UNKNOWN) + UNKNOWN
-        odds = np.where(unchanged, as_before, odds) * np.float32(trust)
+        odds = np.where(unchanged, UNCHANGED, np.where(lit, SHADED, CHANGED)) * np.float32(trust)
+        odds = UNKNOWN + (odds - UNKNOWN) * np.minimum(age * (1 / FULL_AGE), 1)
         odds[~known] = UNKNOWN
         return odds.astype(np.float32), (odds > 0) & known, trust > 0
 
@@ -109,3 +121,10 @@ class Background:
     def forget(self) -> None:
         """Forget all: the camera was moved."""
         self._age[:] = 0
+
+
+def _limit(squares: Floats, least: float) -> float:
+    """Return the square from which on a pixel is no noise, by those that look most as before."""
+    # A third of the squares of noise in two dimensions is below 0.81 of its variance.
+    variance = quantile(squares, 0.33) / 0.81
+    return NOISE_LIMIT**2 * min(max(variance, least**2), MAX_NOISE_RATIO**2 * least**2)

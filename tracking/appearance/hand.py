@@ -32,6 +32,9 @@ SURE = 1.5
 MIN_TOUCH_EDGES2, MIN_AREA_EDGES2 = 0.01, 0.15
 """Least area beside the cube, and in all, of a hand that hides no face [square edges]."""
 
+MIN_CHANGED_SHARE = 0.6
+"""Least share of such a hand that does not look like the desk."""
+
 SOFTNESS = 0.4
 """Cover per unit of the logarithm of odds."""
 
@@ -140,12 +143,14 @@ class HandFinder:
         if not steady:
             self._background.forget()
         by_colour = self._colours.odds()[bins]
-        odds = np.where(outer, 0.5 * by_colour, by_colour + by_place)
+        # Where the place tells, or paper and ink are near, colours tell half.
+        odds = by_colour * np.where(outer | changed, np.float32(0.5), np.float32(1.0))
+        odds += np.where(outer, 0, by_place)
         odds[inner] = NO_EVIDENCE
         odds[evidence] = EVIDENCE
         odds = cv2.GaussianBlur(odds, (5, 5), 1.0)
 
-        hand = self._grown(_cleaned(odds > 0), evidence, cube, window.edge)
+        hand = self._grown(_cleaned(odds > 0), evidence, changed, cube, window.edge)
         self._learn(lab, bins, window, outer, hand, changed, odds)
         if not hand.any():
             return None
@@ -192,13 +197,16 @@ class HandFinder:
         hidden = seen.depth[evidence]
         return cube, evidence, float(hidden.min()) if len(hidden) else float(pose[2, 3])
 
-    def _grown(self, hand: Image, evidence: Flags, cube: Image, edge: float) -> Flags:
+    def _grown(
+        self, hand: Image, evidence: Flags, changed: Flags, cube: Image, edge: float
+    ) -> Flags:
         """Choose the components that hold evidence, or that touch the cube on a long line."""
         count, labels, stats, _ = cv2.connectedComponentsWithStats(hand)
         area = stats[:, cv2.CC_STAT_AREA]
         beside = cv2.dilate(cube, SMALL, iterations=3) > 0
         touching = np.bincount(labels[beside], minlength=count)
         keep = (touching > MIN_TOUCH_EDGES2 * edge**2) & (area > MIN_AREA_EDGES2 * edge**2)
+        keep &= np.bincount(labels[changed], minlength=count) > MIN_CHANGED_SHARE * area
         keep[labels[evidence & (hand > 0)]] = True
         keep[0] = False
         return np.asarray(keep[labels])
