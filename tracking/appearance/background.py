@@ -10,11 +10,14 @@ MIN_GAIN, MAX_GAIN = 0.45, 2.0
 """Least and most light on the background relative to the light before, as L + 16 of CIELab: a
 shadow that comes or goes."""
 
-MIN_CHROMA_NOISE, MIN_GAIN_NOISE = 0.6, 0.006
+MIN_CHROMA_NOISE, MIN_GAIN_NOISE = 0.3, 0.003
 """Least deviation of chroma [CIELab] and of the gain that noise makes at working resolution."""
 
-NOISE_LIMIT = 3.5
+CHROMA_LIMIT, GAIN_LIMIT = 4.0, 2.5
 """Deviations of noise from which on a pixel is something else."""
+
+SHADE_CHROMA, SHADE_DETAIL = 10.0, 0.05
+"""How much chroma [CIELab] and detail of the gain change in a shadow, per change of the gain."""
 
 MAX_NOISE_RATIO = 3.0
 """Most noise that is believed, relative to the least."""
@@ -22,17 +25,20 @@ MAX_NOISE_RATIO = 3.0
 SMALL = np.ones((3, 3), np.uint8)
 """A pixel and its neighbours."""
 
+SPARSE = 4
+"""Rows and columns of which one is used to estimate noise."""
+
 SAME_LIGHTNESS = 9.0
 """Change of lightness below which a pixel looks as before [CIELab bytes]."""
 
-STEP, CHANGED_STEP = 0.1, 0.015
+STEP, SHADED_STEP, CHANGED_STEP = 0.1, 0.02, 0.01
 """Share of a frame in the background, where it looks as before and where it does not: what stays
 for a hundred frames belongs to it."""
 
 UNCHANGED, CHANGED, SHADED, UNKNOWN = -3.0, 2.5, -1.2, -0.7
 """What a pixel speaks for a hand, as the logarithm of odds."""
 
-FULL_AGE = 10
+FULL_AGE = 6
 """Frames after which a pixel is known for sure."""
 
 MIN_KNOWN, LOST_SHARE, TRUSTED_SHARE = 0.2, 0.25, 0.45
@@ -52,6 +58,7 @@ class Background:
     def __init__(self) -> None:
         self._mean: Floats = np.zeros((3, 0, 0), np.float32)
         self._age: Floats = np.zeros((0, 0), np.float32)
+        self._lit_anew: Flags = np.zeros((0, 0), bool)
 
     def match_size(self, width: int, height: int) -> None:
         """Change the resolution: it follows that in which the hand is looked for."""
@@ -86,19 +93,27 @@ class Background:
         mean, age = self._mean[:, box[0], box[1]], self._age[box]
         # The neighbours take part in what follows.
         known = cv2.erode(((age > 0) & outside).astype(np.uint8), SMALL) > 0
+        some = known[::SPARSE, ::SPARSE]
         total = np.count_nonzero(known)
-        if total < MIN_KNOWN * max(np.count_nonzero(outside), 1):
+        if total < max(MIN_KNOWN * np.count_nonzero(outside), 200) or not some.any():
+            self._lit_anew = np.zeros(age.shape, bool)
             return np.full(age.shape, UNKNOWN, np.float32), np.zeros(age.shape, bool), True
         gain = (lab[0] + BLACK) / (mean[0] + BLACK)
-        off_a = cv2.blur(lab[1] - 128 - gain * (mean[1] - 128), (3, 3))
-        off_b = cv2.blur(lab[2] - 128 - gain * (mean[2] - 128), (3, 3))
-        chroma = off_a * off_a + off_b * off_b
+        off_a = lab[1] - 128 - gain * (mean[1] - 128)
+        off_b = lab[2] - 128 - gain * (mean[2] - 128)
+        # The camera's white balance drifts.
+        off_a -= quantile(off_a[::SPARSE, ::SPARSE][some], 0.5)
+        off_b -= quantile(off_b[::SPARSE, ::SPARSE][some], 0.5)
+        off_a, off_b = cv2.blur(off_a, (3, 3)), cv2.blur(off_b, (3, 3))
+        chroma = np.sqrt(off_a * off_a + off_b * off_b)
         # A shadow keeps the texture of what it falls on, so the gain is smooth.
         detail = gain - cv2.blur(gain, (3, 3))
-        rough = cv2.erode(cv2.blur(detail * detail, (3, 3)), SMALL)
+        rough = np.sqrt(cv2.erode(cv2.blur(detail * detail, (3, 3)), SMALL))
         foreign = np.maximum(
-            chroma / _limit(chroma[known], MIN_CHROMA_NOISE),
-            rough / _limit(rough[known], MIN_GAIN_NOISE),
+            chroma / (CHROMA_LIMIT * _noise(chroma[::SPARSE, ::SPARSE][some], MIN_CHROMA_NOISE)
+                      + SHADE_CHROMA * np.abs(gain - 1)),
+            rough / (GAIN_LIMIT * _noise(rough[::SPARSE, ::SPARSE][some], MIN_GAIN_NOISE)
+                     + SHADE_DETAIL * np.abs(gain - 1)),
         )
         lit = (gain > MIN_GAIN) & (gain < MAX_GAIN) & (foreign < 1)
         unchanged = lit & (np.abs(lab[0] - mean[0]) < SAME_LIGHTNESS)
@@ -107,12 +122,14 @@ class Background:
         odds = np.where(unchanged, UNCHANGED, np.where(lit, SHADED, CHANGED)) * np.float32(trust)
         odds = UNKNOWN + (odds - UNKNOWN) * np.minimum(age * (1 / FULL_AGE), 1)
         odds[~known] = UNKNOWN
+        self._lit_anew = lit & ~unchanged
         return odds.astype(np.float32), (odds > 0) & known, trust > 0
 
     def learn(self, lab: Floats, box: Box, free: Flags, changed: Flags) -> None:
         """Learn the pixels of a window that are free of cube and hand."""
         mean, age = self._mean[:, box[0], box[1]], self._age[box]
         step = np.maximum(1 / (age + 1), STEP)
+        step[self._lit_anew & (age > FULL_AGE)] = SHADED_STEP
         step[changed] = CHANGED_STEP
         step *= free
         mean += (lab - mean) * step.astype(np.float32)
@@ -123,8 +140,6 @@ class Background:
         self._age[:] = 0
 
 
-def _limit(squares: Floats, least: float) -> float:
-    """Return the square from which on a pixel is no noise, by those that look most as before."""
-    # A third of the squares of noise in two dimensions is below 0.81 of its variance.
-    variance = quantile(squares, 0.33) / 0.81
-    return NOISE_LIMIT**2 * min(max(variance, least**2), MAX_NOISE_RATIO**2 * least**2)
+def _noise(deviations: Floats, least: float) -> float:
+    """Return the deviation that noise makes, by the pixels that look most as before."""
+    return float(np.clip(quantile(deviations, 0.4), least, MAX_NOISE_RATIO * least))

@@ -32,11 +32,17 @@ SURE = 1.5
 MIN_TOUCH_EDGES2, MIN_AREA_EDGES2 = 0.01, 0.15
 """Least area beside the cube, and in all, of a hand that hides no face [square edges]."""
 
+MIN_EXTENT_EDGES = 0.9
+"""How far from the cube's bounds it must reach: there is an arm behind a hand."""
+
 MIN_CHANGED_SHARE = 0.6
 """Least share of such a hand that does not look like the desk."""
 
-SOFTNESS = 0.4
-"""Cover per unit of the logarithm of odds."""
+EDGE_LEVELS = 90.0
+"""Range of the odds, whose whole range is 255, over which the cover rises from 0 to 255."""
+
+COVER = np.clip((np.arange(256) - 128) * (255 / EDGE_LEVELS) + 128, 0, 255).astype(np.uint8)
+"""Cover for the odds at full resolution."""
 
 SMALL, WIDE = np.ones((3, 3), np.uint8), np.ones((5, 5), np.uint8)
 """A pixel with its neighbours."""
@@ -154,11 +160,9 @@ class HandFinder:
         self._learn(lab, bins, window, outer, hand, changed, odds)
         if not hand.any():
             return None
-        cover = _soft(hand, odds)
         rows, columns = window.image_box
         size = (columns.stop - columns.start, rows.stop - rows.start)
-        large = cv2.resize(cover, size, interpolation=cv2.INTER_LINEAR)
-        return HandMask(columns.start, rows.start, np.asarray(large, np.uint8), distance)
+        return HandMask(columns.start, rows.start, _soft(hand, odds, size), distance)
 
     def region(self, camera_from_cube: Array) -> tuple[slice, slice] | None:
         """Rows and columns of the image in which the hand is looked for at a pose of the cube."""
@@ -203,9 +207,16 @@ class HandFinder:
         """Choose the components that hold evidence, or that touch the cube on a long line."""
         count, labels, stats, _ = cv2.connectedComponentsWithStats(hand)
         area = stats[:, cv2.CC_STAT_AREA]
-        beside = cv2.dilate(cube, SMALL, iterations=3) > 0
+        beside = cv2.dilate(cube, WIDE, iterations=3) > 0
         touching = np.bincount(labels[beside], minlength=count)
         keep = (touching > MIN_TOUCH_EDGES2 * edge**2) & (area > MIN_AREA_EDGES2 * edge**2)
+        rows, columns = (np.flatnonzero(cube.any(axis=axis)) for axis in (1, 0))
+        far = round(MIN_EXTENT_EDGES * edge)
+        away = labels.copy()
+        away[
+            max(rows[0] - far, 0) : rows[-1] + far, max(columns[0] - far, 0) : columns[-1] + far
+        ] = 0
+        keep &= np.bincount(away.ravel(), minlength=count) > 0
         keep &= np.bincount(labels[changed], minlength=count) > MIN_CHANGED_SHARE * area
         keep[labels[evidence & (hand > 0)]] = True
         keep[0] = False
@@ -225,7 +236,8 @@ class HandFinder:
         sure = hand & changed & (odds > SURE)
         if np.count_nonzero(sure) > 8:
             self._colours.learn_hand(bins, sure)
-        free = ~(outer | (cv2.dilate(hand.astype(np.uint8), WIDE) > 0))
+        free = cv2.dilate(outer.astype(np.uint8), WIDE) == 0
+        free &= cv2.dilate(hand.astype(np.uint8), WIDE) == 0
         self._colours.learn_behind(bins, free & ~changed)
         self._background.learn(lab, window.box, free, changed)
 
@@ -236,10 +248,12 @@ def _cleaned(flags: Flags) -> Image:
     return np.asarray(cv2.morphologyEx(mask, cv2.MORPH_CLOSE, WIDE), np.uint8)
 
 
-def _soft(hand: Flags, odds: Floats) -> Image:
-    """Return the cover of each pixel, 0…255: soft at the edge, by the odds there."""
+def _soft(hand: Flags, odds: Floats, size: tuple[int, int]) -> Image:
+    """Return the cover of each pixel of the image, 0…255: soft at the edge, by the odds there."""
     mask = hand.astype(np.uint8)
-    core, rim = cv2.erode(mask, SMALL) > 0, cv2.dilate(mask, SMALL)
-    cover = np.clip(odds * SOFTNESS + 0.5, 0, 1) * rim
-    cover[core] = 1
-    return np.rint(255 * cover).astype(np.uint8)
+    core, rim = cv2.erode(mask, SMALL), cv2.dilate(mask, SMALL)
+    level = np.clip(odds * (127 / -NO_EVIDENCE) + 128, 0, 255).astype(np.uint8)
+    level[core > 0] = 255
+    level[rim == 0] = 0
+    large = cv2.resize(level, size, interpolation=cv2.INTER_LINEAR)
+    return np.asarray(cv2.LUT(large, COVER), np.uint8)
