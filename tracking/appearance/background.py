@@ -41,6 +41,9 @@ UNCHANGED, CHANGED, SHADED, UNKNOWN = -3.0, 2.5, -1.2, -0.7
 FULL_AGE = 6
 """Frames after which a pixel is known for sure."""
 
+SELDOM_FRAMES = 3
+"""Frames that a pixel counts for outside the window."""
+
 MIN_KNOWN, LOST_SHARE, TRUSTED_SHARE = 0.2, 0.25, 0.45
 """Share of a window that must be known; and of that, how much must look as before to trust the
 rest: less, and the camera was moved."""
@@ -134,6 +137,14 @@ class Background:
         step *= free
         mean += (lab - mean) * step.astype(np.float32)
         age += free
+
+    def learn_first(self, lab: Floats, box: Box, free: Flags) -> None:
+        """Learn pixels that are seen seldom: each counts as several frames."""
+        mean, age = self._mean[:, box[0], box[1]], self._age[box]
+        mean += (lab - mean) * (free * np.maximum(1 / (age / SELDOM_FRAMES + 1), STEP)).astype(
+            np.float32
+        )
+        age += SELDOM_FRAMES * free
 
     def forget(self) -> None:
         """Forget all: the camera was moved."""

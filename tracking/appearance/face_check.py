@@ -7,7 +7,7 @@ from tracking.appearance.face_pattern import SeenPattern
 from tracking.geometry.arrays import Array, Flags, Floats
 from tracking.geometry.robust_statistics import quantile
 
-MIN_SHADE, MAX_SHADE = 0.35, 1.25
+MIN_SHADE, MAX_SHADE = 0.55, 1.25
 """Lightness of a part of a face relative to that of most of it: less is no shadow."""
 
 CHROMA_TOLERANCE = 7.0
@@ -101,7 +101,7 @@ def _off_levels(
     if np.count_nonzero(dark) >= MIN_PIXELS:
         black = min(quantile(lightness[dark], 0.3), 0.6 * white)
     top = MAX_SHADE * (white - least * (white - black)) + LIGHTNESS_TOLERANCE
-    bottom = MIN_SHADE * (white - most * (white - black)) - LIGHTNESS_TOLERANCE
+    bottom = MIN_SHADE * (white - most * (white - black)) - 0.5 * LIGHTNESS_TOLERANCE
     return np.asarray((lightness > top) | (lightness < bottom))
 
 

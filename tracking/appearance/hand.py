@@ -19,7 +19,7 @@ from tracking.geometry.state import CubeState
 REACH_EDGES = 2.0
 """How far from the cube's bounds the hand is looked for [apparent edges of the cube]."""
 
-WORKING_EDGE_PX, MIN_EDGE_PX, MAX_EDGE_PX = 30.0, 22.0, 40.0
+WORKING_EDGE_PX, MIN_EDGE_PX, MAX_EDGE_PX = 30.0, 17.0, 48.0
 """Edge of the cube at the resolution in which the hand is looked for, and the bounds at which that
 resolution changes [px]."""
 
@@ -35,8 +35,14 @@ MIN_TOUCH_EDGES2, MIN_AREA_EDGES2 = 0.01, 0.15
 MIN_EXTENT_EDGES = 0.9
 """How far from the cube's bounds it must reach: there is an arm behind a hand."""
 
+STRIPS = 9
+"""Parts of the image of which one a frame is learned as background while there is no hand."""
+
 MIN_CHANGED_SHARE = 0.6
 """Least share of such a hand that does not look like the desk."""
+
+CLOSED_EDGES = 0.15
+"""Width of gaps of the hand over the cube that are filled: about a cell of a marker [edges]."""
 
 EDGE_LEVELS = 90.0
 """Range of the odds, whose whole range is 255, over which the cover rises from 0 to 255."""
@@ -119,7 +125,7 @@ class HandFinder:
         self._faces = FaceCheck()
         self._background = Background()
         self._colours = ColourModel()
-        self._scale = 0
+        self._scale = self._strip = 0
 
     def update(self, image: Image, state: CubeState) -> HandMask | None:
         """Find the hand in the next image, (H, W, 3) BGR, with the cube's state in it.
@@ -156,9 +162,12 @@ class HandFinder:
         odds[evidence] = EVIDENCE
         odds = cv2.GaussianBlur(odds, (5, 5), 1.0)
 
+        odds[inner] = np.where(_closed_over(odds, inner, window.edge), 0.5 * EVIDENCE, odds)[inner]
+
         hand = self._grown(_cleaned(odds > 0), evidence, changed, cube, window.edge)
         self._learn(lab, bins, window, outer, hand, changed, odds)
         if not hand.any():
+            self._learn_strip(image, window, cube)
             return None
         rows, columns = window.image_box
         size = (columns.stop - columns.start, rows.stop - rows.start)
@@ -240,6 +249,28 @@ class HandFinder:
         free &= cv2.dilate(hand.astype(np.uint8), WIDE) == 0
         self._colours.learn_behind(bins, free & ~changed)
         self._background.learn(lab, window.box, free, changed)
+
+    def _learn_strip(self, image: Image, window: _Window, cube: Image) -> None:
+        """Learn a strip of the whole image while there is no hand, for when the cube comes there."""
+        scale = window.scale
+        columns, rows = (side // scale for side in self._projection.size)
+        self._strip = (self._strip + 1) % STRIPS
+        top, bottom = (rows * strip // STRIPS for strip in (self._strip, self._strip + 1))
+        part = image[top * scale : bottom * scale, : columns * scale]
+        small = cv2.resize(part, (columns, bottom - top), interpolation=cv2.INTER_AREA)
+        lab = np.stack(cv2.split(cv2.cvtColor(small, cv2.COLOR_BGR2LAB))).astype(np.float32)
+        free = np.ones((bottom - top, columns), bool)
+        first, last = max(window.top - top, 0), max(window.top + window.height - top, 0)
+        free[first:last, window.left : window.left + window.width] = False
+        self._background.learn_first(lab, np.s_[top:bottom, :columns], free)
+
+
+def _closed_over(odds: Floats, inner: Flags, edge: float) -> Flags:
+    """Return what lies between parts of the hand a marker's cell apart: a dark finger on ink."""
+    side = 2 * round(CLOSED_EDGES * edge / 2) + 1
+    hand = (odds > 0).astype(np.uint8)
+    closed = cv2.morphologyEx(hand, cv2.MORPH_CLOSE, np.ones((side, side), np.uint8))
+    return (closed > 0) & inner
 
 
 def _cleaned(flags: Flags) -> Image:
