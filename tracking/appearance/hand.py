@@ -41,13 +41,16 @@ STRIPS = 9
 MIN_CHANGED_SHARE = 0.6
 """Least share of such a hand that does not look like the desk."""
 
-CLOSED_EDGES = 0.15
+CLOSED_EDGES = 0.25
 """Width of gaps of the hand over the cube that are filled: about a cell of a marker [edges]."""
 
 EDGE_LEVELS = 90.0
 """Range of the odds, whose whole range is 255, over which the cover rises from 0 to 255."""
 
-COVER = np.clip((np.arange(256) - 128) * (255 / EDGE_LEVELS) + 128, 0, 255).astype(np.uint8)
+EDGE_SHIFT = 50.0
+"""Odds, as above, at which half is covered: what differs from the desk is smoothed, so it grows."""
+
+COVER = np.clip((np.arange(256) - 128 - EDGE_SHIFT) * (255 / EDGE_LEVELS) + 128, 0, 255).astype(np.uint8)
 """Cover for the odds at full resolution."""
 
 SMALL, WIDE = np.ones((3, 3), np.uint8), np.ones((5, 5), np.uint8)
