@@ -1,8 +1,15 @@
-"""How well the hand is found: `python -m tests.bench.hand_mask [-o FOLDER]`."""
+"""How well the hand at the cube is found: `python -m tests.bench.hand_mask [-o FOLDER]`.
+
+Hands of ten skin tones and three gloves take, turn and carry a cube in synthetic pictures. The mask
+is compared with the true cover, in `HandFinder.region`: two edges of the cube around its bounds.
+The score is the sum of the lesser over the sum of the greater cover of all pixels (soft IoU), by
+frames in which the hand holds the cube. The poses are the tracker's own.
+"""
 
 import argparse
 import sys
 import time
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import cv2
@@ -10,98 +17,125 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from tests.bench.hand_scenes import GLOVES, SKINS, HandScene, HandView
+from tests.bench.hand_scenes import GLOVES, RATE_HZ, SKINS, HandScene, HandView
 from tracking.appearance.hand import HandFinder, HandMask
 from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Floats
+from tracking.geometry.arrays import Floats, Image
 from tracking.tracker.tracker import CubeTracker
 
-AZIMUTHS = (0.0, -60.0, -120.0, -190.0)
+MIN_IOU, MAX_SPREAD, MAX_TIME_MS = 0.87, 0.02, 2.0
+"""Bars: of every skin and glove; between the best and the worst skin; of the median frame."""
+
+HARD_SKIN = "Monk 06"
+"""It is 0.85 times the colour of the synthetic desk's wood in red, green and blue: only texture
+tells it from the desk. Its row is printed, and does not count for the spread."""
+
+VIEWS = ((10.0, 0.0, 0.6), (-60.0, 0.3, 0.6), (-120.0, 0.0, 1.2), (-165.0, 0.5, 0.8))
+"""Where the arm comes from [°], how uneven the light is, and the lens blur [px], of each scene."""
 
 
-def iou(mask: HandMask | None, truth: Floats, window: tuple[slice, slice]) -> float:
-    """Soft intersection over union in a window of the image."""
-    found = np.zeros_like(truth)
+@dataclass
+class Result:
+    """What was measured of one hand."""
+
+    scores: list[list[float]] = field(default_factory=list)
+    """IoU of each frame of each scene."""
+
+    times: list[float] = field(default_factory=list)
+    """Time of `HandFinder.update` [ms]."""
+
+    marker_times: list[float] = field(default_factory=list)
+    """Time of OpenCV's marker detection in the same frames [ms]."""
+
+    false_covers: list[int] = field(default_factory=list)
+    """Greatest cover, 0…255, of each frame without a hand in the region."""
+
+
+def covered(mask: HandMask | None, shape: tuple[int, ...]) -> Floats:
+    """Return the cover in the whole image, (H, W) 0…1."""
+    found = np.zeros(shape[:2], np.float32)
     if mask is not None:
         height, width = mask.cover.shape
-        found[mask.y : mask.y + height, mask.x : mask.x + width] = mask.cover / 255.0
-    a, b = found[window], truth[window]
-    return float(np.minimum(a, b).sum() / max(float(np.maximum(a, b).sum()), 1e-6))
+        found[mask.y : mask.y + height, mask.x : mask.x + width] = mask.cover / np.float32(255)
+    return found
+
+
+def measure(name: str, skin: str, scenes: int, folder: Path | None) -> Result:
+    """Show all scenes of one hand; "" for none."""
+    cube, result = CubeModel.load("locomotion"), Result()
+    markers = cv2.aruco.ArucoDetector(cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50))
+    for number, (azimuth, gradient, defocus) in enumerate(VIEWS[:scenes]):
+        view = HandView(skin or "000000", azimuth, number + 1, gradient, defocus, hand=bool(skin))
+        scene = HandScene(view, cube)
+        tracker, finder = CubeTracker(cube, scene.intrinsics), HandFinder(cube, scene.intrinsics)
+        result.scores.append([])
+        for index in range(scene.count):
+            frame, truth = scene.frame(index)
+            state = tracker.update(frame)
+            start = time.perf_counter()
+            mask = finder.update(frame.image, state)
+            middle = time.perf_counter()
+            markers.detectMarkers(cv2.cvtColor(frame.image, cv2.COLOR_BGR2GRAY))
+            result.times.append(1000 * (middle - start))
+            result.marker_times.append(1000 * (time.perf_counter() - middle))
+            box = finder.region(scene.truth(index))
+            if box is None:
+                continue
+            found, true = covered(mask, truth.shape)[box], truth[box]
+            if not true.any():
+                result.false_covers.append(round(255 * float(found.max())))
+            if scene.state(index).grip > 0.99 and skin:
+                both = float(np.maximum(found, true).sum())
+                result.scores[-1].append(float(np.minimum(found, true).sum()) / max(both, 1e-6))
+                if folder and index % round(RATE_HZ) == 0:
+                    write(folder / f"{name} {number} {index}.png", frame.image[box], found, true)
+    return result
+
+
+def write(path: Path, image: Image, found: Floats, true: Floats) -> None:
+    """Write the picture, the mask in it, and both masks: found in red, true in blue."""
+    green = np.array([0, 255, 0], np.float32)
+    painted = image + 0.7 * found[..., None] * (green - image)
+    masks = 255 * np.stack([true, np.zeros_like(true), found], axis=-1)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    cv2.imwrite(str(path), np.rint(np.hstack([image, painted, masks])).astype(np.uint8))
 
 
 def main() -> None:
-    """Print the table."""
+    """Print the table; exit with 1 where a bar is missed."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("-o", "--output", type=Path)
-    parser.add_argument("--only", default="")
-    parser.add_argument("--scenes", type=int, default=len(AZIMUTHS))
+    parser.add_argument("-o", "--output", type=Path, help="folder for pictures")
+    parser.add_argument("--only", default="", help="part of the names of the hands to show")
+    parser.add_argument("--scenes", type=int, default=len(VIEWS), help="scenes of each hand")
     arguments = parser.parse_args()
-    cube = CubeModel.load("locomotion")
-    table = Table("hand", "IoU", "lowest scene", "lowest frame", "seen", "ms", "false cover")
-    detector = cv2.aruco.ArucoDetector(cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50))
-    for name, skin in (SKINS | GLOVES).items():
+    table = Table("hand", "IoU", "of each scene", "worst frame", "ms", "× markers", "false cover")
+    means, times, false = {}, [], 0
+    for name, skin in ({"none": ""} | SKINS | GLOVES).items():
         if arguments.only not in name:
             continue
-        scenes, times, frames, aruco, seen, false = [], [], [], [], [], 0.0
-        for number, azimuth in enumerate(AZIMUTHS[: arguments.scenes]):
-            scene = HandScene(HandView(skin, azimuth, seed=number + 1), cube)
-            tracker, finder = CubeTracker(cube, scene.intrinsics), None
-            finder = HandFinder(cube, scene.intrinsics)
-            shares = []
-            for index in range(scene.count):
-                frame, truth = scene.frame(index)
-                state = tracker.update(frame)
-                start = time.perf_counter()
-                mask = finder.update(frame.image, state)
-                times.append(1000 * (time.perf_counter() - start))
-                start = time.perf_counter()
-                detector.detectMarkers(cv2.cvtColor(frame.image, cv2.COLOR_BGR2GRAY))
-                aruco.append(1000 * (time.perf_counter() - start))
-                window = finder.region(state.camera_from_cube)
-                if window is None or not state.visible:
-                    continue
-                if truth[window].max() == 0:
-                    false = max(false, float(mask.cover.max()) if mask else 0.0)
-                if scene.state(index).grip > 0.99:
-                    shares.append(iou(mask, truth, window))
-                    seen.append(mask is not None)
-                    if arguments.output and index % 12 == 0:
-                        write(
-                            arguments.output / f"{name} {number} {index}.png",
-                            frame.image,
-                            mask,
-                            truth,
-                            window,
-                        )
-            scenes.append(np.mean(shares[3:]))
-            frames += shares[3:]
-        table.add_row(
-            name,
-            f"{np.mean(scenes):.3f}",
-            " ".join(f"{s:.2f}" for s in scenes),
-            f"{min(frames):.2f}",
-            f"{np.mean(seen):.2f}",
-            f"{np.median(times):.2f} ({np.median(times) / np.median(aruco):.2f}×)",
-            f"{false:.0f}",
-        )
-    Console(width=120).print(table)
-    sys.exit(0)
-
-
-def write(path, image, mask, truth, window):
-    path.parent.mkdir(parents=True, exist_ok=True)
-    shown = image.copy()
-    found = np.zeros(truth.shape, np.float32)
-    if mask is not None:
-        height, width = mask.cover.shape
-        found[mask.y : mask.y + height, mask.x : mask.x + width] = mask.cover / 255.0
-    green = np.array([0, 255, 0], np.float32)
-    cut = shown * (1 - 0.7 * found[..., None]) + 0.7 * found[..., None] * green
-    wrong = np.stack([truth * 255, truth * 0, found * 255], axis=-1)
-    cv2.imwrite(
-        str(path),
-        np.hstack([image[window], cut[window].astype(np.uint8), wrong[window].astype(np.uint8)]),
-    )
+        found = measure(name, skin, arguments.scenes, arguments.output)
+        times += found.times
+        false = max(false, *found.false_covers)
+        row = ["", "", ""]
+        if skin:
+            scenes = [float(np.mean(scores)) for scores in found.scores]
+            means[name] = float(np.mean(scenes))
+            worst = min(min(scores) for scores in found.scores)
+            row = [f"{means[name]:.3f}", " ".join(f"{s:.2f}" for s in scenes), f"{worst:.2f}"]
+        cost = float(np.median(found.times))
+        row += [f"{cost:.2f}", f"{cost / float(np.median(found.marker_times)):.2f}"]
+        table.add_row(name, *row, f"{max(found.false_covers)} of {len(found.false_covers)} frames")
+    skins = [mean for name, mean in means.items() if name in SKINS and name != HARD_SKIN]
+    spread = max(skins) - min(skins) if skins else 0.0
+    low = [name for name, mean in means.items() if mean < MIN_IOU]
+    console = Console(width=120)
+    console.print(table)
+    cost = float(np.median(times))
+    console.print(f"below {MIN_IOU}: {', '.join(low) or 'none'}")
+    console.print(f"spread of skins without {HARD_SKIN}: {spread:.3f}, bar {MAX_SPREAD}")
+    console.print(f"time {cost:.2f} ms, bar {MAX_TIME_MS:g}; greatest false cover {false}, bar 0")
+    missed = low or spread > MAX_SPREAD or cost > MAX_TIME_MS or false
+    sys.exit(1 if missed else 0)
 
 
 if __name__ == "__main__":

@@ -81,7 +81,7 @@ class HandScene:
         self._renderer = _HandRenderer(self._camera, self._paper, self.options, view)
         random = np.random.default_rng([view.seed, 3])
         x, z, heading = random.uniform((-0.1, -0.05, -45), (0.1, 0.12, 45))
-        c = Choreography(cube.edge, x, z, heading).rest(1.0).hold(0.5).turn(60, 0.9)
+        c = Choreography(cube.edge, x, z, heading).rest(2.6).hold(0.5).turn(60, 0.9)
         c.carry(0.04, 0.05, 0.06, 1.4).turn(-100, 1.2).slide(x, z, 0.8).hold(0.3)
         self._choreography = c
         self.count = round(c.length * RATE_HZ)
@@ -124,11 +124,11 @@ class _HandRenderer(ExposureRenderer):
         self._mottle = np.ones((height, width), np.float32)
         for cell, share in ((24, 0.6), (6, 0.8)):
             grain = random.standard_normal((height // cell, width // cell)).astype(np.float32)
-            grain = cv2.resize(grain, (width, height), interpolation=cv2.INTER_CUBIC)
-            self._mottle += view.texture * share * grain
+            large = cv2.resize(grain, (width, height), interpolation=cv2.INTER_CUBIC)
+            self._mottle += view.texture * share * np.asarray(large, np.float32)
         spots = random.standard_normal((height // 10, width // 10)).astype(np.float32)
-        spots = cv2.resize(spots, (width, height), interpolation=cv2.INTER_CUBIC)
-        self._spots = np.clip(spots - 1.7, 0, 1) * 90.0 * view.gloss
+        large = cv2.resize(spots, (width, height), interpolation=cv2.INTER_CUBIC)
+        self._spots = np.clip(large - 1.7, 0, 1) * 90.0 * view.gloss
         self._light = np.linspace(1 - view.gradient, 1, width, dtype=np.float32)[:, None]
 
     def draw(self, states: list[SceneState], poses: list[Array], index: int, in_air: bool) -> Image:

@@ -113,10 +113,16 @@ class Background:
         detail = gain - cv2.blur(gain, (3, 3))
         rough = np.sqrt(cv2.erode(cv2.blur(detail * detail, (3, 3)), SMALL))
         foreign = np.maximum(
-            chroma / (CHROMA_LIMIT * _noise(chroma[::SPARSE, ::SPARSE][some], MIN_CHROMA_NOISE)
-                      + SHADE_CHROMA * np.abs(gain - 1)),
-            rough / (GAIN_LIMIT * _noise(rough[::SPARSE, ::SPARSE][some], MIN_GAIN_NOISE)
-                     + SHADE_DETAIL * np.abs(gain - 1)),
+            chroma
+            / (
+                CHROMA_LIMIT * _noise(chroma[::SPARSE, ::SPARSE][some], MIN_CHROMA_NOISE)
+                + SHADE_CHROMA * np.abs(gain - 1)
+            ),
+            rough
+            / (
+                GAIN_LIMIT * _noise(rough[::SPARSE, ::SPARSE][some], MIN_GAIN_NOISE)
+                + SHADE_DETAIL * np.abs(gain - 1)
+            ),
         )
         lit = (gain > MIN_GAIN) & (gain < MAX_GAIN) & (foreign < 1)
         unchanged = lit & (np.abs(lab[0] - mean[0]) < SAME_LIGHTNESS)

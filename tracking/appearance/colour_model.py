@@ -1,5 +1,7 @@
 """The colours of the hand and of what is behind it, learned over frames."""
 
+from collections.abc import Sequence
+
 import cv2
 import numpy as np
 
@@ -36,7 +38,7 @@ _PARTS = [
 """What L, a and b of CIELab, bytes, add to the number of a bin."""
 
 
-def colour_bins(planes: tuple[Image, Image, Image]) -> Indices:
+def colour_bins(planes: Sequence[Image]) -> Indices:
     """Return the bin of each pixel of CIELab planes of bytes, (h, w) each → (h, w)."""
     bins = np.take(_PARTS[0], planes[0])
     bins += np.take(_PARTS[1], planes[1])
@@ -78,8 +80,8 @@ def _learned(counts: Array, bins: Indices) -> Array:
 
 def _density(counts: Array) -> Floats:
     """Return the share of each colour, smoothed over neighbouring bins."""
-    grid = counts.reshape(LIGHTNESS_BINS, CHROMA_BINS**2).astype(np.float32)
-    grid = cv2.blur(grid, (1, 3)).reshape(-1, CHROMA_BINS, CHROMA_BINS)
+    flat = counts.reshape(LIGHTNESS_BINS, CHROMA_BINS**2).astype(np.float32)
+    grid = np.asarray(cv2.blur(flat, (1, 3)), np.float32).reshape(-1, CHROMA_BINS, CHROMA_BINS)
     soft = cv2.GaussianBlur(np.ascontiguousarray(grid.transpose(1, 2, 0)), (3, 3), 0.8)
-    flat = soft.transpose(2, 0, 1).ravel()
-    return np.asarray(flat / max(float(flat.sum()), 1.0), np.float32)
+    shares = np.asarray(soft, np.float32).transpose(2, 0, 1).ravel()
+    return np.asarray(shares / max(float(shares.sum()), 1.0), np.float32)

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 
 from tracking.appearance.face_pattern import SeenPattern
-from tracking.geometry.arrays import Array, Flags, Floats
+from tracking.geometry.arrays import Array, Flags, Floats, Image
 from tracking.geometry.robust_statistics import quantile
 
 MIN_SHADE, MAX_SHADE = 0.55, 1.25
@@ -53,8 +53,9 @@ class FaceCheck:
         edge
             Apparent edge of the cube [px].
         """
-        most, least = cv2.dilate(seen.ink, SMALL), cv2.erode(seen.ink, SMALL)
-        cube = (seen.face > 0).astype(np.uint8)
+        most = np.asarray(cv2.dilate(seen.ink, SMALL), np.float32)
+        least = np.asarray(cv2.erode(seen.ink, SMALL), np.float32)
+        cube = np.asarray(seen.face > 0, np.uint8)
         found, inner = np.zeros(cube.shape, bool), cv2.erode(cube, SMALL) > 0
         all_paper = inner & (most < 0.1) & ~seen.icon
         if self._tint is None:
@@ -66,10 +67,11 @@ class FaceCheck:
         coloured = (off_a * off_a + off_b * off_b > CHROMA_TOLERANCE**2) & ~seen.icon
         for number in np.unique(seen.face[inner]).tolist():
             face = (seen.face == number) & inner
-            found |= face & (coloured | _off_levels(lab[0], face & all_paper, face, most, least,
-                                                    coloured))
+            found |= face & (
+                coloured | _off_levels(lab[0], face & all_paper, face, most, least, coloured)
+            )
         opened = cv2.morphologyEx(found.astype(np.uint8), cv2.MORPH_OPEN, SMALL[:2, :2])
-        found = _from_outside(opened, cube, MIN_EVIDENCE_EDGES2 * edge * edge)
+        found = _from_outside(np.asarray(opened, np.uint8), cube, MIN_EVIDENCE_EDGES2 * edge * edge)
         paper = all_paper & ~coloured & ~found
         if np.count_nonzero(paper) > 4 * MIN_PIXELS:
             self._tint = self._tint + TINT_STEP * (_tint(lab, paper) - self._tint)
@@ -105,7 +107,7 @@ def _off_levels(
     return np.asarray((lightness > top) | (lightness < bottom))
 
 
-def _from_outside(flags: Flags, cube: Flags, min_area: float) -> Flags:
+def _from_outside(flags: Image, cube: Image, min_area: float) -> Flags:
     """Return the components large enough that reach the outline: a hand comes from there."""
     count, labels, stats, _ = cv2.connectedComponentsWithStats(flags)
     core = cv2.erode(cube, SMALL, iterations=3)

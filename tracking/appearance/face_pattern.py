@@ -35,12 +35,9 @@ class SeenPattern:
     icon: Flags
     """Where a coloured icon is near, (h, w)."""
 
-    depth: Floats
-    """Distance of the surface along the camera's axis [m], (h, w); 0 outside the cube."""
-
     def cropped(self, box: tuple[slice, slice]) -> "SeenPattern":
         """Return some rows and columns of it."""
-        return SeenPattern(self.face[box], self.ink[box], self.icon[box], self.depth[box])
+        return SeenPattern(self.face[box], self.ink[box], self.icon[box])
 
 
 class FacePattern:
@@ -76,7 +73,6 @@ class FacePattern:
         width, height = size
         label = np.zeros((height, width), np.uint8)
         shown = np.zeros((height, width, 3), np.uint8)
-        depth = np.zeros((height, width), np.float32)
         corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32) * FACE_TEXELS - 0.5
         for number in self._planes.facing(camera_from_cube, MIN_COSINE):
             points = self._quads[number] @ camera_from_cube[:3, :3].T + camera_from_cube[:3, 3]
@@ -92,19 +88,26 @@ class FacePattern:
             inside = print_[..., PAPER] > 127
             shown[box][inside] = print_[inside]
             label[box][inside] = number + 1
-            depth[box][inside] = self._depth(points, low, high, origin, scale)[inside]
         near_icon = cv2.dilate(shown[..., ICON], np.ones((5, 5), np.uint8)) > 12
-        return SeenPattern(label, shown[..., INK].astype(np.float32) / 255, near_icon, depth)
+        return SeenPattern(label, np.asarray(shown[..., INK] / 255, np.float32), near_icon)
 
-    def _depth(self, points: Array, low: Array, high: Array, origin: Array, scale: float) -> Floats:
-        """Depth of a face's plane at each pixel of a box; lens distortion hardly matters."""
-        normal = np.cross(points[1] - points[0], points[3] - points[0])
-        x = (np.arange(low[0], high[0]) + 0.5) * scale + origin[0] - 0.5
-        y = (np.arange(low[1], high[1]) + 0.5) * scale + origin[1] - 0.5
+    def distance(self, camera_from_cube: Array, face: Image, origin: Array, scale: float) -> float:
+        """Return the least distance along the camera's axis of some pixels of faces [m].
+
+        `face` is that of `SeenPattern`, 0 where a pixel does not count, one at least does; the
+        others are as in `seen`. Lens distortion hardly matters and is ignored.
+        """
+        rows, columns = np.nonzero(face)
+        pixels = (np.stack([columns, rows], axis=1) + 0.5) * scale + origin - 0.5
         matrix = self._projection.matrix
-        x, y = (x - matrix[0, 2]) / matrix[0, 0], (y - matrix[1, 2]) / matrix[1, 1]
-        slope = normal[0] * x + (normal[1] * y)[:, None] + normal[2]
-        return np.asarray((normal @ points[0]) / slope, np.float32)
+        rays = np.ones((len(pixels), 3))
+        rays[:, :2] = (pixels - matrix[:2, 2]) / matrix[[0, 1], [0, 1]]
+        number = face[rows, columns].astype(np.intp) - 1
+        rotation, shift = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
+        normals = self._planes.normals @ rotation.T
+        offsets = (normals * (self._planes.centres @ rotation.T + shift)).sum(axis=1)
+        slopes = (rays * normals[number]).sum(axis=1)
+        return float((offsets[number] / slopes).min())
 
 
 def _print(cube: CubeModel, face: Face) -> Image:

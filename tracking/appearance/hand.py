@@ -50,7 +50,9 @@ EDGE_LEVELS = 90.0
 EDGE_SHIFT = 50.0
 """Odds, as above, at which half is covered: what differs from the desk is smoothed, so it grows."""
 
-COVER = np.clip((np.arange(256) - 128 - EDGE_SHIFT) * (255 / EDGE_LEVELS) + 128, 0, 255).astype(np.uint8)
+COVER = np.clip((np.arange(256) - 128 - EDGE_SHIFT) * (255 / EDGE_LEVELS) + 128, 0, 255).astype(
+    np.uint8
+)
 """Cover for the odds at full resolution."""
 
 SMALL, WIDE = np.ones((3, 3), np.uint8), np.ones((5, 5), np.uint8)
@@ -71,8 +73,8 @@ class HandMask:
     """Share of each pixel that the hand covers, 0…255, (height, width)."""
 
     distance: float
-    """Distance of the nearest surface that the hand hides, along the camera's axis [m]: the hand
-    is nearer."""
+    """Distance of the nearest surface of the cube that the hand hides, along the camera's axis [m]:
+    the hand is nearer. That of the cube's centre where the hand hides no face."""
 
 
 @dataclass(frozen=True)
@@ -143,14 +145,15 @@ class HandFinder:
             return None
         part = image[window.image_box]
         small = cv2.resize(part, (window.width, window.height), interpolation=cv2.INTER_AREA)
-        planes = cv2.split(cv2.cvtColor(small, cv2.COLOR_BGR2LAB))
-        lab = np.stack(planes).astype(np.float32)
+        pixels = np.asarray(cv2.cvtColor(small, cv2.COLOR_BGR2LAB), np.uint8)
+        planes = np.ascontiguousarray(pixels.transpose(2, 0, 1))
+        lab = planes.astype(np.float32)
         columns, rows = (side // window.scale for side in self._projection.size)
         self._background.match_size(columns, rows)
 
         cube, evidence, distance = self._evidence(lab, pose, window)
         inner, outer = cv2.erode(cube, SMALL) > 0, cv2.dilate(cube, WIDE) > 0
-        bins = colour_bins(planes)
+        bins = colour_bins(list(planes))
         if np.count_nonzero(evidence) > 8:
             self._colours.learn_hand(bins, evidence)
 
@@ -163,18 +166,18 @@ class HandFinder:
         odds += np.where(outer, 0, by_place)
         odds[inner] = NO_EVIDENCE
         odds[evidence] = EVIDENCE
-        odds = cv2.GaussianBlur(odds, (5, 5), 1.0)
+        odds = np.asarray(cv2.GaussianBlur(odds, (5, 5), 1.0), np.float32)
 
         odds[inner] = np.where(_closed_over(odds, inner, window.edge), 0.5 * EVIDENCE, odds)[inner]
 
         hand = self._grown(_cleaned(odds > 0), evidence, changed, cube, window.edge)
         self._learn(lab, bins, window, outer, hand, changed, odds)
         if not hand.any():
-            self._learn_strip(image, window, cube)
+            self._learn_strip(image, window)
             return None
-        rows, columns = window.image_box
-        size = (columns.stop - columns.start, rows.stop - rows.start)
-        return HandMask(columns.start, rows.start, _soft(hand, odds, size), distance)
+        down, across = window.image_box
+        size = (across.stop - across.start, down.stop - down.start)
+        return HandMask(across.start, down.start, _soft(hand, odds, size), distance)
 
     def region(self, camera_from_cube: Array) -> tuple[slice, slice] | None:
         """Rows and columns of the image in which the hand is looked for at a pose of the cube."""
@@ -204,30 +207,33 @@ class HandFinder:
         seen = self._pattern.seen(pose, origin, window.scale, (window.width, window.height))
         cube = np.asarray(seen.face > 0, np.uint8)
         evidence = np.zeros(cube.shape, bool)
-        rows, columns = (np.flatnonzero(cube.any(axis=axis)) for axis in (1, 0))
-        if not len(rows):
+        left, top, width, height = cv2.boundingRect(cube)
+        if not width:
             return cube, evidence, float(pose[2, 3])
-        box = np.s_[max(rows[0] - 4, 0) : rows[-1] + 5, max(columns[0] - 4, 0) : columns[-1] + 5]
+        box = np.s_[max(top - 4, 0) : top + height + 4, max(left - 4, 0) : left + width + 4]
         part = seen.cropped(box)
         evidence[box] = self._faces.disagreement(lab[:, box[0], box[1]], part, window.edge)
-        hidden = seen.depth[evidence]
-        return cube, evidence, float(hidden.min()) if len(hidden) else float(pose[2, 3])
+        if not evidence.any():
+            return cube, evidence, float(pose[2, 3])
+        hidden = np.where(evidence, seen.face, np.uint8(0))
+        return cube, evidence, self._pattern.distance(pose, hidden, origin, window.scale)
 
     def _grown(
         self, hand: Image, evidence: Flags, changed: Flags, cube: Image, edge: float
     ) -> Flags:
-        """Choose the components that hold evidence, or that touch the cube on a long line."""
+        """Choose the components that hold evidence, or that touch the cube and reach away."""
         count, labels, stats, _ = cv2.connectedComponentsWithStats(hand)
         area = stats[:, cv2.CC_STAT_AREA]
         beside = cv2.dilate(cube, WIDE, iterations=3) > 0
-        touching = np.bincount(labels[beside], minlength=count)
-        keep = (touching > MIN_TOUCH_EDGES2 * edge**2) & (area > MIN_AREA_EDGES2 * edge**2)
-        rows, columns = (np.flatnonzero(cube.any(axis=axis)) for axis in (1, 0))
-        far = round(MIN_EXTENT_EDGES * edge)
+        keep = np.bincount(labels[beside], minlength=count) > MIN_TOUCH_EDGES2 * edge**2
+        keep &= area > MIN_AREA_EDGES2 * edge**2
+        far = int(np.ceil(MIN_EXTENT_EDGES * edge))
+        left, top, width, height = cv2.boundingRect(cube)
+        near = np.s_[
+            max(top - far, 0) : top + height + far, max(left - far, 0) : left + width + far
+        ]
         away = labels.copy()
-        away[
-            max(rows[0] - far, 0) : rows[-1] + far, max(columns[0] - far, 0) : columns[-1] + far
-        ] = 0
+        away[near] = 0
         keep &= np.bincount(away.ravel(), minlength=count) > 0
         keep &= np.bincount(labels[changed], minlength=count) > MIN_CHANGED_SHARE * area
         keep[labels[evidence & (hand > 0)]] = True
@@ -253,8 +259,8 @@ class HandFinder:
         self._colours.learn_behind(bins, free & ~changed)
         self._background.learn(lab, window.box, free, changed)
 
-    def _learn_strip(self, image: Image, window: _Window, cube: Image) -> None:
-        """Learn a strip of the whole image while there is no hand, for when the cube comes there."""
+    def _learn_strip(self, image: Image, window: _Window) -> None:
+        """Learn a strip of the whole image, without a hand: the cube may come there."""
         scale = window.scale
         columns, rows = (side // scale for side in self._projection.size)
         self._strip = (self._strip + 1) % STRIPS

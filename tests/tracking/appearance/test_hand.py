@@ -1,0 +1,92 @@
+"""The hand is found where it is, and nowhere else."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from tests.bench.hand_scenes import HandScene, HandView
+from tests.tracking.drawn import WIDE, held, photograph, scene
+from tracking.appearance.hand import HandFinder, HandMask
+from tracking.cube.model import CubeModel
+from tracking.geometry.state import CubeState
+
+CUBE = CubeModel.load("locomotion")
+
+
+def state_at(pose, visible=True) -> CubeState:
+    still = np.zeros(6)
+    return CubeState(visible, pose, still, np.zeros((6, 6)), "markers", (), 0.3, 0.0)
+
+
+def shown(view: HandView, frames: int) -> tuple[HandMask | None, np.ndarray, tuple[slice, slice]]:
+    """The mask of the last of some frames, with the true cover and the region."""
+    made = HandScene(view, CUBE)
+    finder, mask = HandFinder(CUBE, made.intrinsics), None
+    truth = np.zeros((720, 1280), np.float32)
+    for index in range(frames):
+        frame, truth = made.frame(index)
+        mask = finder.update(frame.image, state_at(made.truth(index)))
+    region = finder.region(made.truth(frames - 1))
+    assert region is not None
+    return mask, truth, region
+
+
+def covered(mask: HandMask) -> np.ndarray:
+    found = np.zeros((720, 1280))
+    height, width = mask.cover.shape
+    found[mask.y : mask.y + height, mask.x : mask.x + width] = mask.cover / 255
+    return found
+
+
+@pytest.mark.parametrize("skin", ["f3e7db", "604134", "3f6fc4"])
+def test_hands_of_any_colour_are_found(skin):
+    mask, truth, region = shown(HandView(skin, azimuth_deg=-120, seed=3), 25)
+    assert mask is not None
+    found = covered(mask)[region]
+    assert np.minimum(found, truth[region]).sum() > 0.8 * np.maximum(found, truth[region]).sum()
+
+
+def test_the_hand_is_nearer_than_what_it_hides():
+    made = HandScene(HandView("825c43", azimuth_deg=-120, seed=3), CUBE)
+    mask, _, _ = shown(HandView("825c43", azimuth_deg=-120, seed=3), 25)
+    assert mask is not None
+    centre = made.truth(24)[2, 3]
+    assert centre - CUBE.edge < mask.distance <= centre
+
+
+def test_a_cube_without_a_hand_is_not_covered():
+    made = HandScene(HandView("000000", hand=False), CUBE)
+    finder = HandFinder(CUBE, made.intrinsics)
+    for index in range(30):
+        frame, _ = made.frame(index)
+        assert finder.update(frame.image, state_at(made.truth(index))) is None
+
+
+def test_a_shadow_on_a_face_is_no_finger():
+    pose, finder = held(), HandFinder(CUBE, WIDE)
+    light = scene((CUBE, pose), camera=WIDE)
+    shaded = light.copy()
+    shaded[:, 620:] *= 0.45
+    for index, seen in enumerate([light, light, shaded, shaded]):
+        assert finder.update(photograph(seen, seed=index), state_at(pose)) is None
+
+
+def test_a_cube_that_is_not_seen_has_no_hand():
+    finder = HandFinder(CUBE, WIDE)
+    picture = photograph(scene((CUBE, held()), camera=WIDE))
+    assert finder.update(picture, state_at(None, visible=False)) is None
+    assert finder.update(picture, state_at(held(), visible=False)) is None
+
+
+def test_a_still_picture_does_not_flicker():
+    made = HandScene(HandView("eadaba", azimuth_deg=-120, seed=3), CUBE)
+    finder = HandFinder(CUBE, made.intrinsics)
+    for index in range(25):
+        frame, _ = made.frame(index)
+        finder.update(frame.image, state_at(made.truth(index)))
+    masks = [finder.update(frame.image, state_at(made.truth(24))) for _ in range(6)]
+    covers = [covered(mask) for mask in masks if mask is not None]
+    assert len(covers) == 6
+    change = [np.abs(a - b).sum() for a, b in itertools.pairwise(covers)]
+    assert max(change[2:]) < 0.01 * covers[-1].sum()
