@@ -13,6 +13,10 @@ MIN_SHADE, MAX_SHADE = 0.55, 1.25
 CHROMA_TOLERANCE = 7.0
 """How far the chroma of paper and ink may be off that of the paper [CIELab]."""
 
+INK_TOLERANCE, MAX_INK_CHROMA, DARK = 9.0, 18.0, 110.0
+"""The same for ink and its own chroma; the most chroma that ink has [CIELab]; and the lightness
+below which it is learned [CIELab bytes]."""
+
 LIGHTNESS_TOLERANCE = 22.0
 """How far grey may be off what the print allows [CIELab bytes, 0…255]."""
 
@@ -40,6 +44,8 @@ class FaceCheck:
 
     def __init__(self) -> None:
         self._tint: Array | None = None
+        self._ink = np.zeros(2)
+        self._knows_ink = False
 
     def disagreement(self, lab: Floats, seen: SeenPattern, edge: float) -> Flags:
         """Return which pixels do not look like the print, as far as they are connected, (h, w).
@@ -65,6 +71,10 @@ class FaceCheck:
         off_a = lab[1] - 128 - (lab[0] + BLACK) * self._tint[0]
         off_b = lab[2] - 128 - (lab[0] + BLACK) * self._tint[1]
         coloured = (off_a * off_a + off_b * off_b > CHROMA_TOLERANCE**2) & ~seen.icon
+        dark = inner & (least > 0.9) & (lab[0] < DARK)
+        self._learn_ink(lab, dark)
+        off_a, off_b = lab[1] - 128 - self._ink[0], lab[2] - 128 - self._ink[1]
+        coloured &= (off_a * off_a + off_b * off_b > INK_TOLERANCE**2) | (most < 0.1)
         for number in np.unique(seen.face[inner]).tolist():
             face = (seen.face == number) & inner
             found |= face & (
@@ -76,6 +86,15 @@ class FaceCheck:
         if np.count_nonzero(paper) > 4 * MIN_PIXELS:
             self._tint = self._tint + TINT_STEP * (_tint(lab, paper) - self._tint)
         return found
+
+    def _learn_ink(self, lab: Floats, dark: Flags) -> None:
+        """Learn the chroma of ink: on photographs it is often bluish."""
+        if np.count_nonzero(dark) < 4 * MIN_PIXELS:
+            return
+        now = np.array([quantile(lab[axis][dark] - 128, 0.5) for axis in (1, 2)])
+        now = np.clip(now, -MAX_INK_CHROMA, MAX_INK_CHROMA)
+        self._ink = self._ink + (TINT_STEP if self._knows_ink else 1.0) * (now - self._ink)
+        self._knows_ink = True
 
 
 def _tint(lab: Floats, where: Flags) -> Array:
