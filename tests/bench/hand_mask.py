@@ -105,13 +105,13 @@ def main() -> None:
     """Print the table; exit with 1 where a bar is missed."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("-o", "--output", type=Path, help="folder for pictures")
-    parser.add_argument("--only", default="", help="part of the names of the hands to show")
+    parser.add_argument("--only", nargs="*", help="names of the hands to show, or none")
     parser.add_argument("--scenes", type=int, default=len(VIEWS), help="scenes of each hand")
     arguments = parser.parse_args()
     table = Table("hand", "IoU", "of each scene", "worst frame", "ms", "× markers", "false cover")
     means, times, false = {}, [], 0
     for name, skin in ({"none": ""} | SKINS | GLOVES).items():
-        if arguments.only not in name:
+        if arguments.only and name not in arguments.only:
             continue
         found = measure(name, skin, arguments.scenes, arguments.output)
         times += found.times

@@ -44,7 +44,7 @@ FULL_AGE = 6
 SELDOM_FRAMES = 3
 """Frames that a pixel counts for outside the window."""
 
-MIN_KNOWN, LOST_SHARE, TRUSTED_SHARE = 0.2, 0.25, 0.45
+MIN_KNOWN, LOST_SHARE, TRUSTED_SHARE = 0.2, 0.4, 0.6
 """Share of a window that must be known; and of that, how much must look as before to trust the
 rest: less, and the camera was moved."""
 
