@@ -58,6 +58,11 @@ class ColourModel:
         """Whether enough of a hand was seen."""
         return bool(self._hand.sum() > MIN_LEARNED)
 
+    @property
+    def knows_behind(self) -> bool:
+        """Whether anything behind the hand was seen."""
+        return bool(self._behind.any())
+
     def learn_hand(self, bins: Indices, where: Flags) -> None:
         """Add the marked pixels to the hand's colours."""
         self._hand = _learned(self._hand, bins[where])

@@ -160,6 +160,8 @@ class HandFinder:
         by_place, changed, steady = self._background.odds(lab, window.box, ~outer)
         if not steady:
             self._background.forget()
+        if not self._colours.knows_behind:
+            self._colours.learn_behind(bins, ~outer)  # a hand has only a small share in it
         by_colour = self._colours.odds()[bins]
         # Where the place tells, or paper and ink are near, colours tell half.
         odds = by_colour * np.where(outer | changed, np.float32(0.5), np.float32(1.0))

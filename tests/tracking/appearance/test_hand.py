@@ -90,3 +90,29 @@ def test_a_still_picture_does_not_flicker():
     assert len(covers) == 6
     change = [np.abs(a - b).sum() for a, b in itertools.pairwise(covers)]
     assert max(change[2:]) < 0.01 * covers[-1].sum()
+
+
+def test_bluish_ink_is_no_finger():
+    pose, finder = held(), HandFinder(CUBE, WIDE)
+    picture = photograph(scene((CUBE, pose), camera=WIDE)).astype(float)
+    dark = np.clip((110 - picture[..., :1]) / 60, 0, 1)
+    tinted = np.clip(picture + dark * (16, 0, -6), 0, 255).astype(np.uint8)
+    assert finder.update(tinted, state_at(pose)) is None
+
+
+def test_a_finger_on_a_face_is_found_in_the_first_picture():
+    pose, finder = held(), HandFinder(CUBE, WIDE)
+    picture = photograph(scene((CUBE, pose), camera=WIDE))
+    picture[210:300, 626:656] = (96, 124, 168)  # over its upper corner of the cube
+    mask = finder.update(picture, state_at(pose))
+    assert mask is not None
+    found = covered(mask)
+    assert found[250:294, 632:650].mean() > 0.6
+    found[200:312, 614:668] = 0
+    assert not found.any()
+
+
+def test_a_spot_inside_a_face_is_no_finger():
+    pose, picture = held(), photograph(scene((CUBE, held()), camera=WIDE))
+    picture[300:372, 630:656] = (96, 124, 168)  # a hand would come from outside
+    assert HandFinder(CUBE, WIDE).update(picture, state_at(pose)) is None
