@@ -132,7 +132,8 @@ def test_a_pawn_in_front_of_the_hand_is_not_hidden(stage, view, pawn):
 @pytest.mark.parametrize("corner", [(150, 0), (-30, -20), (300, 170), (2000, 50), (-500, -500)])
 def test_an_empty_cover_changes_nothing_wherever_it_is(stage, view, pawn, corner):
     free = stage.draw(view, [pawn.posed()], [LOOP])
-    empty = Cover(*corner, np.zeros((50, 60), np.uint8), 0.3)
+    x, y = corner
+    empty = Cover(x, y, np.zeros((50, 60), np.uint8), 0.3)
     assert np.array_equal(stage.draw(replace(view, cover=empty), [pawn.posed()], [LOOP]), free)
 
 

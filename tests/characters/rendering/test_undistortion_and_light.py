@@ -5,6 +5,7 @@ from dataclasses import replace
 import cv2
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from characters.rendering.context import create_context
 from characters.rendering.light import MIN_RISE, LightEstimator, paper_color
@@ -62,7 +63,8 @@ def test_a_cover_lies_on_the_same_pixels_as_the_picture(view, distortion, size):
     undistorter = Undistorter(size)
     picture, _ = undistorter.undistort(replace(view, image=frame, distortion=distortion))
     found = undistorter.cover_in_picture(cover)
-    shown = np.zeros_like(picture[..., 0])
+    assert found is not None
+    shown: NDArray[np.uint8] = np.zeros_like(picture[..., 0])
     shown[found.y :, found.x :][: found.share.shape[0], : found.share.shape[1]] = found.share
     assert shown.max() == 255
     assert np.abs(shown.astype(int) - picture[..., 0]).max() <= 2
