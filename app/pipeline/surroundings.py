@@ -21,7 +21,7 @@ REALISM_CHOICES = {
 }
 """What of the camera's picture the drawing follows, and what that means."""
 
-CERTAINTIES = 0.6, 0.8
+DIRECTION_CERTAINTIES = 0.6, 0.8
 """Certainties of the light's direction from which on it is used at all, and fully."""
 
 NO_REALISM = "none"
@@ -95,7 +95,7 @@ class Surroundings:
         found = self._light.update(frame.image, state, None if table is None else table[:3, 1])
         if found is None:
             return None
-        weight = float(np.interp(found.certainty, CERTAINTIES, (0.0, 1.0)))
+        weight = float(np.interp(found.certainty, DIRECTION_CERTAINTIES, (0.0, 1.0)))
         return MeasuredLight(found.to_light, found.key, found.ambient, weight)
 
     def _softness(self, frame: Frame, state: CubeState) -> Softness | None:

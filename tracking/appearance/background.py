@@ -3,6 +3,7 @@
 import cv2
 import numpy as np
 
+from tracking.appearance.colour_model import LIGHTNESS_OFFSET
 from tracking.geometry.arrays import Flags, Floats
 from tracking.geometry.robust_statistics import quantile
 
@@ -47,9 +48,6 @@ SELDOM_FRAMES = 3
 MIN_KNOWN, LOST_SHARE, TRUSTED_SHARE = 0.2, 0.4, 0.6
 """Share of a window that must be known; and of that, how much must look as before to trust the
 rest: less, and the camera was moved."""
-
-BLACK = 41.0
-"""16 of CIELab's L in bytes: light scales L + 16, and the chroma by the same factor."""
 
 Box = tuple[slice, slice]
 """Rows and columns of a window."""
@@ -101,7 +99,7 @@ class Background:
         if total < max(MIN_KNOWN * np.count_nonzero(outside), 200) or not some.any():
             self._lit_anew = np.zeros(age.shape, bool)
             return np.full(age.shape, UNKNOWN, np.float32), np.zeros(age.shape, bool), True
-        gain = (lab[0] + BLACK) / (mean[0] + BLACK)
+        gain = (lab[0] + LIGHTNESS_OFFSET) / (mean[0] + LIGHTNESS_OFFSET)
         off_a = lab[1] - 128 - gain * (mean[1] - 128)
         off_b = lab[2] - 128 - gain * (mean[2] - 128)
         # The camera's white balance drifts.

@@ -13,6 +13,9 @@ LIGHTNESS_BINS, CHROMA_BINS = 8, 24
 CHROMA_STEP = 4
 """Width of a bin along a and b [CIELab]: chroma tells skin, lightness varies with the light."""
 
+LIGHTNESS_OFFSET = 41.0
+"""16 of CIELab's L in bytes: light scales L + 16, and the chroma by the same factor."""
+
 MEMORY = 0.96
 """What remains of a histogram after one more frame: half of it after 17."""
 

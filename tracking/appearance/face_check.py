@@ -3,6 +3,7 @@
 import cv2
 import numpy as np
 
+from tracking.appearance.colour_model import LIGHTNESS_OFFSET
 from tracking.appearance.face_pattern import SeenPattern
 from tracking.geometry.arrays import Array, Flags, Floats, Image
 from tracking.geometry.robust_statistics import quantile
@@ -31,9 +32,6 @@ USUAL_BLACK = 0.25
 
 MIN_PIXELS = 8
 """Pixels that a level must rest on."""
-
-BLACK = 41.0
-"""16 of CIELab's L in bytes: light scales L + 16, and the chroma by the same factor."""
 
 SMALL = np.ones((3, 3), np.uint8)
 """The neighbours of a pixel."""
@@ -68,8 +66,8 @@ class FaceCheck:
             self._tint = _first_tint(lab, all_paper)
         if self._tint is None:
             return found
-        off_a = lab[1] - 128 - (lab[0] + BLACK) * self._tint[0]
-        off_b = lab[2] - 128 - (lab[0] + BLACK) * self._tint[1]
+        off_a = lab[1] - 128 - (lab[0] + LIGHTNESS_OFFSET) * self._tint[0]
+        off_b = lab[2] - 128 - (lab[0] + LIGHTNESS_OFFSET) * self._tint[1]
         coloured = (off_a * off_a + off_b * off_b > CHROMA_TOLERANCE**2) & ~seen.icon
         dark = inner & (least > 0.9) & (lab[0] < DARK)
         self._learn_ink(lab, dark)
@@ -99,7 +97,7 @@ class FaceCheck:
 
 def _tint(lab: Floats, where: Flags) -> Array:
     """Chroma per L + 16 of some pixels, (2,)."""
-    light = lab[0][where] + BLACK
+    light = lab[0][where] + LIGHTNESS_OFFSET
     return np.array([quantile((lab[axis][where] - 128) / light, 0.5) for axis in (1, 2)])
 
 
