@@ -7,7 +7,7 @@ Source: Kovar, Schreiner and Gleicher, "Footskate cleanup for motion capture edi
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +17,8 @@ from characters.motion.contacts import find_contacts, spans
 from characters.retargeting.foot_path import FootPath
 from characters.retargeting.ground_motion import GroundMotion
 from characters.retargeting.hips_shift import (
-    drop_to_reach,
+    HeldLegs,
     following_feet,
-    leg_extensions,
-    missing_reach,
-    rise_to_extension,
     smooth_bound,
     with_moved_hips,
 )
@@ -110,12 +107,10 @@ def hold_feet_in_contact(
     if rig.floor is not None:
         heights = ankles[..., 1] - rig.floor
         pose = _on_soles(pose, rig, legs, heights, contacts, ground)
-    clearances = np.zeros(ankles.shape[:2])
-    held = _held(pose, rig, legs, ankles, contacts, ground, clearances)
-    depths = np.stack([rig.sole_depth(held, leg) for leg in legs], axis=1)
+    held = _held(pose, rig, legs, ankles, contacts, ground, np.zeros(ankles.shape[:2]))
+    depths = rig.sole_depths(held, legs)
     if (depths > _MAX_DEPTH * rig.leg_length).any():
-        deep = np.maximum(depths, 0.0).T
-        clearances = np.stack([smooth_bound(each, ground) for each in deep], axis=1)
+        clearances = np.stack([smooth_bound(each, ground) for each in depths.T], axis=1)
         held = _held(pose, rig, legs, ankles, contacts, ground, clearances)
     return held if rig.floor is None else _with_toes_above(held, rig, legs, rig.floor)
 
@@ -133,28 +128,27 @@ def _held(
     to_balls, paths = _foot_paths(pose, rig, legs, ankles, contacts, ground, clearances)
     standing = np.stack([ground.middle_cycle(path.standing) for path in paths], axis=1)
     own = _ankle_goals(pose, rig, legs, None) if rig.anatomy.kind == "humanoid" else ankles
-    extensions = leg_extensions(pose, rig, legs, own)
+    held = HeldLegs(rig, legs, own, standing, ground)
+    extensions = held.extensions(pose)
     shift = following_feet(paths)
     moved = with_moved_hips(pose, rig, ground.middle_cycle(shift))
-    places = _held_places(paths, shift, ground) - to_balls
-    rise = rise_to_extension(moved, rig, legs, places, extensions, standing, ground)
-    shift[:, 1] = ground.repeat(rise)
+    held = replace(held, ankles=_held_places(paths, shift, ground) - to_balls)
+    shift[:, 1] = ground.repeat(held.rise_to_extension(moved, extensions))
     pose = with_moved_hips(pose, rig, ground.middle_cycle(shift))
-    places = _held_places(paths, shift, ground) - to_balls
+    held = replace(held, ankles=_held_places(paths, shift, ground) - to_balls)
     for most in _MAX_DROPS:
-        drop = drop_to_reach(pose, rig, legs, places, standing, ground, most)
+        drop = held.drop_to_reach(pose, most)
         pose = with_moved_hips(pose, rig, drop[:, None] * [0.0, -1.0, 0.0])
         for _ in range(_STEPPING_ROUNDS):
-            missing = np.moveaxis(missing_reach(pose, rig, legs, places), 1, 0)
+            missing = np.moveaxis(held.missing_reach(pose), 1, 0)
             paths = [
                 path.stepping(ground.directions_to_ground(way))
                 for path, way in zip(paths, missing, strict=True)
             ]
-            places = _held_places(paths, shift, ground) - to_balls
-    skeleton_from_common = rotations.conjugate(rig.common_from_skeleton)
+            held = replace(held, ankles=_held_places(paths, shift, ground) - to_balls)
+    ankles = rotations.rotate(rotations.conjugate(rig.common_from_skeleton), held.ankles)
     for number, leg in enumerate(legs):
-        place = rotations.rotate(skeleton_from_common, places[:, number])
-        pose = place_ankle(pose, rig, leg, place)
+        pose = place_ankle(pose, rig, leg, ankles[:, number])
     return pose
 
 

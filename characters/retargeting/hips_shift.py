@@ -8,7 +8,7 @@ in a narrow curve or where a source's own feet leave its legs, steps nearer.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,41 +35,75 @@ def following_feet(paths: Sequence[FootPath]) -> Array:
     return _smooth_mean(corrections * [1.0, 0.0, 1.0], standing, paths[0].rate)
 
 
-def rise_to_extension(
-    pose: Pose,
-    rig: Rig,
-    legs: Sequence[LegJoints],
-    ankles: Array,
-    extensions: Array,
-    standing: NDArray[np.bool_],
-    ground: GroundMotion,
-) -> Array:
-    """Return how far the hips rise so that standing legs are as long as in the source, (frames,).
+@dataclass(frozen=True)
+class HeldLegs:
+    """Legs of a clip, and where their ankles are held."""
 
-    Parameters
-    ----------
-    pose
-        The poses, (frames, joints, …).
-    rig, legs
-        The skeleton and its legs.
-    ankles
-        Where the ankles are to be, (frames, legs, 3) [m] in the common axes.
-    extensions
-        Distances of ankles from hip joints in the source, (frames, legs) [m].
-    standing
-        Whether a foot stands, (frames, legs).
-    ground
-        The ground under the clip.
-    """
-    away, _ = _from_hips(pose, rig, legs, ankles)
-    level = np.square(away[..., [0, 2]]).sum(-1)
-    rise = np.sqrt(np.maximum(extensions**2 - level, 0.0)) - away[..., 1]
-    if not standing.any():
-        return np.zeros(len(rise))
-    middle, most = np.median(rise[standing]), _MAX_RISE * rig.leg_length
-    rise = np.clip(rise, middle - most, middle + most)
-    over_cycles = ground.repeat(rise[..., None]), ground.repeat(standing)
-    return np.asarray(ground.middle_cycle(_smooth_mean(*over_cycles, ground.rate))[:, 0])
+    rig: Rig
+    """The skeleton."""
+
+    legs: Sequence[LegJoints]
+    """Its legs."""
+
+    ankles: Array
+    """Where the ankles are to be, (frames, legs, 3) [m] in the common axes."""
+
+    standing: NDArray[np.bool_]
+    """Whether a foot stands, (frames, legs)."""
+
+    ground: GroundMotion
+    """The ground under the clip."""
+
+    def extensions(self, pose: Pose) -> Array:
+        """Return the distances of the ankles from the hip joints of poses, (frames, legs) [m]."""
+        return np.asarray(np.linalg.norm(self._away(pose), axis=-1), np.float64)
+
+    def rise_to_extension(self, pose: Pose, extensions: Array) -> Array:
+        """Return how far the hips rise so that standing legs have these extensions, (frames,) [m].
+
+        Those are in the source, (frames, legs) [m].
+        """
+        away = self._away(pose)
+        level = np.square(away[..., [0, 2]]).sum(-1)
+        rise = np.sqrt(np.maximum(extensions**2 - level, 0.0)) - away[..., 1]
+        if not self.standing.any():
+            return np.zeros(len(rise))
+        middle, most = np.median(rise[self.standing]), _MAX_RISE * self.rig.leg_length
+        rise = np.clip(rise, middle - most, middle + most)
+        ground = self.ground
+        over_cycles = ground.repeat(rise[..., None]), ground.repeat(self.standing)
+        return np.asarray(ground.middle_cycle(_smooth_mean(*over_cycles, ground.rate))[:, 0])
+
+    def missing_reach(self, pose: Pose) -> Array:
+        """Return the level ways from the ankles to where legs reach, (frames, legs, 3) [m]."""
+        away = self._away(pose)
+        level = away * [1.0, 0.0, 1.0]
+        length = np.linalg.norm(level, axis=-1)
+        possible = np.sqrt(np.maximum(self._reach**2 - away[..., 1] ** 2, 0.0))
+        share = np.clip(1.0 - possible / np.maximum(length, 1e-9), 0.0, 1.0)
+        return np.asarray(level * share[..., None])
+
+    def drop_to_reach(self, pose: Pose, most: float) -> Array:
+        """Return how far the hips come down so that standing legs reach, smoothed, (frames,) [m].
+
+        Swinging feet need not reach. `most` is the farthest that they come down, in leg lengths.
+        """
+        away = self._away(pose)
+        height = np.sqrt(np.maximum(self._reach**2 - np.square(away[..., [0, 2]]).sum(-1), 0.0))
+        missing: Array = np.where(self.standing, away[..., 1] - height, 0.0).max(1)
+        missing = np.clip(missing, 0.0, most * self.rig.leg_length)
+        return smooth_bound(missing, self.ground)
+
+    def _away(self, pose: Pose) -> Array:
+        """Return the ways from the ankles to the hip joints of poses, (frames, legs, 3) [m]."""
+        thighs = [leg.upper for leg in self.legs]
+        hips = self.rig.placements(pose, thighs)[:, thighs][..., :3, 3]
+        return in_common_axes(self.rig, hips) - self.ankles
+
+    @property
+    def _reach(self) -> Array:
+        """How far legs reach, (legs,) [m]."""
+        return _MAX_REACH * np.array([sum(self.rig.bone_lengths(leg)) for leg in self.legs])
 
 
 def _smooth_mean(values: Array, standing: NDArray[np.bool_], rate: float) -> Array:
@@ -82,49 +116,6 @@ def _smooth_mean(values: Array, standing: NDArray[np.bool_], rate: float) -> Arr
     frames = np.arange(len(known))
     mean = np.stack([np.interp(frames, frames[known], each[known]) for each in mean.T], axis=-1)
     return gaussian_smoothed(mean, _SMOOTHING_S * rate)
-
-
-def missing_reach(pose: Pose, rig: Rig, legs: Sequence[LegJoints], ankles: Array) -> Array:
-    """Return the level ways from ankles (frames, legs, 3) to where legs reach, the same shape."""
-    away, reach = _from_hips(pose, rig, legs, ankles)
-    level = away * [1.0, 0.0, 1.0]
-    length = np.linalg.norm(level, axis=-1)
-    possible = np.sqrt(np.maximum(reach**2 - away[..., 1] ** 2, 0.0))
-    share = np.clip(1.0 - possible / np.maximum(length, 1e-9), 0.0, 1.0)
-    return np.asarray(level * share[..., None])
-
-
-def drop_to_reach(
-    pose: Pose,
-    rig: Rig,
-    legs: Sequence[LegJoints],
-    ankles: Array,
-    standing: NDArray[np.bool_],
-    ground: GroundMotion,
-    most: float,
-) -> Array:
-    """Return how far the hips come down so that legs reach, smoothed, (frames,) [m].
-
-    Parameters
-    ----------
-    pose
-        The poses, (frames, joints, …).
-    rig, legs
-        The skeleton and its legs.
-    ankles
-        Where the ankles are to be, (frames, legs, 3) [m] in the common axes.
-    standing
-        Whether a foot stands, (frames, legs): swinging feet need not reach.
-    ground
-        The ground under the clip.
-    most
-        The farthest that they come down, in leg lengths.
-    """
-    away, reach = _from_hips(pose, rig, legs, ankles)
-    height = np.sqrt(np.maximum(reach**2 - np.square(away[..., [0, 2]]).sum(-1), 0.0))
-    missing: Array = np.where(standing, away[..., 1] - height, 0.0).max(1)
-    missing = np.clip(missing, 0.0, most * rig.leg_length)
-    return smooth_bound(missing, ground)
 
 
 def smooth_bound(values: Array, ground: GroundMotion) -> Array:
@@ -146,19 +137,3 @@ def with_moved_hips(pose: Pose, rig: Rig, shift: Array) -> Pose:
     own = rotations.rotate(rotations.conjugate(rig.common_from_skeleton), shift)
     set_joint_positions(moved, rig, hips, at + own)
     return moved
-
-
-def leg_extensions(pose: Pose, rig: Rig, legs: Sequence[LegJoints], ankles: Array) -> Array:
-    """Return the distances of ankles (frames, legs, 3) from the hip joints, (frames, legs) [m]."""
-    away, _ = _from_hips(pose, rig, legs, ankles)
-    return np.asarray(np.linalg.norm(away, axis=-1), np.float64)
-
-
-def _from_hips(
-    pose: Pose, rig: Rig, legs: Sequence[LegJoints], ankles: Array
-) -> tuple[Array, Array]:
-    """Return the ways from ankles to hip joints, (frames, legs, 3), and how far legs reach [m]."""
-    thighs = [leg.upper for leg in legs]
-    hips = rig.placements(pose, thighs)[:, thighs][..., :3, 3]
-    reach = _MAX_REACH * np.array([sum(rig.bone_lengths(leg)) for leg in legs])
-    return in_common_axes(rig, hips) - ankles, reach

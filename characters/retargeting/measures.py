@@ -10,7 +10,6 @@ from characters.model.mesh import Mesh
 from characters.retargeting.rig import LegJoints, Rig
 from characters.retargeting.soles import parts_of_joints
 from characters.skeleton import rotations
-from characters.skeleton.masks import subtree
 from characters.skeleton.pose import Array, Pose
 
 _KNEE_QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
@@ -74,9 +73,8 @@ def sole_dip(
 
     Poses are of a character that stands and walks on one plane.
     """
-    feet = {j for leg in rig.legs for j in (leg.foot, leg.toes) if j is not None}
-    own = {joint for foot in feet for joint in subtree(rig.skeleton, foot)}
-    soles = parts_of_joints(meshes, sorted(own))
+    own = sorted({joint for leg in rig.legs for joint in rig.foot_joints(leg)})
+    soles = parts_of_joints(meshes, own)
     if not soles:
         return 0.0
     count = min(most_frames, len(poses.rotations))

@@ -213,30 +213,32 @@ class Rig:
         height = float(ankle[1]) if self.rests_on_feet else self._assumed_ankle_height(leg)
         return Sole.assumed(ball, height, ahead, _FOOT_LENGTH * self.leg_length)
 
-    def sole_depth(self, pose: Pose, leg: LegJoints) -> Array:
-        """Return how deep skin that a foot shares with its shin is below the floor, (frames,) [m].
+    def foot_joints(self, leg: LegJoints) -> list[int]:
+        """Return the joints that move with a foot or its toes."""
+        ends = {leg.foot, leg.end}
+        return sorted({joint for end in ends for joint in subtree(self.skeleton, end)})
 
-        A `Sole` is rigid; shared skin goes elsewhere when the foot turns. Negative is above.
+    def sole_depths(self, pose: Pose, legs: Sequence[LegJoints]) -> Array:
+        """Return how deep skin that feet share with their shins is below the floor [m].
+
+        A `Sole` is rigid; shared skin goes elsewhere when the foot turns. (frames, legs), at
+        least 0.
         """
-        depth = np.full(len(pose.rotations), -np.inf)
-        if self.floor is None or not self._shared_skin[leg.foot]:
-            return depth
+        depths = np.zeros((len(pose.rotations), len(legs)))
+        if self.floor is None or not any(self._shared_skin[leg.foot] for leg in legs):
+            return depths
         placements = pose.globals(self.skeleton)
-        for part in self._shared_skin[leg.foot]:
-            points = rotations.rotate(self.common_from_skeleton, skin(part, placements))
-            depth = np.maximum(depth, self.floor - points[..., 1].min(-1))
-        return depth
+        for number, leg in enumerate(legs):
+            for part in self._shared_skin[leg.foot]:
+                points = rotations.rotate(self.common_from_skeleton, skin(part, placements))
+                below = self.floor - points[..., 1].min(-1)
+                depths[:, number] = np.maximum(depths[:, number], below)
+        return depths
 
     @cached_property
     def _shared_skin(self) -> dict[int, list[Mesh]]:
         """The skin that each foot shares with its shin, by joint."""
-        return {
-            leg.foot: shared_skin(
-                self.meshes,
-                [j for end in {leg.foot, leg.end} for j in subtree(self.skeleton, end)],
-            )
-            for leg in self.legs
-        }
+        return {leg.foot: shared_skin(self.meshes, self.foot_joints(leg)) for leg in self.legs}
 
     def _assumed_ankle_height(self, leg: LegJoints) -> float:
         """Return the height of an ankle whose ground is not known [m]."""

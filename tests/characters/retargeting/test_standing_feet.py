@@ -14,7 +14,7 @@ from characters.retargeting.footskate import (
     hold_feet_in_contact,
 )
 from characters.retargeting.ground_motion import GroundMotion
-from characters.retargeting.hips_shift import drop_to_reach, leg_extensions, rise_to_extension
+from characters.retargeting.hips_shift import HeldLegs
 from characters.retargeting.measures import knee_quantiles, sole_dip
 from characters.retargeting.rig import Rig
 from characters.skeleton import rotations
@@ -144,12 +144,12 @@ def test_skin_that_a_foot_shares_with_its_shin_stays_above_the_ground(human, len
 def test_hips_rise_with_feet_that_stand_higher(human):
     rig, pose = Rig(human.skeleton, human.anatomy), at_rest(human, 30)
     ankles = np.tile(rig.rest_positions[[leg.foot for leg in rig.legs]], (30, 1, 1))
-    extensions = leg_extensions(pose, rig, rig.legs, ankles)
     ground = GroundMotion(np.zeros((30, 3)), None, 30.0)
     standing = np.ones((30, 2), bool)
     standing[:, 1] = False
+    held = HeldLegs(rig, rig.legs, ankles, standing, ground)
     raised = ankles + np.array([[0.0, 0.03, 0.0], [0.0, 0.1, 0.0]])  # the second one swings
-    rise = rise_to_extension(pose, rig, rig.legs, raised, extensions, standing, ground)
+    rise = replace(held, ankles=raised).rise_to_extension(pose, held.extensions(pose))
     assert rise == pytest.approx(0.03, abs=1e-6)
 
 
@@ -161,9 +161,10 @@ def test_a_swinging_foot_out_of_reach_does_not_lower_the_hips(human):
     ground = GroundMotion(np.zeros((30, 3)), None, 30.0)
     standing = np.ones((30, 2), bool)
     standing[10:20, 0] = False
-    assert not drop_to_reach(pose, rig, rig.legs, ankles, standing, ground, 0.1).any()
+    held = HeldLegs(rig, rig.legs, ankles, standing, ground)
+    assert not held.drop_to_reach(pose, 0.1).any()
     standing[:] = True
-    assert drop_to_reach(pose, rig, rig.legs, ankles, standing, ground, 0.1).max() > 0.05
+    assert held.drop_to_reach(pose, 0.1).max() > 0.05
 
 
 @pytest.mark.parametrize("clip", ["Walk", "Run"])
