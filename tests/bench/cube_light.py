@@ -49,6 +49,7 @@ from tracking.geometry.intrinsics import Intrinsics
 from tracking.geometry.projection import Projection
 from tracking.geometry.state import CubeState
 from tracking.synthetic.camera_rays import CameraRays, averaged
+from tracking.synthetic.source import look_at
 from tracking.tracker.tracker import CubeTracker
 
 Array = NDArray[np.float64]
@@ -179,7 +180,7 @@ def plain(seed: int) -> Room:
     total, share = random.uniform(0.7, 1.1), random.uniform(0.2, 0.8)
     eye = np.array([random.uniform(-0.15, 0.15), random.uniform(0.25, 0.45), 0.5])
     white = np.ones(3)
-    camera = _look_at(eye, np.array([0.0, 0.05, 0.0]))
+    camera = look_at(eye, np.array([0.0, 0.05, 0.0]))
     return Room(seed, to_light, total * (1 - share) * white, total * share * white, camera)
 
 
@@ -351,14 +352,6 @@ def _hand_on(
     covered = (along > 0.05) & (np.abs(aside) < 0.17) & (cover < 0.6)
     edge = -2.0 if shade < 0.12 else 0.1 if shade < 0.6 else 2.0
     return covered, (along + 0.3 * aside > edge) & ~covered
-
-
-def _look_at(eye: Array, target: Array) -> Array:
-    forward = (target - eye) / np.linalg.norm(target - eye)
-    right = np.cross(forward, (0.0, 1.0, 0.0))
-    right /= np.linalg.norm(right)
-    turn = np.stack([right, np.cross(forward, right), forward])
-    return se3.pose(turn, -turn @ eye)
 
 
 @dataclass(frozen=True)

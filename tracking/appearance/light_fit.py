@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tracking.geometry import se3
 from tracking.geometry.arrays import Array
 
 PRIOR_CONCENTRATION = 1.5
@@ -169,21 +170,9 @@ def _least_squares(lit: Array, values: Array, weights: Array) -> tuple[Array, Ar
 def _around(centre: Array, radius: float) -> Array:
     """Return directions around one, up to `radius` [rad] from it, (37, 3)."""
     side = np.eye(3)[np.abs(centre).argmin()]
-    right = np.array(
-        [
-            centre[1] * side[2] - centre[2] * side[1],
-            centre[2] * side[0] - centre[0] * side[2],
-            centre[0] * side[1] - centre[1] * side[0],
-        ]
-    )
+    right = se3.cross(centre[None], side[None])[0]
     right /= np.sqrt(right @ right)
-    down = np.array(
-        [
-            centre[1] * right[2] - centre[2] * right[1],
-            centre[2] * right[0] - centre[0] * right[2],
-            centre[0] * right[1] - centre[1] * right[0],
-        ]
-    )
+    down = se3.cross(centre[None], right[None])[0]
     around = centre + DISC * np.tan(radius) @ np.stack([right, down])
     return np.asarray(around / np.sqrt((around * around).sum(axis=1))[:, None], np.float64)
 
