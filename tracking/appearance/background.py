@@ -26,7 +26,7 @@ MAX_NOISE_RATIO = 3.0
 SMALL = np.ones((3, 3), np.uint8)
 """A pixel and its neighbours."""
 
-SPARSE = 4
+NOISE_STRIDE = 4
 """Rows and columns of which one is used to estimate noise."""
 
 SAME_LIGHTNESS = 9.0
@@ -94,7 +94,8 @@ class Background:
         mean, age = self._mean[:, box[0], box[1]], self._age[box]
         # The neighbours take part in what follows.
         known = cv2.erode(((age > 0) & outside).astype(np.uint8), SMALL) > 0
-        some = known[::SPARSE, ::SPARSE]
+        sparse = np.s_[::NOISE_STRIDE, ::NOISE_STRIDE]
+        some = known[sparse]
         total = np.count_nonzero(known)
         if total < max(MIN_KNOWN * np.count_nonzero(outside), 200) or not some.any():
             self._lit_anew = np.zeros(age.shape, bool)
@@ -103,24 +104,19 @@ class Background:
         off_a = lab[1] - 128 - gain * (mean[1] - 128)
         off_b = lab[2] - 128 - gain * (mean[2] - 128)
         # The camera's white balance drifts.
-        off_a -= quantile(off_a[::SPARSE, ::SPARSE][some], 0.5)
-        off_b -= quantile(off_b[::SPARSE, ::SPARSE][some], 0.5)
+        off_a -= quantile(off_a[sparse][some], 0.5)
+        off_b -= quantile(off_b[sparse][some], 0.5)
         off_a, off_b = cv2.blur(off_a, (3, 3)), cv2.blur(off_b, (3, 3))
         chroma = np.sqrt(off_a * off_a + off_b * off_b)
         # A shadow keeps the texture of what it falls on, so the gain is smooth.
         detail = gain - cv2.blur(gain, (3, 3))
         rough = np.sqrt(cv2.erode(cv2.blur(detail * detail, (3, 3)), SMALL))
+        shade = np.abs(gain - 1)
+        chroma_noise = _noise(chroma[sparse][some], MIN_CHROMA_NOISE)
+        gain_noise = _noise(rough[sparse][some], MIN_GAIN_NOISE)
         foreign = np.maximum(
-            chroma
-            / (
-                CHROMA_LIMIT * _noise(chroma[::SPARSE, ::SPARSE][some], MIN_CHROMA_NOISE)
-                + SHADE_CHROMA * np.abs(gain - 1)
-            ),
-            rough
-            / (
-                GAIN_LIMIT * _noise(rough[::SPARSE, ::SPARSE][some], MIN_GAIN_NOISE)
-                + SHADE_DETAIL * np.abs(gain - 1)
-            ),
+            chroma / (CHROMA_LIMIT * chroma_noise + SHADE_CHROMA * shade),
+            rough / (GAIN_LIMIT * gain_noise + SHADE_DETAIL * shade),
         )
         lit = (gain > MIN_GAIN) & (gain < MAX_GAIN) & (foreign < 1)
         unchanged = lit & (np.abs(lab[0] - mean[0]) < SAME_LIGHTNESS)

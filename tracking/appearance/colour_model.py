@@ -16,13 +16,13 @@ CHROMA_STEP = 4
 LIGHTNESS_OFFSET = 41.0
 """16 of CIELab's L in bytes: light scales L + 16, and the chroma by the same factor."""
 
-MEMORY = 0.96
+MEMORY_PER_FRAME = 0.96
 """What remains of a histogram after one more frame: half of it after 17."""
 
 MIN_LEARNED = 40
 """Pixels of a hand from which on its colours are known."""
 
-FLOOR = 1e-4
+MIN_DENSITY = 1e-4
 """Density of a colour that was never seen."""
 
 MAX_ODDS = 2.0
@@ -78,12 +78,14 @@ class ColourModel:
         """Return what the colour of each bin speaks for a hand, as the logarithm of odds."""
         if not self.knows_hand:
             return np.zeros(len(self._hand), np.float32)
-        ratio = np.log((_density(self._hand) + FLOOR) / (_density(self._behind) + FLOOR))
+        ratio = np.log(
+            (_density(self._hand) + MIN_DENSITY) / (_density(self._behind) + MIN_DENSITY)
+        )
         return np.asarray(np.clip(ratio, -MAX_ODDS, MAX_ODDS), np.float32)
 
 
 def _learned(counts: Array, bins: Indices) -> Array:
-    return np.asarray(counts * MEMORY + np.bincount(bins, minlength=len(counts)))
+    return np.asarray(counts * MEMORY_PER_FRAME + np.bincount(bins, minlength=len(counts)))
 
 
 def _density(counts: Array) -> Floats:

@@ -26,7 +26,7 @@ resolution changes [px]."""
 EVIDENCE, NO_EVIDENCE = 4.0, -4.0
 """What a face that disagrees or agrees with its print speaks for a hand, as logarithm of odds."""
 
-SURE = 1.5
+SURE_ODDS = 1.5
 """The same for a pixel whose colour is learned as that of the hand."""
 
 MIN_TOUCH_EDGES2, MIN_AREA_EDGES2 = 0.01, 0.15
@@ -35,7 +35,7 @@ MIN_TOUCH_EDGES2, MIN_AREA_EDGES2 = 0.01, 0.15
 MIN_EXTENT_EDGES = 0.9
 """How far from the cube's bounds it must reach: there is an arm behind a hand."""
 
-STRIPS = 9
+IMAGE_STRIPS = 9
 """Parts of the image of which one a frame is learned as background while there is no hand."""
 
 MIN_CHANGED_SHARE = 0.6
@@ -253,7 +253,7 @@ class HandFinder:
         odds: Floats,
     ) -> None:
         """Learn the colours of the hand, and what is behind it."""
-        sure = hand & changed & (odds > SURE)
+        sure = hand & changed & (odds > SURE_ODDS)
         if np.count_nonzero(sure) > 8:
             self._colours.learn_hand(bins, sure)
         free = cv2.dilate(outer.astype(np.uint8), WIDE) == 0
@@ -265,8 +265,8 @@ class HandFinder:
         """Learn a strip of the whole image, without a hand: the cube may come there."""
         scale = window.scale
         columns, rows = (side // scale for side in self._projection.size)
-        self._strip = (self._strip + 1) % STRIPS
-        top, bottom = (rows * strip // STRIPS for strip in (self._strip, self._strip + 1))
+        self._strip = (self._strip + 1) % IMAGE_STRIPS
+        top, bottom = (rows * strip // IMAGE_STRIPS for strip in (self._strip, self._strip + 1))
         part = image[top * scale : bottom * scale, : columns * scale]
         small = cv2.resize(part, (columns, bottom - top), interpolation=cv2.INTER_AREA)
         lab = np.stack(cv2.split(cv2.cvtColor(small, cv2.COLOR_BGR2LAB))).astype(np.float32)

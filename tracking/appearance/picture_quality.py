@@ -35,10 +35,10 @@ SATURATED, MIN_CONTRAST = 250.0, 40.0
 MIN_FIT = 0.995
 """Correlation with a blurred step, from which on a side counts: fingers and shadows have less."""
 
-GAMMA = 2.2
+TONE_EXPONENT = 2.2
 """Light is the grey value to this power in nearly every camera (sRGB)."""
 
-INTERVAL = 4
+INTERVAL_FRAMES = 4
 """Only one frame of so many is measured: a lens changes slowly."""
 
 SMOOTHING_SHARE = 0.2
@@ -102,7 +102,7 @@ class QualityMeter:
         """Take a frame (height, width, 3) BGR into account; None until something was measured."""
         before, self._last = self._last, image
         self._frames += 1
-        if self._quality is not None and self._frames % INTERVAL:
+        if self._quality is not None and self._frames % INTERVAL_FRAMES:
             return self._quality
         places = self._places(state, image)
         if before is None or before.shape != image.shape or places is None:
@@ -169,7 +169,7 @@ def _measured(before: Floats, profiles: Floats) -> PictureQuality | None:
     means = profiles.mean(1)
     black, white = means[:, :_FLAT].mean(1), means[:, -_FLAT:].mean(1)
     # Lenses blur light, not grey values.
-    light = (profiles / np.float32(255.0)) ** np.float32(GAMMA)
+    light = (profiles / np.float32(255.0)) ** np.float32(TONE_EXPONENT)
     fits = _normalized(np.asarray(light.mean(1), np.float64)) @ _STEPS.T
     clear = (fits.max(1) > MIN_FIT) & (white < SATURATED) & (white - black > MIN_CONTRAST)
     if not clear.any():
