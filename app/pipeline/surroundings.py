@@ -28,12 +28,12 @@ NO_REALISM = "none"
 """The name of none of `REALISM_CHOICES`."""
 
 
-def realism(text: str) -> tuple[str, ...]:
+def realism_of(text: str) -> tuple[str, ...]:
     """Return the choices in a text, separated by commas.
 
-    >>> realism("hand, light")
+    >>> realism_of("hand, light")
     ('hand', 'light')
-    >>> realism("none")
+    >>> realism_of("none")
     ()
 
     Raises

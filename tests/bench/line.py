@@ -22,7 +22,7 @@ from rich.table import Table
 from app.pipeline.playground import Playground
 from app.pipeline.scenario import Inputs
 from app.pipeline.step import RobotView, Step
-from app.pipeline.surroundings import REALISM_CHOICES, realism
+from app.pipeline.surroundings import REALISM_CHOICES, realism_of
 from app.running.opening import intrinsics_for
 from app.scenarios import SCENARIOS
 from app.session.bundled import bundled
@@ -120,7 +120,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--frames", type=int, default=600, help="frames of each recording")
     parser.add_argument("--scenario", choices=list(SCENARIOS), action="append")
-    parser.add_argument("--realism", type=realism, default=tuple(REALISM_CHOICES))
+    parser.add_argument("--realism", type=realism_of, default=tuple(REALISM_CHOICES))
     parser.add_argument("--quality", choices=list(QUALITIES), default=FULL.name)
     given = parser.parse_args()
     title = f"quality {given.quality}, realism {', '.join(given.realism) or 'none'}"

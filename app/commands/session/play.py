@@ -11,7 +11,7 @@ from app.commands.output import OverwriteOption
 from app.commands.session.preference_options import GivenPreferences, with_preferences
 from app.commands.session.progress import play_session
 from app.errors import AppError
-from app.pipeline.surroundings import NO_REALISM, REALISM_CHOICES, realism
+from app.pipeline.surroundings import NO_REALISM, REALISM_CHOICES, realism_of
 from app.running.network import DEFAULT_SITE
 from app.running.quality_control import AUTO_QUALITY, checked_quality
 from app.scenarios import find_scenario, scenario_names
@@ -109,7 +109,6 @@ VoiceOption = Annotated[
 RealismOption = Annotated[
     str,
     typer.Option(
-        "--realism",
         help="What of the camera's picture the drawing follows, separated by commas: "
         + "; ".join(f"{name}, {meaning}" for name, meaning in REALISM_CHOICES.items())
         + f"; or {NO_REALISM}.",
@@ -212,7 +211,7 @@ def play(
         str, typer.Option(help="Where the character looks: auto, cube, hand, camera or none.")
     ] = "auto",
     pictures: PicturesOption = True,
-    followed: RealismOption = ALL_REALISM,
+    realism: RealismOption = ALL_REALISM,
     quality: QualityOption = AUTO_QUALITY,
     sounds: SoundsOption = None,
     folder: FolderOption = None,
@@ -245,7 +244,7 @@ def play(
         voice=voice,
         profile=DEFAULT_PROFILE if profile is None else SpeechProfile.load(profile),
         look=look,
-        realism=realism(followed),
+        realism=realism_of(realism),
         quality=checked_quality(quality),
         robot=robot,
         robot_settings=robot_settings,

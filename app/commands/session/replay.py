@@ -30,7 +30,7 @@ from app.commands.session.play import (
 from app.commands.session.preference_options import GivenPreferences, with_preferences
 from app.commands.session.progress import ProgressLines, play_session
 from app.errors import AppError
-from app.pipeline.surroundings import realism
+from app.pipeline.surroundings import realism_of
 from app.running.network import DEFAULT_SITE
 from app.running.quality_control import AUTO_QUALITY, checked_quality
 from app.running.replay_check import check_session
@@ -56,7 +56,7 @@ def replay(
     output: OutputOption = None,
     overwrite: OverwriteOption = False,
     pictures: PicturesOption = True,
-    followed: RealismOption = ALL_REALISM,
+    realism: RealismOption = ALL_REALISM,
     quality: QualityOption = AUTO_QUALITY,
     sounds: SoundsOption = None,
     start: StartOption = 0.0,
@@ -116,7 +116,7 @@ def replay(
         output=output,
         overwrite=overwrite,
         pictures=pictures and not check and (output is not None or has_display()),
-        realism=realism(followed),
+        realism=realism_of(realism),
         quality=checked_quality(quality),
         sounds=sounds,
         fast=fast,

@@ -5,7 +5,7 @@ import pytest
 
 from app.errors import AppError
 from app.pipeline.playground import Playground
-from app.pipeline.surroundings import REALISM_CHOICES, Surroundings, realism
+from app.pipeline.surroundings import REALISM_CHOICES, Surroundings, realism_of
 from app.running.opening import intrinsics_for
 from tracking import CubeGestures, CubeTracker
 from tracking.synthetic import open_synthetic
@@ -59,11 +59,11 @@ def test_the_picture_alone_depends_on_it(source, seen):
 
 
 def test_choices_are_names_separated_by_commas():
-    assert realism("light,hand") == ("light", "hand")
-    assert realism("none") == ()
+    assert realism_of("light,hand") == ("light", "hand")
+    assert realism_of("none") == ()
 
 
 @pytest.mark.parametrize("text", ["", "shadow", "hand,", "none,hand", "Hand"])
 def test_another_name_is_refused_in_one_line(text):
     with pytest.raises(AppError, match="choose of hand, light, softness, or none"):
-        realism(text)
+        realism_of(text)
