@@ -17,6 +17,9 @@ GL_SRGB8_ALPHA8 = 0x8C43
 TEXTURE_UNITS = {"base_texture": 0, "surface_map": 1, "bump_map": 2, "shade_map": 3}
 """Texture units of a material's base colour, roughness and metalness, normals, and toon shade."""
 
+GEOMETRY = "GEOMETRY"
+"""The feature of programs that write what a surface is like, instead of its colour in the light."""
+
 _COLOR_UNITS = (TEXTURE_UNITS["base_texture"], TEXTURE_UNITS["shade_map"])  # the others are linear
 
 
@@ -41,6 +44,36 @@ class Surface:
 
     textures: tuple[tuple[int, moderngl.Texture], ...]
     """Units and textures of the material, see `TEXTURE_UNITS`."""
+
+    def render(self, context: moderngl.Context, array: moderngl.VertexArray) -> None:
+        """Draw the triangles with the program of an array, which must fit the features."""
+        material = self.material
+        set_uniforms(
+            array.program,
+            base_color=material.base_color[:3],
+            metallic=material.metallic,
+            roughness=material.roughness,
+        )
+        if self.features:
+            set_uniforms(
+                array.program,
+                opacity=material.base_color[3],
+                cutoff=material.alpha_cutoff or 0.0,
+                bump_scale=material.normal_scale,
+                glow=material.emissive,
+            )
+        if material.toon is not None:
+            set_uniforms(
+                array.program,
+                shade_color=material.toon.color,
+                shade_shift=material.toon.shift,
+                toony=material.toon.toony,
+                evenness=material.toon.evenness,
+            )
+        for unit, texture in self.textures:
+            texture.use(unit)
+        (context.disable if material.double_sided else context.enable)(moderngl.CULL_FACE)
+        array.render(vertices=self.count, first=self.first)
 
 
 class SurfaceBuffers:
@@ -75,7 +108,7 @@ class SurfaceBuffers:
                 for unit, image in enumerate(material.textures)
                 if image is not None
             )
-            array = self._array(features)
+            array = self.array(features)
             surfaces.append(Surface(first, count, material, features, array, textures))
             first += count
         return tuple(surfaces)
@@ -87,7 +120,7 @@ class SurfaceBuffers:
         for texture in self._textures.values():
             texture.release()
 
-    def _array(self, features: frozenset[str]) -> moderngl.VertexArray:
+    def array(self, features: frozenset[str]) -> moderngl.VertexArray:
         """Return all triangles with the program for some features."""
         if features not in self._arrays:
             program = surface_program(self._programs, features)
@@ -156,6 +189,7 @@ def surface_program(programs: ShaderPrograms, features: frozenset[str]) -> moder
     condition excludes it, and a plain surface must not pay for the features of others.
     """
     mapped = {"MAPPED"} if features & {"TEXTURED", "SURFACE", "BUMPS", "SHADE"} else set()
-    program = programs.load("character", "character", *sorted(features | mapped))
+    placed = {"PLACED"} if features & {"BUMPS", GEOMETRY} else set()
+    program = programs.load("character", "character", *sorted(features | mapped | placed))
     set_uniforms(program, **TEXTURE_UNITS)
     return program

@@ -31,7 +31,7 @@ class CharacterPass(RenderPass):
         for character in frame.characters:
             prepared: set[int] = set()
             for part in character.skinned.surfaces:
-                program, material = part.array.program, part.material
+                program = part.array.program
                 if program.glo not in prepared:
                     prepared.add(program.glo)
                     set_uniforms(
@@ -44,29 +44,4 @@ class CharacterPass(RenderPass):
                         ground=light.ground,
                         height=character.height,
                     )
-                set_uniforms(
-                    program,
-                    base_color=material.base_color[:3],
-                    metallic=material.metallic,
-                    roughness=material.roughness,
-                )
-                if part.features:
-                    set_uniforms(
-                        program,
-                        opacity=material.base_color[3],
-                        cutoff=material.alpha_cutoff or 0.0,
-                        bump_scale=material.normal_scale,
-                        glow=material.emissive,
-                    )
-                if material.toon is not None:
-                    set_uniforms(
-                        program,
-                        shade_color=material.toon.color,
-                        shade_shift=material.toon.shift,
-                        toony=material.toon.toony,
-                        evenness=material.toon.evenness,
-                    )
-                for unit, texture in part.textures:
-                    texture.use(unit)
-                (context.disable if material.double_sided else context.enable)(moderngl.CULL_FACE)
-                part.array.render(vertices=part.count, first=part.first)
+                part.render(context, part.array)

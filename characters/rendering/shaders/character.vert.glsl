@@ -16,7 +16,7 @@ out vec3 tint;
 #ifdef MAPPED
 out vec2 where;
 #endif
-#ifdef BUMPS
+#ifdef PLACED
 out vec3 place;             // in the table frame
 #endif
 #ifdef CUTOFF
@@ -31,7 +31,7 @@ void main() {
 #ifdef MAPPED
     where = uv;
 #endif
-#ifdef BUMPS
+#ifdef PLACED
     place = position;
 #endif
 #ifdef CUTOFF
