@@ -1,7 +1,7 @@
 """Choosing the quality of the pictures that holds the camera's rate."""
 
 from app.errors import AppError
-from characters.rendering import QUALITIES, Quality
+from characters.rendering import FULL, QUALITIES, Quality
 
 AUTO_QUALITY = "auto"
 """The name of the quality that is chosen by the time that frames take."""
@@ -34,7 +34,7 @@ def checked_quality(name: str) -> str:
 
 
 class QualityControl:
-    """Steps down where frames take too long, and up again where there is time.
+    """Steps down where frames take too long, and up where there is time; `full` comes first.
 
     `rate` is that of the camera [frames/s].
     """
@@ -42,7 +42,7 @@ class QualityControl:
     def __init__(self, rate: float) -> None:
         self._interval = 1.0 / max(rate, 1.0)
         self._qualities = tuple(QUALITIES.values())
-        self._level = 0
+        self._level = self._qualities.index(FULL)
         self._mean = 0.0
         self._waited = 0.0  # since frames are too slow, or fast enough [s]
         self._since_trial = float("inf")

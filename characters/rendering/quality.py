@@ -17,8 +17,19 @@ class Quality:
     matched: bool
     """Whether characters get the blur and the noise of the picture."""
 
+    deferred: bool = False
+    """Whether characters are lit after all of them are drawn, with what that makes possible: light
+    that other parts of the picture take away or add."""
 
-QUALITIES = {each.name: each for each in (Quality("full", 2, True), Quality("reduced", 1, False))}
+
+QUALITIES = {
+    each.name: each
+    for each in (
+        Quality("rich", 2, True, deferred=True),
+        Quality("full", 2, True),
+        Quality("reduced", 1, False),
+    )
+}
 """The qualities by name, the best first."""
 
 FULL = QUALITIES["full"]

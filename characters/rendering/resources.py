@@ -44,6 +44,20 @@ class CharacterLayer:
         """Draw on this layer from now on."""
         return self.target.use_characters(self.area.width, self.area.height)
 
+    def use_geometry(self) -> moderngl.Framebuffer:
+        """Draw on the geometry buffer of this layer from now on."""
+        return self._use(self.target.geometry.framebuffer)
+
+    def use_light(self) -> moderngl.Framebuffer:
+        """Draw on the light buffer of this layer from now on."""
+        return self._use(self.target.light.framebuffer)
+
+    def _use(self, framebuffer: moderngl.Framebuffer) -> moderngl.Framebuffer:
+        framebuffer.use()
+        fineness = self.target.fineness
+        framebuffer.viewport = (0, 0, fineness * self.area.width, fineness * self.area.height)
+        return framebuffer
+
 
 @dataclass(frozen=True)
 class Region:

@@ -1,11 +1,14 @@
 """Framebuffers that regions of a picture are drawn in."""
 
 from collections import OrderedDict
+from functools import cached_property
 
 import cv2
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
+
+from characters.rendering.deferred_buffers import GeometryBuffer, LightBuffer
 
 Image = NDArray[np.uint8]
 
@@ -28,6 +31,7 @@ class RenderTarget:
     """
 
     def __init__(self, context: moderngl.Context, size: tuple[int, int], fineness: int) -> None:
+        self._context = context
         self.fineness = fineness
         """Texels of the characters' layer for each pixel, along each side."""
         fine_size = (fineness * size[0], fineness * size[1])
@@ -38,6 +42,16 @@ class RenderTarget:
         self.picture_texture = _texture(context, size)
         """The camera's picture with everything that is drawn on it."""
         self._picture = context.framebuffer([self.picture_texture])
+
+    @cached_property
+    def geometry(self) -> GeometryBuffer:
+        """What is seen in each texel of the characters' layer; made when first asked for."""
+        return GeometryBuffer(self._context, self.characters_texture.size, self._depth)
+
+    @cached_property
+    def light(self) -> LightBuffer:
+        """The light of each texel of the characters' layer; made when first asked for."""
+        return LightBuffer(self._context, self.characters_texture.size)
 
     def use_picture(self, viewport: tuple[int, int, int, int]) -> None:
         """Draw on the picture, in a viewport (x, y, width, height) [px]."""
@@ -61,6 +75,9 @@ class RenderTarget:
 
     def release(self) -> None:
         """Release the buffers; a second call does nothing."""
+        for buffer in (self.__dict__.get("geometry"), self.__dict__.get("light")):
+            if buffer is not None:
+                buffer.release()
         for framebuffer in (self._characters, self._picture):
             framebuffer.release()
         for attachment in (self._depth, self.characters_texture, self.picture_texture):

@@ -119,7 +119,7 @@ QualityOption = Annotated[
     str,
     typer.Option(
         help="How finely characters are drawn: auto, the best that holds the camera's rate, "
-        f"{' or '.join(QUALITIES)}."
+        f"or one of {', '.join(QUALITIES)}."
     ),
 ]
 PersonalityOption = Annotated[

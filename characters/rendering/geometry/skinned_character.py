@@ -88,6 +88,10 @@ class SkinnedCharacter:
         self._skinning.transform(self.skinned, moderngl.POINTS, vertices=count)
         return self._vertices.skinned(palette, self._extreme, self._extreme_positions)
 
+    def array(self, features: frozenset[str]) -> moderngl.VertexArray:
+        """Return all triangles with the program for some features."""
+        return self._surfaces.array(features)
+
     def release(self) -> None:
         """Release the buffers; a second call does nothing."""
         for each in (self._skinning, self.caster, self._palette, self._surfaces, *self._buffers):

@@ -13,6 +13,7 @@ layout(location = 2) out vec4 albedo_rough; // linear RGB, and roughness
 layout(location = 3) out vec4 shade_metal;  // colour of the toon shade, and metalness
 #else
 #include "shading"
+#include "encoding"
 #ifdef TOON
 uniform float shade_shift;
 uniform float toony;

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from app.errors import AppError
 from app.running.quality_control import MAX_TRIAL_S, QualityControl, checked_quality
+from characters.rendering import QUALITIES
 
 RATE = 30.0
 
@@ -27,8 +28,14 @@ def changes(found):
     return [(now, name) for (_, last), (now, name) in pairwise(found) if name != last]
 
 
-def test_fast_frames_stay_in_full_quality():
+def test_frames_without_time_to_spare_stay_in_full_quality():
     assert changes(played(QualityControl(RATE), 60, lambda name: 0.02)) == []
+
+
+def test_fast_frames_become_rich():
+    ((when, name),) = changes(played(QualityControl(RATE), 60, lambda name: 0.004))
+    assert name == "rich"
+    assert 10.0 < when < 11.0
 
 
 def test_slow_frames_lower_the_quality_after_a_moment():
@@ -67,10 +74,12 @@ def test_trials_that_fail_become_rare():
 def test_any_times_give_a_quality(times):
     control = QualityControl(RATE)
     for seconds in times:
-        assert control.update(seconds).name in ("full", "reduced")
+        assert control.update(seconds).name in QUALITIES
 
 
 def test_a_quality_that_does_not_exist_is_refused_in_one_line():
     assert checked_quality("auto") == "auto"
-    with pytest.raises(AppError, match="no quality 'best': choose one of auto, full, reduced"):
+    with pytest.raises(
+        AppError, match="no quality 'best': choose one of auto, rich, full, reduced"
+    ):
         checked_quality("best")

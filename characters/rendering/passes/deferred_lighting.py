@@ -1,0 +1,60 @@
+"""The light on what is seen, once for each texel, whatever the number of triangles."""
+
+import moderngl
+import numpy as np
+
+from characters.rendering.deferred_buffers import (
+    ALBEDO_UNIT,
+    NORMAL_UNIT,
+    POSITION_UNIT,
+    SHADE_UNIT,
+    SURFACES_UNIT,
+    surface_records,
+)
+from characters.rendering.passes.render_pass import RenderPass
+from characters.rendering.programs import ShaderPrograms, set_uniforms
+from characters.rendering.resources import FrameResources, Region
+
+MAX_SURFACES = 1024
+"""Surfaces of one picture that can be told apart; 16-bit floats count to 2048."""
+
+
+class DeferredLightingPass(RenderPass):
+    """Lights the geometry buffer (pass 2 of deferred shading): diffuse, specular and ambient."""
+
+    def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
+        self._triangle = context.vertex_array(programs.load("full_screen", "deferred_lighting"), [])
+        self._records = context.texture((2, MAX_SURFACES), 4, dtype="f4")
+        self._records.filter = moderngl.NEAREST, moderngl.NEAREST
+        self.owned = (self._triangle, self._records)
+        set_uniforms(
+            self._triangle.program,
+            normal_id=NORMAL_UNIT,
+            position=POSITION_UNIT,
+            albedo_rough=ALBEDO_UNIT,
+            shade_metal=SHADE_UNIT,
+            surfaces=SURFACES_UNIT,
+        )
+
+    def draw(self, frame: FrameResources, region: Region) -> None:
+        """Light all texels."""
+        layer = region.characters
+        if layer is None:
+            return
+        records = surface_records(frame.characters)[:MAX_SURFACES].astype("f4")
+        self._records.write(np.ascontiguousarray(records), viewport=(0, 0, 2, len(records)))
+        light, rotation = frame.light, frame.camera_from_table[:3, :3]
+        set_uniforms(
+            self._triangle.program,
+            to_light=rotation @ light.to_light,
+            key=light.key,
+            sky=light.sky,
+            ground=light.ground,
+            up=rotation[:, 1],
+            table=frame.camera_from_table[:3, 3],
+        )
+        layer.use_light().clear()
+        frame.context.enable_only(moderngl.NOTHING)
+        layer.target.geometry.bind()
+        self._records.use(SURFACES_UNIT)
+        self._triangle.render(moderngl.TRIANGLES, vertices=3)

@@ -1,0 +1,20 @@
+#version 330 core
+
+// The sum of the light of a texel, as the picture shows it.
+
+#include "geometry_buffer"
+#include "encoding"
+
+uniform sampler2D diffuse;
+uniform sampler2D specular;
+uniform sampler2D ambient;
+
+out vec4 color;
+
+void main() {
+    ivec2 here = ivec2(gl_FragCoord.xy);
+    if (!is_seen(texelFetch(normal_id, here, 0).w)) discard;
+    vec3 sum = texelFetch(diffuse, here, 0).rgb + texelFetch(specular, here, 0).rgb
+             + texelFetch(ambient, here, 0).rgb;
+    color = vec4(shown(sum), 1.0);
+}

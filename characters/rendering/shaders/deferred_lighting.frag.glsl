@@ -1,0 +1,44 @@
+#version 330 core
+
+// Lights what is seen in a texel, in three shares that later passes change apart.
+
+#include "geometry_buffer"
+#include "shading"
+
+uniform sampler2D surfaces; // a row for each surface, see surface_records
+uniform vec3 up;            // normal of the table
+uniform vec3 table;         // a point of the table
+
+const float NEAR_TABLE = 0.28;  // share of a character's height that counts as near the table
+
+layout(location = 0) out vec4 diffuse;
+layout(location = 1) out vec4 specular;
+layout(location = 2) out vec4 ambient;
+
+void main() {
+    ivec2 here = ivec2(gl_FragCoord.xy);
+    vec4 n = texelFetch(normal_id, here, 0);
+    if (!is_seen(n.w)) discard;
+    int surface = int(n.w + 0.5) - 1;
+    vec4 toon = texelFetch(surfaces, ivec2(0, surface), 0);
+    vec4 glow_height = texelFetch(surfaces, ivec2(1, surface), 0);
+    vec3 p = texelFetch(position, here, 0).xyz;
+    vec4 albedo = texelFetch(albedo_rough, here, 0);
+    vec4 shade = texelFetch(shade_metal, here, 0);
+
+    n.xyz = normalize(n.xyz);
+    vec3 toward = normalize(-p);
+    float rise = 0.5 + 0.5 * dot(n.xyz, up);
+    float above = dot(p - table, up) / (NEAR_TABLE * glow_height.w);
+    Reflected light;
+    if (toon.x > 0.5) {
+        vec3 around = light_around(mix(rise, 0.5, toon.w), above);
+        light = reflected_by_toon(albedo.rgb, shade.rgb, toon.y, toon.z, n.xyz, around);
+    } else {
+        vec3 around = light_around(rise, above);
+        light = reflected(albedo.rgb, shade.w, albedo.w, n.xyz, toward, around);
+    }
+    diffuse = vec4(light.diffuse, 1.0);
+    specular = vec4(light.specular + glow_height.rgb, 1.0);
+    ambient = vec4(light.ambient, 1.0);
+}

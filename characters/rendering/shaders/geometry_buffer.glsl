@@ -1,0 +1,12 @@
+// What is seen in each texel of a character layer, see GeometryBuffer. Directions and positions are in the
+// camera frame: x right, y down, z forward.
+
+uniform sampler2D normal_id;
+uniform sampler2D position;
+uniform sampler2D albedo_rough;
+uniform sampler2D shade_metal;
+
+// Whether a character is seen here.
+bool is_seen(float id) {
+    return id > 0.5;
+}
