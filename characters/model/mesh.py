@@ -58,6 +58,9 @@ class Material:
     alpha_cutoff: float | None = None
     """Alpha below which nothing is drawn; None for an opaque surface."""
 
+    blended: bool = False
+    """Whether alpha is a share that is covered, not a cutoff, where a renderer can draw that."""
+
     double_sided: bool = False
     """Whether back faces are drawn."""
 

@@ -1,7 +1,7 @@
 """Draws characters into the camera's picture: `Stage` and what it is given."""
 
 from characters.rendering.context import create_context
-from characters.rendering.quality import FULL, QUALITIES, Quality
+from characters.rendering.quality import FULL, QUALITIES, Effect, Quality
 from characters.rendering.scene import (
     Box,
     Cover,
@@ -19,6 +19,7 @@ __all__ = [
     "QUALITIES",
     "Box",
     "Cover",
+    "Effect",
     "FloorPath",
     "MeasuredLight",
     "Quality",

@@ -1,6 +1,14 @@
 """How much work goes into a picture."""
 
 from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Effect(StrEnum):
+    """What deferred shading can add to the picture of a character."""
+
+    SOFT_SHADOWS = "soft shadows"
+    """Shadows that are softer further from what casts them, on characters too."""
 
 
 @dataclass(frozen=True)
@@ -18,14 +26,16 @@ class Quality:
     """Whether characters get the blur and the noise of the picture."""
 
     deferred: bool = False
-    """Whether characters are lit after all of them are drawn, with what that makes possible: light
-    that other parts of the picture take away or add."""
+    """Whether characters are lit after all of them are drawn, which effects need."""
+
+    effects: frozenset[Effect] = frozenset()
+    """What deferred shading adds. Without any, the picture is that of forward shading."""
 
 
 QUALITIES = {
     each.name: each
     for each in (
-        Quality("rich", 2, True, deferred=True),
+        Quality("rich", 2, True, deferred=True, effects=frozenset(Effect)),
         Quality("full", 2, True),
         Quality("reduced", 1, False),
     )

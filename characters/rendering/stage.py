@@ -11,14 +11,8 @@ from characters.rendering.cover import CoverTexture
 from characters.rendering.geometry.character_cache import CharacterCache
 from characters.rendering.light import LightEstimator, paper_color
 from characters.rendering.occlusion import visible_cubes
-from characters.rendering.passes.background import BackgroundPass
-from characters.rendering.passes.cube_occlusion import CubeOcclusionPass
-from characters.rendering.passes.floor_paths import FloorPathPass
-from characters.rendering.passes.hand_occlusion import HandOcclusionPass
+from characters.rendering.passes.by_quality import passes_for
 from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.passes.resolve import ResolvePass
-from characters.rendering.passes.shading import shading_passes
-from characters.rendering.passes.shadows import ShadowPass
 from characters.rendering.programs import ShaderPrograms
 from characters.rendering.projection import is_invertible, is_pinhole
 from characters.rendering.quality import FULL, QUALITIES, Quality
@@ -65,18 +59,10 @@ class Stage:
         """(width, height) [px]."""
         self.programs = ShaderPrograms(context)
         """The shaders of all passes."""
-        self._shading = shading_passes(FULL, context, self.programs)
-        self.passes: list[RenderPass] = [
-            BackgroundPass(),
-            FloorPathPass(context, self.programs),
-            ShadowPass(context, self.programs),
-            CubeOcclusionPass(context, self.programs),
-            *self._shading,
-            HandOcclusionPass(context, self.programs),
-            ResolvePass(context, self.programs),
-        ]
-        """The passes, in the order in which they draw; the stage releases them. Another quality
-        may change those that shade the characters."""
+        self._own_passes = passes_for(FULL, context, self.programs)
+        self.passes: list[RenderPass] = [*self._own_passes]
+        """The passes, in the order in which they draw; the stage releases them. A change of the
+        quality replaces the stage's own; others come after them then."""
         self._context = context
         self._undistorter = Undistorter(size)
         self._light = LightEstimator()
@@ -97,12 +83,11 @@ class Stage:
             self._targets.release()
             self._targets = RenderTargets(self._context, quality.fineness)
             self._quality = quality
-            shading = shading_passes(quality, self._context, self.programs)
-            first = self.passes.index(self._shading[0])
-            self.passes[first : first + len(self._shading)] = shading
-            for render_pass in self._shading:
+            added = [each for each in self.passes if each not in self._own_passes]
+            for render_pass in self._own_passes:
                 render_pass.release()
-            self._shading = shading
+            self._own_passes = passes_for(quality, self._context, self.programs)
+            self.passes = [*self._own_passes, *added]
 
     def draw(
         self, view: View, characters: Sequence[SceneCharacter], floor: Sequence[FloorPath] = ()

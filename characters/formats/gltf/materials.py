@@ -142,6 +142,7 @@ def _material(
             normal_scale=float(bumps.get("scale", 1.0)) if bumps else 1.0,
             emissive=_emission(material, images),
             alpha_cutoff=_cutoff(material),
+            blended=material.get("alphaMode") == "BLEND",
             double_sided=bool(material.get("doubleSided", False)),
             toon=None if toon is None else _toon_shading(toon, shade, images),
         ),
@@ -194,7 +195,7 @@ def _emission(material: Json, images: _ImageDecoder) -> tuple[float, float, floa
 def _cutoff(material: Json) -> float | None:
     """Return the alpha below which nothing is drawn.
 
-    Blending is replaced by a cutoff of one half: opaque, lashes and brows would be solid sheets.
+    Where blending is not drawn, it is a cutoff of one half: opaque lashes would be solid sheets.
     """
     mode = material.get("alphaMode", "OPAQUE")
     if mode == "OPAQUE":
@@ -234,7 +235,9 @@ class MaterialWriter:
             self._extend(item, mtoon.EXTENSION, mtoon.written(material.toon, shade))
         if any(material.emissive):
             self._set_emission(item, material.emissive)
-        if material.alpha_cutoff is not None:
+        if material.blended:
+            item["alphaMode"] = "BLEND"
+        elif material.alpha_cutoff is not None:
             item |= {"alphaMode": "MASK", "alphaCutoff": material.alpha_cutoff}
         return self._builder.add("materials", item)
 

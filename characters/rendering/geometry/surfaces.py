@@ -17,8 +17,12 @@ GL_SRGB8_ALPHA8 = 0x8C43
 TEXTURE_UNITS = {"base_texture": 0, "surface_map": 1, "bump_map": 2, "shade_map": 3}
 """Texture units of a material's base colour, roughness and metalness, normals, and toon shade."""
 
-GEOMETRY = "GEOMETRY"
-"""The feature of programs that write what a surface is like, instead of its colour in the light."""
+GEOMETRY, CASTER = "GEOMETRY", "CASTER"
+"""Features of programs that write what a surface is like, instead of its colour in the light, and
+its distance from the lamp."""
+
+BLENDED = "BLENDED"
+"""Feature of a surface that is partly transparent, for the programs that can draw it so."""
 
 _COLOR_UNITS = (TEXTURE_UNITS["base_texture"], TEXTURE_UNITS["shade_map"])  # the others are linear
 
@@ -124,8 +128,10 @@ class SurfaceBuffers:
         """Return all triangles with the program for some features."""
         if features not in self._arrays:
             program = surface_program(self._programs, features)
-            content: list[tuple[object, ...]] = [(self._skinned, "3f 3f", "position", "normal")]
             # The compiler leaves out attributes that a surface does not use.
+            content: list[tuple[object, ...]] = [(self._skinned, "3f 12x", "position")]
+            if "normal" in program:
+                content = [(self._skinned, "3f 3f", "position", "normal")]
             used = [name for name in ("color", "uv") if name in program]
             if used:
                 color, uv = "4f" if "color" in used else "16x", "2f" if "uv" in used else "8x"
@@ -164,8 +170,8 @@ def surface_features(material: Material) -> frozenset[str]:
     """Return what a material has beyond one colour, one roughness and one metalness.
 
     TEXTURED: a texture of the base colour; SURFACE: one of roughness and metalness; BUMPS: a normal
-    map; GLOW: emitted light; CUTOFF: holes where alpha is low; TOON: MToon's shading; SHADE: its
-    texture. The shaders test these names.
+    map; GLOW: emitted light; CUTOFF: holes where alpha is low; BLENDED: partly transparent instead,
+    where that can be drawn; TOON: MToon's shading; SHADE: its texture. The shaders test these.
 
     >>> sorted(surface_features(Material(emissive=(0.0, 0.2, 0.0), alpha_cutoff=0.5)))
     ['CUTOFF', 'GLOW']
@@ -176,6 +182,7 @@ def surface_features(material: Material) -> frozenset[str]:
         "BUMPS": material.normal_texture is not None and material.normal_scale != 0.0,
         "GLOW": any(material.emissive),
         "CUTOFF": material.alpha_cutoff is not None,
+        BLENDED: material.blended and material.alpha_cutoff is not None,
         "TOON": material.toon is not None,
         "SHADE": material.toon is not None and material.toon.texture is not None,
     }
@@ -189,7 +196,9 @@ def surface_program(programs: ShaderPrograms, features: frozenset[str]) -> moder
     condition excludes it, and a plain surface must not pay for the features of others.
     """
     mapped = {"MAPPED"} if features & {"TEXTURED", "SURFACE", "BUMPS", "SHADE"} else set()
-    placed = {"PLACED"} if features & {"BUMPS", GEOMETRY} else set()
+    placed = {"PLACED"} if features & {"BUMPS", GEOMETRY, CASTER} else set()
+    if not features & {GEOMETRY, CASTER}:
+        features -= {BLENDED}
     program = programs.load("character", "character", *sorted(features | mapped | placed))
     set_uniforms(program, **TEXTURE_UNITS)
     return program

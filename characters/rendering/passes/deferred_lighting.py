@@ -3,6 +3,7 @@
 import moderngl
 import numpy as np
 
+from characters.rendering.blocker_map import BIAS_TEXELS, BlockerMap
 from characters.rendering.deferred_buffers import (
     ALBEDO_UNIT,
     NORMAL_UNIT,
@@ -20,10 +21,20 @@ MAX_SURFACES = 1024
 
 
 class DeferredLightingPass(RenderPass):
-    """Lights the geometry buffer (pass 2 of deferred shading): diffuse, specular and ambient."""
+    """Lights the geometry buffer (pass 2 of deferred shading): diffuse, specular and ambient.
 
-    def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
-        self._triangle = context.vertex_array(programs.load("full_screen", "deferred_lighting"), [])
+    The key light is what `blockers` leave of it, which the pass for the shadows has drawn; with
+    None, characters do not shadow themselves and each other.
+    """
+
+    def __init__(
+        self, context: moderngl.Context, programs: ShaderPrograms, blockers: BlockerMap | None
+    ) -> None:
+        self._blockers = blockers
+        features = ("SHADOWED",) if blockers else ()
+        self._triangle = context.vertex_array(
+            programs.load("full_screen", "deferred_lighting", *features), []
+        )
         self._records = context.texture((2, MAX_SURFACES), 4, dtype="f4")
         self._records.filter = moderngl.NEAREST, moderngl.NEAREST
         self.owned = (self._triangle, self._records)
@@ -53,6 +64,9 @@ class DeferredLightingPass(RenderPass):
             up=rotation[:, 1],
             table=frame.camera_from_table[:3, 3],
         )
+        if self._blockers is not None:
+            table_from_camera = np.asarray(np.linalg.inv(frame.camera_from_table), float)
+            self._blockers.set_uniforms(self._triangle.program, table_from_camera, BIAS_TEXELS)
         layer.use_light().clear()
         frame.context.enable_only(moderngl.NOTHING)
         layer.target.geometry.bind()

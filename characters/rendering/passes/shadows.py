@@ -58,8 +58,9 @@ class ShadowPass(RenderPass):
             return ()
         while len(self._maps) < self._count:
             self._maps.append(ShadowMap(self._context, self._programs))
+        key_share = self._key_share(frame.light)
         corners = [
-            shadow.render(character, frame.light)
+            shadow.render(character, frame.light, key_share)
             for shadow, character in zip(self._maps, frame.characters, strict=False)
         ]
         bodies = [character.enclosing for character in frame.characters]
@@ -71,6 +72,14 @@ class ShadowPass(RenderPass):
         if self._area is None or not self._area.intersection(region.area):
             return
         region.use()
+        self._darken(frame, region)
+
+    def _key_share(self, light: Light) -> Array:
+        """Return the share of the key light in the light on the table, (3,)."""
+        return np.asarray(light.key * light.to_light[1] / light.white)
+
+    def _darken(self, frame: FrameResources, region: Region) -> None:
+        """Multiply what is drawn on by the light that each character leaves."""
         frame.context.enable_only(moderngl.BLEND)
         frame.context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
         table = self._tables[region.cover is not None]
@@ -108,8 +117,11 @@ class ShadowMap:
         self.extent = np.zeros(4)
         """Lowest x and z, highest x and z that the shadow can reach [m]."""
 
-    def render(self, character: CharacterInstance, light: Light) -> Array:
-        """Render the map of a character; return the corners (4, 3) that its shadow can reach."""
+    def render(self, character: CharacterInstance, light: Light, key_share: Array) -> Array:
+        """Render the map of a character; return the corners (4, 3) that its shadow can reach.
+
+        `key_share` (3,) is the share of the key light in the light on the table.
+        """
         height = character.height
         # Horizontal offset (x, z) of a point from its shadow, for each metre of the point's height.
         slope = light.to_light[[0, 2]] / light.to_light[1]
@@ -133,7 +145,7 @@ class ShadowMap:
         context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
         context.enable_only(moderngl.NOTHING)
         self._soften(height)
-        self._combine(light.key * light.to_light[1] / light.white)
+        self._combine(key_share)
         x, z = self.extent[[0, 2, 2, 0]], self.extent[[1, 1, 3, 3]]
         return np.stack([x, np.zeros(4), z], axis=1)
 
@@ -156,10 +168,7 @@ class ShadowMap:
                 self._blur_triangle.render(moderngl.TRIANGLES, vertices=3)
 
     def _combine(self, key_share: Array) -> None:
-        """Write what is left of both lights to one map: it has fewer texels than the table.
-
-        `key_share` (3,) is the share of the key light in the light on the table.
-        """
+        """Write what is left of both lights to one map: it has fewer texels than the table."""
         set_uniforms(self._factor, side=MAP_SIDE, key=key_share, sky_occlusion=SKY_OCCLUSION)
         self._targets[1].use()
         x, z, width, depth = self._used_texels()

@@ -1,8 +1,27 @@
 #version 330 core
 
 // A point of a character, shaded. GEOMETRY: what it is like instead, for the passes that shade it later.
+// CASTER: its distance from the lamp instead, for the colours of light that it blocks.
 
 #include "surface"
+#ifdef CASTER
+uniform vec4 lamp_axis;     // of the table frame: distance from the lamp
+uniform float surface_id;
+
+out vec4 blocked;           // nearest distance for red, green and blue [m]
+
+void main() {
+    vec3 albedo = surface_albedo();
+    float away = dot(lamp_axis, vec4(place, 1.0));
+    vec3 blocking = vec3(1.0);
+#ifdef BLENDED
+    // The covered share filters the light; of an opaque surface, nothing passes.
+    vec3 passing = (1.0 - surface_alpha) + min(surface_alpha, 1.0 - surface_alpha) * albedo;
+    blocking = vec3(lessThan(vec3(screen_door(surface_id)), 1.0 - passing));
+#endif
+    blocked = vec4(mix(vec3(1e3), vec3(away), blocking), 0.0);
+}
+#else
 #ifdef GEOMETRY
 uniform mat4 camera_from_table;
 uniform float surface_id;   // 1 for the first surface of the picture
@@ -31,6 +50,9 @@ out vec4 color;
 
 void main() {
     vec3 albedo = surface_albedo();
+#if defined(GEOMETRY) && defined(BLENDED)
+    if (screen_door(surface_id) >= surface_alpha) discard;
+#endif
     vec2 finish = surface_finish();
     vec3 n = surface_normal();
 #ifdef GEOMETRY
@@ -58,3 +80,4 @@ void main() {
     color = vec4(shown(sum), 1.0);
 #endif
 }
+#endif

@@ -4,6 +4,9 @@
 
 #include "geometry_buffer"
 #include "shading"
+#ifdef SHADOWED
+#include "soft_shadow"
+#endif
 
 uniform sampler2D surfaces; // a row for each surface, see surface_records
 uniform vec3 up;            // normal of the table
@@ -38,6 +41,11 @@ void main() {
         vec3 around = light_around(rise, above);
         light = reflected(albedo.rgb, shade.w, albedo.w, n.xyz, toward, around);
     }
+#ifdef SHADOWED
+    vec3 left = key_left(p, here);
+    light.diffuse *= left;
+    light.specular *= left;
+#endif
     diffuse = vec4(light.diffuse, 1.0);
     specular = vec4(light.specular + glow_height.rgb, 1.0);
     ambient = vec4(light.ambient, 1.0);

@@ -12,9 +12,10 @@ from characters.rendering.passes.render_pass import RenderPass
 
 
 @pytest.fixture
-def rich(ctx):
+def deferred(ctx):
+    """Return a stage that lights later, without any effect."""
     stage = Stage(ctx, (320, 180))
-    stage.quality = QUALITIES["rich"]
+    stage.quality = replace(QUALITIES["rich"], effects=frozenset())
     yield stage
     stage.release()
 
@@ -37,20 +38,20 @@ TOON = ToonShading((0.3, 0.05, 0.1), shift=0.1, toony=0.6, evenness=0.5)
     ],
     ids=["plain", "metal", "glow", "toon"],
 )
-def test_lit_later_the_picture_is_the_same(stage, rich, view, pawn, cube, changes):
+def test_lit_later_the_picture_is_the_same(stage, deferred, view, pawn, cube, changes):
     actors = [
         with_material(pawn, **changes).posed(bend=0.4, at=(-0.02, 0.0)),
         pawn.posed(at=(0.08, -0.02), height=0.09),
     ]
     seen = replace(view, occluders=(cube,))
-    forward, deferred = stage.draw(seen, actors), rich.draw(seen, actors)
+    forward, later = stage.draw(seen, actors), deferred.draw(seen, actors)
     assert (forward != view.image).any(axis=2).sum() > 1000
-    assert np.abs(forward.astype(int) - deferred).max() <= 1
+    assert np.abs(forward.astype(int) - later).max() <= 1
 
 
-def test_the_hand_hides_what_is_lit_later(rich, view, pawn):
+def test_the_hand_hides_what_is_lit_later(deferred, view, pawn):
     cover = Cover(150, 0, np.full((180, 60), 255, np.uint8), 0.3)
-    hidden = rich.draw(replace(view, cover=cover), [pawn.posed()])
+    hidden = deferred.draw(replace(view, cover=cover), [pawn.posed()])
     assert np.array_equal(hidden[:, 151:209], view.image[:, 151:209])
 
 
@@ -61,10 +62,10 @@ class WatchPass(RenderPass):
         self.frame = frame
 
 
-def test_each_surface_has_its_record(rich, view, pawn):
+def test_each_surface_has_its_record(deferred, view, pawn):
     watch = WatchPass()
-    rich.passes.append(watch)
-    rich.draw(view, [with_material(pawn, toon=TOON).posed(), pawn.posed(height=0.2)])
+    deferred.passes.append(watch)
+    deferred.draw(view, [with_material(pawn, toon=TOON).posed(), pawn.posed(height=0.2)])
     toon, plain = surface_records(watch.frame.characters)
     assert np.allclose(toon, np.array([[1, 0.1, 0.6, 0.5], [0, 0, 0, 0.12]]))
     assert np.allclose(plain, np.array([[0, 0, 0, 0], [0, 0, 0, 0.2]]))

@@ -1,0 +1,89 @@
+"""What stands between the lamp and the table, for shadows that are soft with distance."""
+
+import moderngl
+
+from characters.rendering.geometry.surfaces import CASTER
+from characters.rendering.lamp import Lamp
+from characters.rendering.programs import set_uniforms
+from characters.rendering.resources import FrameResources
+from characters.skeleton.pose import Array
+
+MAP_SIDE = 256
+"""Texels along each side of the map."""
+
+BLOCKER_UNIT = 9
+"""Texture unit of the map."""
+
+FREE_M = 1e3
+"""Distance in the map where nothing blocks the light [m]."""
+
+BIAS_TEXELS = 3.0
+"""Distance that a character must be behind what shadows it, in texels of the map: less is rounding,
+as the map has one distance for a whole texel."""
+
+
+class BlockerMap:
+    """A shadow map of all characters, seen from the lamp, with a distance for each colour.
+
+    Glass and gauze block some of the light of each colour: they are in the map in a share of the
+    texels, another one for red, green and blue (M. McGuire and E. Enderton, "Colored stochastic
+    shadow maps", 2011; the masks are those of screen-door transparency).
+    """
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self._context = context
+        self.texture = context.texture((MAP_SIDE, MAP_SIDE), 4, dtype="f4")
+        """Distance of the nearest surface that blocks red, green and blue from the lamp [m]."""
+        self.texture.filter = moderngl.NEAREST, moderngl.NEAREST
+        self._target = context.framebuffer([self.texture])
+        self._lamp: Lamp | None = None
+
+    def render(self, frame: FrameResources, lamp: Lamp) -> None:
+        """Draw all characters of a frame as a lamp sees them."""
+        self._lamp = lamp
+        context = self._context
+        self._target.use()
+        self._target.clear(FREE_M, FREE_M, FREE_M, FREE_M)
+        context.enable_only(moderngl.BLEND)
+        context.blend_equation = moderngl.MIN, moderngl.MIN
+        # Faces that look away from the lamp are drawn: what it lights does not shadow itself.
+        context.front_face, context.cull_face = "cw", "front"
+        surface = 0
+        for character in frame.characters:
+            for part in character.skinned.surfaces:
+                surface += 1
+                array = character.skinned.array(part.features | {CASTER})
+                set_uniforms(
+                    array.program,
+                    clip_from_table=lamp.clip_from_table,
+                    lamp_axis=lamp.lamp_from_table[2],
+                    surface_id=float(surface),
+                )
+                part.render(context, array)
+        context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
+        context.front_face, context.cull_face = "ccw", "back"
+
+    def set_uniforms(self, program: moderngl.Program, table_from_point: Array, bias: float) -> None:
+        """Bind the map, and set the uniforms of a program that asks which light is left.
+
+        `table_from_point` (4, 4) is the frame in which the program has its points. `bias` is in
+        texels of the map.
+        """
+        assert self._lamp is not None
+        lamp = self._lamp
+        texel = float((lamp.high - lamp.low).max()) / MAP_SIDE * lamp.furthest
+        self.texture.use(BLOCKER_UNIT)
+        set_uniforms(
+            program,
+            blockers=BLOCKER_UNIT,
+            lamp_from_point=lamp.lamp_from_table @ table_from_point,
+            lamp_area=(*lamp.low.tolist(), *(1.0 / (lamp.high - lamp.low)).tolist()),
+            lamp_width=lamp.width,
+            nearest_blocker=lamp.nearest,
+            shadow_bias=bias * texel,
+        )
+
+    def release(self) -> None:
+        """Release the map; a second call does nothing."""
+        self._target.release()
+        self.texture.release()

@@ -1,0 +1,56 @@
+// The key light that reaches a point, by colour: percentage-closer soft shadows (R. Fernando, 2005). The penumbra of
+// a lamp of width w is (dR - dB) w / dB wide, where the receiver is dR from the lamp and what blocks it dB.
+
+uniform sampler2D blockers;     // distances of what blocks red, green and blue, see BlockerMap [m]
+uniform mat4 lamp_from_point;
+uniform vec4 lamp_area;         // lowest tangents of the map, and 1 / their range
+uniform float lamp_width;       // [m]
+uniform float nearest_blocker;  // distance from the lamp [m]
+uniform float shadow_bias;      // so far behind a surface its shadow begins; twice as far it is complete [m]
+
+const int SHADOW_TAPS = 6;      // along each side of the window
+
+// Offset of the taps, 0…1, another in each texel of a tile of 4 × 4. The mean of any 2 × 2 texels is even too.
+vec2 tile_offset(ivec2 texel) {
+    ivec2 cell = texel & 3;
+    return (vec2((cell & 1) * 2 + (cell >> 1)) + 0.5) / 4.0;
+}
+
+vec3 blockers_at(vec2 tangents) {
+    vec2 at = (tangents - lamp_area.xy) * lamp_area.zw;
+    if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, vec2(1.0)))) return vec3(1e3);
+    return texelFetch(blockers, ivec2(at * vec2(textureSize(blockers, 0))), 0).rgb;
+}
+
+// Share of each colour that is blocked by what is at some distances, for a point at another.
+vec3 blocking(vec3 distances, float receiver) {
+    return clamp((receiver - distances) / shadow_bias, 0.0, 1.0);
+}
+
+vec3 key_left(vec3 point, ivec2 texel) {
+    vec3 seen = (lamp_from_point * vec4(point, 1.0)).xyz;
+    vec2 middle = seen.xy / seen.z;
+    float receiver = seen.z - shadow_bias;
+    if (receiver <= nearest_blocker) return vec3(1.0);
+    vec2 offset = tile_offset(texel);
+
+    float window = lamp_width * (receiver - nearest_blocker) / (receiver * nearest_blocker);
+    float sum = 0.0, count = 0.0;
+    for (int i = 0; i < SHADOW_TAPS * SHADOW_TAPS; ++i) {
+        vec2 tap = (vec2(i % SHADOW_TAPS, i / SHADOW_TAPS) + offset) / float(SHADOW_TAPS) - 0.5;
+        vec3 distances = blockers_at(middle + window * tap);
+        vec3 share = blocking(distances, receiver);
+        sum += dot(share, distances);
+        count += dot(share, vec3(1.0));
+    }
+    if (count == 0.0) return vec3(1.0);
+
+    float blocker = sum / count;
+    window = lamp_width * (receiver - blocker) / (receiver * blocker);
+    vec3 left = vec3(1.0);
+    for (int i = 0; i < SHADOW_TAPS * SHADOW_TAPS; ++i) {
+        vec2 tap = (vec2(i % SHADOW_TAPS, i / SHADOW_TAPS) + offset) / float(SHADOW_TAPS) - 0.5;
+        left -= blocking(blockers_at(middle + window * tap), receiver) / float(SHADOW_TAPS * SHADOW_TAPS);
+    }
+    return left;
+}

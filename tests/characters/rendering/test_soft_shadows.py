@@ -1,0 +1,123 @@
+"""Soft and coloured shadows: the law of the penumbra, and the light behind glass."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from characters.control.command import PosedCharacter
+from characters.model.mesh import Material, Mesh
+from characters.rendering import QUALITIES, MeasuredLight, SceneCharacter, Stage
+from characters.rendering.lamp import LAMP_DISTANCE_M, LAMP_WIDTH_M
+from characters.rendering.passes.soft_shadows import TABLE_SIDE, SoftShadowPass
+from characters.skeleton.pose import Pose, Skeleton
+
+JOINT = Skeleton(("middle",), (-1,), Pose(np.zeros((1, 3)), np.eye(4)[3:]))
+RED = (1.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Panes:
+    """Level squares above the table, each of its own colour, opacity and height."""
+
+    meshes: tuple[Mesh, ...]
+    skeleton: Skeleton = JOINT
+    morphs: tuple[str, ...] = ()
+
+    def posed(self):
+        pose = self.skeleton.rest
+        return SceneCharacter(
+            self, PosedCharacter(pose, np.eye(4), True, "idle", 0.0, 0.0, 0.0, 0.0)
+        )
+
+
+def pane(height, color=(0.5, 0.5, 0.5), opacity=1.0, side=0.12):
+    corners = np.array([(-1, 0, -1), (-1, 0, 1), (1, 0, 1), (1, 0, -1)]) * side / 2
+    return Mesh(
+        name=f"pane at {height}",
+        positions=(corners + [0.0, height, 0.0]).astype(np.float32),
+        normals=np.tile([0.0, 1.0, 0.0], (4, 1)).astype(np.float32),
+        triangles=np.array([[0, 1, 2], [0, 2, 3]], np.uint32),
+        joints=np.zeros((4, 4), np.uint16),
+        weights=np.tile([1.0, 0.0, 0.0, 0.0], (4, 1)).astype(np.float32),
+        inverse_bind=np.eye(4)[None],
+        material=Material(
+            base_color=(*color, opacity),
+            alpha_cutoff=0.5,
+            blended=True,
+            double_sided=True,
+            roughness=0.9 + 0.01 * height,  # panes are not merged to one surface
+        ),
+    )
+
+
+@pytest.fixture
+def left(ctx, view):
+    """Return a function that gives the light below panes: the square's texels, and its side [m]."""
+    stage = Stage(ctx, (320, 180))
+    stage.quality = QUALITIES["rich"]
+    (shadows,) = (each for each in stage.passes if isinstance(each, SoftShadowPass))
+    overhead = view.camera_from_table[:3, :3] @ [0.0, 1.0, 0.0]
+    lit = replace(view, light=MeasuredLight(overhead, np.full(3, 0.7), np.full(3, 0.3)))
+
+    def below(*panes):
+        for _ in range(120):  # the light changes to the measured one smoothly
+            stage.draw(lit, [])
+        stage.draw(lit, [Panes(panes).posed()])
+        texels = np.frombuffer(shadows.left.read(), np.uint8).reshape(TABLE_SIDE, TABLE_SIDE, 4)
+        return texels[..., :3] / 255.0, shadows.square[2]
+
+    yield below
+    stage.release()
+
+
+def penumbra(texels, side):
+    """Width of the shadow's edge from 10 to 90 % of the light [m], by colour of white light."""
+    row = texels[TABLE_SIDE // 2, :, 1]
+    middle = int(np.argmin(row))
+    edge = row[middle:]
+    x = np.arange(len(edge)) * side / TABLE_SIDE
+    return np.interp(0.9, edge, x) - np.interp(0.1, edge, x)
+
+
+def test_the_penumbra_grows_as_the_law_says(left):
+    """A lamp of width w gives 0.8 (dR - dB) w / dB between 10 and 90 %."""
+    for height in (0.03, 0.06, 0.09):
+        found = penumbra(*left(pane(height), pane(0.0, side=0.02)))
+        # The lamp is LAMP_DISTANCE_M from the middle of what casts shadows.
+        receiver = LAMP_DISTANCE_M + height / 2
+        expected = 0.8 * height * LAMP_WIDTH_M / (receiver - height)
+        assert found == pytest.approx(expected, rel=0.2)
+
+
+def test_there_is_full_light_beside_and_none_in_the_umbra(left):
+    texels, _ = left(pane(0.03))
+    assert texels[TABLE_SIDE // 2, TABLE_SIDE // 2].max() == 0.0
+    assert texels[2, 2].min() == 1.0
+
+
+def test_a_shadow_is_sharp_where_its_caster_touches_the_table(left):
+    texels, side = left(pane(0.002))
+    assert penumbra(texels, side) < 0.003
+
+
+def light_behind(left, *panes):
+    texels, side = left(*panes)
+    half = int(0.02 / side * TABLE_SIDE)
+    middle = slice(TABLE_SIDE // 2 - half, TABLE_SIDE // 2 + half)
+    return texels[middle, middle].mean(axis=(0, 1))
+
+
+def test_light_behind_a_half_red_pane_is_half_red(left):
+    assert light_behind(left, pane(0.03, RED, 0.5)) == pytest.approx([1.0, 0.5, 0.5], abs=0.05)
+
+
+def test_an_opaque_pane_lets_no_light_through(left):
+    assert light_behind(left, pane(0.03, RED, 1.0)).max() == 0.0
+
+
+def test_two_panes_multiply_their_light(left):
+    green = (0.0, 1.0, 0.0)
+    for second, expected in ((RED, [1.0, 0.25, 0.25]), (green, [0.5, 0.5, 0.25])):
+        found = light_behind(left, pane(0.03, RED, 0.5), pane(0.035, second, 0.5))
+        assert found == pytest.approx(expected, abs=0.05)
