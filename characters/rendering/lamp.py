@@ -72,15 +72,19 @@ class Lamp:
         rim = MARGIN * (high - low) + 1e-6
         return cls(pose, low - rim, high + rim, float(depths.min()), float(depths.max()), width)
 
-    @property
-    def spread(self) -> float:
-        """How much further than with parallel light a shadow may reach [m].
+    def spread(self, receivers: Array) -> float:
+        """Return how much further than in parallel light a shadow reaches on receivers [m].
 
-        Rays from the lamp spread by its width and by that of the casters.
+        Rays from the lamp spread by its width and by that of the casters. `receivers` are points
+        (n, 3) of the table frame.
         """
-        depth = self.furthest - self.nearest
+        furthest = (
+            float((receivers @ self.lamp_from_table[2, :3]).max()) + self.lamp_from_table[2, 3]
+        )
         casters = float((self.high - self.low).max()) * self.furthest
-        return depth * (0.5 * self.width + casters) / self.nearest
+        return float(
+            max(furthest - self.nearest, 0.0) * (0.5 * self.width + casters) / self.nearest
+        )
 
     @property
     def clip_from_table(self) -> Array:

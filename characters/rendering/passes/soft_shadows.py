@@ -57,12 +57,11 @@ class SoftShadowPass(ShadowPass):
         casters = np.concatenate([each.enclosing for each in frame.characters])
         lamp = Lamp.over(casters, frame.light.to_light)
         self._blockers.render(frame, lamp)
-        self._extent = extent = _united([shadow.extent for shadow in self._maps[: self._count]])
-        extent[:2], extent[2:] = extent[:2] - lamp.spread, extent[2:] + lamp.spread
+        extent = _united([shadow.extent for shadow in self._maps[: self._count]])
+        spread = lamp.spread(_corners(extent))
+        self._extent = extent + [-spread, -spread, spread, spread]
         self._find_left()
-        x, z = extent[[0, 2, 2, 0]], extent[[1, 1, 3, 3]]
-        corners = np.stack([x, np.zeros(4), z], axis=1)
-        self._area = frame.area_of(np.concatenate([casters, corners]))
+        self._area = frame.area_of(np.concatenate([casters, _corners(self._extent)]))
         return () if self._area is None else (self._area,)
 
     def draw(self, frame: FrameResources, region: Region) -> None:
@@ -119,3 +118,9 @@ def _united(extents: Sequence[Array]) -> Array:
     """Return lowest x and z, highest x and z of several extents (4,)."""
     rows = np.stack(extents)
     return np.concatenate([rows[:, :2].min(axis=0), rows[:, 2:].max(axis=0)])
+
+
+def _corners(extent: Array) -> Array:
+    """Return the corners (4, 3) of an extent on the table."""
+    x, z = extent[[0, 2, 2, 0]], extent[[1, 1, 3, 3]]
+    return np.stack([x, np.zeros(4), z], axis=1)

@@ -8,7 +8,7 @@ uniform float lamp_width;       // [m]
 uniform float nearest_blocker;  // distance from the lamp [m]
 uniform float shadow_bias;      // so far behind a surface its shadow begins; twice as far it is complete [m]
 
-const int SHADOW_TAPS = 6;      // along each side of the window
+const int SHADOW_TAPS = 4;      // along each side of the window
 
 // Offset of the taps, 0…1, another in each texel of a tile of 4 × 4. The mean of any 2 × 2 texels is even too.
 vec2 tile_offset(ivec2 texel) {
