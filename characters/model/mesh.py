@@ -58,6 +58,9 @@ class Material:
     alpha_cutoff: float | None = None
     """Alpha below which nothing is drawn; None for an opaque surface."""
 
+    scattering: float = 0.0
+    """How far light spreads below the surface, relative to human skin; 0 for not at all."""
+
     blended: bool = False
     """Whether alpha is a share that is covered, not a cutoff, where a renderer can draw that."""
 

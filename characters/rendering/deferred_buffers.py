@@ -9,11 +9,14 @@ from characters.skeleton.pose import Array
 NORMAL_UNIT, POSITION_UNIT, ALBEDO_UNIT, SHADE_UNIT = 0, 1, 2, 3
 """Texture units of the four layers of `GeometryBuffer`."""
 
-DIFFUSE_UNIT, SPECULAR_UNIT, AMBIENT_UNIT = 4, 5, 6
-"""Texture units of the three shares of the light, see `LightBuffer`."""
+DIFFUSE_UNIT, SPECULAR_UNIT, AMBIENT_UNIT, FALLING_UNIT = 4, 5, 6, 7
+"""Texture units of the layers of `LightBuffer`."""
 
 SURFACES_UNIT = 8
 """Texture unit of the records of all surfaces, see `surface_records`."""
+
+OCCLUSION_UNIT, SUM_UNIT = 10, 11
+"""Texture units of the ambient occlusion, and of the sum of all light."""
 
 
 class GeometryBuffer:
@@ -59,35 +62,71 @@ class LightBuffer:
         """Linear RGB of the key light that it mirrors, and what it emits."""
         self.ambient = _texture(context, size, "f2")
         """Linear RGB of the light from all around."""
-        self._shares = (self.diffuse, self.specular, self.ambient)
-        self.framebuffer = context.framebuffer(self._shares)
+        self.falling = _texture(context, size, "f2")
+        """Linear RGB of the key light that falls on skin, and 1; 0 where there is no skin."""
+        self._layers = (self.diffuse, self.specular, self.ambient, self.falling)
+        self.framebuffer = context.framebuffer(self._layers)
         """Draws on all of them."""
+        self.scattered = _texture(context, size, "f2")
+        """What stands for `diffuse` after it was scattered in skin."""
+        self.scattered_framebuffer = context.framebuffer([self.scattered])
+        """Draws on it."""
+        self.sum = _texture(context, size, "f2")
+        """Linear RGB of all light, and 1, for passes that change the picture of characters."""
+        self.sum_framebuffer = context.framebuffer([self.sum])
+        """Draws on it."""
+        self.is_scattered = False
+        """Whether `scattered` is valid."""
 
     def bind(self) -> None:
-        """Bind the shares to their units."""
-        for unit, share in enumerate(self._shares, DIFFUSE_UNIT):
-            share.use(unit)
+        """Bind the layers to their units."""
+        for unit, layer in enumerate(self._layers, DIFFUSE_UNIT):
+            layer.use(unit)
+        if self.is_scattered:
+            self.scattered.use(DIFFUSE_UNIT)
 
     def release(self) -> None:
         """Release the textures; a second call does nothing."""
-        for each in (self.framebuffer, *self._shares):
+        for framebuffer in (self.framebuffer, self.scattered_framebuffer, self.sum_framebuffer):
+            framebuffer.release()
+        for texture in (self.scattered, self.sum, *self._layers):
+            texture.release()
+
+
+class PixelGeometry:
+    """What is seen in each pixel of a character layer, or the table where no character is seen."""
+
+    def __init__(self, context: moderngl.Context, size: tuple[int, int]) -> None:
+        self.normal_id = _texture(context, size, "f2")
+        """Unit normal in the camera frame, and the number of the surface; 0 for none."""
+        self.position = _texture(context, size, "f4")
+        """Position in the camera frame [m]; z is 0 where nothing is."""
+        self.framebuffer = context.framebuffer([self.normal_id, self.position])
+        """Draws on both."""
+
+    def release(self) -> None:
+        """Release the textures; a second call does nothing."""
+        for each in (self.framebuffer, self.normal_id, self.position):
             each.release()
 
 
 def surface_records(characters: tuple[CharacterInstance, ...]) -> Array:
-    """Return what the lighting needs to know of each surface of a picture, (surfaces, 2, 4).
+    """Return what the lighting needs to know of each surface of a picture, (surfaces, 3, 4).
 
     First 1 for toon shading or 0, its shift, how toony it is, and its evenness; then what the
-    surface emits, linear RGB, and the height of its character [m]. The row of a surface is its
-    number in `GeometryBuffer.normal_id` less 1.
+    surface emits, linear RGB, and the height of its character [m]; then how far it scatters light,
+    relative to the skin of a human as tall as people are. The row of a surface is its number in
+    `GeometryBuffer.normal_id` less 1.
     """
     rows = []
     for character in characters:
+        scale = character.height / character.skinned.height
         for part in character.skinned.surfaces:
             toon = part.material.toon
             shading = (0, 0, 0, 0) if toon is None else (1, toon.shift, toon.toony, toon.evenness)
-            rows.append((shading, (*part.material.emissive, character.height)))
-    return np.array(rows, float).reshape(-1, 2, 4)
+            scattering = (scale * part.material.scattering, 0, 0, 0)
+            rows.append((shading, (*part.material.emissive, character.height), scattering))
+    return np.array(rows, float).reshape(-1, 3, 4)
 
 
 def _texture(context: moderngl.Context, size: tuple[int, int], dtype: str) -> moderngl.Texture:

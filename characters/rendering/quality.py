@@ -10,6 +10,15 @@ class Effect(StrEnum):
     SOFT_SHADOWS = "soft shadows"
     """Shadows that are softer further from what casts them, on characters too."""
 
+    AMBIENT_OCCLUSION = "ambient occlusion"
+    """Less of the light from all around in folds, below a chin and near the table."""
+
+    SKIN_SCATTERING = "skin scattering"
+    """Light that spreads below skin; it is seen close up."""
+
+    DEPTH_OF_FIELD = "depth of field"
+    """Blur of what is nearer or further than `View.focus`."""
+
 
 @dataclass(frozen=True)
 class Quality:

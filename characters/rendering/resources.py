@@ -52,6 +52,14 @@ class CharacterLayer:
         """Draw on the light buffer of this layer from now on."""
         return self._use(self.target.light.framebuffer)
 
+    def use_scattered(self) -> moderngl.Framebuffer:
+        """Draw on the scattered light of this layer from now on."""
+        return self._use(self.target.light.scattered_framebuffer)
+
+    def use_sum(self) -> moderngl.Framebuffer:
+        """Draw on the sum of the light of this layer from now on."""
+        return self._use(self.target.light.sum_framebuffer)
+
     def _use(self, framebuffer: moderngl.Framebuffer) -> moderngl.Framebuffer:
         framebuffer.use()
         fineness = self.target.fineness

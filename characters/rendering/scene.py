@@ -69,6 +69,36 @@ class Softness:
 
 
 @dataclass(frozen=True)
+class Focus:
+    """Which depths the camera shows sharp, and how much its lens blurs the others."""
+
+    nearest: float
+    """Least depth along the camera's axis that is sharp [m]."""
+
+    furthest: float
+    """Greatest depth that is sharp [m]."""
+
+    aperture: float
+    """Diameter of the lens's opening [m]; about 0.002 in a webcam."""
+
+    @property
+    def circle(self) -> float:
+        """Radius of the circle of confusion of what is infinitely far, as a tangent."""
+        return self.aperture / (self.nearest + self.furthest)
+
+    def radius(self, depth: float) -> float:
+        """Return the radius of the circle of confusion at a depth, as a tangent.
+
+        It is that of what is infinitely far times the distance from the sharp depths over the depth
+        (Huang 2013, eq. 12.1.1).
+
+        >>> Focus(0.5, 0.5, 0.002).radius(1.0)
+        0.001
+        """
+        return self.circle * max(self.nearest - depth, depth - self.furthest, 0.0) / depth
+
+
+@dataclass(frozen=True)
 class View:
     """The camera's picture and what is known about the scene in it."""
 
@@ -96,6 +126,9 @@ class View:
 
     softness: Softness | None = None
     """Blur and noise of the frame, if they were measured; left out, characters are drawn sharp."""
+
+    focus: Focus | None = None
+    """Which depths are sharp; left out, all are. Only deferred shading blurs the others."""
 
 
 class Drawable(Protocol):

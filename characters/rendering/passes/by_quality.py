@@ -9,6 +9,9 @@ from characters.rendering.passes.cube_occlusion import CubeOcclusionPass
 from characters.rendering.passes.deferred_composite import DeferredCompositePass
 from characters.rendering.passes.deferred_geometry import DeferredGeometryPass
 from characters.rendering.passes.deferred_lighting import DeferredLightingPass
+from characters.rendering.passes.deferred_occlusion import DeferredOcclusionPass
+from characters.rendering.passes.deferred_scattering import DeferredScatteringPass
+from characters.rendering.passes.depth_of_field import DepthOfFieldPass
 from characters.rendering.passes.floor_paths import FloorPathPass
 from characters.rendering.passes.hand_occlusion import HandOcclusionPass
 from characters.rendering.passes.render_pass import RenderPass
@@ -24,19 +27,43 @@ def passes_for(
 ) -> list[RenderPass]:
     """Return new passes in the order in which they draw; the caller releases them."""
     blockers = BlockerMap(context) if Effect.SOFT_SHADOWS in quality.effects else None
+    shadows = (
+        ShadowPass(context, programs)
+        if blockers is None
+        else SoftShadowPass(context, programs, blockers)
+    )
     shading: list[RenderPass] = [CharacterPass()]
     if quality.deferred:
-        shading = [
-            DeferredGeometryPass(),
-            DeferredLightingPass(context, programs, blockers),
-            DeferredCompositePass(context, programs),
-        ]
+        shading = _deferred_shading(quality.effects, context, programs, blockers)
     return [
         BackgroundPass(),
         FloorPathPass(context, programs),
-        SoftShadowPass(context, programs, blockers) if blockers else ShadowPass(context, programs),
+        shadows,
         CubeOcclusionPass(context, programs),
         *shading,
         HandOcclusionPass(context, programs),
         ResolvePass(context, programs),
     ]
+
+
+def _deferred_shading(
+    effects: frozenset[Effect],
+    context: moderngl.Context,
+    programs: ShaderPrograms,
+    blockers: BlockerMap | None,
+) -> list[RenderPass]:
+    """Return the passes that light what is seen after all of it is drawn."""
+    occluded = Effect.AMBIENT_OCCLUSION in effects
+    occlusion = DeferredOcclusionPass(context, programs) if occluded else None
+    passes: list[RenderPass | None] = [
+        DeferredGeometryPass(),
+        DeferredLightingPass(context, programs, blockers, occluded),
+        occlusion,
+    ]
+    if Effect.SKIN_SCATTERING in effects:
+        passes.append(DeferredScatteringPass(context, programs, occlusion))
+    composite = DeferredCompositePass(context, programs, occlusion)
+    passes.append(composite)
+    if Effect.DEPTH_OF_FIELD in effects:
+        passes.append(DepthOfFieldPass(context, programs, composite))
+    return [each for each in passes if each is not None]

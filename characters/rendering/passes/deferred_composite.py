@@ -6,36 +6,61 @@ from characters.rendering.deferred_buffers import (
     AMBIENT_UNIT,
     DIFFUSE_UNIT,
     NORMAL_UNIT,
+    POSITION_UNIT,
     SPECULAR_UNIT,
 )
+from characters.rendering.passes.deferred_occlusion import DeferredOcclusionPass
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.resources import FrameResources, Region
+from characters.rendering.resources import CharacterLayer, FrameResources, Region
 
 
 class DeferredCompositePass(RenderPass):
-    """Writes the light of each texel to the character layer."""
+    """Writes the light of each texel to the character layer.
 
-    def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
-        self._triangle = context.vertex_array(
-            programs.load("full_screen", "deferred_composite"), []
+    `occlusion` takes some of the light from all around; None takes none.
+    """
+
+    def __init__(
+        self,
+        context: moderngl.Context,
+        programs: ShaderPrograms,
+        occlusion: DeferredOcclusionPass | None,
+    ) -> None:
+        self._occlusion = occlusion
+        features = [] if occlusion is None else ["OCCLUDED"]
+        self._shown, self._linear = (
+            context.vertex_array(programs.load("full_screen", "deferred_composite", *names), [])
+            for names in (features, [*features, "LINEAR"])
         )
-        self.owned = (self._triangle,)
-        set_uniforms(
-            self._triangle.program,
-            normal_id=NORMAL_UNIT,
-            diffuse=DIFFUSE_UNIT,
-            specular=SPECULAR_UNIT,
-            ambient=AMBIENT_UNIT,
-        )
+        self.owned = (self._shown, self._linear)
+        for triangle in self.owned:
+            set_uniforms(
+                triangle.program,
+                normal_id=NORMAL_UNIT,
+                position=POSITION_UNIT,
+                diffuse=DIFFUSE_UNIT,
+                specular=SPECULAR_UNIT,
+                ambient=AMBIENT_UNIT,
+            )
 
     def draw(self, frame: FrameResources, region: Region) -> None:
         """Write all texels that show a character."""
-        layer = region.characters
-        if layer is None:
-            return
-        layer.use()
+        if region.characters is not None:
+            region.characters.use()
+            self._draw(frame, region.characters, self._shown)
+
+    def draw_light(self, frame: FrameResources, layer: CharacterLayer) -> None:
+        """Write linear light, and 1, to the sum of the light buffer instead."""
+        layer.use_sum().clear()
+        self._draw(frame, layer, self._linear)
+
+    def _draw(
+        self, frame: FrameResources, layer: CharacterLayer, triangle: moderngl.VertexArray
+    ) -> None:
         frame.context.enable_only(moderngl.NOTHING)
         layer.target.geometry.bind()
         layer.target.light.bind()
-        self._triangle.render(moderngl.TRIANGLES, vertices=3)
+        if self._occlusion is not None:
+            self._occlusion.set_uniforms(triangle.program, layer)
+        triangle.render(moderngl.TRIANGLES, vertices=3)

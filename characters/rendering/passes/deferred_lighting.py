@@ -24,18 +24,23 @@ class DeferredLightingPass(RenderPass):
     """Lights the geometry buffer (pass 2 of deferred shading): diffuse, specular and ambient.
 
     The key light is what `blockers` leave of it, which the pass for the shadows has drawn; with
-    None, characters do not shadow themselves and each other.
+    None, characters do not shadow themselves and each other. `occluded` says that ambient occlusion
+    is found later.
     """
 
     def __init__(
-        self, context: moderngl.Context, programs: ShaderPrograms, blockers: BlockerMap | None
+        self,
+        context: moderngl.Context,
+        programs: ShaderPrograms,
+        blockers: BlockerMap | None,
+        occluded: bool,
     ) -> None:
         self._blockers = blockers
-        features = ("SHADOWED",) if blockers else ()
+        features = [*["SHADOWED"] * bool(blockers), *["OCCLUDED"] * occluded]
         self._triangle = context.vertex_array(
             programs.load("full_screen", "deferred_lighting", *features), []
         )
-        self._records = context.texture((2, MAX_SURFACES), 4, dtype="f4")
+        self._records = context.texture((3, MAX_SURFACES), 4, dtype="f4")
         self._records.filter = moderngl.NEAREST, moderngl.NEAREST
         self.owned = (self._triangle, self._records)
         set_uniforms(
@@ -53,7 +58,7 @@ class DeferredLightingPass(RenderPass):
         if layer is None:
             return
         records = surface_records(frame.characters)[:MAX_SURFACES].astype("f4")
-        self._records.write(np.ascontiguousarray(records), viewport=(0, 0, 2, len(records)))
+        self._records.write(np.ascontiguousarray(records), viewport=(0, 0, 3, len(records)))
         light, rotation = frame.light, frame.camera_from_table[:3, :3]
         set_uniforms(
             self._triangle.program,
@@ -68,6 +73,7 @@ class DeferredLightingPass(RenderPass):
             table_from_camera = np.asarray(np.linalg.inv(frame.camera_from_table), float)
             self._blockers.set_uniforms(self._triangle.program, table_from_camera, BIAS_TEXELS)
         layer.use_light().clear()
+        layer.target.light.is_scattered = False
         frame.context.enable_only(moderngl.NOTHING)
         layer.target.geometry.bind()
         self._records.use(SURFACES_UNIT)

@@ -1,9 +1,12 @@
 #version 330 core
 
-// The sum of the light of a texel, as the picture shows it.
+// The sum of the light of a texel, as the picture shows it. LINEAR: as it is.
 
 #include "geometry_buffer"
 #include "encoding"
+#ifdef OCCLUDED
+#include "openness"
+#endif
 
 uniform sampler2D diffuse;
 uniform sampler2D specular;
@@ -14,7 +17,14 @@ out vec4 color;
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
     if (!is_seen(texelFetch(normal_id, here, 0).w)) discard;
-    vec3 sum = texelFetch(diffuse, here, 0).rgb + texelFetch(specular, here, 0).rgb
-             + texelFetch(ambient, here, 0).rgb;
+    vec3 around = texelFetch(ambient, here, 0).rgb;
+#ifdef OCCLUDED
+    around *= open_share(here, texelFetch(position, here, 0).z);
+#endif
+    vec3 sum = texelFetch(diffuse, here, 0).rgb + texelFetch(specular, here, 0).rgb + around;
+#ifdef LINEAR
+    color = vec4(sum, 1.0);
+#else
     color = vec4(shown(sum), 1.0);
+#endif
 }

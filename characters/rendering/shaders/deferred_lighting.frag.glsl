@@ -12,11 +12,12 @@ uniform sampler2D surfaces; // a row for each surface, see surface_records
 uniform vec3 up;            // normal of the table
 uniform vec3 table;         // a point of the table
 
-const float NEAR_TABLE = 0.28;  // share of a character's height that counts as near the table
+const float NEAR_TABLE = 0.28;  // share of a character's height that counts as near the table, see light_around
 
 layout(location = 0) out vec4 diffuse;
 layout(location = 1) out vec4 specular;
 layout(location = 2) out vec4 ambient;
+layout(location = 3) out vec4 falling;  // light that falls on skin, and 1; 0 elsewhere
 
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
@@ -32,7 +33,11 @@ void main() {
     n.xyz = normalize(n.xyz);
     vec3 toward = normalize(-p);
     float rise = 0.5 + 0.5 * dot(n.xyz, up);
+#ifdef OCCLUDED
+    float above = 1.0;          // what is near is found later
+#else
     float above = dot(p - table, up) / (NEAR_TABLE * glow_height.w);
+#endif
     Reflected light;
     if (toon.x > 0.5) {
         vec3 around = light_around(mix(rise, 0.5, toon.w), above);
@@ -41,12 +46,15 @@ void main() {
         vec3 around = light_around(rise, above);
         light = reflected(albedo.rgb, shade.w, albedo.w, n.xyz, toward, around);
     }
+    vec3 left = vec3(1.0);
 #ifdef SHADOWED
-    vec3 left = key_left(p, here);
+    left = key_left(p, here);
     light.diffuse *= left;
     light.specular *= left;
 #endif
     diffuse = vec4(light.diffuse, 1.0);
     specular = vec4(light.specular + glow_height.rgb, 1.0);
     ambient = vec4(light.ambient, 1.0);
+    bool skin = texelFetch(surfaces, ivec2(2, surface), 0).x > 0.0 && toon.x < 0.5;
+    falling = skin ? vec4(left * key * wrapped(dot(n.xyz, to_light)), 1.0) : vec4(0.0);
 }

@@ -22,13 +22,16 @@ vec3 light_around(float up, float above) {
     return mix(ground * (0.55 + 0.45 * near), sky, up) * open;
 }
 
+// Skin, cloth and plastic scatter light around the terminator: a wrap of a quarter.
+float wrapped(float nl) {
+    return max((nl + 0.25) / 1.25, 0.0);
+}
+
 // GGX with the visibility term of B. Karis, "Optimizing PBR for mobile", 2015. The half vector is
 // h = (v + l) / |v + l| and (v·h)² = |v + l|² / 4, which leaves one division and no root.
 Reflected reflected(vec3 albedo, float metal, float rough, vec3 n, vec3 toward, vec3 around) {
     float nl = dot(n, to_light), nv = dot(n, toward);
     float vl = dot(toward, to_light);
-    // Skin, cloth and plastic scatter light around the terminator: a wrap of a quarter.
-    float wrapped = max((nl + 0.25) / 1.25, 0.0);
     float a = max(rough * rough, 0.02), a2 = a * a;
     float sum2 = max(2.0 + 2.0 * vl, 1e-3), nsum = max(nl + nv, 0.0);
     float lobe = nsum * nsum * (a2 - 1.0) + sum2;
@@ -39,7 +42,7 @@ Reflected reflected(vec3 albedo, float metal, float rough, vec3 n, vec3 toward, 
     vec3 mirror = f0 + (1.0 - f0) * grazing * (0.8 - 0.6 * rough);
     vec3 matte = albedo * (1.0 - metal);
     return Reflected(
-        matte * key * wrapped,
+        matte * key * wrapped(nl),
         key * f0 * min(highlight, 6.0) * clamp(nl * 4.0, 0.0, 1.0),
         (matte + mirror) * around);
 }

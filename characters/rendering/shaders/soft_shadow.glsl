@@ -1,6 +1,8 @@
 // The key light that reaches a point, by colour: percentage-closer soft shadows (R. Fernando, 2005). The penumbra of
 // a lamp of width w is (dR - dB) w / dB wide, where the receiver is dR from the lamp and what blocks it dB.
 
+#include "tile_offset"
+
 uniform sampler2D blockers;     // distances of what blocks red, green and blue, see BlockerMap [m]
 uniform mat4 lamp_from_point;
 uniform vec4 lamp_area;         // lowest tangents of the map, and 1 / their range
@@ -9,12 +11,6 @@ uniform float nearest_blocker;  // distance from the lamp [m]
 uniform float shadow_bias;      // so far behind a surface its shadow begins; twice as far it is complete [m]
 
 const int SHADOW_TAPS = 4;      // along each side of the window
-
-// Offset of the taps, 0…1, another in each texel of a tile of 4 × 4. The mean of any 2 × 2 texels is even too.
-vec2 tile_offset(ivec2 texel) {
-    ivec2 cell = texel & 3;
-    return (vec2((cell & 1) * 2 + (cell >> 1)) + 0.5) / 4.0;
-}
 
 vec3 blockers_at(vec2 tangents) {
     vec2 at = (tangents - lamp_area.xy) * lamp_area.zw;

@@ -65,7 +65,13 @@ class WatchPass(RenderPass):
 def test_each_surface_has_its_record(deferred, view, pawn):
     watch = WatchPass()
     deferred.passes.append(watch)
-    deferred.draw(view, [with_material(pawn, toon=TOON).posed(), pawn.posed(height=0.2)])
+    deferred.draw(
+        view,
+        [
+            with_material(pawn, toon=TOON).posed(),
+            with_material(pawn, scattering=2.0).posed(height=0.2),
+        ],
+    )
     toon, plain = surface_records(watch.frame.characters)
-    assert np.allclose(toon, np.array([[1, 0.1, 0.6, 0.5], [0, 0, 0, 0.12]]))
-    assert np.allclose(plain, np.array([[0, 0, 0, 0], [0, 0, 0, 0.2]]))
+    assert np.allclose(toon, np.array([[1, 0.1, 0.6, 0.5], [0, 0, 0, 0.12], [0, 0, 0, 0]]))
+    assert np.allclose(plain, np.array([[0, 0, 0, 0], [0, 0, 0, 0.2], [0.4, 0, 0, 0]]))

@@ -1,54 +1,28 @@
 """Soft and coloured shadows: the law of the penumbra, and the light behind glass."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from characters.control.command import PosedCharacter
-from characters.model.mesh import Material, Mesh
-from characters.rendering import QUALITIES, MeasuredLight, SceneCharacter, Stage
+from characters.model.mesh import Material
+from characters.rendering import QUALITIES, MeasuredLight, Stage
 from characters.rendering.lamp import LAMP_DISTANCE_M, LAMP_WIDTH_M
 from characters.rendering.passes.soft_shadows import TABLE_SIDE, SoftShadowPass
-from characters.skeleton.pose import Pose, Skeleton
+from tests.characters.rendering.shapes import Still, plate
 
-JOINT = Skeleton(("middle",), (-1,), Pose(np.zeros((1, 3)), np.eye(4)[3:]))
 RED = (1.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True)
-class Panes:
-    """Level squares above the table, each of its own colour, opacity and height."""
-
-    meshes: tuple[Mesh, ...]
-    skeleton: Skeleton = JOINT
-    morphs: tuple[str, ...] = ()
-
-    def posed(self):
-        pose = self.skeleton.rest
-        return SceneCharacter(
-            self, PosedCharacter(pose, np.eye(4), True, "idle", 0.0, 0.0, 0.0, 0.0)
-        )
-
-
 def pane(height, color=(0.5, 0.5, 0.5), opacity=1.0, side=0.12):
-    corners = np.array([(-1, 0, -1), (-1, 0, 1), (1, 0, 1), (1, 0, -1)]) * side / 2
-    return Mesh(
-        name=f"pane at {height}",
-        positions=(corners + [0.0, height, 0.0]).astype(np.float32),
-        normals=np.tile([0.0, 1.0, 0.0], (4, 1)).astype(np.float32),
-        triangles=np.array([[0, 1, 2], [0, 2, 3]], np.uint32),
-        joints=np.zeros((4, 4), np.uint16),
-        weights=np.tile([1.0, 0.0, 0.0, 0.0], (4, 1)).astype(np.float32),
-        inverse_bind=np.eye(4)[None],
-        material=Material(
-            base_color=(*color, opacity),
-            alpha_cutoff=0.5,
-            blended=True,
-            double_sided=True,
-            roughness=0.9 + 0.01 * height,  # panes are not merged to one surface
-        ),
+    material = Material(
+        base_color=(*color, opacity),
+        alpha_cutoff=0.5,
+        blended=True,
+        double_sided=True,
+        roughness=0.9 + 0.01 * height,  # panes are not merged to one surface
     )
+    return plate(material, (0.0, height, 0.0), side)
 
 
 @pytest.fixture
@@ -63,7 +37,7 @@ def left(ctx, view):
     def below(*panes):
         for _ in range(120):  # the light changes to the measured one smoothly
             stage.draw(lit, [])
-        stage.draw(lit, [Panes(panes).posed()])
+        stage.draw(lit, [Still(panes).posed()])
         texels = np.frombuffer(shadows.left.read(), np.uint8).reshape(TABLE_SIDE, TABLE_SIDE, 4)
         return texels[..., :3] / 255.0, shadows.square[2]
 

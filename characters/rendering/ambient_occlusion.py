@@ -1,0 +1,241 @@
+"""Ambient occlusion from what the camera sees: how much light from all around reaches a surface."""
+
+from dataclasses import dataclass
+
+import moderngl
+
+from characters.errors import CharacterError
+from characters.rendering.programs import ShaderPrograms, set_uniforms
+from characters.rendering.sample_patterns import PATTERNS, sample_pattern
+from characters.rendering.target import SIZE_STEP_PX
+
+
+@dataclass(frozen=True)
+class Estimator:
+    """What the samples around a pixel say about its occlusion, and the constants that suit it.
+
+    The constants are those with the least squared error against ray-traced pictures:
+    `python -m tests.bench.ambient_occlusion.tuning`.
+    """
+
+    darkness: float
+    """Gain of the occlusion."""
+
+    bias: float
+    """Sine of the elevation above the surface from which on a sample counts: below it, triangles
+    of a round body would shade each other."""
+
+    crowding: float
+    """Where the samples of a line are: 0 evenly spread, 1 crowded around the pixel."""
+
+    reach: float
+    """How far it looks, as a share of the radius."""
+
+    by_area: float = 0.0
+    """What a sample's weight is: 0 the same for all, 1 the area of the disc that it stands for. Where
+    horizons are looked for, neither matters."""
+
+    fill: float = 0.0
+    """Where between the last sample and this one a rise of the horizon is taken to be: 0 at this, 1
+    at the last. Between them a surface goes on, or an occluder ends that is as thick as it is."""
+
+
+ESTIMATORS = {
+    "angular": Estimator(darkness=6.27, bias=0.1, crowding=0.75, reach=1.0),
+    "crytek": Estimator(darkness=1.61, bias=0.1, crowding=1.0, reach=0.45),
+    "volumetric": Estimator(darkness=1.12, bias=0.02, crowding=1.0, reach=0.3, by_area=1.0),
+    "hbao": Estimator(darkness=1.03, bias=0.1, crowding=0.75, reach=1.0, fill=0.4),
+    "gtao": Estimator(darkness=1.21, bias=0.02, crowding=0.75, reach=1.0, fill=0.4),
+}
+"""The estimators by name. Each has a shader `ambient_occlusion_NAME.frag` that defines it."""
+
+EDGE_SHARE = 0.01
+"""Distance from a pixel's tangent plane from which on the blur takes a neighbour for another
+surface, as a share of the radius."""
+
+
+@dataclass(frozen=True)
+class AmbientOcclusionSettings:
+    """How ambient occlusion is sampled."""
+
+    estimator: str = "gtao"
+    """One of `ESTIMATORS`."""
+
+    samples: int = 11
+    """Samples on each line, the pixel itself included: k of Huang 2013, ch. 3.4."""
+
+    lines: int | None = 2
+    """Lines through each pixel: 2 is the separable form, with 2k samples; None stands for k lines,
+    the full form, with k²."""
+
+    pattern: str = "hammersley"
+    """How the lines turn from pixel to pixel, one of `PATTERNS`."""
+
+    pattern_size: int = 4
+    """Pixels along a side of the tile in which the pattern repeats."""
+
+    blur_size: int = 4
+    """Pixels along a side of the blur: that of the tile takes its noise away; 0 for no blur."""
+
+    radius_m: float = 0.08
+    """Occluders farther away do not count [m]. For characters of 0.2 m it is the same share of
+    their height as 0.7 m is for people in a room."""
+
+    constants: Estimator | None = None
+    """Gain and others; None for the estimator's own."""
+
+    def __post_init__(self) -> None:
+        for name, known in (("estimator", ESTIMATORS), ("pattern", PATTERNS)):
+            if getattr(self, name) not in known:
+                raise CharacterError(
+                    f"unknown {name} of ambient occlusion '{getattr(self, name)}': choose one of "
+                    f"{', '.join(known)}"
+                )
+        if self.samples < 2 or (self.lines is not None and self.lines < 1):
+            raise CharacterError(
+                f"ambient occlusion needs 2 samples on 1 line at least, not {self.samples} on "
+                f"{self.lines}"
+            )
+        if self.pattern_size < 1 or self.blur_size < 0 or not self.radius_m > 0.0:
+            raise CharacterError(
+                "ambient occlusion needs a pattern of 1 pixel, a blur of 0 and a radius above 0 m "
+                f"at least, not {self.pattern_size}, {self.blur_size} and {self.radius_m}"
+            )
+
+    @property
+    def line_count(self) -> int:
+        """Lines through each pixel."""
+        return self.samples if self.lines is None else self.lines
+
+    @property
+    def samples_per_pixel(self) -> int:
+        """How many samples a pixel costs."""
+        return self.line_count * self.samples
+
+
+class AmbientOcclusion:
+    """Computes ambient occlusion from a G-buffer.
+
+    The separable form (Huang 2013, ch. 3.4) looks along two orthogonal lines through each pixel, not
+    at all of the disc around it. The lines turn from pixel to pixel, in a pattern that repeats in
+    small tiles; a blur of a tile's size, which does not cross edges, then gives every pixel the mean
+    of the directions of a whole tile. The full form has as many lines as samples on each.
+    """
+
+    def __init__(
+        self,
+        context: moderngl.Context,
+        programs: ShaderPrograms,
+        settings: AmbientOcclusionSettings | None = None,
+    ) -> None:
+        self.settings = settings = settings or AmbientOcclusionSettings()
+        """How it samples."""
+        self._context = context
+        defines = f"LINES {settings.line_count}", f"SAMPLES {settings.samples}"
+        fragment = f"ambient_occlusion_{settings.estimator}"
+        blur = "ambient_occlusion_blur", f"TILE {settings.blur_size}"
+        self._march = context.vertex_array(programs.load("full_screen", fragment, *defines), [])
+        self._blur = context.vertex_array(programs.load("full_screen", *blur), [])
+        pattern = sample_pattern(settings.pattern, settings.pattern_size)
+        side = settings.pattern_size, settings.pattern_size
+        self._pattern = context.texture(side, 2, pattern.tobytes(), dtype="f4")
+        self._textures: list[moderngl.Texture] = []
+        self._targets: list[moderngl.Framebuffer] = []
+
+    def draw(
+        self,
+        normal_id: moderngl.Texture,
+        position: moderngl.Texture,
+        size: tuple[int, int],
+        focal_px: float,
+    ) -> moderngl.Texture:
+        """Return the share of the ambient light that reaches each pixel, in the red channel.
+
+        It is 1 where nothing is near, and in the background. The second channel is depth
+        [m]. The texture is as large as `size` or larger, and stays valid until the next call.
+
+        Parameters
+        ----------
+        normal_id
+            Unit normals in the camera frame (x right, y down, z forward), and in w the number of
+            the object; below 0.5 is background.
+        position
+            Positions in the camera frame [m]; z is 0 in the background.
+        size
+            Width and height of the part of both textures that is used, from the first texel on.
+        focal_px
+            Focal length: pixels that one metre covers at a distance of one metre.
+        """
+        self._fit(size)
+        settings = self.settings
+        constants = settings.constants or ESTIMATORS[settings.estimator]
+        self._context.enable_only(moderngl.NOTHING)
+        normal_id.use(0)
+        position.use(1)
+        self._pattern.use(2)
+        set_uniforms(
+            self._march.program,
+            normal_id=0,
+            place=1,
+            pattern=2,
+            size=size,
+            radius=constants.reach * settings.radius_m,
+            focal=focal_px,
+            darkness=constants.darkness,
+            bias=constants.bias,
+            crowding=constants.crowding,
+            by_area=constants.by_area,
+            fill=constants.fill,
+        )
+        self._render(self._march, 0, size)
+        if settings.blur_size > 1:
+            set_uniforms(
+                self._blur.program,
+                normal_id=0,
+                place=1,
+                source=2,
+                size=size,
+                focal=focal_px,
+                tolerance=EDGE_SHARE * settings.radius_m,
+            )
+            for source, direction in ((0, (1, 0)), (1, (0, 1))):
+                self._textures[source].use(2)
+                set_uniforms(self._blur.program, direction=direction)
+                self._render(self._blur, 1 - source, size)
+        return self._textures[0]
+
+    def release(self) -> None:
+        """Release everything of the graphics card; a second call does nothing."""
+        self._release_targets()
+        for each in (self._march, self._blur, self._pattern):
+            each.release()
+
+    def _render(self, triangle: moderngl.VertexArray, target: int, size: tuple[int, int]) -> None:
+        self._targets[target].use()
+        self._targets[target].viewport = (0, 0, *size)
+        triangle.render(moderngl.TRIANGLES, vertices=3)
+
+    def _fit(self, size: tuple[int, int]) -> None:
+        """Have two textures for the occlusion that are large enough; they never shrink."""
+        kept = self._textures[0].size if self._textures else (0, 0)
+        if kept[0] >= size[0] and kept[1] >= size[1]:
+            return
+        self._release_targets()
+        width, height = (
+            -(-max(each) // SIZE_STEP_PX) * SIZE_STEP_PX for each in zip(kept, size, strict=True)
+        )
+        for _ in range(2):
+            texture = self._context.texture((width, height), 2, dtype="f4")
+            texture.filter = moderngl.NEAREST, moderngl.NEAREST
+            texture.repeat_x = texture.repeat_y = False
+            self._textures.append(texture)
+            self._targets.append(self._context.framebuffer([texture]))
+
+    def _release_targets(self) -> None:
+        # moderngl binds the last framebuffer again when it creates the next: it must still exist.
+        if self._targets:
+            self._context.detect_framebuffer(0).use()
+        for each in (*self._targets, *self._textures):
+            each.release()
+        self._targets.clear()
+        self._textures.clear()

@@ -1,0 +1,54 @@
+#version 330 core
+
+// Gathers the light of a texel from its circle of confusion, whose radius is |z - zf| / z of that of what is infinitely
+// far (Huang 2013, ch. 12.1). A sharp texel stays as it is. A tap counts if its own circle covers the texel, or if it
+// is behind it; where no character is seen, those in front spread over the picture.
+
+#include "geometry_buffer"
+#include "encoding"
+#include "tile_offset"
+
+const int TAPS = 32;
+const float GOLDEN_ANGLE = 2.39996323;
+
+uniform sampler2D light;        // of the characters, linear, and 1 where one is seen
+uniform float circle;           // radius of the circle of what is infinitely far [texels]
+uniform vec2 focus;             // nearest and furthest depth that is sharp [m]
+uniform float widest;           // largest circle of this picture [texels]
+uniform ivec2 last_texel;
+
+out vec4 color;
+
+float radius_at(float z) {
+    return min(circle * max(max(focus.x - z, z - focus.y), 0.0) / z, widest);
+}
+
+void main() {
+    ivec2 here = ivec2(gl_FragCoord.xy);
+    bool seen = is_seen(texelFetch(normal_id, here, 0).w);
+    float depth = seen ? texelFetch(position, here, 0).z : 1e3;
+    float radius = seen ? radius_at(depth) : widest;
+    if (seen && radius < 0.5) discard;  // the sharp texel that is there is right
+    vec2 offset = tile_offset(here);
+    vec4 sum = seen ? vec4(texelFetch(light, here, 0).rgb, 1.0) : vec4(0.0);
+    float total = 1.0;
+    for (int i = 0; i < TAPS; ++i) {
+        float away = radius * sqrt((float(i) + offset.y) / float(TAPS));
+        float angle = float(i) * GOLDEN_ANGLE + 6.2831853 * offset.x;
+        ivec2 there = clamp(here + ivec2(round(away * vec2(cos(angle), sin(angle)))), ivec2(0), last_texel);
+        if (!is_seen(texelFetch(normal_id, there, 0).w)) {
+            total += 1.0;
+            continue;
+        }
+        float z = texelFetch(position, there, 0).z, own = radius_at(z);
+        bool covers = own >= 0.5 && away <= own + 0.5;
+        if (seen && !covers && z < depth) continue;
+        // A small circle puts more of its light on each texel of it.
+        float weight = seen ? 1.0 : covers ? radius * radius / (own * own) : 0.0;
+        sum += weight * vec4(texelFetch(light, there, 0).rgb, 1.0);
+        total += max(weight, 1.0);
+    }
+    float share = seen ? sum.a / total : min(sum.a / total, 1.0);
+    if (share <= 0.0) discard;
+    color = vec4(share * shown(sum.rgb / sum.a), share);
+}

@@ -1,0 +1,75 @@
+"""What is out of focus is blurred as a lens blurs it; what is in focus is not touched."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from characters.model.mesh import Material
+from characters.rendering import QUALITIES, Effect, Focus, Stage
+from tests.characters.rendering.shapes import Still, mesh
+
+DEPTH = 0.45
+"""Distance of the table's middle in `view` from the camera [m], about."""
+
+
+@pytest.fixture
+def lens(ctx):
+    stage = Stage(ctx, (320, 180))
+    effects = frozenset([Effect.DEPTH_OF_FIELD])
+    stage.quality = replace(QUALITIES["rich"], effects=effects)
+    yield stage
+    stage.release()
+
+
+def checkerboard(fields=24, side=0.2):
+    """A black and white board, level on the table, of one field for each two triangles."""
+    column, row = np.meshgrid(np.arange(fields), np.arange(fields))
+    corner = np.stack([column, row], axis=-1).reshape(-1, 1, 2)
+    flat = (corner + [[0, 0], [0, 1], [1, 1], [1, 0]]).reshape(-1, 2) * side / fields - side / 2
+    positions = np.insert(flat, 1, 0.001, axis=1)
+    first = 4 * np.arange(fields**2)[:, None]
+    triangles = np.concatenate([first + [0, 1, 2], first + [0, 2, 3]])
+    board = mesh(positions, np.tile([0.0, 1.0, 0.0], (len(flat), 1)), triangles, Material())
+    white = np.repeat((column + row).ravel() % 2, 4).astype(np.float32)
+    colors = np.ones((len(flat), 4), np.float32)
+    colors[:, :3] = 0.05 + 0.8 * white[:, None]
+    return Still((replace(board, colors=colors),)).posed()
+
+
+def test_in_focus_nothing_changes(lens, view, pawn):
+    sharp = lens.draw(view, [pawn.posed()])
+    focused = lens.draw(replace(view, focus=Focus(0.1, 2.0, 0.05)), [pawn.posed()])
+    assert np.array_equal(sharp, focused)
+
+
+def test_a_pawn_in_focus_is_the_same_beside_one_that_is_not(lens, view, pawn):
+    here, near = (
+        pawn.posed(at=(-0.08, -0.05), height=0.06),
+        pawn.posed(at=(0.08, 0.09), height=0.06),
+    )
+    sharp = lens.draw(view, [here, near])
+    depths = (0.9 * DEPTH, 2.0)
+    blurred = lens.draw(replace(view, focus=Focus(*depths, 0.03)), [here, near])
+    red = (sharp[..., 2].astype(int) - sharp[..., 1]) > 60
+    left = np.arange(320)[None, :] < 160
+    assert np.array_equal(blurred[red & left], sharp[red & left])
+    assert np.abs(blurred.astype(int) - sharp)[red & ~left].max() > 40
+
+
+def test_contrast_falls_with_the_distance_from_the_focus(lens, view):
+    variances = []
+    for focus in (DEPTH, 0.9 * DEPTH, 0.8 * DEPTH, 0.7 * DEPTH):
+        picture = lens.draw(replace(view, focus=Focus(focus, focus, 0.02)), [checkerboard()])
+        variances.append(picture[90:110, 140:180].astype(float).var())
+    assert variances == sorted(variances, reverse=True)
+    assert variances[-1] < 0.3 * variances[0]
+
+
+def test_a_blurred_pawn_keeps_its_light(lens, view, pawn):
+    """It spreads over the table around it, and no light is lost or added."""
+    black = replace(view, image=np.zeros_like(view.image))
+    sharp = lens.draw(black, [pawn.posed()]).astype(float)
+    blurred = lens.draw(replace(black, focus=Focus(0.9, 0.9, 0.02)), [pawn.posed()]).astype(float)
+    assert (blurred.sum(axis=2) > 0).sum() > 1.1 * (sharp.sum(axis=2) > 0).sum()
+    assert blurred.sum() == pytest.approx(sharp.sum(), rel=0.1)
