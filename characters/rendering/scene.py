@@ -81,21 +81,17 @@ class Focus:
     aperture: float
     """Diameter of the lens's opening [m]; about 0.002 in a webcam."""
 
-    @property
-    def circle(self) -> float:
-        """Radius of the circle of confusion of what is infinitely far, as a tangent."""
-        return self.aperture / (self.nearest + self.furthest)
-
     def radius(self, depth: float) -> float:
         """Return the radius of the circle of confusion at a depth, as a tangent.
 
-        It is that of what is infinitely far times the distance from the sharp depths over the depth
-        (Huang 2013, eq. 12.1.1).
+        At a distance d from the nearest sharp depth f, it is d / depth of that of what is
+        infinitely far, which is half of the aperture over f (Huang 2013, eq. 12.1.1).
 
         >>> Focus(0.5, 0.5, 0.002).radius(1.0)
         0.001
         """
-        return self.circle * max(self.nearest - depth, depth - self.furthest, 0.0) / depth
+        off = max(1.0 / depth - 1.0 / self.nearest, 1.0 / self.furthest - 1.0 / depth, 0.0)
+        return 0.5 * self.aperture * off
 
 
 @dataclass(frozen=True)

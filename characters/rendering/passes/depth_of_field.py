@@ -55,7 +55,7 @@ class DepthOfFieldPass(RenderPass):
         layer.target.light.sum.use(SUM_UNIT)
         set_uniforms(
             self._triangle.program,
-            circle=texels * focus.circle,
+            half_aperture=0.5 * texels * focus.aperture,
             focus=(focus.nearest, focus.furthest),
             widest=min(widest, MAX_RADIUS_TEXELS),
             last_texel=(

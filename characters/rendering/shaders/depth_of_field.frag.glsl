@@ -1,8 +1,8 @@
 #version 330 core
 
-// Gathers the light of a texel from its circle of confusion, whose radius is |z - zf| / z of that of what is infinitely
-// far (Huang 2013, ch. 12.1). A sharp texel stays as it is. A tap counts if its own circle covers the texel, or if it
-// is behind it; where no character is seen, those in front spread over the picture.
+// Gathers the light of a texel from its circle of confusion (Huang 2013, ch. 12.1; see Focus.radius). A sharp texel
+// stays as it is. A tap counts if its own circle covers the texel, or if it is behind it; where no character is seen,
+// those in front spread over the picture.
 
 #include "geometry_buffer"
 #include "encoding"
@@ -12,7 +12,7 @@ const int TAPS = 32;
 const float GOLDEN_ANGLE = 2.39996323;
 
 uniform sampler2D light;        // of the characters, linear, and 1 where one is seen
-uniform float circle;           // radius of the circle of what is infinitely far [texels]
+uniform float half_aperture;    // of the lens, times the focal length [texels m]
 uniform vec2 focus;             // nearest and furthest depth that is sharp [m]
 uniform float widest;           // largest circle of this picture [texels]
 uniform ivec2 last_texel;
@@ -20,7 +20,7 @@ uniform ivec2 last_texel;
 out vec4 color;
 
 float radius_at(float z) {
-    return min(circle * max(max(focus.x - z, z - focus.y), 0.0) / z, widest);
+    return min(half_aperture * max(max(1.0 / z - 1.0 / focus.x, 1.0 / focus.y - 1.0 / z), 0.0), widest);
 }
 
 void main() {
