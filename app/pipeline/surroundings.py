@@ -1,14 +1,15 @@
-"""What the camera's picture tells the drawing: the hand, the light, its blur and its noise.
+"""What the camera's picture tells the drawing: the hand, the light, blur, noise and focus.
 
 It changes nothing but the picture.
 """
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
 from app.errors import AppError
-from characters.rendering import Box, Cover, MeasuredLight, Softness, View
+from characters.rendering import Box, Cover, Focus, MeasuredLight, Softness, View
 from tracking import CubeControls, CubeModel, CubeState, Frame, Intrinsics
 from tracking.appearance.hand import HandFinder
 from tracking.appearance.light import LightMeter
@@ -18,11 +19,18 @@ REALISM_CHOICES = {
     "hand": "the hand that holds the cube hides what is behind it",
     "light": "light and shadow fall as on the cube",
     "softness": "characters are as soft and as noisy as the picture",
+    "focus": "what is much nearer or further than the cube is out of focus, in the quality rich",
 }
 """What of the camera's picture the drawing follows, and what that means."""
 
 DIRECTION_CERTAINTIES = 0.6, 0.8
 """Certainties of the light's direction from which on it is used at all, and fully."""
+
+APERTURE_M = 0.002
+"""Diameter of the opening of a webcam's lens [m]: a focal length of 4 mm at f/2."""
+
+FOCUSING_S = 0.5
+"""Time constant with which the camera's focus follows the cube [s]."""
 
 NO_REALISM = "none"
 """The name of none of `REALISM_CHOICES`."""
@@ -67,6 +75,7 @@ class Surroundings:
         self._hand = HandFinder(cube, intrinsics) if "hand" in chosen else None
         self._light = LightMeter(cube, intrinsics) if "light" in chosen else None
         self._quality = QualityMeter(cube, intrinsics) if "softness" in chosen else None
+        self._autofocus = Autofocus() if "focus" in chosen else None
 
     def view(self, frame: Frame, state: CubeState, controls: CubeControls) -> View:
         """Return the camera's picture with all that is known of the scene in it."""
@@ -80,6 +89,7 @@ class Surroundings:
             self._cover(frame, state),
             self._measured_light(frame, state, controls),
             self._softness(frame, state),
+            None if self._autofocus is None else self._autofocus.update(state),
         )
 
     def _cover(self, frame: Frame, state: CubeState) -> Cover | None:
@@ -101,3 +111,21 @@ class Surroundings:
     def _softness(self, frame: Frame, state: CubeState) -> Softness | None:
         found = None if self._quality is None else self._quality.update(frame.image, state)
         return None if found is None else Softness(found.blur, found.noise)
+
+
+class Autofocus:
+    """Follows the distance of the cube, on which a camera focuses."""
+
+    def __init__(self) -> None:
+        self._distance = 0.0
+        self._time = 0.0
+
+    def update(self, state: CubeState) -> Focus | None:
+        """Return what is sharp while the cube is where it is; None before it was seen."""
+        pose = state.camera_from_cube
+        if pose is not None:
+            elapsed = state.timestamp - self._time
+            share = 1.0 - math.exp(-max(elapsed, 0.0) / FOCUSING_S) if self._distance else 1.0
+            self._distance += share * (float(pose[2, 3]) - self._distance)
+        self._time = state.timestamp
+        return Focus(self._distance, self._distance, APERTURE_M) if self._distance else None

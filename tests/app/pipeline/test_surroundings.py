@@ -1,11 +1,19 @@
 """What the drawing follows of the camera's picture, and that nothing else changes by it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from app.errors import AppError
 from app.pipeline.playground import Playground
-from app.pipeline.surroundings import REALISM_CHOICES, Surroundings, realism_of
+from app.pipeline.surroundings import (
+    FOCUSING_S,
+    REALISM_CHOICES,
+    Autofocus,
+    Surroundings,
+    realism_of,
+)
 from app.running.opening import intrinsics_for
 from tracking import CubeGestures, CubeTracker
 from tracking.synthetic import open_synthetic
@@ -39,9 +47,11 @@ def test_only_what_was_chosen_is_measured(source, seen):
     assert plain.cover is None
     assert plain.light is None
     assert plain.softness is None
+    assert plain.focus is None
     assert len(plain.occluders) == 1
     full = last_view(source, seen, tuple(REALISM_CHOICES))
     assert full.softness.blur == pytest.approx(0.5, abs=0.25)
+    assert full.focus.nearest == pytest.approx(seen[-1][1].camera_from_cube[2, 3], rel=1e-3)
     assert full.cover is None  # no hand is near yet
     assert np.array_equal(full.image, plain.image)
 
@@ -58,6 +68,20 @@ def test_the_picture_alone_depends_on_it(source, seen):
         assert np.array_equal(first.posed.pose.rotations, second.posed.pose.rotations)
 
 
+def test_the_focus_follows_the_cube_in_about_half_a_second(seen):
+    state = seen[0][1]
+    autofocus = Autofocus()
+    assert autofocus.update(replace(state, camera_from_cube=None)) is None
+    near = autofocus.update(state)
+    further = state.camera_from_cube.copy()
+    further[2, 3] += 0.2
+    moved = replace(state, camera_from_cube=further, timestamp=state.timestamp + FOCUSING_S)
+    found = autofocus.update(moved)
+    assert found.nearest - near.nearest == pytest.approx(0.2 * (1 - np.exp(-1)))
+    lost = autofocus.update(replace(moved, camera_from_cube=None))
+    assert lost == found
+
+
 def test_choices_are_names_separated_by_commas():
     assert realism_of("light,hand") == ("light", "hand")
     assert realism_of("none") == ()
@@ -65,5 +89,5 @@ def test_choices_are_names_separated_by_commas():
 
 @pytest.mark.parametrize("text", ["", "shadow", "hand,", "none,hand", "Hand"])
 def test_another_name_is_refused_in_one_line(text):
-    with pytest.raises(AppError, match="choose of hand, light, softness, or none"):
+    with pytest.raises(AppError, match="choose of hand, light, softness, focus, or none"):
         realism_of(text)
