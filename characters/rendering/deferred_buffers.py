@@ -15,8 +15,8 @@ DIFFUSE_UNIT, SPECULAR_UNIT, AMBIENT_UNIT, FALLING_UNIT = 4, 5, 6, 7
 SURFACES_UNIT = 8
 """Texture unit of the records of all surfaces, see `surface_records`."""
 
-OCCLUSION_UNIT, SUM_UNIT = 10, 11
-"""Texture units of the ambient occlusion, and of the sum of all light."""
+OCCLUSION_UNIT, SUM_UNIT, VISIBILITY_UNIT = 10, 11, 12
+"""Texture units of the ambient occlusion, the sum of all light, and the share of it that arrives."""
 
 
 class GeometryBuffer:
@@ -93,7 +93,7 @@ class LightBuffer:
             texture.release()
 
 
-class PixelGeometry:
+class PixelBuffer:
     """What is seen in each pixel of a character layer, or the table where no character is seen."""
 
     def __init__(self, context: moderngl.Context, size: tuple[int, int]) -> None:
@@ -103,11 +103,26 @@ class PixelGeometry:
         """Position in the camera frame [m]; z is 0 where nothing is."""
         self.framebuffer = context.framebuffer([self.normal_id, self.position])
         """Draws on both."""
+        self.visibility = tuple(_texture(context, size, "f1") for _ in range(2))
+        """Share of the lamp by colour, and of the light from all around: as found, and smooth."""
+        self._targets = tuple(context.framebuffer([texture]) for texture in self.visibility)
+
+    def bind(self) -> None:
+        """Bind what is seen to the units of a geometry buffer."""
+        self.normal_id.use(NORMAL_UNIT)
+        self.position.use(POSITION_UNIT)
+
+    def use_visibility(self, number: int, size: tuple[int, int]) -> None:
+        """Draw on the first pixels of one of `visibility`."""
+        self._targets[number].use()
+        self._targets[number].viewport = (0, 0, *size)
 
     def release(self) -> None:
         """Release the textures; a second call does nothing."""
-        for each in (self.framebuffer, self.normal_id, self.position):
-            each.release()
+        for framebuffer in (self.framebuffer, *self._targets):
+            framebuffer.release()
+        for texture in (self.normal_id, self.position, *self.visibility):
+            texture.release()
 
 
 def surface_records(characters: tuple[CharacterInstance, ...]) -> Array:

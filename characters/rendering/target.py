@@ -44,21 +44,6 @@ class RenderTarget:
         self._picture = context.framebuffer([self.picture_texture])
 
     @cached_property
-    def openness_texture(self) -> moderngl.Texture:
-        """Share of the light from all around in each pixel, encoded; made when first asked for."""
-        return self._context.texture(self.picture_texture.size, 1)
-
-    @cached_property
-    def _openness(self) -> moderngl.Framebuffer:
-        return self._context.framebuffer([self.openness_texture])
-
-    def use_openness(self, width: int, height: int) -> moderngl.Framebuffer:
-        """Draw on the light from all around, on the first pixels."""
-        self._openness.use()
-        self._openness.viewport = (0, 0, width, height)
-        return self._openness
-
-    @cached_property
     def geometry(self) -> GeometryBuffer:
         """What is seen in each texel of the characters' layer; made when first asked for."""
         return GeometryBuffer(self._context, self.characters_texture.size, self._depth)
@@ -90,7 +75,7 @@ class RenderTarget:
 
     def release(self) -> None:
         """Release the buffers; a second call does nothing."""
-        for name in ("geometry", "light", "_openness", "openness_texture"):
+        for name in ("geometry", "light"):
             if name in self.__dict__:
                 self.__dict__[name].release()
         for framebuffer in (self._characters, self._picture):

@@ -2,6 +2,7 @@
 
 import moderngl
 
+from characters.rendering.ambient_occlusion import AmbientOcclusion
 from characters.rendering.blocker_map import BlockerMap
 from characters.rendering.passes.background import BackgroundPass
 from characters.rendering.passes.characters import CharacterPass
@@ -9,8 +10,8 @@ from characters.rendering.passes.cube_occlusion import CubeOcclusionPass
 from characters.rendering.passes.deferred_composite import DeferredCompositePass
 from characters.rendering.passes.deferred_geometry import DeferredGeometryPass
 from characters.rendering.passes.deferred_lighting import DeferredLightingPass
-from characters.rendering.passes.deferred_occlusion import DeferredOcclusionPass
 from characters.rendering.passes.deferred_scattering import DeferredScatteringPass
+from characters.rendering.passes.deferred_visibility import DeferredVisibilityPass
 from characters.rendering.passes.depth_of_field import DepthOfFieldPass
 from characters.rendering.passes.floor_paths import FloorPathPass
 from characters.rendering.passes.hand_occlusion import HandOcclusionPass
@@ -54,16 +55,18 @@ def _deferred_shading(
 ) -> list[RenderPass]:
     """Return the passes that light what is seen after all of it is drawn."""
     occluded = Effect.AMBIENT_OCCLUSION in effects
-    occlusion = DeferredOcclusionPass(context, programs) if occluded else None
-    passes: list[RenderPass | None] = [
-        DeferredGeometryPass(),
-        DeferredLightingPass(context, programs, blockers, occluded),
-        occlusion,
-    ]
+    visibility = None
+    if blockers is not None or occluded:
+        occlusion = AmbientOcclusion(context, programs) if occluded else None
+        visibility = DeferredVisibilityPass(context, programs, blockers, occlusion)
+    composite = DeferredCompositePass(context, programs)
+    passes: list[RenderPass] = [DeferredGeometryPass()]
+    if visibility is not None:
+        passes.append(visibility)
+    passes.append(DeferredLightingPass(context, programs, visibility))
     if Effect.SKIN_SCATTERING in effects:
-        passes.append(DeferredScatteringPass(context, programs, occlusion))
-    composite = DeferredCompositePass(context, programs, occlusion)
+        passes.append(DeferredScatteringPass(context, programs, adaptive=occluded))
     passes.append(composite)
     if Effect.DEPTH_OF_FIELD in effects:
         passes.append(DepthOfFieldPass(context, programs, composite))
-    return [each for each in passes if each is not None]
+    return passes

@@ -6,39 +6,26 @@ from characters.rendering.deferred_buffers import (
     AMBIENT_UNIT,
     DIFFUSE_UNIT,
     NORMAL_UNIT,
-    POSITION_UNIT,
     SPECULAR_UNIT,
 )
-from characters.rendering.passes.deferred_occlusion import DeferredOcclusionPass
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.resources import CharacterLayer, FrameResources, Region
 
 
 class DeferredCompositePass(RenderPass):
-    """Writes the light of each texel to the character layer.
+    """Writes the light of each texel to the character layer."""
 
-    `occlusion` takes some of the light from all around; None takes none.
-    """
-
-    def __init__(
-        self,
-        context: moderngl.Context,
-        programs: ShaderPrograms,
-        occlusion: DeferredOcclusionPass | None,
-    ) -> None:
-        self._occlusion = occlusion
-        features = [] if occlusion is None else ["OCCLUDED"]
+    def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
         self._shown, self._linear = (
             context.vertex_array(programs.load("full_screen", "deferred_composite", *names), [])
-            for names in (features, [*features, "LINEAR"])
+            for names in ((), ("LINEAR",))
         )
         self.owned = (self._shown, self._linear)
         for triangle in self.owned:
             set_uniforms(
                 triangle.program,
                 normal_id=NORMAL_UNIT,
-                position=POSITION_UNIT,
                 diffuse=DIFFUSE_UNIT,
                 specular=SPECULAR_UNIT,
                 ambient=AMBIENT_UNIT,
@@ -61,6 +48,4 @@ class DeferredCompositePass(RenderPass):
         frame.context.enable_only(moderngl.NOTHING)
         layer.target.geometry.bind()
         layer.target.light.bind()
-        if self._occlusion is not None:
-            self._occlusion.set_uniforms(triangle.program, layer)
         triangle.render(moderngl.TRIANGLES, vertices=3)

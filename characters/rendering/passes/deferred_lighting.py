@@ -3,7 +3,6 @@
 import moderngl
 import numpy as np
 
-from characters.rendering.blocker_map import BIAS_TEXELS, BlockerMap
 from characters.rendering.deferred_buffers import (
     ALBEDO_UNIT,
     NORMAL_UNIT,
@@ -12,6 +11,7 @@ from characters.rendering.deferred_buffers import (
     SURFACES_UNIT,
     surface_records,
 )
+from characters.rendering.passes.deferred_visibility import DeferredVisibilityPass
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.resources import FrameResources, Region
@@ -23,20 +23,19 @@ MAX_SURFACES = 1024
 class DeferredLightingPass(RenderPass):
     """Lights the geometry buffer (pass 2 of deferred shading): diffuse, specular and ambient.
 
-    The key light is what `blockers` leave of it, which the pass for the shadows has drawn; with
-    None, characters do not shadow themselves and each other. `occluded` says that ambient occlusion
-    is found later.
+    `visibility` says how much of the light arrives; None: all of it, and near the table less of the
+    light from all around.
     """
 
     def __init__(
         self,
         context: moderngl.Context,
         programs: ShaderPrograms,
-        blockers: BlockerMap | None,
-        occluded: bool,
+        visibility: DeferredVisibilityPass | None,
     ) -> None:
-        self._blockers = blockers
-        features = [*["SHADOWED"] * bool(blockers), *["OCCLUDED"] * occluded]
+        self._visibility = visibility
+        occluded = visibility is not None and visibility.is_occluded
+        features = [*["VISIBILITY"] * bool(visibility), *["OCCLUDED"] * occluded]
         self._triangle = context.vertex_array(
             programs.load("full_screen", "deferred_lighting", *features), []
         )
@@ -69,9 +68,8 @@ class DeferredLightingPass(RenderPass):
             up=rotation[:, 1],
             table=frame.camera_from_table[:3, 3],
         )
-        if self._blockers is not None:
-            table_from_camera = np.asarray(np.linalg.inv(frame.camera_from_table), float)
-            self._blockers.set_uniforms(self._triangle.program, table_from_camera, BIAS_TEXELS)
+        if self._visibility is not None:
+            self._visibility.set_uniforms(self._triangle.program, layer)
         layer.use_light().clear()
         layer.target.light.is_scattered = False
         frame.context.enable_only(moderngl.NOTHING)

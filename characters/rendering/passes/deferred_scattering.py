@@ -5,13 +5,13 @@ import numpy as np
 
 from characters.rendering.deferred_buffers import (
     ALBEDO_UNIT,
+    AMBIENT_UNIT,
     DIFFUSE_UNIT,
     FALLING_UNIT,
     NORMAL_UNIT,
     POSITION_UNIT,
     SURFACES_UNIT,
 )
-from characters.rendering.passes.deferred_occlusion import DeferredOcclusionPass
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.projection import NEAR_M
@@ -39,16 +39,13 @@ MIN_REACH_TEXELS = 1.0
 
 
 class DeferredScatteringPass(RenderPass):
-    """Scatters the diffuse light of skin; where `occlusion` finds it open, with fewer taps."""
+    """Scatters the diffuse light of skin; if `adaptive`, with fewer taps where skin is open.
 
-    def __init__(
-        self,
-        context: moderngl.Context,
-        programs: ShaderPrograms,
-        occlusion: DeferredOcclusionPass | None,
-    ) -> None:
-        self._occlusion = occlusion
-        features = () if occlusion is None else ("ADAPTIVE",)
+    The adaptive form needs ambient occlusion, which is part of the ambient light.
+    """
+
+    def __init__(self, context: moderngl.Context, programs: ShaderPrograms, adaptive: bool) -> None:
+        features = ("ADAPTIVE",) if adaptive else ()
         self._triangle = context.vertex_array(
             programs.load("full_screen", "deferred_scattering", *features), []
         )
@@ -59,6 +56,7 @@ class DeferredScatteringPass(RenderPass):
             position=POSITION_UNIT,
             albedo_rough=ALBEDO_UNIT,
             diffuse=DIFFUSE_UNIT,
+            ambient=AMBIENT_UNIT,
             falling=FALLING_UNIT,
             surfaces=SURFACES_UNIT,
             level_radius=LEVEL_RADII_M,
@@ -82,8 +80,6 @@ class DeferredScatteringPass(RenderPass):
             self._triangle.program,
             focal=float(target.fineness * frame.camera_matrix[1, 1]),
         )
-        if self._occlusion is not None:
-            self._occlusion.set_uniforms(self._triangle.program, layer)
         self._triangle.render(moderngl.TRIANGLES, vertices=3)
         target.light.is_scattered = True
 

@@ -85,7 +85,7 @@ class ShadowPass(RenderPass):
         table = self._tables[region.cover is not None]
         region.set_table_uniforms(table.program)
         for shadow in self._maps[: self._count]:
-            set_uniforms(table.program, area=shadow.area, extent=shadow.extent)
+            set_uniforms(table.program, area=shadow.area, extent=shadow.extent, map_share=0.5)
             shadow.texture.use(0)
             table.render(moderngl.TRIANGLE_STRIP, vertices=4)
 

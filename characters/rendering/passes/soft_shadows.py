@@ -14,11 +14,11 @@ from characters.rendering.projection import Rectangle
 from characters.rendering.resources import FrameResources, Region
 from characters.skeleton.pose import Array
 
-TABLE_SIDE = 256
+TABLE_SIDE = 192
 """Texels along each side of the square of the table whose light is found."""
 
 LEFT_UNIT, OPENNESS_UNIT = 0, 1
-"""Texture units of the key light on the table, and of the light from all around."""
+"""Texture units of the light on the table before it is smooth, and of the light from all around."""
 
 
 class SoftShadowPass(ShadowPass):
@@ -33,20 +33,22 @@ class SoftShadowPass(ShadowPass):
     ) -> None:
         super().__init__(context, programs)
         self._blockers = blockers
-        self._find, self._smooth = (
+        self._find, self._combine = (
             context.vertex_array(programs.load("full_screen", name), [])
-            for name in ("table_shadow", "tile_mean")
+            for name in ("table_shadow", "table_factor")
         )
-        self._soft_tables = [
-            context.vertex_array(programs.load("shadow", "soft_table", *defines), [])
-            for defines in ((), ("COVERED",))
-        ]
-        self._left = [context.texture((TABLE_SIDE, TABLE_SIDE), 4) for _ in range(2)]
-        for texture in self._left:
+        side = TABLE_SIDE, TABLE_SIDE
+        self._openness = context.texture(side, 1)
+        self.left = context.texture(side, 4, dtype="f2")
+        """Share of the key light that is left in each texel of the square, linear RGB, and of the
+        light from all around. Means of 4 × 4 texels are smooth."""
+        self._factors = context.texture(side, 4)
+        textures = (self._openness, self.left, self._factors)
+        for texture in textures:
             texture.repeat_x = texture.repeat_y = False
-        self._targets = [context.framebuffer([texture]) for texture in self._left]
-        arrays = (*self._tables, *self._soft_tables, self._find, self._smooth)
-        self.owned = (*arrays, *self._targets, *self._left, blockers)
+        self._targets = [context.framebuffer([texture]) for texture in textures]
+        arrays = (*self._tables, self._find, self._combine)
+        self.owned = (*arrays, *self._targets, *textures, blockers)
         self._extent = np.zeros(4)
 
     def prepare(self, frame: FrameResources) -> Sequence[Rectangle]:
@@ -60,39 +62,25 @@ class SoftShadowPass(ShadowPass):
         extent = _united([shadow.extent for shadow in self._maps[: self._count]])
         spread = lamp.spread(_corners(extent))
         self._extent = extent + [-spread, -spread, spread, spread]
-        self._find_left()
+        self._find_openness()
+        self._find_left(super()._key_share(frame.light))
         self._area = frame.area_of(np.concatenate([casters, _corners(self._extent)]))
         return () if self._area is None else (self._area,)
-
-    def draw(self, frame: FrameResources, region: Region) -> None:
-        """Darken the table, except where real cubes or a hand hide it."""
-        if self._area is None or not self._area.intersection(region.area):
-            return
-        region.target.use_openness(region.area.width, region.area.height).clear(1.0, 1.0, 1.0, 1.0)
-        self._darken(frame, region)
-        region.use()
-        table = self._soft_tables[region.cover is not None]
-        region.set_table_uniforms(table.program)
-        set_uniforms(
-            table.program,
-            area=(*self.square, 1.0),
-            extent=self._extent,
-            key=super()._key_share(frame.light),
-            left=LEFT_UNIT,
-            openness=OPENNESS_UNIT,
-        )
-        self.left.use(LEFT_UNIT)
-        region.target.openness_texture.use(OPENNESS_UNIT)
-        table.render(moderngl.TRIANGLE_STRIP, vertices=4)
 
     def _key_share(self, light: Light) -> Array:
         """Return zero: the maps of `ShadowPass` hold the light from all around alone."""
         return np.zeros(3)
 
-    @property
-    def left(self) -> moderngl.Texture:
-        """Key light that is left in each texel of the square, linear RGB."""
-        return self._left[1]
+    def _darken(self, frame: FrameResources, region: Region) -> None:
+        """Multiply the table by the light that all characters leave."""
+        frame.context.enable_only(moderngl.BLEND)
+        frame.context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
+        table = self._tables[region.cover is not None]
+        region.set_table_uniforms(table.program)
+        area = (*self.square, 1.0)
+        set_uniforms(table.program, area=area, extent=self._extent, map_share=1.0)
+        self._factors.use(0)
+        table.render(moderngl.TRIANGLE_STRIP, vertices=4)
 
     @property
     def square(self) -> tuple[float, float, float]:
@@ -100,18 +88,41 @@ class SoftShadowPass(ShadowPass):
         x, z = self._extent[:2].tolist()
         return x, z, float((self._extent[2:] - self._extent[:2]).max())
 
-    def _find_left(self) -> None:
-        """Find the light that is left in each texel of the square."""
-        context = self._context
-        context.enable_only(moderngl.NOTHING)
+    def _find_openness(self) -> None:
+        """Multiply what the characters leave of the light from all around, in each texel."""
         self._targets[0].use()
-        set_uniforms(self._find.program, area=self.square, side=float(TABLE_SIDE))
+        self._targets[0].clear(1.0, 1.0, 1.0, 1.0)
+        self._context.enable_only(moderngl.BLEND)
+        self._context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
+        x, z, side = self.square
+        square = np.zeros((4, 4))
+        square[0, [0, 3]] = 2.0 / side, -2.0 * x / side - 1.0
+        square[1, [2, 3]] = 2.0 / side, -2.0 * z / side - 1.0
+        square[3, 3] = 1.0
+        table = self._tables[0]
+        set_uniforms(table.program, clip_from_table=square, cube_count=0, map_share=0.5)
+        for shadow in self._maps[: self._count]:
+            set_uniforms(table.program, area=shadow.area, extent=shadow.extent)
+            shadow.texture.use(0)
+            table.render(moderngl.TRIANGLE_STRIP, vertices=4)
+
+    def _find_left(self, key_share: Array) -> None:
+        """Find the light that is left in each texel of the square."""
+        self._context.enable_only(moderngl.NOTHING)
+        self._targets[1].use()
+        set_uniforms(
+            self._find.program,
+            area=self.square,
+            side=float(TABLE_SIDE),
+            openness=OPENNESS_UNIT,
+        )
+        self._openness.use(OPENNESS_UNIT)
         self._blockers.set_uniforms(self._find.program, np.eye(4), bias=0.5)
         self._find.render(moderngl.TRIANGLES, vertices=3)
-        self._targets[1].use()
-        self._left[0].use(0)
-        set_uniforms(self._smooth.program, source=0)
-        self._smooth.render(moderngl.TRIANGLES, vertices=3)
+        self._targets[2].use()
+        self.left.use(LEFT_UNIT)
+        set_uniforms(self._combine.program, left=LEFT_UNIT, key=key_share)
+        self._combine.render(moderngl.TRIANGLES, vertices=3)
 
 
 def _united(extents: Sequence[Array]) -> Array:

@@ -4,9 +4,6 @@
 
 #include "geometry_buffer"
 #include "encoding"
-#ifdef OCCLUDED
-#include "openness"
-#endif
 
 uniform sampler2D diffuse;
 uniform sampler2D specular;
@@ -17,11 +14,8 @@ out vec4 color;
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
     if (!is_seen(texelFetch(normal_id, here, 0).w)) discard;
-    vec3 around = texelFetch(ambient, here, 0).rgb;
-#ifdef OCCLUDED
-    around *= open_share(here, texelFetch(position, here, 0).z);
-#endif
-    vec3 sum = texelFetch(diffuse, here, 0).rgb + texelFetch(specular, here, 0).rgb + around;
+    vec3 sum = texelFetch(diffuse, here, 0).rgb + texelFetch(specular, here, 0).rgb
+             + texelFetch(ambient, here, 0).rgb;
 #ifdef LINEAR
     color = vec4(sum, 1.0);
 #else

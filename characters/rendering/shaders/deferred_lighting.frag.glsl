@@ -4,8 +4,8 @@
 
 #include "geometry_buffer"
 #include "shading"
-#ifdef SHADOWED
-#include "soft_shadow"
+#ifdef VISIBILITY
+#include "visibility"
 #endif
 
 uniform sampler2D surfaces; // a row for each surface, see surface_records
@@ -16,7 +16,7 @@ const float NEAR_TABLE = 0.28;  // share of a character's height that counts as 
 
 layout(location = 0) out vec4 diffuse;
 layout(location = 1) out vec4 specular;
-layout(location = 2) out vec4 ambient;
+layout(location = 2) out vec4 ambient;  // and the share of the light from all around that arrives
 layout(location = 3) out vec4 falling;  // light that falls on skin, and 1; 0 elsewhere
 
 void main() {
@@ -34,7 +34,7 @@ void main() {
     vec3 toward = normalize(-p);
     float rise = 0.5 + 0.5 * dot(n.xyz, up);
 #ifdef OCCLUDED
-    float above = 1.0;          // what is near is found later
+    float above = 1.0;          // what is near the table is known better
 #else
     float above = dot(p - table, up) / (NEAR_TABLE * glow_height.w);
 #endif
@@ -46,15 +46,13 @@ void main() {
         vec3 around = light_around(rise, above);
         light = reflected(albedo.rgb, shade.w, albedo.w, n.xyz, toward, around);
     }
-    vec3 left = vec3(1.0);
-#ifdef SHADOWED
-    left = key_left(p, here);
-    light.diffuse *= left;
-    light.specular *= left;
+    vec4 visible = vec4(1.0);
+#ifdef VISIBILITY
+    visible = visible_at(here, p.z);
 #endif
-    diffuse = vec4(light.diffuse, 1.0);
-    specular = vec4(light.specular + glow_height.rgb, 1.0);
-    ambient = vec4(light.ambient, 1.0);
+    diffuse = vec4(visible.rgb * light.diffuse, 1.0);
+    specular = vec4(visible.rgb * light.specular + glow_height.rgb, 1.0);
+    ambient = visible.a * vec4(light.ambient, 1.0);
     bool skin = texelFetch(surfaces, ivec2(2, surface), 0).x > 0.0 && toon.x < 0.5;
-    falling = skin ? vec4(left * key * wrapped(dot(n.xyz, to_light)), 1.0) : vec4(0.0);
+    falling = skin ? vec4(visible.rgb * key * wrapped(dot(n.xyz, to_light)), 1.0) : vec4(0.0);
 }

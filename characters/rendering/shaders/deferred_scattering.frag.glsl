@@ -6,15 +6,13 @@
 
 #include "geometry_buffer"
 #include "tile_offset"
-#ifdef ADAPTIVE
-#include "openness"
-#endif
 
 const int LEVELS = 3;
 const int TAPS = 12;                // of each level
 const float GOLDEN_ANGLE = 2.39996323;
 
 uniform sampler2D diffuse;
+uniform sampler2D ambient;          // with the share of it that arrives
 uniform sampler2D falling;          // light that falls on skin, and 1; 0 elsewhere
 uniform sampler2D surfaces;         // a row for each surface, see surface_records
 uniform vec3 level_radius;          // of each level, for skin of scale 1 [m]
@@ -63,7 +61,7 @@ void main() {
     vec3 radius = scale * level_radius;
     float wide = 1.0, narrow = 1.0; // how far the wide levels, and the narrow one, replace the light itself
 #ifdef ADAPTIVE
-    float open = open_share(here, depth);
+    float open = texelFetch(ambient, here, 0).a;
     float soft = 0.25 * (open_limits.y - open_limits.x);
     wide = 1.0 - smoothstep(open_limits.x - soft, open_limits.x + soft, open);
     narrow = 1.0 - smoothstep(open_limits.y - soft, open_limits.y + soft, open);

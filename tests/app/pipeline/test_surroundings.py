@@ -73,10 +73,12 @@ def test_the_focus_follows_the_cube_in_about_half_a_second(seen):
     autofocus = Autofocus()
     assert autofocus.update(replace(state, camera_from_cube=None)) is None
     near = autofocus.update(state)
+    assert near is not None
     further = state.camera_from_cube.copy()
     further[2, 3] += 0.2
     moved = replace(state, camera_from_cube=further, timestamp=state.timestamp + FOCUSING_S)
     found = autofocus.update(moved)
+    assert found is not None
     assert found.nearest - near.nearest == pytest.approx(0.2 * (1 - np.exp(-1)))
     lost = autofocus.update(replace(moved, camera_from_cube=None))
     assert lost == found
