@@ -48,16 +48,13 @@ class BlockerMap:
         context.blend_equation = moderngl.MIN, moderngl.MIN
         # Faces that look away from the lamp are drawn: what it lights does not shadow itself.
         context.front_face, context.cull_face = "cw", "front"
-        surface = 0
         for character in frame.characters:
             for part in character.skinned.surfaces:
-                surface += 1
                 array = character.skinned.array(part.features | {CASTER})
                 set_uniforms(
                     array.program,
                     clip_from_table=lamp.clip_from_table,
                     lamp_axis=lamp.lamp_from_table[2],
-                    surface_id=float(surface),
                 )
                 part.render(context, array)
         context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD

@@ -192,17 +192,22 @@ def _emission(material: Json, images: _ImageDecoder) -> tuple[float, float, floa
     return red, green, blue
 
 
+BLENDED_CUTOFF = 0.49
+"""Alpha that counts as solid where blending is not drawn. Half-transparent surfaces are common; with
+a cutoff of one half, rounding would make holes in them."""
+
+
 def _cutoff(material: Json) -> float | None:
     """Return the alpha below which nothing is drawn.
 
-    Where blending is not drawn, it is a cutoff of one half: opaque lashes would be solid sheets.
+    Where blending is not drawn, there is a cutoff too: opaque lashes would be solid sheets.
     """
     mode = material.get("alphaMode", "OPAQUE")
     if mode == "OPAQUE":
         return None
     if mode not in ("MASK", "BLEND"):
         raise DamagedFileError(f"alphaMode is {mode!r:.20}")
-    return float(material.get("alphaCutoff", 0.5)) if mode == "MASK" else 0.5
+    return float(material.get("alphaCutoff", 0.5)) if mode == "MASK" else BLENDED_CUTOFF
 
 
 class MaterialWriter:

@@ -43,6 +43,9 @@ class Surface:
     features: frozenset[str]
     """Result of `surface_features`."""
 
+    screen_layer: int
+    """Its number among the partly transparent surfaces of its character."""
+
     array: moderngl.VertexArray
     """All triangles, with the program for these features."""
 
@@ -65,6 +68,7 @@ class Surface:
                 cutoff=material.alpha_cutoff or 0.0,
                 bump_scale=material.normal_scale,
                 glow=material.emissive,
+                screen_layer=self.screen_layer,
             )
         if material.toon is not None:
             set_uniforms(
@@ -113,7 +117,8 @@ class SurfaceBuffers:
                 if image is not None
             )
             array = self.array(features)
-            surfaces.append(Surface(first, count, material, features, array, textures))
+            layer = sum(BLENDED in each.features for each in surfaces)
+            surfaces.append(Surface(first, count, material, features, layer, array, textures))
             first += count
         return tuple(surfaces)
 

@@ -6,7 +6,6 @@
 #include "surface"
 #ifdef CASTER
 uniform vec4 lamp_axis;     // of the table frame: distance from the lamp
-uniform float surface_id;
 
 out vec4 blocked;           // nearest distance for red, green and blue [m]
 
@@ -17,7 +16,7 @@ void main() {
 #ifdef BLENDED
     // The covered share filters the light; of an opaque surface, nothing passes.
     vec3 passing = (1.0 - surface_alpha) + min(surface_alpha, 1.0 - surface_alpha) * albedo;
-    blocking = vec3(lessThan(vec3(screen_door(surface_id)), 1.0 - passing));
+    blocking = vec3(lessThan(vec3(screen_door()), 1.0 - passing));
 #endif
     blocked = vec4(mix(vec3(1e3), vec3(away), blocking), 0.0);
 }
@@ -51,7 +50,7 @@ out vec4 color;
 void main() {
     vec3 albedo = surface_albedo();
 #if defined(GEOMETRY) && defined(BLENDED)
-    if (screen_door(surface_id) >= surface_alpha) discard;
+    if (screen_door() >= surface_alpha) discard;
 #endif
     vec2 finish = surface_finish();
     vec3 n = surface_normal();

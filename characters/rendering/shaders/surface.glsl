@@ -61,12 +61,14 @@ float surface_alpha;
 
 // Threshold, 0…1, that is even over a tile of 4 × 4 texels. Three layers behind each other cover independently:
 // any two of the three orders are a net (every half, or quarter, of one has its share in the other).
-float screen_door(float layer) {
+uniform int screen_layer;       // of this surface, among those that are partly transparent
+
+float screen_door() {
     const int ORDER[16] = int[](0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5);  // B. E. Bayer, 1973
     ivec2 at = ivec2(gl_FragCoord.xy) & 3;
     int order = ORDER[at.x + 4 * at.y], turned = 0;
     for (int bit = 0; bit < 4; ++bit) turned |= ((order >> bit) & 1) << (3 - bit);
-    int kind = int(layer) % 3;
+    int kind = screen_layer % 3;
     int both = ((order ^ turned) & 12) | (order & 3);
     int found = kind == 0 ? order : kind == 1 ? turned : both;
     return (float(found) + 0.5) / 16.0;
