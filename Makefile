@@ -18,12 +18,13 @@ test: .venv/ready-dev  ## run the whole test suite on all cores
 	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
 
 # The campaigns run for longer than a test suite may take, over random faults in virtual time.
-campaign: .venv/ready-dev  ## a million exchanges with robots, what the checksum misses, a day without growth, an afternoon of key presses, 10⁵ blocks of BML
+campaign: .venv/ready-dev  ## a million exchanges with robots, what the checksum misses, a day without growth, an afternoon of key presses, 10⁵ blocks of BML, ten minutes of pictures
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e6
 	$(BIN)/python -m tests.campaigns.crc
 	$(BIN)/python -m tests.campaigns.soak --hours 24
 	$(BIN)/python -m tests.campaigns.afternoon
 	$(BIN)/python -m tests.campaigns.behaviour
+	$(BIN)/python -m tests.campaigns.drawing
 
 campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e5
@@ -31,6 +32,7 @@ campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.soak --hours 2.4
 	$(BIN)/python -m tests.campaigns.afternoon --scenes "every key" "record and replay"
 	$(BIN)/python -m tests.campaigns.behaviour --blocks 10000
+	$(BIN)/python -m tests.campaigns.drawing --minutes 1
 
 check: .venv/ready-dev  ## check formatting, lint, the floors of the rooms, and types
 	$(BIN)/ruff format --check .

@@ -71,8 +71,9 @@ class LightBuffer:
         """What stands for `diffuse` after it was scattered in skin."""
         self.scattered_framebuffer = context.framebuffer([self.scattered])
         """Draws on it."""
-        self.sum = _texture(context, size, "f2")
-        """Linear RGB of all light, and 1, for passes that change the picture of characters."""
+        self.sum = self.falling
+        """Linear RGB of all light, and 1, for passes that change the picture of characters. It
+        takes the place of `falling`, which nothing needs any more then."""
         self.sum_framebuffer = context.framebuffer([self.sum])
         """Draws on it."""
         self.is_scattered = False
@@ -89,7 +90,7 @@ class LightBuffer:
         """Release the textures; a second call does nothing."""
         for framebuffer in (self.framebuffer, self.scattered_framebuffer, self.sum_framebuffer):
             framebuffer.release()
-        for texture in (self.scattered, self.sum, *self._layers):
+        for texture in (self.scattered, *self._layers):
             texture.release()
 
 

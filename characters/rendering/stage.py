@@ -67,7 +67,7 @@ class Stage:
         self._undistorter = Undistorter(size)
         self._light = LightEstimator()
         self._quality = FULL
-        self._targets = RenderTargets(context, FULL.fineness)
+        self._targets = RenderTargets(context, FULL)
         self._cover = CoverTexture(context)
         self._characters = CharacterCache(context, self.programs)
 
@@ -81,7 +81,7 @@ class Stage:
         if quality != self._quality:
             self._context.detect_framebuffer(0).use()
             self._targets.release()
-            self._targets = RenderTargets(self._context, quality.fineness)
+            self._targets = RenderTargets(self._context, quality)
             self._quality = quality
             added = [each for each in self.passes if each not in self._own_passes]
             for render_pass in self._own_passes:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.rendering.deferred_buffers import GeometryBuffer, LightBuffer
+from characters.rendering.quality import Quality
 
 Image = NDArray[np.uint8]
 
@@ -20,8 +21,8 @@ MAX_WASTE = 1.5
 """How many times more pixels than needed a target may have: all are filtered, but a new target
 costs more."""
 
-MAX_TARGETS = 12
-"""How many targets are kept."""
+MAX_TARGETS, MAX_DEFERRED_TARGETS = 12, 3
+"""How many targets are kept; those of deferred shading take ten times as much memory."""
 
 
 class RenderTarget:
@@ -85,10 +86,11 @@ class RenderTarget:
 
 
 class RenderTargets:
-    """Keeps targets of a few sizes; the least recently used is released first."""
+    """Keeps targets of a few sizes for a quality; the least recently used is released first."""
 
-    def __init__(self, context: moderngl.Context, fineness: int) -> None:
-        self._context, self._fineness = context, fineness
+    def __init__(self, context: moderngl.Context, quality: Quality) -> None:
+        self._context, self._fineness = context, quality.fineness
+        self._limit = MAX_DEFERRED_TARGETS if quality.deferred else MAX_TARGETS
         self._kept: OrderedDict[tuple[int, int], RenderTarget] = OrderedDict()
 
     def at_least(self, width: int, height: int) -> RenderTarget:
@@ -104,7 +106,7 @@ class RenderTargets:
         chosen = min(fitting, key=lambda kept: kept[0] * kept[1], default=size)
         target = self._kept.pop(chosen, None) or RenderTarget(self._context, chosen, self._fineness)
         self._kept[chosen] = target
-        if len(self._kept) > MAX_TARGETS:
+        if len(self._kept) > self._limit:
             self._kept.popitem(last=False)[1].release()
         return target
 

@@ -193,8 +193,8 @@ def _emission(material: Json, images: _ImageDecoder) -> tuple[float, float, floa
 
 
 BLENDED_CUTOFF = 0.49
-"""Alpha that counts as solid where blending is not drawn. Half-transparent surfaces are common; with
-a cutoff of one half, rounding would make holes in them."""
+"""Alpha that counts as solid where blending is not drawn. Half-transparent surfaces are common;
+with a cutoff of one half, rounding would make holes in them."""
 
 
 def _cutoff(material: Json) -> float | None:
