@@ -202,8 +202,10 @@ def _with_sidecar(character: Character, path: Path) -> Character:
                 f"{sidecar_path}: joints.{part}: no joint {joint!r}; there are "
                 f"{', '.join(character.skeleton.names)}"
             )
+    face = sidecar.face
     found = replace(
         character,
+        meshes=character.meshes if face is None else face.on(character.meshes, str(sidecar_path)),
         semantics={**character.semantics, **sidecar.joints},
         plan=sidecar.plan,
         body_layers=sidecar.body_layers,

@@ -27,6 +27,20 @@ class ToonShading:
 
 
 @dataclass(frozen=True)
+class FaceMaps:
+    """What the skin of a face does beyond its shape, in texture coordinates."""
+
+    heights: NDArray[np.float32]
+    """Wrinkle layers, (12, height, width): -1 the deepest groove, 0 flat … 1; see `face_maps`."""
+
+    blood: NDArray[np.float32]
+    """How much blood shows, (height, width), 0…1."""
+
+    depth: float
+    """Height of 1 [m in the character frame]."""
+
+
+@dataclass(frozen=True)
 class Material:
     """The part of glTF's metallic-roughness material that is drawn."""
 
@@ -69,6 +83,9 @@ class Material:
 
     toon: ToonShading | None = None
     """Its shading if it is MToon's; metalness and roughness do not count then."""
+
+    face: FaceMaps | None = None
+    """Wrinkles and blood, of the file beside a character."""
 
     @property
     def textures(self) -> tuple[NDArray[np.uint8] | None, ...]:

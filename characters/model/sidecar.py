@@ -1,4 +1,4 @@
-"""The sidecar file of a character, `fox.toml` for `fox.glb`: parts, motions, layers, springs."""
+"""The sidecar file of a character, `fox.toml` for `fox.glb`: parts, motions, springs, face …"""
 
 import difflib
 import os
@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from characters.errors import CharacterError
+from characters.model.face_maps import FaceTable, read_face_table
 from characters.model.files import read_file
 from characters.model.springs import SpringGroup, read_spring_groups
 from characters.motion.trees.plan import Plan
@@ -18,7 +19,7 @@ from characters.skeleton.anatomy import BODY_PARTS
 _MAX_BYTES = 1_000_000  # larger files are not written by hand
 
 
-_TABLES = ("joints", "body", "springs", *PLAN_TABLES)
+_TABLES = ("joints", "body", "springs", "face", *PLAN_TABLES)
 
 BODY_LAYERS = ("dependent_joints", "self_collision")
 """Layers that the table [body] switches on; `characters.control.layers` makes them."""
@@ -39,6 +40,9 @@ class Sidecar:
 
     springs: tuple[SpringGroup, ...] = ()
     """Joints that swing after the body."""
+
+    face: FaceTable | None = None
+    """Wrinkles and blood of its face."""
 
 
 def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
@@ -66,7 +70,8 @@ def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
             raise CharacterError(f"{path}: body.{name}: the table [body] may have {known}")
     layers = tuple(name for name in BODY_LAYERS if body.get(name))
     plan = read_plan(document, str(path), clips)
-    return Sidecar(joints, plan, layers, read_spring_groups(document, str(path)))
+    springs = read_spring_groups(document, str(path))
+    return Sidecar(joints, plan, layers, springs, read_face_table(document, path))
 
 
 def _document(path: Path) -> dict[str, Any]:

@@ -153,6 +153,12 @@ class SceneCharacter:
     posed: PosedCharacter
     """Its pose and its place on the table."""
 
+    wrinkles: bool = True
+    """Whether its skin wrinkles as its face moves, if the character has maps for it."""
+
+    blood: float = 0.0
+    """Blood in the skin of its face: -1 pale … 1 flushed, if the character has a map for it."""
+
 
 @dataclass(frozen=True)
 class FloorPath:

@@ -57,6 +57,7 @@ class CharacterCache:
                 joints = each.posed.pose.globals(each.character.skeleton)
                 enclosing = skinned.skin(joints, place, each.posed.pose.morphs)
             if enclosing is not None:
+                skinned.show_face(each.posed.pose.morphs, each.blood, place, each.wrinkles)
                 height = skinned.height * float(np.linalg.norm(place[:3, 1]))
                 instances.append(CharacterInstance(skinned, enclosing, height))
         self._evict(copies.total())

@@ -3,6 +3,9 @@
 import moderngl
 import numpy as np
 
+from characters.face.action_units import ActionUnits
+from characters.rendering.geometry.face_split import split_faces
+from characters.rendering.geometry.face_texture import FaceTexture
 from characters.rendering.geometry.morph_mixer import MorphMixer
 from characters.rendering.geometry.surfaces import SurfaceBuffers
 from characters.rendering.geometry.vertices import CharacterVertices
@@ -39,7 +42,8 @@ class SkinnedCharacter:
         self._shapes = context.buffer(vertices.shape_records)
         joints = context.buffer(np.hstack([vertices.joints.view(np.float32), vertices.weights]))
         colors = context.buffer(np.hstack([vertices.colors, vertices.uvs]))
-        indices = context.buffer(vertices.indices)
+        splits, again = split_faces(vertices)
+        indices = context.buffer(np.concatenate([vertices.indices, again]))
         simplified, self.caster_runs = vertices.simplified(SHADOW_CELLS)
         caster_indices = context.buffer(simplified)
         self.skinned = context.buffer(reserve=24 * len(vertices.positions))
@@ -60,8 +64,15 @@ class SkinnedCharacter:
         )
         """Draws its shadow, in runs of indices `caster_runs`: (first, count, double-sided)."""
         self._surfaces = SurfaceBuffers(context, programs, self.skinned, colors, indices)
-        self.surfaces = self._surfaces.surfaces(vertices)
-        """A run of triangles for each material."""
+        self._plain = self._surfaces.surfaces(vertices)
+        self.surfaces = self._plain
+        """A run of triangles for each material; those of a face that shows something, apart."""
+        self.face: FaceTexture | None = None
+        """Wrinkles and blood, if its sidecar file has them."""
+        maps = vertices.materials[splits[0].run][0].face if splits else None
+        if maps is not None:
+            self.face = FaceTexture(context, maps, ActionUnits.of(character.morphs))
+            self._faced = self._surfaces.with_faces(self._plain, splits, self.face)
         self._buffers = (self._shapes, joints, colors, indices, caster_indices, self.skinned)
 
     def skin(
@@ -92,7 +103,19 @@ class SkinnedCharacter:
         """Return all triangles with the program for some features."""
         return self._surfaces.array(features)
 
+    def show_face(
+        self, morphs: Array | None, blood: float, table_from_character: Array, wrinkles: bool
+    ) -> None:
+        """Set wrinkles and blood of the skin; see `FaceTexture.update`."""
+        if self.face is None:
+            return
+        scale = float(np.linalg.norm(table_from_character[:3, 1]))
+        shown = self.face.update(morphs, blood, scale, wrinkles)
+        self.surfaces = self._faced if shown else self._plain
+
     def release(self) -> None:
         """Release the buffers; a second call does nothing."""
         for each in (self._skinning, self.caster, self._palette, self._surfaces, *self._buffers):
             each.release()
+        if self.face is not None:
+            self.face.release()

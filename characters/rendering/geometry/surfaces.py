@@ -1,6 +1,7 @@
 """The surfaces of a character on the graphics card: materials with textures and programs."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import cv2
 import moderngl
@@ -8,14 +9,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.model.mesh import Material
+from characters.rendering.geometry.face_split import FaceSplit
+from characters.rendering.geometry.face_texture import FaceTexture
 from characters.rendering.geometry.vertices import CharacterVertices
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 
 GL_SRGB8_ALPHA8 = 0x8C43
 """OpenGL's texture format that is decoded from sRGB when it is sampled."""
 
-TEXTURE_UNITS = {"base_texture": 0, "surface_map": 1, "bump_map": 2, "shade_map": 3}
-"""Texture units of a material's base colour, roughness and metalness, normals, and toon shade."""
+TEXTURE_UNITS = {"base_texture": 0, "surface_map": 1, "bump_map": 2, "shade_map": 3, "face_map": 4}
+"""Texture units of a material's base colour, roughness and metalness, normals, and toon shade, and
+of the wrinkles and the blood of a face."""
+
+FACE_FEATURE = "FACE"
+"""What the shaders test to draw wrinkles and blood."""
 
 GEOMETRY, CASTER = "GEOMETRY", "CASTER"
 """Features of programs that write what a surface is like, instead of its colour in the light, and
@@ -25,6 +32,9 @@ BLENDED = "BLENDED"
 """Feature of a surface that is partly transparent, for the programs that can draw it so."""
 
 _COLOR_UNITS = (TEXTURE_UNITS["base_texture"], TEXTURE_UNITS["shade_map"])  # the others are linear
+
+MAPPED_FEATURES = {"TEXTURED", "SURFACE", "BUMPS", "SHADE", FACE_FEATURE}
+"""Features that need texture coordinates."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +62,9 @@ class Surface:
     textures: tuple[tuple[int, moderngl.Texture], ...]
     """Units and textures of the material, see `TEXTURE_UNITS`."""
 
+    face: FaceTexture | None = None
+    """Wrinkles and blood on it."""
+
     def render(self, context: moderngl.Context, array: moderngl.VertexArray) -> None:
         """Draw the triangles with the program of an array, which must fit the features."""
         material = self.material
@@ -78,6 +91,8 @@ class Surface:
                 toony=material.toon.toony,
                 evenness=material.toon.evenness,
             )
+        if self.face is not None:
+            set_uniforms(array.program, **self.face.uniforms)
         for unit, texture in self.textures:
             texture.use(unit)
         (context.disable if material.double_sided else context.enable)(moderngl.CULL_FACE)
@@ -121,6 +136,32 @@ class SurfaceBuffers:
             surfaces.append(Surface(first, count, material, features, layer, array, textures))
             first += count
         return tuple(surfaces)
+
+    def with_faces(
+        self, surfaces: Sequence[Surface], splits: Sequence[FaceSplit], face: FaceTexture
+    ) -> tuple[Surface, ...]:
+        """Return surfaces of which the triangles of `splits` are drawn with a face."""
+        drawn: list[Surface] = []
+        for number, surface in enumerate(surfaces):
+            split = next((each for each in splits if each.run == number), None)
+            if split is None or not split.painted:
+                drawn.append(surface)
+                continue
+            if split.plain:
+                drawn.append(replace(surface, first=split.first, count=split.plain))
+            features = surface.features | {FACE_FEATURE}
+            drawn.append(
+                replace(
+                    surface,
+                    first=split.first + split.plain,
+                    count=split.painted,
+                    features=features,
+                    array=self.array(features),
+                    textures=(*surface.textures, (TEXTURE_UNITS["face_map"], face.texture)),
+                    face=face,
+                )
+            )
+        return tuple(drawn)
 
     def release(self) -> None:
         """Release the arrays and textures; a second call does nothing."""
@@ -200,8 +241,8 @@ def surface_program(programs: ShaderPrograms, features: frozenset[str]) -> moder
     Each set of features is a program of its own: software rendering samples a texture even where a
     condition excludes it, and a plain surface must not pay for the features of others.
     """
-    mapped = {"MAPPED"} if features & {"TEXTURED", "SURFACE", "BUMPS", "SHADE"} else set()
-    placed = {"PLACED"} if features & {"BUMPS", GEOMETRY, CASTER} else set()
+    mapped = {"MAPPED"} if features & MAPPED_FEATURES else set()
+    placed = {"PLACED"} if features & {"BUMPS", GEOMETRY, CASTER, FACE_FEATURE} else set()
     if not features & {GEOMETRY, CASTER}:
         features -= {BLENDED}
     program = programs.load("character", "character", *sorted(features | mapped | placed))

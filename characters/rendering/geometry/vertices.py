@@ -208,9 +208,10 @@ def _material_key(material: Material) -> tuple[object, ...]:
         base_color_texture=None,
         metallic_roughness_texture=None,
         normal_texture=None,
+        face=None,
         toon=None if material.toon is None else replace(material.toon, texture=None),
     )
-    return (rest, *(id(texture) for texture in material.textures))
+    return (rest, id(material.face), *(id(texture) for texture in material.textures))
 
 
 def _material_runs(meshes: Sequence[Mesh]) -> tuple[tuple[Material, int], ...]:

@@ -33,6 +33,9 @@ in float covering;
 
 in vec3 facing;
 in vec3 tint;
+#ifdef FACE
+#include "face"
+#endif
 
 #ifdef BUMPS
 // Perturbs a normal by the normal map. The tangents are the derivatives of position and texture
@@ -100,6 +103,9 @@ vec3 surface_albedo() {
     if (alpha < cutoff) discard;
 #endif
 #endif
+#ifdef FACE
+    albedo = flushed(albedo, texture(face_map, where).z);
+#endif
     return albedo;
 }
 
@@ -116,6 +122,9 @@ vec3 surface_normal() {
     vec3 n = normalize(facing);
 #ifdef BUMPS
     n = bumped(n);
+#endif
+#ifdef FACE
+    n = wrinkled(n, place, where, texture(face_map, where).xy);
 #endif
     return gl_FrontFacing ? n : -n;
 }

@@ -15,6 +15,7 @@ from tools.authoring.human.face import (
     HumanExpression,
     skin_displacement,
 )
+from tools.authoring.human.face_map import mapped
 from tools.authoring.human.hair import HAIR, cowlick, hair_parts
 from tools.authoring.human.mouth import MOUTH_SKIN_EXTENT_M, mouth
 from tools.authoring.human.skull import SKIN, complexion, face_normals, head_shape, lining, on_face
@@ -57,12 +58,12 @@ def head_pieces(skeleton: Skeleton) -> list[Mesh]:
         for sign in (1.0, -1.0)
     ]
     return [
-        morphed(moved, NEUTRAL, EXPRESSIONS),
+        mapped(morphed(moved, NEUTRAL, EXPRESSIONS)),
         sculpt("", [BodyPart(neck, 0.04, soft_skin=0.02)], skeleton),
         replace(locks, normals=even.astype(np.float32)),
         *cowlick(skeleton),
-        *eyelids(skeleton),
-        mouth(skeleton),
+        *map(mapped, eyelids(skeleton)),
+        mapped(mouth(skeleton)),
         *teeth_and_tongue(skeleton),
         *brows,
     ]

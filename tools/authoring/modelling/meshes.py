@@ -67,6 +67,8 @@ def join(name: str, meshes: Sequence[Mesh], material: Material | None = None) ->
     """Return one mesh of several that are bound to the same skeleton."""
     starts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)])
     colors = [np.ones((len(m.positions), 4)) if m.colors is None else m.colors for m in meshes]
+    uvs = [np.zeros((len(m.positions), 2)) if m.uvs is None else m.uvs for m in meshes]
+    mapped = any(mesh.uvs is not None for mesh in meshes)
     return Mesh(
         name=name,
         positions=np.concatenate([mesh.positions for mesh in meshes]),
@@ -78,6 +80,7 @@ def join(name: str, meshes: Sequence[Mesh], material: Material | None = None) ->
         weights=np.concatenate([mesh.weights for mesh in meshes]),
         inverse_bind=meshes[0].inverse_bind,
         colors=np.concatenate(colors).astype(np.float32),
+        uvs=np.concatenate(uvs).astype(np.float32) if mapped else None,
         material=material or meshes[0].material,
         morphs=_joined_morphs(meshes, starts.tolist()),
     )

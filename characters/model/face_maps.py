@@ -1,0 +1,156 @@
+"""Face maps: what skin does beyond its shape, as pictures in the texture coordinates of a head.
+
+Twelve wrinkle layers (Huang, *3D emotional rendering and animation models*, 2013, Table 4.1), and
+where blood shows. A table of the sidecar file names the folder of the pictures:
+
+    [face]
+    maps = "me_face"        # the folder, beside the sidecar file
+    depth_mm = 2.0          # height of white above mid-grey
+    meshes = ["Head"]       # left out: every mesh with texture coordinates
+
+A picture of a layer is grey: 128 is skin at rest, darker a groove, lighter a bulge. In `blood.png`,
+white is where skin flushes most. A picture that is left out is empty.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.errors import CharacterError
+from characters.model.files import read_file
+from characters.model.mesh import FaceMaps, Mesh
+
+WRINKLE_LAYERS: Mapping[int, tuple[int, ...]] = {
+    1: (0,),
+    2: (1, 2),
+    4: (3,),
+    6: (4, 5),
+    10: (6, 7),
+    12: (8, 9),
+    20: (10, 11),
+}
+"""Layers of each action unit; of two layers, the first is the left side (Huang 2013, Table 4.1)."""
+
+LAYER_NAMES = tuple(
+    f"au{unit}" + ("" if len(layers) == 1 else side)
+    for unit, layers in WRINKLE_LAYERS.items()
+    for side in ("_left", "_right")[: len(layers)]
+)
+"""Names of the pictures of the layers, without suffix, in the order of the layers."""
+
+BLOOD_NAME = "blood"
+"""Name of the picture of where blood shows."""
+
+SUFFIX = ".png"
+"""Of the pictures."""
+
+DEPTH_MM = 1.0
+"""Height of white above mid-grey where the table does not say [mm]."""
+
+MAX_SIDE_PX = 4096
+"""Pictures may be this large [px]."""
+
+_MAX_BYTES = 64_000_000
+_KEYS = ("maps", "depth_mm", "meshes")
+_REST_SHARE = 128 / 255  # the grey of skin at rest
+
+
+@dataclass(frozen=True)
+class FaceTable:
+    """The table [face] of a sidecar file."""
+
+    maps: FaceMaps
+    """Its pictures."""
+
+    meshes: tuple[str, ...]
+    """Names of the meshes that they are for; empty for all with texture coordinates."""
+
+    def on(self, meshes: Sequence[Mesh], source: str) -> tuple[Mesh, ...]:
+        """Return a character's meshes, those of this table with its maps; `source` is the file.
+
+        Raises
+        ------
+        CharacterError
+            There is no such mesh, or it has no texture coordinates.
+        """
+        able = [mesh.name for mesh in meshes if mesh.uvs is not None]
+        for name in self.meshes or able[:1] or ("",):
+            if name not in able:
+                known = ", ".join(dict.fromkeys(able)) or "none in this character"
+                raise CharacterError(
+                    f"{source}: face.meshes: no mesh {name!r} with texture coordinates; there are "
+                    f"{known}"
+                )
+        wanted = self.meshes or able
+        return tuple(
+            replace(mesh, material=replace(mesh.material, face=self.maps))
+            if mesh.name in wanted and mesh.uvs is not None
+            else mesh
+            for mesh in meshes
+        )
+
+
+def read_face_table(document: Mapping[str, Any], path: Path) -> FaceTable | None:
+    """Return the table [face] of a sidecar file at `path`; None if it has none.
+
+    Raises
+    ------
+    CharacterError
+        It has another key or value than those above, or a picture cannot be read.
+    """
+    table = document.get("face")
+    if table is None:
+        return None
+    if not isinstance(table, dict) or not isinstance(table.get("maps"), str):
+        raise CharacterError(f'{path}: face: write maps = "name of the folder of the pictures"')
+    for key in table:
+        if key not in _KEYS:
+            raise CharacterError(f"{path}: face.{key}: the table [face] may have {_KEYS}")
+    depth = table.get("depth_mm", DEPTH_MM)
+    if isinstance(depth, bool) or not isinstance(depth, int | float) or not 0.0 < depth < 1e3:
+        raise CharacterError(f"{path}: face.depth_mm: {depth!r} is not a height above 0 [mm]")
+    meshes = table.get("meshes", [])
+    if not isinstance(meshes, list) or not all(isinstance(name, str) for name in meshes):
+        raise CharacterError(f'{path}: face.meshes: write ["name of a mesh", …]')
+    return FaceTable(read_face_maps(path.parent / table["maps"], 1e-3 * depth), tuple(meshes))
+
+
+def read_face_maps(folder: Path, depth_m: float) -> FaceMaps:
+    """Return the pictures of a folder; see the top of this module for their meaning."""
+    names = [name for name in (*LAYER_NAMES, BLOOD_NAME) if (folder / f"{name}{SUFFIX}").exists()]
+    if not names:
+        raise CharacterError(
+            f"{folder}: no picture of a face in it; there may be "
+            f"{', '.join(name + SUFFIX for name in (*LAYER_NAMES, BLOOD_NAME))}"
+        )
+    pictures = {name: _shares(folder / f"{name}{SUFFIX}") for name in names}
+    shape = pictures[names[0]].shape
+    for name, picture in pictures.items():
+        if picture.shape != shape:
+            raise CharacterError(
+                f"{folder / name}{SUFFIX}: {picture.shape[1]}×{picture.shape[0]} px, but "
+                f"{names[0]}{SUFFIX} has {shape[1]}×{shape[0]}; make all of one size"
+            )
+    flat = np.full(shape, _REST_SHARE, np.float32)
+    heights = np.stack([pictures.get(name, flat) - flat for name in LAYER_NAMES])
+    heights /= np.float32(1.0 - _REST_SHARE)
+    return FaceMaps(heights, pictures.get(BLOOD_NAME, np.zeros(shape, np.float32)), depth_m)
+
+
+def _shares(path: Path) -> NDArray[np.float32]:
+    """Return a grey picture of 8 or 16 bits as shares of white, (height, width)."""
+    data = np.frombuffer(read_file(path, _MAX_BYTES), np.uint8)
+    read = None
+    if data.size:
+        read = cv2.imdecode(data, cv2.IMREAD_GRAYSCALE | cv2.IMREAD_ANYDEPTH)
+    if read is None or read.dtype not in (np.uint8, np.uint16):
+        raise CharacterError(f"{path}: not a picture of 8 or 16 bits; save it as PNG")
+    if max(read.shape) > MAX_SIDE_PX or min(read.shape) < 2:
+        raise CharacterError(f"{path}: a picture has 2 to {MAX_SIDE_PX} pixels along each side")
+    white = np.float32(255.0 if read.dtype == np.uint8 else 65535.0)
+    return np.asarray(read.astype(np.float32) / white, np.float32)

@@ -1,0 +1,210 @@
+"""The bundled explorer's face map: texture coordinates of its skin, wrinkle layers, and blood.
+
+The map is a cylinder around the head, cut at the back: across is the direction from the middle of
+the head, down is the height. Wrinkles are sums of Gaussian grooves along curves, with bulges of the
+skin between them, drawn from anatomy: they run across the pull of the muscle (Duchenne 1862; Ekman
+and Friesen 1978). Their places are those of the face's own brows, eyes, nose and mouth.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.model.face_maps import BLOOD_NAME, LAYER_NAMES, SUFFIX
+from characters.model.mesh import Mesh
+from tools.authoring.modelling.curves import smoothstep
+from tools.authoring.modelling.shapes import Array
+
+MAP_SIZE_PX = (640, 320)
+"""Width and height of the pictures [px]: about 1.3 mm of the head a pixel."""
+
+MAP_RANGE_RAD = np.deg2rad(120.0)
+"""Directions to both sides that the map has; what is further back is skin under hair."""
+
+MAP_BOTTOM_M, MAP_TOP_M = 1.24, 1.66
+"""Heights that the map has [m]."""
+
+SEED = 2013
+"""Of the small irregularities of the lines."""
+
+
+@dataclass(frozen=True)
+class Groove:
+    """A line in the skin: a narrow groove between two low bulges."""
+
+    line: tuple[tuple[float, float], ...]
+    """Points x, y on the face, from the front [m]; a smooth curve leads through them."""
+
+    width: float = 0.0042
+    """Standard deviation of the groove [m]."""
+
+    depth: float = 1.0
+    """Depth in its middle, 0…1; it runs out at both ends."""
+
+    cross: float = 0.35
+    """Height of the bulges at its sides, as a share of the depth."""
+
+
+FOREHEAD = (1.577, 1.558, 1.538)
+"""Heights of the lines across the forehead in the middle [m]."""
+
+_AU1 = tuple(
+    Groove(((-0.062, y - 0.006), (-0.030, y + 0.002), (0.0, y - 0.002), (0.030, y + 0.002),
+            (0.062, y - 0.006)), depth=d)
+    for y, d in zip(FOREHEAD, (0.75, 1.0, 0.8), strict=True)
+)  # fmt: skip
+_AU2 = tuple(
+    Groove(((0.054, y), (0.085, y + 0.003), (0.118, y - 0.010), (0.140, y - 0.030)), depth=d)
+    for y, d in ((1.566, 0.7), (1.546, 1.0), (1.527, 0.8))
+)
+_AU4 = tuple(
+    Groove(((side * 0.0125, 1.492), (side * 0.0105, 1.513), (side * 0.0150, 1.548)), depth=d)
+    for side, d in ((1.0, 1.0), (-1.0, 0.9))
+) + (Groove(((-0.021, 1.484), (0.0, 1.480), (0.021, 1.484)), depth=0.6),)
+_AU6 = (
+    Groove(((0.152, 1.452), (0.166, 1.464), (0.176, 1.481)), 0.0034, 0.8),
+    Groove(((0.154, 1.440), (0.170, 1.444), (0.183, 1.452)), 0.0034, 1.0),
+    Groove(((0.153, 1.428), (0.168, 1.423), (0.181, 1.421)), 0.0034, 0.9),
+    Groove(((0.147, 1.415), (0.160, 1.404), (0.171, 1.396)), 0.0034, 0.6),
+)
+_AU10 = (Groove(((0.031, 1.408), (0.049, 1.392), (0.066, 1.369), (0.073, 1.350)), 0.0055),)
+_AU12 = (
+    Groove(((0.034, 1.400), (0.070, 1.388), (0.100, 1.368), (0.113, 1.343)), 0.0060),
+    Groove(((0.117, 1.372), (0.128, 1.352), (0.129, 1.332)), 0.0050, 0.5),
+)
+_AU20 = (
+    Groove(((0.083, 1.360), (0.088, 1.343), (0.082, 1.322)), 0.0040),
+    Groove(((0.098, 1.362), (0.104, 1.342), (0.097, 1.318)), 0.0044, 0.7),
+)
+
+GROOVES = {"au1": _AU1, "au2": _AU2, "au4": _AU4, "au6": _AU6, "au10": _AU10, "au12": _AU12,
+           "au20": _AU20}  # fmt: skip
+"""Grooves of each action unit; those with a layer for each side are of the left one."""
+
+BLOOD_SPOTS = (
+    # x, y, half width and height [m], strength: cheeks, nose, ears, a little of forehead and chin
+    (0.122, 1.366, 0.060, 0.042, 1.0),
+    (0.0, 1.392, 0.030, 0.024, 0.85),
+    (0.216, 1.415, 0.050, 0.070, 0.9),
+    (0.0, 1.545, 0.150, 0.060, 0.30),
+    (0.0, 1.285, 0.060, 0.030, 0.30),
+)
+"""Where the vessels of the face are widest, on the left side (Jimenez et al. 2010, figure 2)."""
+
+ON_FACE = Callable[[Array, Array], Array]
+
+
+def mapped(mesh: Mesh) -> Mesh:
+    """Return a piece of skin with its texture coordinates."""
+    return replace(mesh, uvs=face_uvs(mesh.positions.astype(float)).astype(np.float32))
+
+
+def face_uvs(points: Array) -> Array:
+    """Return the texture coordinates of points of the head, (n, 3) to (n, 2).
+
+    Behind the map, skin lies on its border: there is no cut with triangles across the whole map.
+    """
+    direction = np.arctan2(points[:, 0], points[:, 2])
+    u = 0.5 + 0.5 * np.clip(direction / MAP_RANGE_RAD, -1.0, 1.0)
+    v = np.clip((MAP_TOP_M - points[:, 1]) / (MAP_TOP_M - MAP_BOTTOM_M), 0.0, 1.0)
+    behind = (np.abs(direction) - MAP_RANGE_RAD) / (np.pi - MAP_RANGE_RAD)
+    return np.stack([u, v * (1.0 - smoothstep(behind))], axis=-1)
+
+
+def save_face_maps(folder: Path, on_face: ON_FACE) -> list[Path]:
+    """Write all pictures of the map and return their paths.
+
+    Parameters
+    ----------
+    on_face : returns the points of the face at x, y, (…, 3)
+    """
+    folder.mkdir(exist_ok=True)
+    written = []
+    for name, picture in (*wrinkle_pictures(on_face), (BLOOD_NAME, blood_picture(on_face))):
+        written.append(folder / f"{name}{SUFFIX}")
+        cv2.imwrite(str(written[-1]), picture, [cv2.IMWRITE_PNG_COMPRESSION, 9])
+    return written
+
+
+def wrinkle_pictures(on_face: ON_FACE) -> Iterator[tuple[str, NDArray[np.uint8]]]:
+    """Yield name and picture of each layer: 128 is flat, darker is deeper."""
+    random = np.random.default_rng(SEED)
+    for name in LAYER_NAMES:
+        unit, _, side = name.partition("_")
+        grooves = [
+            _irregular(groove, random) if side != "right" else groove for groove in GROOVES[unit]
+        ]
+        height = sum(_height(groove, on_face) for groove in grooves)
+        picture = np.clip(np.round(128.0 + 127.0 * np.asarray(height)), 0, 255).astype(np.uint8)
+        yield name, picture if side != "right" else picture[:, ::-1]
+
+
+def blood_picture(on_face: ON_FACE) -> NDArray[np.uint8]:
+    """Return where blood shows: 255 most."""
+    total = np.zeros(MAP_SIZE_PX[::-1])
+    for x, y, wide, high, strength in BLOOD_SPOTS:
+        for sign in (1.0, -1.0):
+            column, row = _pixels(_at(np.array([[x, y]]), on_face))[0]
+            if sign < 0:
+                column = MAP_SIZE_PX[0] - 1 - column
+            rows, columns = np.mgrid[: MAP_SIZE_PX[1], : MAP_SIZE_PX[0]]
+            apart = np.hypot(
+                (columns - column) * _PIXEL_M[0] / wide, (rows - row) * _PIXEL_M[1] / high
+            )
+            total = np.maximum(total, strength * np.exp(-(apart**2)))
+    return np.round(255.0 * np.where(total < 0.012, 0.0, total)).astype(np.uint8)
+
+
+_HEAD_RADIUS_M = 0.205
+_PIXEL_M = (
+    2 * MAP_RANGE_RAD * _HEAD_RADIUS_M / MAP_SIZE_PX[0],
+    (MAP_TOP_M - MAP_BOTTOM_M) / MAP_SIZE_PX[1],
+)
+"""Width and height of a pixel of the map on the head [m]."""
+
+
+def _height(groove: Groove, on_face: ON_FACE) -> Array:
+    """Return the height of a groove over the map, -1…1, (height, width)."""
+    line = _pixels(_at(_smooth(np.array(groove.line)), on_face))
+    share = np.linspace(0.0, 1.0, len(line))
+    taper = np.sin(np.pi * np.clip(share, 0.0, 1.0)) ** 0.6
+    rows, columns = np.mgrid[: MAP_SIZE_PX[1], : MAP_SIZE_PX[0]]
+    nearest = np.full(rows.shape, np.inf)
+    depth = np.zeros(rows.shape)
+    for (column, row), amount in zip(line, taper, strict=True):
+        apart = np.hypot((columns - column) * _PIXEL_M[0], (rows - row) * _PIXEL_M[1])
+        closer = apart < nearest
+        nearest[closer], depth[closer] = apart[closer], amount
+    across = nearest / groove.width
+    bulge = groove.cross * np.exp(-(((across - 2.4) / 1.1) ** 2))
+    height = groove.depth * depth * (bulge - np.exp(-0.5 * across**2))
+    return np.where(np.abs(height) < 0.004, 0.0, height)
+
+
+def _irregular(groove: Groove, random: np.random.Generator) -> Groove:
+    """Return a groove whose line trembles a little: none in a face is straight."""
+    line = np.array(groove.line) + random.normal(0.0, 0.0009, (len(groove.line), 2))
+    return replace(groove, line=tuple((float(x), float(y)) for x, y in line))
+
+
+def _smooth(points: Array, count: int = 120) -> Array:
+    """Return points on a smooth curve through others, (count, 2)."""
+    knots = np.arange(len(points))
+    at = np.linspace(0.0, len(points) - 1.0, count)
+    degree = min(len(points) - 1, 3)
+    return np.stack(
+        [np.polyval(np.polyfit(knots, column, degree), at) for column in points.T], axis=-1
+    )
+
+
+def _at(flat: Array, on_face: ON_FACE) -> Array:
+    return on_face(flat[:, 0], flat[:, 1])
+
+
+def _pixels(points: Array) -> Array:
+    """Return columns and rows of the map at points of the face, (n, 2)."""
+    return face_uvs(points) * MAP_SIZE_PX - 0.5
