@@ -30,6 +30,7 @@ from app.pipeline.things import Body, BodyParts
 from characters import Animator, Character, CharacterCommand, PosedCharacter, RootDelta
 from characters.control.command import SpeechIntent
 from characters.control.controllers import ControllerFactory, first_suitable
+from characters.face.complexion import Complexion
 from characters.rendering import FULL, Quality, SceneCharacter, Stage
 from tracking import (
     CubeControls,
@@ -57,6 +58,7 @@ STATE_NAMES = (
     "other_cube",
     "_line",
     "_speech",
+    "_complexion",
 )
 """The attributes of a playground that change from frame to frame."""
 
@@ -90,7 +92,7 @@ class Playground:
     controller
         Makes the controller of the characters; see `choose_controller`.
     realism
-        What of the camera's picture the drawing follows, of `REALISM_CHOICES`.
+        What makes the characters look real, of `REALISM_CHOICES`.
 
     Raises
     ------
@@ -153,6 +155,7 @@ class Playground:
         """Another cube than the one in play, if one is in view."""
         self._line: SpokenLine | None = None
         self._speech: SpeechIntent | None = None
+        self._complexion = Complexion()
 
     def cast(self, character: Character) -> None:
         """Let another character go on where the present one stands.
@@ -262,6 +265,7 @@ class Playground:
             self.animate(outcome.command) if replay.posed is None else self._fitted(replay.posed)
         )
         self._posed, self._body = posed, Body(self.character, self._parts, posed)
+        self._complexion.update(outcome.command.timestamp, outcome.command.emotion)
         self._lap("animation")
         picture = self.draw(frame, state, controls, outcome, posed) if drawn else None
         subjects = self._subjects(state, controls, posed)
@@ -337,7 +341,9 @@ class Playground:
             return None
         view = self._surroundings.view(frame, state, controls)
         seen = posed.visible and controls.camera_from_table is not None
-        characters = [SceneCharacter(self.character, posed)] if seen else []
+        blood = self._complexion.blood if "blush" in self._realism else 0.0
+        wrinkles = "wrinkles" in self._realism
+        characters = [SceneCharacter(self.character, posed, wrinkles, blood)] if seen else []
         if seen and outcome.things:
             body = Body(self.character, self._parts, posed)
             characters += [body.placed(thing) for thing in outcome.things]

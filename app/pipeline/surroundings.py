@@ -20,8 +20,10 @@ REALISM_CHOICES = {
     "light": "light and shadow fall as on the cube",
     "softness": "characters are as soft and as noisy as the picture",
     "focus": "what is much nearer or further than the cube is out of focus, in the quality rich",
+    "wrinkles": "skin wrinkles where a face moves",
+    "blush": "a face flushes and pales with its emotion",
 }
-"""What of the camera's picture the drawing follows, and what that means."""
+"""What makes the drawing belong in the picture, and what that means."""
 
 DIRECTION_CERTAINTIES = 0.6, 0.8
 """Certainties of the light's direction from which on it is used at all, and fully."""
@@ -67,7 +69,7 @@ class Surroundings:
     cube, intrinsics
         The cube in play, and the camera.
     chosen
-        Which of `REALISM_CHOICES` are measured.
+        Which of `REALISM_CHOICES` are measured; those of a face need no measurement.
     """
 
     def __init__(self, cube: CubeModel, intrinsics: Intrinsics, chosen: Sequence[str]) -> None:

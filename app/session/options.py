@@ -64,7 +64,7 @@ class SessionOptions:
     """What the character's eyes follow: one of `LOOK_CHOICES`."""
 
     realism: tuple[str, ...] = tuple(REALISM_CHOICES)
-    """What of the camera's picture the drawing follows, of `REALISM_CHOICES`."""
+    """What makes the characters look real, of `REALISM_CHOICES`."""
 
     quality: str = "auto"
     """How finely characters are drawn: one of `characters.rendering.QUALITIES`, or "auto" for the

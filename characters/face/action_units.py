@@ -37,7 +37,7 @@ MORPH_UNITS: Mapping[str, Mapping[int, float]] = {
     # whole faces, by VRM's names, and their mouths alone
     "happy": {6: 0.9, 12: 1.0},
     "angry": {4: 1.0, 10: 0.7},
-    "sad": {1: 0.9, 4: 0.4},
+    "sad": {1: 0.9, 4: 0.25},
     "surprised": {1: 0.9, 2: 0.9},
     "relaxed": {6: 0.5, 12: 0.6},
     "happymouth": {12: 1.0},

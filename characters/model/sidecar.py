@@ -1,4 +1,4 @@
-"""The sidecar file of a character, `fox.toml` for `fox.glb`: parts, motions, springs, face …"""
+"""The sidecar file of a character, `fox.toml` for `fox.glb`: parts, motions, springs, face."""
 
 import difflib
 import os

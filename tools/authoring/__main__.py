@@ -6,6 +6,7 @@ from pathlib import Path
 
 from characters.model.character import Character
 from tools.authoring.human.character import build_human
+from tools.authoring.human.face_map import save_face_maps
 from tools.authoring.people import save_standing
 from tools.authoring.robot.character import build_robot
 from tools.authoring.speakers import GESTURES
@@ -16,6 +17,9 @@ BUILDERS: dict[str, Callable[[], Character]] = {
     "vleo": build_vleo,
     "robot": build_robot,
 }
+FACES: dict[str, Callable[[Path], list[Path]]] = {"human": save_face_maps}
+"""What writes the folder of the face maps of a character, by its name."""
+
 ASSETS = Path(__file__).parents[2] / "characters" / "assets"
 
 
@@ -36,6 +40,8 @@ def main(arguments: list[str]) -> int:
         if name in GESTURES:
             files.append(path.with_suffix(".gestures"))
             GESTURES[name](character).save(files[-1])
+        if name in FACES:
+            files += FACES[name](path.with_name(f"{name}_face"))
         for written in files:
             sys.stdout.write(f"{written}: {written.stat().st_size / 1024:.0f} KiB\n")
     return 0

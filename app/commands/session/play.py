@@ -109,7 +109,7 @@ VoiceOption = Annotated[
 RealismOption = Annotated[
     str,
     typer.Option(
-        help="What of the camera's picture the drawing follows, separated by commas: "
+        help="What makes the characters look real, separated by commas: "
         + "; ".join(f"{name}, {meaning}" for name, meaning in REALISM_CHOICES.items())
         + f"; or {NO_REALISM}.",
     ),

@@ -91,5 +91,6 @@ def test_choices_are_names_separated_by_commas():
 
 @pytest.mark.parametrize("text", ["", "shadow", "hand,", "none,hand", "Hand"])
 def test_another_name_is_refused_in_one_line(text):
-    with pytest.raises(AppError, match="choose of hand, light, softness, focus, or none"):
+    known = ", ".join(REALISM_CHOICES)
+    with pytest.raises(AppError, match=f"choose of {known}, or none"):
         realism_of(text)

@@ -6,7 +6,7 @@ skin between them, drawn from anatomy: they run across the pull of the muscle (D
 and Friesen 1978). Their places are those of the face's own brows, eyes, nose and mouth.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from characters.model.face_maps import BLOOD_NAME, LAYER_NAMES, SUFFIX
 from characters.model.mesh import Mesh
+from tools.authoring.human.skull import on_face
 from tools.authoring.modelling.curves import smoothstep
 from tools.authoring.modelling.shapes import Array
 
@@ -37,7 +38,7 @@ class Groove:
     """A line in the skin: a narrow groove between two low bulges."""
 
     line: tuple[tuple[float, float], ...]
-    """Points x, y on the face, from the front [m]; a smooth curve leads through them."""
+    """Points x, y on the face, from the front [m]; a smooth curve leads along them."""
 
     width: float = 0.0042
     """Standard deviation of the groove [m]."""
@@ -55,30 +56,31 @@ FOREHEAD = (1.577, 1.558, 1.538)
 _AU1 = tuple(
     Groove(((-0.062, y - 0.006), (-0.030, y + 0.002), (0.0, y - 0.002), (0.030, y + 0.002),
             (0.062, y - 0.006)), depth=d)
-    for y, d in zip(FOREHEAD, (0.75, 1.0, 0.8), strict=True)
+    for y, d in zip(FOREHEAD, (0.50, 0.66, 0.53), strict=True)
 )  # fmt: skip
 _AU2 = tuple(
     Groove(((0.054, y), (0.085, y + 0.003), (0.118, y - 0.010), (0.140, y - 0.030)), depth=d)
-    for y, d in ((1.566, 0.7), (1.546, 1.0), (1.527, 0.8))
+    for y, d in ((1.566, 0.45), (1.546, 0.66), (1.527, 0.53))
 )
-_AU4 = tuple(
-    Groove(((side * 0.0125, 1.492), (side * 0.0105, 1.513), (side * 0.0150, 1.548)), depth=d)
-    for side, d in ((1.0, 1.0), (-1.0, 0.9))
-) + (Groove(((-0.021, 1.484), (0.0, 1.480), (0.021, 1.484)), depth=0.6),)
+_AU4 = (
+    Groove(((0.0125, 1.490), (0.0105, 1.512), (0.0155, 1.550)), depth=0.90),
+    Groove(((-0.0125, 1.492), (-0.0105, 1.513), (-0.0145, 1.546)), depth=0.80),
+    Groove(((-0.021, 1.484), (0.0, 1.480), (0.021, 1.484)), depth=0.45),
+)
 _AU6 = (
-    Groove(((0.152, 1.452), (0.166, 1.464), (0.176, 1.481)), 0.0034, 0.8),
-    Groove(((0.154, 1.440), (0.170, 1.444), (0.183, 1.452)), 0.0034, 1.0),
-    Groove(((0.153, 1.428), (0.168, 1.423), (0.181, 1.421)), 0.0034, 0.9),
-    Groove(((0.147, 1.415), (0.160, 1.404), (0.171, 1.396)), 0.0034, 0.6),
+    Groove(((0.152, 1.453), (0.164, 1.464), (0.172, 1.478)), 0.0030, 0.40),
+    Groove(((0.154, 1.441), (0.168, 1.445), (0.180, 1.452)), 0.0030, 0.52),
+    Groove(((0.153, 1.429), (0.166, 1.424), (0.178, 1.422)), 0.0030, 0.45),
+    Groove(((0.147, 1.416), (0.158, 1.406), (0.167, 1.399)), 0.0030, 0.30),
 )
-_AU10 = (Groove(((0.031, 1.408), (0.049, 1.392), (0.066, 1.369), (0.073, 1.350)), 0.0055),)
+_AU10 = (Groove(((0.031, 1.410), (0.050, 1.393), (0.067, 1.370), (0.074, 1.350)), 0.0050, 0.9),)
 _AU12 = (
-    Groove(((0.034, 1.400), (0.070, 1.388), (0.100, 1.368), (0.113, 1.343)), 0.0060),
-    Groove(((0.117, 1.372), (0.128, 1.352), (0.129, 1.332)), 0.0050, 0.5),
+    Groove(((0.036, 1.402), (0.074, 1.389), (0.103, 1.369), (0.116, 1.342)), 0.0052, 1.0),
+    Groove(((0.122, 1.376), (0.134, 1.355), (0.134, 1.334)), 0.0045, 0.40),
 )
 _AU20 = (
-    Groove(((0.083, 1.360), (0.088, 1.343), (0.082, 1.322)), 0.0040),
-    Groove(((0.098, 1.362), (0.104, 1.342), (0.097, 1.318)), 0.0044, 0.7),
+    Groove(((0.083, 1.362), (0.088, 1.343), (0.082, 1.322)), 0.0038, 0.75),
+    Groove(((0.098, 1.364), (0.104, 1.342), (0.097, 1.318)), 0.0042, 0.50),
 )
 
 GROOVES = {"au1": _AU1, "au2": _AU2, "au4": _AU4, "au6": _AU6, "au10": _AU10, "au12": _AU12,
@@ -88,14 +90,12 @@ GROOVES = {"au1": _AU1, "au2": _AU2, "au4": _AU4, "au6": _AU6, "au10": _AU10, "a
 BLOOD_SPOTS = (
     # x, y, half width and height [m], strength: cheeks, nose, ears, a little of forehead and chin
     (0.122, 1.366, 0.060, 0.042, 1.0),
-    (0.0, 1.392, 0.030, 0.024, 0.85),
+    (0.0, 1.392, 0.030, 0.024, 0.65),
     (0.216, 1.415, 0.050, 0.070, 0.9),
     (0.0, 1.545, 0.150, 0.060, 0.30),
     (0.0, 1.285, 0.060, 0.030, 0.30),
 )
 """Where the vessels of the face are widest, on the left side (Jimenez et al. 2010, figure 2)."""
-
-ON_FACE = Callable[[Array, Array], Array]
 
 
 def mapped(mesh: Mesh) -> Mesh:
@@ -115,22 +115,17 @@ def face_uvs(points: Array) -> Array:
     return np.stack([u, v * (1.0 - smoothstep(behind))], axis=-1)
 
 
-def save_face_maps(folder: Path, on_face: ON_FACE) -> list[Path]:
-    """Write all pictures of the map and return their paths.
-
-    Parameters
-    ----------
-    on_face : returns the points of the face at x, y, (…, 3)
-    """
+def save_face_maps(folder: Path) -> list[Path]:
+    """Write all pictures of the map and return their paths."""
     folder.mkdir(exist_ok=True)
     written = []
-    for name, picture in (*wrinkle_pictures(on_face), (BLOOD_NAME, blood_picture(on_face))):
+    for name, picture in (*wrinkle_pictures(), (BLOOD_NAME, blood_picture())):
         written.append(folder / f"{name}{SUFFIX}")
         cv2.imwrite(str(written[-1]), picture, [cv2.IMWRITE_PNG_COMPRESSION, 9])
     return written
 
 
-def wrinkle_pictures(on_face: ON_FACE) -> Iterator[tuple[str, NDArray[np.uint8]]]:
+def wrinkle_pictures() -> Iterator[tuple[str, NDArray[np.uint8]]]:
     """Yield name and picture of each layer: 128 is flat, darker is deeper."""
     random = np.random.default_rng(SEED)
     for name in LAYER_NAMES:
@@ -138,17 +133,17 @@ def wrinkle_pictures(on_face: ON_FACE) -> Iterator[tuple[str, NDArray[np.uint8]]
         grooves = [
             _irregular(groove, random) if side != "right" else groove for groove in GROOVES[unit]
         ]
-        height = sum(_height(groove, on_face) for groove in grooves)
+        height = sum(_height(groove) for groove in grooves)
         picture = np.clip(np.round(128.0 + 127.0 * np.asarray(height)), 0, 255).astype(np.uint8)
         yield name, picture if side != "right" else picture[:, ::-1]
 
 
-def blood_picture(on_face: ON_FACE) -> NDArray[np.uint8]:
+def blood_picture() -> NDArray[np.uint8]:
     """Return where blood shows: 255 most."""
     total = np.zeros(MAP_SIZE_PX[::-1])
     for x, y, wide, high, strength in BLOOD_SPOTS:
         for sign in (1.0, -1.0):
-            column, row = _pixels(_at(np.array([[x, y]]), on_face))[0]
+            column, row = _pixels(_at(np.array([[x, y]])))[0]
             if sign < 0:
                 column = MAP_SIZE_PX[0] - 1 - column
             rows, columns = np.mgrid[: MAP_SIZE_PX[1], : MAP_SIZE_PX[0]]
@@ -167,9 +162,9 @@ _PIXEL_M = (
 """Width and height of a pixel of the map on the head [m]."""
 
 
-def _height(groove: Groove, on_face: ON_FACE) -> Array:
+def _height(groove: Groove) -> Array:
     """Return the height of a groove over the map, -1…1, (height, width)."""
-    line = _pixels(_at(_smooth(np.array(groove.line)), on_face))
+    line = _pixels(_at(_smooth(np.array(groove.line))))
     share = np.linspace(0.0, 1.0, len(line))
     taper = np.sin(np.pi * np.clip(share, 0.0, 1.0)) ** 0.6
     rows, columns = np.mgrid[: MAP_SIZE_PX[1], : MAP_SIZE_PX[0]]
@@ -201,7 +196,7 @@ def _smooth(points: Array, count: int = 120) -> Array:
     )
 
 
-def _at(flat: Array, on_face: ON_FACE) -> Array:
+def _at(flat: Array) -> Array:
     return on_face(flat[:, 0], flat[:, 1])
 
 
