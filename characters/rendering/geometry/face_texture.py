@@ -71,6 +71,7 @@ class FaceTexture:
         self.texture = context.texture((width, height), 4, self._mixer.texels, dtype="f4")
         """Slopes and blood: see `WrinkleMixer.texels`."""
         self.texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
+        self.texture.repeat_x = self.texture.repeat_y = False  # what is beyond the map has no paint
 
     def update(self, morphs: Array | None, blood: float, scale: float, wrinkles: bool) -> bool:
         """Set the face to morph weights (morphs,) and blood, -1…1; return whether it is visible.

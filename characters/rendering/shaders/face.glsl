@@ -15,10 +15,11 @@ vec3 wrinkled(vec3 n, vec3 place, vec2 where, vec2 slope) {
     vec3 rise = dot(slope, dFdx(where)) * along_x + dot(slope, dFdy(where)) * along_y;
     vec3 bent = abs(area) * n - sign(area) * wrinkle_depth * rise;
     float size = dot(bent, bent);
-    return size > 0.0 ? bent * inversesqrt(size) : n;  // 0: seen from the edge
+    bool kept = slope == vec2(0.0) || size <= 0.0;  // smooth skin stays exact; 0: seen from the edge
+    return kept ? n : bent * inversesqrt(size);
 }
 
 // The colour of skin with more or less blood: pigments multiply what any skin reflects.
 vec3 flushed(vec3 albedo, float share) {
-    return albedo * exp(-share * blood_density);
+    return share > 0.0 ? albedo * exp(-share * blood_density) : albedo;
 }

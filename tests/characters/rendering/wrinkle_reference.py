@@ -1,6 +1,7 @@
 """Wrinkle normals against geometry that is really displaced: an ellipsoid as large as a head."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import cv2
 import moderngl
@@ -19,8 +20,11 @@ RADII_M = np.array([0.207, 0.21, 0.197])
 HALF_TURN_RAD = np.deg2rad(120.0)
 """Directions to both sides that its texture coordinates cover."""
 
-GRID = 900, 450
-"""Quads of the displaced surface along u and v: finer than the maps."""
+FINE_GRID = 960, 480
+"""Quads of the displaced surface along u and v: finer than the bundled human's maps."""
+
+MIN_BEND_DEG = 1.0
+"""Pixels count whose normal either way is bent by more [°]: smooth skin would flatter the mean."""
 
 VERTEX = """
 #version 330 core
@@ -59,6 +63,10 @@ class Agreement:
     bend_deg: float
     """Mean angle by which the displaced normals differ from those of the smooth surface [°]."""
 
+    bumped_deg: float
+    """Mean angle by which the wrinkle normals differ from those of the smooth surface [°], over the
+    whole surface."""
+
 
 def agreement(
     context: moderngl.Context,
@@ -66,6 +74,7 @@ def agreement(
     intensities: Array,
     yaw_rad: float = 0.0,
     shifted: bool = True,
+    grid: tuple[int, int] = FINE_GRID,
     side_px: int = 420,
 ) -> Agreement:
     """Return how well wrinkles of intensities (12,) agree, seen from a direction.
@@ -92,11 +101,11 @@ def agreement(
     )
 
     def drawn(points: Array, normals: Array, depth_m: float) -> Array:
-        vertices = np.concatenate([points, normals, _uvs()], axis=-1).astype(np.float32)
+        vertices = np.concatenate([points, normals, _uvs(grid)], axis=-1).astype(np.float32)
         array = context.vertex_array(
             program,
             [(context.buffer(vertices), "3f 3f 2f", "position", "normal", "uv")],
-            context.buffer(_triangles()),
+            context.buffer(_triangles(grid)),
         )
         set_uniforms(program, clip_from_table=_camera(yaw_rad), wrinkle_depth=depth_m, face_map=0)
         target.use()
@@ -108,43 +117,52 @@ def agreement(
         array.release()
         return read.reshape(side_px, side_px, 4).astype(float)
 
-    smooth, flat = _ellipsoid()
-    displaced = smooth + flat * _heights(maps, intensities)[..., None]
+    smooth, flat = _ellipsoid(grid)
+    displaced = smooth + flat * _heights(maps, intensities, grid)[..., None]
     plain = drawn(smooth, flat, 0.0)
     bumped = drawn(smooth, flat, maps.depth)
     true = drawn(displaced if shifted else smooth, _grid_normals(displaced, flat), 0.0)
     both = (bumped[..., 3] > 0) & (true[..., 3] > 0)
     bend = _angles_deg(plain, true)
-    wrinkled = both & (np.maximum(bend, _angles_deg(plain, bumped)) > 1.0)
+    bumped_bend = _angles_deg(plain, bumped)
+    wrinkled = both & (np.maximum(bend, bumped_bend) > MIN_BEND_DEG)
     error = _angles_deg(bumped, true)[wrinkled]
+    context.detect_framebuffer(0).use()  # moderngl binds the last one again: it must still exist
     texture.release()
     target.release()
     program.release()
+    if not error.size:
+        return Agreement(0.0, 0.0, 0.0, float(bumped_bend[both].mean()))
     return Agreement(
-        float(error.mean()), float(np.quantile(error, 0.95)), float(bend[wrinkled].mean())
+        float(error.mean()),
+        float(np.quantile(error, 0.95)),
+        float(bend[wrinkled].mean()),
+        float(bumped_bend[both].mean()),
     )
 
 
-def _uvs() -> Array:
-    u, v = (np.linspace(0.0, 1.0, count + 1) for count in GRID)
+@cache
+def _uvs(grid: tuple[int, int]) -> Array:
+    u, v = (np.linspace(0.0, 1.0, count + 1) for count in grid)
     return np.stack(np.meshgrid(u, v), axis=-1)
 
 
-def _ellipsoid() -> tuple[Array, Array]:
+@cache
+def _ellipsoid(grid: tuple[int, int]) -> tuple[Array, Array]:
     """Return points and unit normals of the smooth surface, (rows, columns, 3) each."""
-    u, v = np.moveaxis(_uvs(), -1, 0)
+    u, v = np.moveaxis(_uvs(grid), -1, 0)
     around, up = (2.0 * u - 1.0) * HALF_TURN_RAD, np.arcsin(np.clip(1.0 - 2.0 * v, -0.995, 0.995))
     unit = np.stack([np.sin(around) * np.cos(up), np.sin(up), np.cos(around) * np.cos(up)], -1)
     normals = unit / RADII_M
     return unit * RADII_M, normals / np.linalg.norm(normals, axis=-1, keepdims=True)
 
 
-def _heights(maps: FaceMaps, intensities: Array) -> Array:
+def _heights(maps: FaceMaps, intensities: Array, grid: tuple[int, int]) -> Array:
     """Return the height of the composed layers at the points of the grid [m]."""
     total = np.tensordot(intensities, maps.heights.astype(float), 1)
     smooth = cv2.GaussianBlur(total, (0, 0), SMOOTHING_TEXELS)
     height, width = smooth.shape
-    at = (_uvs() * [width, height] - 0.5).astype(np.float32)
+    at = (_uvs(grid) * [width, height] - 0.5).astype(np.float32)
     cubic = cv2.remap(
         smooth.astype(np.float32), at[..., 0], at[..., 1], cv2.INTER_CUBIC,
         borderMode=cv2.BORDER_REPLICATE,
@@ -157,11 +175,13 @@ def _grid_normals(points: Array, outward: Array) -> Array:
     across = np.cross(np.gradient(points, axis=1), np.gradient(points, axis=0))
     across *= np.sign(np.sum(across * outward, axis=-1, keepdims=True))
     length = np.linalg.norm(across, axis=-1, keepdims=True)
-    return np.where(length > 0.0, across / np.maximum(length, 1e-15), outward)  # 0: at the poles
+    unit = across / np.maximum(length, 1e-15)
+    return np.asarray(np.where(length > 0.0, unit, outward))  # 0: at the poles
 
 
-def _triangles() -> NDArray[np.uint32]:
-    columns, rows = GRID
+@cache
+def _triangles(grid: tuple[int, int]) -> NDArray[np.uint32]:
+    columns, rows = grid
     corner = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).ravel()
     a, b, c, d = corner, corner + columns + 1, corner + columns + 2, corner + 1
     return np.stack([a, b, c, a, c, d], axis=-1).astype(np.uint32)

@@ -1,0 +1,151 @@
+"""Wrinkles and blood of a face: exact at rest, each in its own place, true to displaced skin."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from characters import Character
+from characters.control.command import PosedCharacter
+from characters.model.face_maps import LAYER_NAMES, WRINKLE_LAYERS
+from characters.model.mesh import FaceMaps
+from characters.rendering import SceneCharacter
+from tests.characters.rendering.wrinkle_reference import agreement
+
+LAYERS = len(LAYER_NAMES)
+MORPHS = tuple(
+    f"AU{unit}{side}"
+    for unit, layers in WRINKLE_LAYERS.items()
+    for side in ("", "Left", "Right")[len(layers) - 1 :][: len(layers)]
+)
+CELL_PX = 24
+"""Every layer of the tile has a cell of its own, 4 × 3, with a groove in its middle."""
+
+
+@pytest.fixture(scope="module")
+def human():
+    return Character.load("human")
+
+
+@pytest.fixture(scope="module")
+def human_maps(human):
+    return next(mesh.material.face for mesh in human.meshes if mesh.material.face is not None)
+
+
+@pytest.fixture(scope="module")
+def cells():
+    heights = np.zeros((LAYERS, 3 * CELL_PX, 4 * CELL_PX), np.float32)
+    for layer in range(LAYERS):
+        top, left = CELL_PX * (layer // 4), CELL_PX * (layer % 4)
+        heights[layer, top + 8 : top + 16, left + 8 : left + 16] = -1.0
+    blood = np.zeros(heights.shape[1:], np.float32)
+    blood[2 : CELL_PX - 2, 2 : CELL_PX - 2] = 1.0
+    return FaceMaps(heights, blood, 0.05)
+
+
+@pytest.fixture(scope="module")
+def tile(pawn, cells):
+    """Return a square on the table, one metre wide, with a morph for each layer."""
+    corners = np.array([(-1, 1), (1, 1), (1, -1), (-1, -1)]) / 2
+    base = pawn.meshes[0]
+    mesh = replace(
+        base,
+        positions=np.insert(corners, 1, 0.02, axis=1).astype(np.float32),
+        normals=np.tile([0.0, 1.0, 0.0], (4, 1)).astype(np.float32),
+        triangles=np.array([(0, 1, 2), (0, 2, 3)], np.uint32),
+        joints=np.zeros((4, 4), np.uint16),
+        weights=np.tile([1.0, 0.0, 0.0, 0.0], (4, 1)).astype(np.float32),
+        uvs=(corners + 0.5).astype(np.float32),
+        material=replace(base.material, face=cells),
+    )
+    return replace(pawn, meshes=(mesh,), morphs=MORPHS)
+
+
+@pytest.fixture
+def shown(stage, view, pawn, tile):
+    def draw(character=tile, blood=0.0, wrinkles=True, **weights):
+        posed: PosedCharacter = pawn.posed().posed
+        morphs = np.array([weights.get(name, 0.0) for name in character.morphs])
+        posed = replace(posed, pose=replace(posed.pose, morphs=morphs))
+        drawn = SceneCharacter(character, posed, wrinkles, blood)
+        return stage.draw(view, [drawn]).astype(int)
+
+    return draw
+
+
+def changed_cells(view, before, after):
+    """Return the numbers of the cells of the tile in which two pictures differ."""
+    rows, columns = np.nonzero(np.abs(after - before).max(axis=2))
+    pixels = np.stack([columns, rows, np.ones_like(rows)]).astype(float)
+    rays = np.linalg.inv(view.matrix) @ pixels
+    table = view.camera_from_table
+    ways, eye = table[:3, :3].T @ rays, -table[:3, :3].T @ table[:3, 3]
+    height = 0.12  # of the pawn on the table [m]; the tile lies at 0.02 of it
+    points = eye[:, None] + ways * ((0.02 * height - eye[1]) / ways[1])
+    u, v = points[0] / height + 0.5, points[2] / height + 0.5
+    return set((np.floor(3 * v) * 4 + np.floor(4 * u)).astype(int).tolist())
+
+
+def test_without_intensity_the_picture_is_the_same_bit_for_bit(shown, tile):
+    material = replace(tile.meshes[0].material, face=None)
+    plain = replace(tile, meshes=(replace(tile.meshes[0], material=material),))
+    assert np.array_equal(shown(tile), shown(plain))
+    assert np.array_equal(shown(tile, wrinkles=False, AU1=1.0), shown(plain))
+
+
+def test_the_bundled_human_at_rest_is_the_same_bit_for_bit(stage, view, human):
+    smooth = [replace(m, material=replace(m.material, face=None)) for m in human.meshes]
+    at_rest = replace(human.skeleton.rest, morphs=np.zeros(len(human.morphs)))
+    place = np.diag([0.09, 0.09, 0.09, 1.0])
+    posed = PosedCharacter(at_rest, place, True, "", 0.0, 0.0, 0.0, 0.0)
+    pictures = [
+        stage.draw(view, [SceneCharacter(each, posed)])
+        for each in (human, replace(human, meshes=tuple(smooth)))
+    ]
+    assert np.array_equal(*pictures)
+
+
+@pytest.mark.parametrize("layer", range(LAYERS))
+def test_a_unit_changes_the_pixels_of_its_layer_alone(shown, view, layer):
+    assert changed_cells(view, shown(), shown(**{MORPHS[layer]: 1.0})) == {layer}
+
+
+def test_raised_brows_change_the_three_layers_of_the_forehead(shown, view):
+    raised = shown(AU1=1.0, AU2Left=1.0, AU2Right=1.0)
+    assert changed_cells(view, shown(), raised) == {0, 1, 2}
+
+
+def test_blood_changes_the_pixels_of_its_mask_alone(shown, view):
+    for blood in (-1.0, 1.0):
+        assert changed_cells(view, shown(), shown(blood=blood)) == {0}
+
+
+def test_wrinkles_grow_with_their_intensity(ctx, human_maps):
+    bends = [
+        agreement(ctx, human_maps, share * np.ones(LAYERS), grid=(160, 80)).bumped_deg
+        for share in (0.0, 0.3, 0.6, 1.0)
+    ]
+    assert bends[0] < 1e-3
+    assert np.all(np.diff(bends) > 0.5)
+
+
+@pytest.mark.parametrize("yaw_deg", [0.0, 40.0, -60.0])
+def test_normals_are_those_of_displaced_skin(ctx, human_maps, yaw_deg):
+    found = agreement(ctx, human_maps, np.ones(LAYERS), np.deg2rad(yaw_deg), shifted=False)
+    assert found.bend_deg > 8.0  # the wrinkles are there to be seen
+    assert found.mean_deg < 1.0
+
+
+@pytest.mark.parametrize("units", [(1, 2), (4,), (6, 12), (10, 20)])
+def test_pixels_are_those_of_displaced_skin_seen_from_in_front(ctx, human_maps, units):
+    intensities = np.zeros(LAYERS)
+    intensities[[layer for unit in units for layer in WRINKLE_LAYERS[unit]]] = 1.0
+    assert agreement(ctx, human_maps, intensities).mean_deg < 3.0
+
+
+def test_blood_reddens_and_pales_in_steps(shown):
+    reds = []
+    for blood in (-1.0, -0.5, 0.0, 0.5, 1.0):
+        picture = shown(blood=blood)
+        reds.append(float((picture[..., 2] - picture[..., 1]).mean()))
+    assert np.all(np.diff(reds) > 0.0)
