@@ -72,6 +72,7 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.symbolic_gestures
 	$(BIN)/python -m tests.bench.bml
 	$(BIN)/python -m tests.bench.picture
+	$(BIN)/python -m tests.bench.wrinkles
 	-$(BIN)/python -m tests.bench.hand_mask
 	-$(BIN)/python -m tests.bench.cube_light --rooms 2
 	$(BIN)/python -m tests.bench.panels

@@ -77,6 +77,8 @@ class PortraitRenderer:
         elevation: float = 0.16,
         focus: Focus = None,
         extent: Clip | Sequence[Pose] = (),
+        wrinkles: bool = True,
+        blood: float = 0.0,
     ) -> Image:
         """Return a picture of a character, (height, width, 3) BGR.
 
@@ -92,6 +94,8 @@ class PortraitRenderer:
         extent
             A clip or poses that fit into the picture as well, so that pictures of them can be
             compared.
+        wrinkles, blood
+            As in `SceneCharacter`.
 
         Raises
         ------
@@ -102,7 +106,7 @@ class PortraitRenderer:
         framed = [pose, *(_sampled(extent) if isinstance(extent, Clip) else extent)]
         place = _place(character, azimuth)
         camera = self._camera(character, [(each, place) for each in framed], elevation, focus)
-        return self._draw(character, pose, place, camera)
+        return self._draw(character, pose, place, camera, wrinkles, blood)
 
     def portraits(
         self,
@@ -188,13 +192,19 @@ class PortraitRenderer:
         return self._extents[id(character)][1]
 
     def _draw(
-        self, character: Character, pose: Pose, place: Array, camera: PortraitCamera
+        self,
+        character: Character,
+        pose: Pose,
+        place: Array,
+        camera: PortraitCamera,
+        wrinkles: bool = True,
+        blood: float = 0.0,
     ) -> Image:
         width, height = self.size
         paper = np.full((height, width, 3), PAPER_BGR, np.uint8)
         view = View(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
         posed = PosedCharacter(pose, place, True, "", 0.0, 0.0, 0.0, 0.0)
-        picture = self._stage.draw(view, [SceneCharacter(character, posed)])
+        picture = self._stage.draw(view, [SceneCharacter(character, posed, wrinkles, blood)])
         faded = np.asarray(cv2.blendLinear(picture, paper, self._fade, 1.0 - self._fade), np.uint8)
         if self._drawn is not None:
             self._drawn()

@@ -196,4 +196,4 @@ def _camera(yaw_rad: float) -> Array:
 
 def _angles_deg(a: Array, b: Array) -> Array:
     cross = np.linalg.norm(np.cross(a[..., :3], b[..., :3]), axis=-1)
-    return np.rad2deg(np.arctan2(cross, np.sum(a[..., :3] * b[..., :3], axis=-1)))
+    return np.asarray(np.rad2deg(np.arctan2(cross, np.sum(a[..., :3] * b[..., :3], axis=-1))))
