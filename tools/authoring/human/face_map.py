@@ -29,6 +29,9 @@ MAP_RANGE_RAD = np.deg2rad(120.0)
 MAP_BOTTOM_M, MAP_TOP_M = 1.24, 1.66
 """Heights that the map has [m]."""
 
+MAX_REACH = 6.0
+"""Distance from its line up to which a groove is drawn, in its widths; its bulges end there."""
+
 SEED = 2013
 """Of the small irregularities of the lines."""
 
@@ -80,8 +83,8 @@ _AU12 = (
     ),
 )
 _AU20 = (
-    Groove(((0.089, 1.349), (0.093, 1.333), (0.088, 1.313)), 0.0038, 0.75),
-    Groove(((0.104, 1.349), (0.109, 1.332), (0.103, 1.309)), 0.0042, 0.50),
+    Groove(((0.089, 1.349), (0.093, 1.333), (0.088, 1.313)), 0.0038, 0.60),
+    Groove(((0.104, 1.349), (0.109, 1.332), (0.103, 1.309)), 0.0042, 0.42),
 )
 
 GROOVES = {"au1": _AU1, "au2": _AU2, "au4": _AU4, "au6": _AU6, "au10": _AU10, "au12": _AU12,
@@ -166,23 +169,26 @@ _PIXEL_M = (
 def _height(groove: Groove) -> Array:
     """Return the height of a groove over the map, -1…1, (height, width)."""
     line = _pixels(_at(_smooth(np.array(groove.line))))
-    share = np.linspace(0.0, 1.0, len(line))
-    taper = np.sin(np.pi * np.clip(share, 0.0, 1.0)) ** 0.6
-    rows, columns = np.mgrid[: MAP_SIZE_PX[1], : MAP_SIZE_PX[0]]
-    nearest = np.full(rows.shape, np.inf)
-    depth = np.zeros(rows.shape)
-    for (column, row), amount in zip(line, taper, strict=True):
-        apart = np.hypot((columns - column) * _PIXEL_M[0], (rows - row) * _PIXEL_M[1])
-        closer = apart < nearest
-        nearest[closer], depth[closer] = apart[closer], amount
-    across = nearest / groove.width
+    taper = np.sin(np.pi * np.linspace(0.0, 1.0, len(line))) ** 0.6
+    reach = MAX_REACH * groove.width / np.array(_PIXEL_M)
+    low = np.clip(np.floor(line.min(axis=0) - reach), 0, MAP_SIZE_PX).astype(int)
+    high = np.clip(np.ceil(line.max(axis=0) + reach), 0, MAP_SIZE_PX).astype(int)
+    rows, columns = np.mgrid[low[1] : high[1], low[0] : high[0]]
+    apart = np.hypot(
+        (columns[..., None] - line[:, 0]) * _PIXEL_M[0],
+        (rows[..., None] - line[:, 1]) * _PIXEL_M[1],
+    )
+    nearest = apart.argmin(axis=-1)
+    across = apart.min(axis=-1) / groove.width
     bulge = groove.cross * np.exp(-(((across - 2.4) / 1.1) ** 2))
-    height = groove.depth * depth * (bulge - np.exp(-0.5 * across**2))
-    return np.where(np.abs(height) < 0.004, 0.0, height)
+    height = groove.depth * taper[nearest] * (bulge - np.exp(-0.5 * across**2))
+    whole = np.zeros(MAP_SIZE_PX[::-1])
+    whole[low[1] : high[1], low[0] : high[0]] = np.where(np.abs(height) < 0.004, 0.0, height)
+    return whole
 
 
 def _irregular(groove: Groove, random: np.random.Generator) -> Groove:
-    """Return a groove whose line trembles a little: none in a face is straight."""
+    """Return a groove with a slightly irregular line: no line in a face is even."""
     line = np.array(groove.line) + random.normal(0.0, 0.0009, (len(groove.line), 2))
     return replace(groove, line=tuple((float(x), float(y)) for x, y in line))
 

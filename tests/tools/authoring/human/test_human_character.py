@@ -1,7 +1,9 @@
 """The bundled explorer is what its code makes, and moves as a body on the ground must."""
 
 import itertools
+from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
@@ -15,7 +17,9 @@ from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose, Skeleton
 from tests.bench.cast import Soles, film, sampled
 from tests.tools.authoring.clip_checks import check_same_clips
+from tools.authoring.__main__ import ASSETS
 from tools.authoring.human.character import build_human
+from tools.authoring.human.face_map import face_uvs, save_face_maps
 from tools.authoring.human.limbs import FOOT, rotation_deg
 from tools.authoring.human.rig import JOINT_POSITIONS
 from tools.authoring.human.secondary_motion import GRAVITY_M_S2
@@ -30,6 +34,7 @@ SPEEDS = {"Walk": (1.35, 0.0), "Run": (3.4, 0.0)}
 SHUTTING = ["blink", "blinkLeft", "blinkRight"]
 MOODS = ["happy", "angry", "sad", "surprised", "relaxed"]
 VISEMES = ["aa", "ih", "ou", "ee", "oh"]
+FACE_FOLDER = ASSETS / "human_face"
 YAW_RATES = {"Wide": 45.0, "Medium": 90.0, "Short": 135.0}
 
 
@@ -62,6 +67,26 @@ def test_the_asset_is_what_the_code_makes(human: Character, made: Character) -> 
             assert shipped_morph.name == morph.name
             assert np.array_equal(shipped_morph.vertices, morph.vertices)
             assert np.allclose(shipped_morph.displacements, morph.displacements, atol=1e-5)
+
+
+def test_the_face_maps_are_what_the_code_makes(tmp_path: Path) -> None:
+    made = save_face_maps(tmp_path / "face")
+    assert len(made) == 13
+    for path in made:
+        pictures = [cv2.imread(str(folder / path.name), 0) for folder in (path.parent, FACE_FOLDER)]
+        fresh, shipped = (np.asarray(picture, int) for picture in pictures)
+        assert np.abs(fresh - shipped).max() <= 1, path.name
+
+
+def test_wrinkles_lie_on_the_skin_of_the_face(human: Character) -> None:
+    """No vertex of clothes or hair has texture coordinates, and those of the face are unfolded."""
+    (body,) = (mesh for mesh in human.meshes if mesh.uvs is not None)
+    assert body.uvs is not None
+    head = human.skeleton.names.index("head")
+    skin = body.uvs.any(axis=1)
+    assert (body.joints[skin, 0] == head).all()
+    front = skin & (body.positions[:, 2] > 0.05)
+    assert np.allclose(face_uvs(body.positions[front].astype(float)), body.uvs[front], atol=1e-5)
 
 
 def test_knows_to_wait_the_twelve_gaits_and_five_actions(human: Character) -> None:
