@@ -21,6 +21,7 @@ from app.sound.synthesis import SAMPLE_RATE
 from app.speaking.performance import AZIMUTH_RAD, ELEVATION_RAD, View
 from characters import Character
 from characters.behaviour.bml import feedback_xml
+from characters.face.complexion import blood_of
 from characters.rendering.portrait import PortraitRenderer
 
 
@@ -114,6 +115,7 @@ class WindowOutput:
             azimuth=AZIMUTH_RAD,
             elevation=ELEVATION_RAD,
             focus=self._camera.focus(pose, now),
+            blood=blood_of(player.emotion),
         )
         self._window.show_picture(picture)
         self._window.poll()

@@ -98,7 +98,9 @@ class BehaviourPlayer:
         self, character: Character, lines: LineSource, options: BehaviourOptions | None = None
     ) -> None:
         options = options or BehaviourOptions()
-        self._emotion, self._lines = options.emotion, lines
+        self.emotion = options.emotion
+        """What it feels throughout."""
+        self._lines = lines
         self._animator = Animator(character, place=RootDelta(), seed=options.seed)
         self._ways = Ways(character)
         self._refused: list[str] = []
@@ -134,7 +136,7 @@ class BehaviourPlayer:
         self._refused = []
         retime_speeches(self.realizer, self.who, now)
         performed = self._performer.performed(self.realizer.active(now), now)
-        posed = self._animator.update(command_of(performed, self._emotion, self.who))
+        posed = self._animator.update(command_of(performed, self.emotion, self.who))
         self._tell_place(posed)
         return BehaviourFrame(posed, performed, feedback)
 
@@ -146,7 +148,7 @@ class BehaviourPlayer:
         """Stand for a time before time 0, in frames of a rate [Hz]: eyes find the viewer."""
         for number in range(-round(seconds * rate), 0):
             now = number / rate
-            posed = self._animator.update(command_of(Performed(now), self._emotion, self.who))
+            posed = self._animator.update(command_of(Performed(now), self.emotion, self.who))
             self._tell_place(posed)
 
     def over(self, now: float) -> bool:

@@ -29,8 +29,11 @@ def write_video(
     size: tuple[int, int],
     view: View,
     subtitles: bool,
+    blood: float = 0.0,
 ) -> None:
     """Write a performance as a video with sound.
+
+    `blood` is that in the skin of the face, as in `SceneCharacter`.
 
     Raises
     ------
@@ -52,6 +55,7 @@ def write_video(
                     azimuth=AZIMUTH_RAD,
                     elevation=ELEVATION_RAD,
                     focus=camera.focus(pose, now),
+                    blood=blood,
                 )
                 if subtitles:
                     _subtitle(picture, recording, now)

@@ -26,6 +26,7 @@ from app.ui.video_file import VIDEO_FORMATS
 from characters import Character
 from characters.behaviour.bml import BlockProgress, BmlWarning, Feedback, feedback_xml
 from characters.behaviour.expressivity import GestureExpressivity
+from characters.face.complexion import blood_of
 from characters.formats.mocap.bvh_writing import save_bvh
 from characters.retargeting.bap import save_bap
 from characters.retargeting.root import with_root_joint
@@ -123,7 +124,7 @@ def behave(
         with console.status("performing"):
             player = BehaviourPlayer(body, lines, options)
             done = perform(player, documents, rate, together=together, name=path.stem)
-            _write(path, body, done, pixels, view, subtitles)
+            _write(path, body, done, pixels, view, subtitles, blood_of(player.emotion))
     finally:
         lines.close()
     if feedback is not None:
@@ -179,6 +180,7 @@ def _write(
     size: tuple[int, int],
     view: View,
     subtitles: bool,
+    blood: float,
 ) -> None:
     match path.suffix.lower():
         case ".bvh":
@@ -186,7 +188,7 @@ def _write(
         case ".bap":
             save_bap(done.clip, body.skeleton, body.anatomy, path)
         case _:
-            write_video(path, body, done, size=size, view=view, subtitles=subtitles)
+            write_video(path, body, done, size=size, view=view, subtitles=subtitles, blood=blood)
 
 
 def _report(console: Console, path: Path, done: BehaviourRecording, problem: str) -> None:

@@ -25,6 +25,7 @@ from app.ui.video_file import VIDEO_FORMATS
 from characters import Character
 from characters.control.layers.speech import known_gestures
 from characters.control.speech_profile import DATABASES, DEFAULT_PROFILE, SpeechProfile
+from characters.face.complexion import blood_of
 from characters.face.visemes.sets import viseme_sets
 from characters.formats.mocap.bvh_writing import save_bvh
 from characters.model.files import read_text
@@ -195,7 +196,16 @@ def speak(
             if target.suffix.lower() == ".bvh":
                 save_bvh(clip, body.skeleton, body.anatomy, target)
             else:
-                write_video(target, body, clip, line, size=pixels, view=view, subtitles=subtitles)
+                write_video(
+                    target,
+                    body,
+                    clip,
+                    line,
+                    size=pixels,
+                    view=view,
+                    subtitles=subtitles,
+                    blood=blood_of(feels),
+                )
     console.print(
         f"[bold]{escape(str(target))}[/] is written: {speech.duration:.1f} s of speech, "
         f"{len(utterance.words)} words, {len(utterance.accents)} accents",

@@ -19,6 +19,7 @@ from characters.control.command import SpeechIntent
 from characters.control.layers import layers_of
 from characters.control.layers.live_mouth import LiveMouthLayer
 from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
+from characters.face.complexion import blood_of
 from characters.rendering.portrait import PortraitRenderer
 from characters.speech.mouth import MouthTracker
 from characters.speech.onsets import OnsetDetector
@@ -96,7 +97,12 @@ def speak_live(
             pose = performer.update(sound, now - begin).pose
             window.show_picture(
                 renderer.portrait(
-                    character, pose, azimuth=AZIMUTH_RAD, elevation=ELEVATION_RAD, focus=focus
+                    character,
+                    pose,
+                    azimuth=AZIMUTH_RAD,
+                    elevation=ELEVATION_RAD,
+                    focus=focus,
+                    blood=blood_of(emotion),
                 )
             )
             window.poll()

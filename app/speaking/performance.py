@@ -116,8 +116,11 @@ def write_video(
     size: tuple[int, int],
     view: View,
     subtitles: bool,
+    blood: float = 0.0,
 ) -> None:
     """Write a performance as a video with sound.
+
+    `blood` is that in the skin of the face, as in `SceneCharacter`.
 
     Raises
     ------
@@ -138,6 +141,7 @@ def write_video(
                     azimuth=AZIMUTH_RAD,
                     elevation=ELEVATION_RAD,
                     focus=focus,
+                    blood=blood,
                 )
                 if subtitles and now >= LEAD_S:
                     put_subtitle(picture, speech, now)

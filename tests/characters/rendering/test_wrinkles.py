@@ -9,7 +9,7 @@ from characters import Character
 from characters.control.command import PosedCharacter
 from characters.model.face_maps import LAYER_NAMES, WRINKLE_LAYERS
 from characters.model.mesh import FaceMaps
-from characters.rendering import SceneCharacter
+from characters.rendering import FULL, Quality, SceneCharacter
 from tests.characters.rendering.wrinkle_reference import agreement
 
 LAYERS = len(LAYER_NAMES)
@@ -113,6 +113,14 @@ def test_a_unit_changes_the_pixels_of_its_layer_alone(shown, view, layer):
 def test_raised_brows_change_the_three_layers_of_the_forehead(shown, view):
     raised = shown(AU1=1.0, AU2Left=1.0, AU2Right=1.0)
     assert changed_cells(view, shown(), raised) == {0, 1, 2}
+
+
+def test_deferred_shading_draws_the_same_face(stage, view, shown):
+    forward = [shown(), shown(AU4=1.0, blood=1.0)]
+    stage.quality = Quality("deferred", FULL.fineness, FULL.matched, deferred=True)
+    for picture, weights in zip(forward, ({}, {"AU4": 1.0, "blood": 1.0}), strict=True):
+        assert np.abs(shown(**weights) - picture).max() <= 1
+    assert changed_cells(view, *forward) == {0, 3}
 
 
 def test_blood_changes_the_pixels_of_its_mask_alone(shown, view):
