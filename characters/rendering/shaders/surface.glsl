@@ -136,6 +136,9 @@ vec3 surface_shade() {
 #ifdef SHADE
     shade *= texture(shade_map, where).rgb;
 #endif
+#ifdef FACE
+    shade = flushed(shade, texture(face_map, where).z);
+#endif
     return shade;
 }
 #endif

@@ -26,6 +26,9 @@ FINE_GRID = 960, 480
 MIN_BEND_DEG = 1.0
 """Pixels count whose normal either way is bent by more [°]: smooth skin would flatter the mean."""
 
+SMOOTH_GRID = 240, 120
+"""Quads of the smooth surface, on which the wrinkles are drawn: about as wide as a wrinkle."""
+
 VERTEX = """
 #version 330 core
 uniform mat4 clip_from_table;
@@ -101,11 +104,13 @@ def agreement(
     )
 
     def drawn(points: Array, normals: Array, depth_m: float) -> Array:
-        vertices = np.concatenate([points, normals, _uvs(grid)], axis=-1).astype(np.float32)
+        rows, columns = points.shape[:2]
+        of = columns - 1, rows - 1
+        vertices = np.concatenate([points, normals, _uvs(of)], axis=-1).astype(np.float32)
         array = context.vertex_array(
             program,
             [(context.buffer(vertices), "3f 3f 2f", "position", "normal", "uv")],
-            context.buffer(_triangles(grid)),
+            context.buffer(_triangles(of)),
         )
         set_uniforms(program, clip_from_table=_camera(yaw_rad), wrinkle_depth=depth_m, face_map=0)
         target.use()
@@ -117,10 +122,11 @@ def agreement(
         array.release()
         return read.reshape(side_px, side_px, 4).astype(float)
 
+    coarse = _ellipsoid(SMOOTH_GRID)
     smooth, flat = _ellipsoid(grid)
     displaced = smooth + flat * _heights(maps, intensities, grid)[..., None]
-    plain = drawn(smooth, flat, 0.0)
-    bumped = drawn(smooth, flat, maps.depth)
+    plain = drawn(*coarse, 0.0)
+    bumped = drawn(*coarse, maps.depth)
     true = drawn(displaced if shifted else smooth, _grid_normals(displaced, flat), 0.0)
     both = (bumped[..., 3] > 0) & (true[..., 3] > 0)
     bend = _angles_deg(plain, true)
