@@ -40,6 +40,9 @@ class WrinkleMixer:
         self.texels = np.zeros((height, width, 4), np.float32)
         """Slope along u and v [heights of 1 per unit of u, v], blood 0…1, 0: (height, width, 4)."""
         self.texels[..., 2] = maps.blood
+        self._sum = np.zeros_like(
+            self.texels[self.box][..., :2]
+        )  # contiguous: it is added to often
         self._shown = np.zeros(len(maps.heights))
 
     def compose(self, intensities: Array) -> bool:
@@ -48,10 +51,15 @@ class WrinkleMixer:
         if np.array_equal(wanted, self._shown):
             return False
         self._shown = wanted
-        self.texels[self.box][..., :2] = 0.0
-        for number, box, slopes in self._layers:
+        self._sum[:] = 0.0
+        top, left = self.box[0].start, self.box[1].start
+        for number, (rows, columns), slopes in self._layers:
             if wanted[number] > 0.0:
-                self.texels[box][..., :2] += np.float32(wanted[number]) * slopes
+                part = self._sum[
+                    rows.start - top : rows.stop - top, columns.start - left : columns.stop - left
+                ]
+                part += np.float32(wanted[number]) * slopes
+        self.texels[self.box][..., :2] = self._sum
         return True
 
     @property

@@ -35,6 +35,7 @@ in vec3 facing;
 in vec3 tint;
 #ifdef FACE
 #include "face"
+vec3 face_texel;                // of face_map; set by surface_albedo, which comes first
 #endif
 
 #ifdef BUMPS
@@ -104,7 +105,8 @@ vec3 surface_albedo() {
 #endif
 #endif
 #ifdef FACE
-    albedo = flushed(albedo, texture(face_map, where).z);
+    face_texel = texture(face_map, where).xyz;
+    albedo = flushed(albedo, face_texel.z);
 #endif
     return albedo;
 }
@@ -124,7 +126,7 @@ vec3 surface_normal() {
     n = bumped(n);
 #endif
 #ifdef FACE
-    n = wrinkled(n, place, where, texture(face_map, where).xy);
+    n = wrinkled(n, place, where, face_texel.xy);
 #endif
     return gl_FrontFacing ? n : -n;
 }
@@ -137,7 +139,7 @@ vec3 surface_shade() {
     shade *= texture(shade_map, where).rgb;
 #endif
 #ifdef FACE
-    shade = flushed(shade, texture(face_map, where).z);
+    shade = flushed(shade, face_texel.z);
 #endif
     return shade;
 }
