@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from app.pipeline.surroundings import REALISM_CHOICES, Surroundings
+from app.pipeline.surroundings import Surroundings
 from app.ui.contact_sheets import save
 from characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
 from characters.rendering import SceneCharacter, Stage, create_context
@@ -31,7 +31,12 @@ FRAMES = 215
 PLACE = RootDelta(0.1, -0.1, -0.4)
 """Place of the character: behind cube and hand."""
 
-ROWS: tuple[tuple[str, ...], ...] = ((), ("hand",), ("hand", "light"), tuple(REALISM_CHOICES))
+ROWS: tuple[tuple[str, ...], ...] = (
+    (),
+    ("hand",),
+    ("hand", "light"),
+    ("hand", "light", "softness"),
+)
 """What each picture follows."""
 
 CROP = (slice(150, 560), slice(440, 1010))
