@@ -7,6 +7,7 @@ where blood shows. A table of the sidecar file names the folder of the pictures:
     maps = "me_face"        # the folder, beside the sidecar file
     depth_mm = 2.0          # height of white above mid-grey
     meshes = ["Head"]       # left out: every mesh with texture coordinates
+    scattering = 1.0        # how far light spreads below it, 1 as in human skin, 0 not at all
 
 A picture of a layer is grey: 128 is skin at rest, darker a groove, lighter a bulge. In `blood.png`,
 white is where skin flushes most. A picture that is left out is empty.
@@ -56,7 +57,7 @@ MAX_SIDE_PX = 4096
 """Pictures may be this large [px]."""
 
 _MAX_BYTES = 64_000_000
-_KEYS = ("maps", "depth_mm", "meshes")
+_KEYS = ("maps", "depth_mm", "meshes", "scattering")
 _REST_SHARE = 128 / 255  # the grey of skin at rest
 
 
@@ -69,6 +70,9 @@ class FaceTable:
 
     meshes: tuple[str, ...]
     """Names of the meshes that they are for; empty for all with texture coordinates."""
+
+    scattering: float
+    """How far light spreads below these meshes, relative to human skin."""
 
     def on(self, meshes: Sequence[Mesh], source: str) -> tuple[Mesh, ...]:
         """Return a character's meshes, those of this table with its maps; `source` is the file.
@@ -88,7 +92,10 @@ class FaceTable:
                 )
         wanted = self.meshes or able
         return tuple(
-            replace(mesh, material=replace(mesh.material, face=self.maps))
+            replace(
+                mesh,
+                material=replace(mesh.material, face=self.maps, scattering=self.scattering),
+            )
             if mesh.name in wanted and mesh.uvs is not None
             else mesh
             for mesh in meshes
@@ -114,10 +121,16 @@ def read_face_table(document: Mapping[str, Any], path: Path) -> FaceTable | None
     depth = table.get("depth_mm", DEPTH_MM)
     if isinstance(depth, bool) or not isinstance(depth, int | float) or not 0.0 < depth < 1e3:
         raise CharacterError(f"{path}: face.depth_mm: {depth!r} is not a height above 0 [mm]")
+    scattering = table.get("scattering", 0.0)
+    if isinstance(scattering, bool) or not isinstance(scattering, int | float) or scattering < 0.0:
+        raise CharacterError(
+            f"{path}: face.scattering: {scattering!r} is not a number of 0 or more"
+        )
     meshes = table.get("meshes", [])
     if not isinstance(meshes, list) or not all(isinstance(name, str) for name in meshes):
         raise CharacterError(f'{path}: face.meshes: write ["name of a mesh", …]')
-    return FaceTable(read_face_maps(path.parent / table["maps"], 1e-3 * depth), tuple(meshes))
+    maps = read_face_maps(path.parent / table["maps"], 1e-3 * depth)
+    return FaceTable(maps, tuple(meshes), float(scattering))
 
 
 def read_face_maps(folder: Path, depth_m: float) -> FaceMaps:

@@ -73,7 +73,8 @@ class Material:
     """Alpha below which nothing is drawn; None for an opaque surface."""
 
     scattering: float = 0.0
-    """How far light spreads below the surface, relative to human skin; 0 for not at all."""
+    """How far light spreads below the surface, relative to human skin; 0 for not at all. Only parts
+    with texture coordinates other than (0, 0) are skin."""
 
     blended: bool = False
     """Whether alpha is a share that is covered, not a cutoff, where a renderer can draw that."""

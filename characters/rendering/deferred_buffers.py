@@ -36,7 +36,7 @@ class GeometryBuffer:
         self.albedo_rough = _texture(context, size, "f2")
         """Linear RGB of the surface, and its roughness."""
         self.shade_metal = _texture(context, size, "f2")
-        """Linear RGB of what toon shading shows in the dark, and metalness."""
+        """Linear RGB of what toon shading shows in the dark, or 1 for skin and 0; and metalness."""
         self._layers = (self.normal_id, self.position, self.albedo_rough, self.shade_metal)
         self.framebuffer = context.framebuffer(self._layers, depth)
         """Draws on all of them."""

@@ -33,7 +33,10 @@ BLENDED = "BLENDED"
 
 _COLOR_UNITS = (TEXTURE_UNITS["base_texture"], TEXTURE_UNITS["shade_map"])  # the others are linear
 
-MAPPED_FEATURES = {"TEXTURED", "SURFACE", "BUMPS", "SHADE", FACE_FEATURE}
+SKIN_FEATURE = "SKIN"
+"""Feature of a surface below which light spreads, for the programs that keep that."""
+
+MAPPED_FEATURES = {"TEXTURED", "SURFACE", "BUMPS", "SHADE", FACE_FEATURE, SKIN_FEATURE}
 """Features that need texture coordinates."""
 
 
@@ -217,7 +220,8 @@ def surface_features(material: Material) -> frozenset[str]:
 
     TEXTURED: a texture of the base colour; SURFACE: one of roughness and metalness; BUMPS: a normal
     map; GLOW: emitted light; CUTOFF: holes where alpha is low; BLENDED: partly transparent instead,
-    where that can be drawn; TOON: MToon's shading; SHADE: its texture. The shaders test these.
+    where that can be drawn; TOON: MToon's shading; SHADE: its texture; SKIN: light spreads below
+    it. The shaders test these.
 
     >>> sorted(surface_features(Material(emissive=(0.0, 0.2, 0.0), alpha_cutoff=0.5)))
     ['CUTOFF', 'GLOW']
@@ -230,6 +234,7 @@ def surface_features(material: Material) -> frozenset[str]:
         "CUTOFF": material.alpha_cutoff is not None,
         BLENDED: material.blended and material.alpha_cutoff is not None,
         "TOON": material.toon is not None,
+        SKIN_FEATURE: material.scattering > 0.0 and material.toon is None,
         "SHADE": material.toon is not None and material.toon.texture is not None,
     }
     return frozenset(feature for feature, present in has.items() if present)
@@ -241,10 +246,12 @@ def surface_program(programs: ShaderPrograms, features: frozenset[str]) -> moder
     Each set of features is a program of its own: software rendering samples a texture even where a
     condition excludes it, and a plain surface must not pay for the features of others.
     """
-    mapped = {"MAPPED"} if features & MAPPED_FEATURES else set()
-    placed = {"PLACED"} if features & {"BUMPS", GEOMETRY, CASTER, FACE_FEATURE} else set()
     if not features & {GEOMETRY, CASTER}:
         features -= {BLENDED}
+    if GEOMETRY not in features:
+        features -= {SKIN_FEATURE}
+    mapped = {"MAPPED"} if features & MAPPED_FEATURES else set()
+    placed = {"PLACED"} if features & {"BUMPS", GEOMETRY, CASTER, FACE_FEATURE} else set()
     program = programs.load("character", "character", *sorted(features | mapped | placed))
     set_uniforms(program, **TEXTURE_UNITS)
     return program

@@ -28,7 +28,7 @@ uniform float surface_id;   // 1 for the first surface of the picture
 layout(location = 0) out vec4 normal_id;    // unit normal in the camera frame, and the surface
 layout(location = 1) out vec4 position;     // in the camera frame [m]
 layout(location = 2) out vec4 albedo_rough; // linear RGB, and roughness
-layout(location = 3) out vec4 shade_metal;  // colour of the toon shade, and metalness
+layout(location = 3) out vec4 shade_metal;  // colour of the toon shade, or whether this is skin, and metalness
 #else
 #include "shading"
 #include "encoding"
@@ -62,6 +62,9 @@ void main() {
     shade_metal = vec4(surface_shade(), 0.0);
 #else
     shade_metal = vec4(0.0, 0.0, 0.0, finish.y);
+#ifdef SKIN
+    shade_metal.r = float(any(notEqual(where, vec2(0.0))));  // parts without texture coordinates are not skin
+#endif
 #endif
 #else
     float up = 0.5 + 0.5 * n.y;

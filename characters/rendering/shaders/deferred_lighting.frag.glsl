@@ -53,6 +53,6 @@ void main() {
     diffuse = vec4(visible.rgb * light.diffuse, 1.0);
     specular = vec4(visible.rgb * light.specular + glow_height.rgb, 1.0);
     ambient = visible.a * vec4(light.ambient, 1.0);
-    bool skin = texelFetch(surfaces, ivec2(2, surface), 0).x > 0.0 && toon.x < 0.5;
+    bool skin = toon.x < 0.5 && shade.r > 0.5;
     falling = skin ? vec4(visible.rgb * key * wrapped(dot(n.xyz, to_light)), 1.0) : vec4(0.0);
 }

@@ -60,6 +60,8 @@ def test_the_table_names_folder_depth_and_meshes(sidecar):
         ('maps = "me_face"\nheight = 1', "face.height"),
         ('maps = "me_face"\ndepth_mm = -1', "not a height above 0"),
         ('maps = "me_face"\nmeshes = "Head"', "name of a mesh"),
+        ('maps = "me_face"\nscattering = -1', "not a number of 0 or more"),
+        ('maps = "me_face"\nscattering = "much"', "not a number of 0 or more"),
         ('maps = "elsewhere"', "no picture of a face"),
     ],
 )
@@ -82,7 +84,7 @@ def test_a_file_that_is_no_picture_is_refused(folder):
 
 
 def test_a_mesh_without_texture_coordinates_is_refused(folder):
-    table = FaceTable(read_face_maps(folder, 0.002), ("eyes",))
+    table = FaceTable(read_face_maps(folder, 0.002), ("eyes",), 0.0)
     with pytest.raises(CharacterError, match="no mesh 'eyes' with texture coordinates"):
         table.on(Character.load("human").meshes, "me.toml")
 
@@ -92,4 +94,6 @@ def test_only_the_bundled_human_has_them():
         name: {mesh.name for mesh in Character.load(name).meshes if mesh.material.face is not None}
         for name in Character.bundled()
     }
+    (skin,) = (mesh for mesh in Character.load("human").meshes if mesh.name == "explorer")
+    assert skin.material.scattering == 1.0
     assert faces == {"human": {"explorer"}, "robot": set(), "vleo": set()}

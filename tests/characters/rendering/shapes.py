@@ -60,5 +60,6 @@ def mesh(positions, normals, triangles, material: Material):
         joints=np.zeros((count, 4), np.uint16),
         weights=np.tile([1.0, 0.0, 0.0, 0.0], (count, 1)).astype(np.float32),
         inverse_bind=np.eye(4)[None],
+        uvs=np.full((count, 2), 0.5, np.float32),  # skin has texture coordinates
         material=material,
     )
