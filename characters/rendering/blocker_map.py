@@ -39,7 +39,7 @@ class BlockerMap:
         self._lamp: Lamp | None = None
 
     def render(self, frame: FrameResources, lamp: Lamp) -> None:
-        """Draw all characters of a frame as a lamp sees them."""
+        """Draw the characters on the table as a lamp sees them."""
         self._lamp = lamp
         context = self._context
         self._target.use()
@@ -48,7 +48,7 @@ class BlockerMap:
         context.blend_equation = moderngl.MIN, moderngl.MIN
         # Faces that look away from the lamp are drawn: what it lights does not shadow itself.
         context.front_face, context.cull_face = "cw", "front"
-        for character in frame.characters:
+        for character in frame.on_table:
             for part in character.skinned.surfaces:
                 array = character.skinned.array(part.features | {CASTER})
                 set_uniforms(

@@ -67,6 +67,12 @@ class CubeOutlines:
         return cls(min(len(boxes), MAX_CUBES), longest, sides)
 
 
+def corners_of(box: Box, camera_from_table: Array) -> Array:
+    """Return the eight corners of a box in the table frame, (8, 3) [m]."""
+    table_from_box = np.linalg.inv(camera_from_table) @ box.camera_from_box
+    return np.asarray(box.edge * _CORNERS @ table_from_box[:3, :3].T + table_from_box[:3, 3])
+
+
 def visible_cubes(
     boxes: Sequence[Box], matrix: Array, size: tuple[int, int]
 ) -> tuple[tuple[Box, Rectangle], ...]:

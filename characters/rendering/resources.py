@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from characters.rendering.cover import PictureCover
 from characters.rendering.geometry.character_cache import CharacterInstance
 from characters.rendering.light import Light
-from characters.rendering.occlusion import CubeOutlines
+from characters.rendering.occlusion import CubeOutlines, corners_of
 from characters.rendering.programs import set_uniforms
 from characters.rendering.projection import Rectangle, bounding_rectangle, clip_from_camera
 from characters.rendering.scene import Box, Scene, Softness
@@ -164,11 +164,28 @@ class FrameResources:
         size = self.picture.shape[1], self.picture.shape[0]
         return bounding_rectangle(points, self.camera_matrix, self.camera_from_table, size)
 
+    @property
+    def on_table(self) -> tuple[CharacterInstance, ...]:
+        """The characters that are in no cube: their shadows fall on the table."""
+        return tuple(each for each in self.characters if each.inside is None)
+
+    @property
+    def open_cubes(self) -> tuple[Box, ...]:
+        """Real cubes in the picture whose inside is seen."""
+        return tuple(box for box, _ in self.cubes if box.opening > 0.0)
+
     @cached_property
     def character_area(self) -> Rectangle | None:
-        """The area around all characters, without their shadows; None if there are none."""
+        """The area around all characters and open cubes, without shadows; None for neither."""
+        points = self.points_on_layer
+        return self.area_of(points) if len(points) else None
+
+    @property
+    def points_on_layer(self) -> Array:
+        """Points of the table frame around all characters and open cubes, (n, 3) [m]."""
         points = [character.enclosing for character in self.characters]
-        return self.area_of(np.concatenate(points)) if points else None
+        points += [corners_of(box, self.camera_from_table) for box in self.open_cubes]
+        return np.concatenate([np.zeros((0, 3)), *points])
 
     def regions(self, areas: Sequence[Rectangle]) -> Iterator[Region]:
         """Yield a region for each area that no other contains.

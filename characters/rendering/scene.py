@@ -22,6 +22,9 @@ class Box:
     edge: float
     """Length of its edges [m]."""
 
+    opening: float = 0.0
+    """How far the walls that look at the camera are open, 0…1: through them its inside is seen."""
+
 
 @dataclass(frozen=True)
 class Cover:
@@ -158,6 +161,10 @@ class SceneCharacter:
 
     blood: float = 0.0
     """Blood in the skin of its face: -1 pale … 1 flushed, if the character has a map for it."""
+
+    inside: Box | None = None
+    """The open cube that it stands in: nothing of it is drawn outside, and its shadow falls on the
+    floor in there. None for a character on the table."""
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 from characters.rendering.geometry.skinned_character import SkinnedCharacter
 from characters.rendering.programs import ShaderPrograms
 from characters.rendering.projection import is_invertible
-from characters.rendering.scene import Drawable, SceneCharacter
+from characters.rendering.scene import Box, Drawable, SceneCharacter
 from characters.skeleton.pose import Array
 
 MAX_CHARACTERS = 8
@@ -29,6 +29,12 @@ class CharacterInstance:
 
     height: float
     """Its height on the table [m]."""
+
+    place: Array
+    """`table_from_character`, (4, 4) [m]; scaled."""
+
+    inside: Box | None = None
+    """The open cube that it stands in; None for the table."""
 
 
 class CharacterCache:
@@ -59,7 +65,7 @@ class CharacterCache:
             if enclosing is not None:
                 skinned.show_face(each.posed.pose.morphs, each.blood, place, each.wrinkles)
                 height = skinned.height * float(np.linalg.norm(place[:3, 1]))
-                instances.append(CharacterInstance(skinned, enclosing, height))
+                instances.append(CharacterInstance(skinned, enclosing, height, place, each.inside))
         self._evict(copies.total())
         return tuple(instances)
 

@@ -7,6 +7,7 @@ from characters.rendering.blocker_map import BlockerMap
 from characters.rendering.passes.background import BackgroundPass
 from characters.rendering.passes.characters import CharacterPass
 from characters.rendering.passes.cube_occlusion import CubeOcclusionPass
+from characters.rendering.passes.cube_window import CubeWindowPass
 from characters.rendering.passes.deferred_composite import DeferredCompositePass
 from characters.rendering.passes.deferred_geometry import DeferredGeometryPass
 from characters.rendering.passes.deferred_lighting import DeferredLightingPass
@@ -41,6 +42,7 @@ def passes_for(
         FloorPathPass(context, programs),
         shadows,
         CubeOcclusionPass(context, programs),
+        CubeWindowPass(context, programs),
         *shading,
         HandOcclusionPass(context, programs),
         ResolvePass(context, programs),

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import moderngl
 
+from characters.rendering.passes.cube_window import clip_to, unit_cube_from_table
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import set_uniforms
 from characters.rendering.projection import Rectangle
@@ -29,6 +30,7 @@ class CharacterPass(RenderPass):
         clip_from_table = layer.clip_from_camera @ frame.camera_from_table
         eye = frame.camera_position
         for character in frame.characters:
+            clip_to(context, character)
             prepared: set[int] = set()
             for part in character.skinned.surfaces:
                 program = part.array.program
@@ -43,5 +45,7 @@ class CharacterPass(RenderPass):
                         sky=light.sky,
                         ground=light.ground,
                         height=character.height,
+                        cube_from_table=unit_cube_from_table(frame, character.inside),
                     )
                 part.render(context, part.array)
+        clip_to(context, None)

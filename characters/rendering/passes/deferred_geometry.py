@@ -4,6 +4,7 @@ import moderngl
 
 from characters.rendering.geometry.surfaces import GEOMETRY
 from characters.rendering.passes.characters import CharacterPass
+from characters.rendering.passes.cube_window import clip_to, unit_cube_from_table
 from characters.rendering.programs import set_uniforms
 from characters.rendering.resources import FrameResources, Region
 
@@ -25,6 +26,8 @@ class DeferredGeometryPass(CharacterPass):
         clip_from_table = layer.clip_from_camera @ frame.camera_from_table
         surface_id = 0
         for character in frame.characters:
+            clip_to(frame.context, character)
+            cube_from_table = unit_cube_from_table(frame, character.inside)
             for part in character.skinned.surfaces:
                 surface_id += 1
                 array = character.skinned.array(part.features | {GEOMETRY})
@@ -32,6 +35,8 @@ class DeferredGeometryPass(CharacterPass):
                     array.program,
                     clip_from_table=clip_from_table,
                     camera_from_table=frame.camera_from_table,
+                    cube_from_table=cube_from_table,
                     surface_id=float(surface_id),
                 )
                 part.render(frame.context, array)
+        clip_to(frame.context, None)

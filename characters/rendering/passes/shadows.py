@@ -32,6 +32,9 @@ SKY_BLUR = (0.022, 0.05, 0.11, 0.13)
 SKY_OCCLUSION = (0.78, 0.7, 0.48, 0.2)
 """Share of the ambient light that a surface at each level keeps from the table below it."""
 
+ON_TABLE = np.eye(4)
+"""`floor_from_table` of the table itself."""
+
 BLUR_MARGIN = 0.22
 """Margin around the character for the blur, as a share of its height."""
 
@@ -53,17 +56,18 @@ class ShadowPass(RenderPass):
 
     def prepare(self, frame: FrameResources) -> Sequence[Rectangle]:
         """Render the shadow maps, and return one area for all shadows and their characters."""
-        self._count, self._area = len(frame.characters), None
+        characters = frame.on_table
+        self._count, self._area = len(characters), None
         if not self._count:
             return ()
         while len(self._maps) < self._count:
             self._maps.append(ShadowMap(self._context, self._programs))
-        key_share = self._key_share(frame.light)
+        share = self._key_share(frame.light)
         corners = [
-            shadow.render(character, frame.light, key_share)
-            for shadow, character in zip(self._maps, frame.characters, strict=False)
+            shadow.render(character, frame.light, share)
+            for shadow, character in zip(self._maps, characters, strict=False)
         ]
-        bodies = [character.enclosing for character in frame.characters]
+        bodies = [character.enclosing for character in characters]
         self._area = frame.area_of(np.concatenate([*bodies, *corners]))
         return () if self._area is None else (self._area,)
 
@@ -76,7 +80,7 @@ class ShadowPass(RenderPass):
 
     def _key_share(self, light: Light) -> Array:
         """Return the share of the key light in the light on the table, (3,)."""
-        return np.asarray(light.key * light.to_light[1] / light.white)
+        return key_share(light)
 
     def _darken(self, frame: FrameResources, region: Region) -> None:
         """Multiply what is drawn on by the light that each character leaves."""
@@ -94,6 +98,11 @@ class ShadowPass(RenderPass):
         super().release()
         for shadow in self._maps:
             shadow.release()
+
+
+def key_share(light: Light) -> Array:
+    """Return the share of the key light in the light on a floor, in whose frame it is, (3,)."""
+    return np.asarray(light.key * light.to_light[1] / light.white)
 
 
 class ShadowMap:
@@ -117,10 +126,18 @@ class ShadowMap:
         self.extent = np.zeros(4)
         """Lowest x and z, highest x and z that the shadow can reach [m]."""
 
-    def render(self, character: CharacterInstance, light: Light, key_share: Array) -> Array:
+    def render(
+        self,
+        character: CharacterInstance,
+        light: Light,
+        share: Array,
+        floor_from_table: Array = ON_TABLE,
+    ) -> Array:
         """Render the map of a character; return the corners (4, 3) that its shadow can reach.
 
-        `key_share` (3,) is the share of the key light in the light on the table.
+        `share` (3,) is the share of the key light in the light on the table. On another floor
+        than the table, its frame (4, 4) has +y up and the floor at y = 0; what encloses the
+        character, the light and the corners are in that frame.
         """
         height = character.height
         # Horizontal offset (x, z) of a point from its shadow, for each metre of the point's height.
@@ -128,7 +145,13 @@ class ShadowMap:
         self.extent = _extent(character.enclosing, height, slope)
         self.area = _map_area(self.extent, height)
         context = self._context
-        set_uniforms(self._caster, area=self.area, slope=slope, levels=SHADOW_LEVELS)
+        set_uniforms(
+            self._caster,
+            area=self.area,
+            slope=slope,
+            levels=SHADOW_LEVELS,
+            floor_from_table=floor_from_table,
+        )
         for target in reversed(self._targets):
             target.use()
             target.viewport = (0, 0, 2 * MAP_SIDE, MAP_SIDE)
@@ -145,7 +168,7 @@ class ShadowMap:
         context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
         context.enable_only(moderngl.NOTHING)
         self._soften(height)
-        self._combine(key_share)
+        self._combine(share)
         x, z = self.extent[[0, 2, 2, 0]], self.extent[[1, 1, 3, 3]]
         return np.stack([x, np.zeros(4), z], axis=1)
 

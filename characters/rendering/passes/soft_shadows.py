@@ -55,8 +55,9 @@ class SoftShadowPass(ShadowPass):
         """Find the light that is left on the table, and return the area that it changes."""
         super().prepare(frame)
         if not self._count:
+            self._block_nothing(frame)
             return ()
-        casters = np.concatenate([each.enclosing for each in frame.characters])
+        casters = np.concatenate([each.enclosing for each in frame.on_table])
         lamp = Lamp.over(casters, frame.light.to_light)
         self._blockers.render(frame, lamp)
         extent = _united([shadow.extent for shadow in self._maps[: self._count]])
@@ -66,6 +67,12 @@ class SoftShadowPass(ShadowPass):
         self._find_left(super()._key_share(frame.light))
         self._area = frame.area_of(np.concatenate([casters, _corners(self._extent)]))
         return () if self._area is None else (self._area,)
+
+    def _block_nothing(self, frame: FrameResources) -> None:
+        """Empty the map of blockers, if some characters that are not on the table ask for it."""
+        points = frame.points_on_layer
+        if len(points):
+            self._blockers.render(frame, Lamp.over(points, frame.light.to_light))
 
     def _key_share(self, light: Light) -> Array:
         """Return zero: the maps of `ShadowPass` hold the light from all around alone."""

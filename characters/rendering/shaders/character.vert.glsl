@@ -3,6 +3,7 @@
 uniform mat4 clip_from_table;
 uniform vec3 eye;           // in the table frame
 uniform float height;       // of the character [m]
+#include "inside_cube"
 
 in vec3 position;
 in vec3 normal;
@@ -37,5 +38,6 @@ void main() {
 #ifdef CUTOFF
     covering = color.a;
 #endif
+    clip_to_cube(position);
     gl_Position = clip_from_table * vec4(position, 1.0);
 }

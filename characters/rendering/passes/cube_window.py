@@ -1,0 +1,177 @@
+"""The inside of an open cube: a room with a character in it, seen through holes in its walls."""
+
+from dataclasses import replace
+
+import moderngl
+import numpy as np
+
+from characters.rendering.geometry.character_cache import CharacterInstance
+from characters.rendering.occlusion import UNIT_CUBE
+from characters.rendering.passes.render_pass import RenderPass
+from characters.rendering.passes.shadows import ShadowMap, key_share
+from characters.rendering.programs import ShaderPrograms, set_uniforms
+from characters.rendering.projection import Rectangle
+from characters.rendering.resources import FrameResources, Region
+from characters.rendering.scene import Box
+from characters.skeleton.pose import Array
+
+RIM, WALL = 0.055, 0.025
+"""Width of the rim that an open wall keeps, and thickness of the walls, as shares of the cube's
+edge; in `cube_window.frag` too. The rim lies within the white border around a marker."""
+
+FACING = (0.02, 0.25)
+"""Cosines of a wall's angle to the camera from which on light comes in through it, and all of it:
+the holes are in the walls that look at the camera, so the light changes smoothly as the cube
+turns."""
+
+GL_CLIP_DISTANCE0 = 0x3000
+"""OpenGL's switch of the first of six clip distances."""
+
+MIN_SLOPE = 0.35
+"""Least height of the direction to the light above the inner floor, for the shadow on it."""
+
+_NORMALS = np.repeat(
+    [sign * np.roll([0.0, 0.0, 1.0], axis) for axis in range(3) for sign in (1, -1)], 6, axis=0
+)
+_OUTWARD = np.array([sign * np.eye(3)[axis] for axis in range(3) for sign in (1, -1)])
+
+
+class CubeWindowPass(RenderPass):
+    """Draws open cubes on the character layer: the depth of their rims, and the rooms inside."""
+
+    def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
+        self._context, self._programs = context, programs
+        vertices = np.hstack([UNIT_CUBE, _NORMALS]).astype("f4")
+        corners = context.buffer(vertices)
+        content = [(corners, "3f 3f", "position", "normal")]
+        self._empty, self._lived_in = (
+            context.vertex_array(programs.load("cube_window", "cube_window", *defines), content)
+            for defines in ((), ("SHADOW",))
+        )
+        self.owned = (self._empty, self._lived_in, corners)
+        self._shadow: ShadowMap | None = None
+        self._resident: tuple[CharacterInstance, Array] | None = None
+
+    def prepare(self, frame: FrameResources) -> tuple[Rectangle, ...]:
+        """Render the shadow of the character inside, and return the areas of open cubes."""
+        inside = (each for each in frame.characters if each.inside is not None)
+        resident = next(inside, None)
+        self._resident = None
+        if resident is not None and is_open(resident.inside):
+            self._resident = resident, self._render_shadow(frame, resident)
+        return tuple(area for box, area in frame.cubes if is_open(box))
+
+    def draw(self, frame: FrameResources, region: Region) -> None:
+        """Draw the open cubes."""
+        layer = region.characters
+        boxes = () if layer is None else tuple(filter(is_open, layer.cubes))
+        if layer is None or not boxes:
+            return
+        layer.use()
+        # Blending keeps nothing: a nearer cube hides a farther one, also with its rim.
+        self._context.enable_only(moderngl.DEPTH_TEST)
+        for box in boxes:
+            array = self._empty
+            if self._resident is not None and self._resident[0].inside is box:
+                array = self._lived_in
+                self._set_shadow(frame, array.program, *self._resident)
+            set_uniforms(
+                array.program,
+                clip_from_cube=layer.clip_from_camera @ camera_from_unit_cube(box),
+                opening=box.opening,
+                **_seen_from_inside(frame, box),
+                key=frame.light.key,
+                sky=frame.light.sky,
+            )
+            array.render(moderngl.TRIANGLES)
+
+    def release(self) -> None:
+        """Release the shadow map too; a second call does nothing."""
+        super().release()
+        if self._shadow is not None:
+            self._shadow.release()
+            self._shadow = None
+
+    def _render_shadow(self, frame: FrameResources, resident: CharacterInstance) -> Array:
+        """Render the shadow map of a character; return its floor's frame, (4, 4) [m]."""
+        if self._shadow is None:
+            self._shadow = ShadowMap(self._context, self._programs)
+        floor_from_table = np.asarray(np.linalg.inv(_unscaled(resident.place)), float)
+        turn = floor_from_table[:3, :3]
+        to_light = turn @ frame.light.to_light
+        to_light[1] = max(to_light[1], MIN_SLOPE)
+        light = replace(frame.light, to_light=to_light / np.linalg.norm(to_light))
+        caster = replace(resident, enclosing=resident.enclosing @ turn.T + floor_from_table[:3, 3])
+        self._shadow.render(caster, light, key_share(light), floor_from_table)
+        return floor_from_table
+
+    def _set_shadow(
+        self,
+        frame: FrameResources,
+        program: moderngl.Program,
+        resident: CharacterInstance,
+        floor_from_table: Array,
+    ) -> None:
+        box, shadow = resident.inside, self._shadow
+        assert box is not None
+        assert shadow is not None
+        table_from_cube = np.linalg.inv(frame.camera_from_table) @ camera_from_unit_cube(box)
+        shadow.texture.use(0)
+        set_uniforms(
+            program,
+            factors=0,
+            floor_from_cube=floor_from_table @ table_from_cube,
+            area=shadow.area,
+            extent=shadow.extent,
+            edge=box.edge,
+        )
+
+
+def is_open(box: Box | None) -> bool:
+    """Return whether the inside of a cube is seen."""
+    return box is not None and box.opening > 0.0
+
+
+def clip_to(context: moderngl.Context, character: CharacterInstance | None) -> None:
+    """Cut off what a character inside a cube has outside of it, or nothing of another one."""
+    inside = character is not None and character.inside is not None
+    for number in range(6):
+        (context.enable_direct if inside else context.disable_direct)(GL_CLIP_DISTANCE0 + number)
+
+
+def unit_cube_from_table(frame: FrameResources, box: Box | None) -> Array:
+    """Return the table in the frame of a cube whose edge is 1 long, (4, 4); zeros for no cube."""
+    if box is None:
+        return np.zeros((4, 4))
+    return np.asarray(np.linalg.inv(camera_from_unit_cube(box)) @ frame.camera_from_table)
+
+
+def camera_from_unit_cube(box: Box) -> Array:
+    """Return the pose of a cube scaled by its edge, (4, 4)."""
+    return np.asarray(box.camera_from_box @ np.diag([box.edge, box.edge, box.edge, 1.0]))
+
+
+def _seen_from_inside(frame: FrameResources, box: Box) -> dict[str, Array]:
+    """Return where camera, light and up are from a cube whose edge is 1 long."""
+    turn = np.asarray(box.camera_from_box[:3, :3]).T
+    eye = -turn @ box.camera_from_box[:3, 3] / box.edge
+    table = turn @ frame.camera_from_table[:3, :3]
+    sights = eye - 0.5 * _OUTWARD
+    cosines = (sights * _OUTWARD).sum(axis=1) / np.maximum(np.linalg.norm(sights, axis=1), 1e-9)
+    share = np.clip((cosines - FACING[0]) / (FACING[1] - FACING[0]), 0.0, 1.0)
+    # A direction along a wall would divide by zero in the shader.
+    to_light = table @ frame.light.to_light
+    to_light = np.where(np.abs(to_light) < 1e-4, 1e-4, to_light)
+    return {
+        "eye": eye,
+        "up": table[:, 1],
+        "to_light": to_light,
+        "open_faces": box.opening * share * share * (3.0 - 2.0 * share),
+    }
+
+
+def _unscaled(place: Array) -> Array:
+    """Return a placement without its scale, (4, 4) [m]."""
+    rigid = np.array(place, float)
+    rigid[:3, :3] /= np.linalg.norm(rigid[:3, :3], axis=0)
+    return rigid
