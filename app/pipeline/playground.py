@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 from app.errors import AppError
 from app.pipeline.attention import Attention
 from app.pipeline.checkpoint import Checkpoint
+from app.pipeline.cube_window import CubeWindow, Interior
 from app.pipeline.frame_times import Lap
 from app.pipeline.other_cube import OtherCube, advice
 from app.pipeline.registry import make_scenario
+from app.pipeline.resident import MIN_SIZE
 from app.pipeline.scenario import (
     AdjustableScenario,
     Inputs,
@@ -46,6 +48,9 @@ from tracking import (
 SUBTITLE_S = 1.2
 """A line stays in the command for so long after its end [s], for those who read it."""
 
+LOOK_INSIDE = "Look into the cube: turn it, or tip it"
+"""What the player is told while the cube is open."""
+
 STATE_NAMES = (
     "scenario",
     "_tracker",
@@ -59,6 +64,7 @@ STATE_NAMES = (
     "_line",
     "_speech",
     "_complexion",
+    "_window",
 )
 """The attributes of a playground that change from frame to frame."""
 
@@ -93,6 +99,8 @@ class Playground:
         Makes the controller of the characters; see `choose_controller`.
     realism
         What makes the characters look real, of `REALISM_CHOICES`.
+    inside
+        When the character is in the cube, one of `INSIDE_CHOICES`.
 
     Raises
     ------
@@ -116,13 +124,14 @@ class Playground:
         lap: Lap = lambda part: None,
         controller: ControllerFactory = first_suitable,
         realism: Sequence[str] = tuple(REALISM_CHOICES),
+        inside: str = "auto",
     ) -> None:
         if isinstance(scenario, str):
             scenario = make_scenario(scenario, cube)
         self.intrinsics = intrinsics
         self.known_cubes = tuple(known_cubes)
         self._look, self._context, self._lap = look, context, lap
-        self._controller, self._realism = controller, tuple(realism)
+        self._controller, self._realism, self._inside = controller, tuple(realism), inside
         self.fixed = fixed
         """Whether the scenario cannot be changed now, so that the player is not told how."""
         self._stage = None if context is None else Stage(context, intrinsics.size)
@@ -150,6 +159,7 @@ class Playground:
         self._posed: PosedCharacter | None = None
         self._body: Body | None = None
         self._attention = Attention(self._look, cube.edge)
+        self._window = CubeWindow(cube, character, scenario.roles, self._inside)
         self._other_cube = OtherCube(cube, self.known_cubes)
         self.other_cube: CubeModel | None = None
         """Another cube than the one in play, if one is in view."""
@@ -179,6 +189,7 @@ class Playground:
             raise AppError(f"{character.name} cannot {' or '.join(missing)}")
         self.character, self._animator = character, animator
         self._parts, self._body = BodyParts.of(character, animator.scale), None
+        self._window.cast(character)
 
     def look_through(self, intrinsics: Intrinsics) -> None:
         """Take another camera; `play` must follow, as the table is another one in its picture."""
@@ -266,13 +277,16 @@ class Playground:
         )
         self._posed, self._body = posed, Body(self.character, self._parts, posed)
         self._complexion.update(outcome.command.timestamp, outcome.command.emotion)
+        interior = self._window.update(state, controls, outcome.command, inputs.inside)
+        if interior is not None and self._window.is_open and self.other_cube is None:
+            outcome = replace(outcome, hint=LOOK_INSIDE)
         self._lap("animation")
-        picture = self.draw(frame, state, controls, outcome, posed) if drawn else None
-        subjects = self._subjects(state, controls, posed)
+        picture = self.draw(frame, state, controls, outcome, posed, interior) if drawn else None
+        subjects = self._subjects(state, controls, posed, interior)
         self._lap("drawing")
         name = self.scenario.name
         line = self._line if outcome.command.speech is not None else None
-        return Step(frame, state, controls, outcome, posed, picture, subjects, name, line)
+        return Step(frame, state, controls, outcome, posed, picture, subjects, name, line, interior)
 
     @property
     def lens(self) -> LensEstimate:
@@ -335,23 +349,45 @@ class Playground:
         controls: CubeControls,
         outcome: Outcome,
         posed: PosedCharacter,
+        interior: Interior | None = None,
     ) -> NDArray[np.uint8] | None:
         """Draw the picture; return None without a graphics context."""
         if self._stage is None:
             return None
         view = self._surroundings.view(frame, state, controls)
         seen = posed.visible and controls.camera_from_table is not None
-        blood = self._complexion.blood if "blush" in self._realism else 0.0
-        wrinkles = "wrinkles" in self._realism
-        characters = [SceneCharacter(self.character, posed, wrinkles, blood)] if seen else []
-        if seen and outcome.things:
-            body = Body(self.character, self._parts, posed)
-            characters += [body.placed(thing) for thing in outcome.things]
+        characters = self._cast_of(posed, outcome, interior) if seen else []
+        if interior is not None and interior.box is not None:
+            view = replace(view, occluders=(interior.box,))
         return self._stage.draw(view, characters, outcome.floor if seen else ())
+
+    def _cast_of(
+        self, posed: PosedCharacter, outcome: Outcome, interior: Interior | None
+    ) -> list[SceneCharacter]:
+        """Return all that is drawn: the character on the table or in the cube, and its things."""
+        body = Body(self.character, self._parts, posed)
+        if interior is None:
+            things = [body.placed(thing) for thing in outcome.things]
+            return [self._shown(posed), *things]
+        characters = [body.placed(thing) for thing in outcome.things if thing.hand is None]
+        if interior.left_on_table > MIN_SIZE:
+            shrunk = np.diag([*[interior.left_on_table] * 3, 1.0])
+            leaving = replace(posed, table_from_character=posed.table_from_character @ shrunk)
+            characters.append(self._shown(leaving))
+        if interior.resident is not None:
+            characters.append(replace(self._shown(interior.resident), inside=interior.box))
+        return characters
+
+    def _shown(self, posed: PosedCharacter) -> SceneCharacter:
+        """Return the character in a pose, with the skin of its face."""
+        blood = self._complexion.blood if "blush" in self._realism else 0.0
+        return SceneCharacter(self.character, posed, "wrinkles" in self._realism, blood)
 
     def drawn(self, step: Step) -> Step:
         """Return a step with its picture, which `step` left out."""
-        picture = self.draw(step.frame, step.state, step.controls, step.outcome, step.posed)
+        picture = self.draw(
+            step.frame, step.state, step.controls, step.outcome, step.posed, step.interior
+        )
         return replace(step, picture=picture)
 
     def _fitted(self, posed: PosedCharacter) -> PosedCharacter:
@@ -363,14 +399,19 @@ class Playground:
         return replace(posed, pose=replace(posed.pose, morphs=padded))
 
     def _subjects(
-        self, state: CubeState, controls: CubeControls, posed: PosedCharacter
+        self,
+        state: CubeState,
+        controls: CubeControls,
+        posed: PosedCharacter,
+        interior: Interior | None,
     ) -> tuple[Rect, ...]:
         """Return where the cube and the character are seen."""
         matrix, table = self.intrinsics.matrix, controls.camera_from_table
         regions: list[Rect | None] = []
         if state.camera_from_cube is not None:
             regions.append(cube_region(state.camera_from_cube, self.cube.edge, matrix))
-        if posed.visible and table is not None:
+        on_table = interior is None or interior.left_on_table > 0.0
+        if posed.visible and table is not None and on_table:
             regions.append(character_region(table, self.character, posed, matrix))
         return tuple(region for region in regions if region is not None)
 

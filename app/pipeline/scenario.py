@@ -43,6 +43,9 @@ class Inputs:
     line: SpokenLine | None = None
     """What the character begins to say in this frame; None for nothing new."""
 
+    inside: bool = False
+    """Whether the player asked to open the cube, with the character in it, or to close it."""
+
     @property
     def events(self) -> tuple[str, ...]:
         """What happens besides gestures; personalities say what it means to the robot."""

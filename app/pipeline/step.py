@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from affect import Emotion
+from app.pipeline.cube_window import Interior
 from app.pipeline.scenario import EmotionTarget, Outcome
 from app.pipeline.spoken_line import SpokenLine
 from characters import CharacterCommand, PosedCharacter
@@ -47,6 +48,9 @@ class Step:
 
     line: SpokenLine | None = None
     """What the character says, also if it has begun before; None for nothing."""
+
+    interior: Interior | None = None
+    """What is seen in the cube; None while it is closed."""
 
     @property
     def command(self) -> CharacterCommand:

@@ -19,7 +19,7 @@ class FrameLoop:
     def __init__(self, session: OpenedSession, summary: Summary) -> None:
         self._session, self._summary = session, summary
         self._inputs = Inputs()
-        self._start_over = False
+        self._start_over = self._inside = False
         self._line: SpokenLine | None = None
         self._index = 0
         self._replay: ReplayInputs | None = None
@@ -38,7 +38,8 @@ class FrameLoop:
         began = time.perf_counter()
         self._read_recorded(frame)
         asked = Inputs(clear=True) if self._take_start_over() else self._inputs
-        inputs = replace(asked, line=self._take_line())
+        inside = asked.inside != self._take_inside()
+        inputs = replace(asked, line=self._take_line(), inside=inside)
         session.change_scenario(inputs.scenario)
         if session.recording is not None:
             frame = session.recording.encode(frame)
@@ -51,7 +52,9 @@ class FrameLoop:
         """Process one frame without drawing and showing it."""
         session = self._session
         self._read_recorded(frame)
-        inputs = Inputs(clear=self._take_start_over(), line=self._take_line())
+        inputs = Inputs(
+            clear=self._take_start_over(), line=self._take_line(), inside=self._take_inside()
+        )
         self._hidden = session.playground.step(frame, inputs, self._replay, drawn=False)
         if session.pace is None:  # else the robot lives in real time, and misses what is skipped
             session.robot.feel(self._hidden.emotion)
@@ -110,6 +113,10 @@ class FrameLoop:
         start_over, self._start_over = self._start_over, False
         return start_over
 
+    def _take_inside(self) -> bool:
+        inside, self._inside = self._inside, False
+        return inside
+
     def _take_line(self) -> SpokenLine | None:
         line, self._line = self._line, None
         return line
@@ -118,9 +125,10 @@ class FrameLoop:
         """Read what a replay knows of a frame, and what the character begins to say."""
         session = self._session
         if frame.index < self._index:  # the player went back
-            self._start_over, self._line = False, None
+            self._start_over, self._line, self._inside = False, None, False
         self._index = frame.index
         self._start_over |= frame.timestamp in session.start_overs
+        self._inside ^= frame.timestamp in session.openings  # two that were left out are none
         self._line = session.speaker.line(frame.timestamp) or self._line
         if session.replay_inputs is not None:
             self._replay = next(session.replay_inputs, None)

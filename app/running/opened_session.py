@@ -90,6 +90,9 @@ class OpenedSession:
     recording: SessionRecording | None = None
     """Records the session, or None."""
 
+    openings: frozenset[float] = frozenset()
+    """In a replay, timestamps of the frames in which the player opened or closed the cube [s]."""
+
     recorded: list[Path] = field(default_factory=list)
     """The recordings that have been completed before the end of the session."""
 

@@ -20,7 +20,7 @@ from app.running.recording import SessionRecording
 from app.running.robots import RobotLine, is_real_robot
 from app.running.wire_tap import WireTap
 from app.scenarios import scenario_cube
-from app.session import SessionOptions, check_codec, start_over_times
+from app.session import SessionOptions, check_codec, opening_times, start_over_times
 from app.session.replay_inputs import read_replay_inputs
 from app.sound import Mixer, SessionSound, SoundBank
 from app.speaking.opening import open_speaker
@@ -124,10 +124,12 @@ def open_session(
             lap=monitor.times.lap,
             controller=controller,
             realism=options.realism,
+            inside=options.inside,
         )
         closing.callback(playground.close)
         is_session = options.source.endswith(".mcap")
         start_overs = start_over_times(Path(options.source)) if is_session else frozenset[float]()
+        openings = opening_times(Path(options.source)) if is_session else frozenset[float]()
         replay_inputs = None
         if options.stage != "camera":
             replay_inputs = read_replay_inputs(options.source, options.stage)
@@ -171,6 +173,7 @@ def open_session(
             ending=ending,
             first_source=source,
             recording=recording,
+            openings=openings,
         )
         closing.callback(session.close)
         closing.callback(clock.release)  # the robot's connection is closed in real time

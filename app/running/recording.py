@@ -9,7 +9,7 @@ from app.pipeline.playground import Playground
 from app.pipeline.scenario import Inputs
 from app.pipeline.step import Step
 from app.running.wire_tap import WireTap
-from app.session import START_OVER_EVENT, Recorder, SessionOptions, frame_encoder
+from app.session import INSIDE_EVENT, START_OVER_EVENT, Recorder, SessionOptions, frame_encoder
 from robot.contract.closeable import Closeable
 from tracking import Frame, FrameSource
 
@@ -78,6 +78,8 @@ class SessionRecording(Closeable):
         now = self._last = step.frame.timestamp
         if inputs.clear:
             self.event(START_OVER_EVENT, now)
+        if inputs.inside:
+            self.event(INSIDE_EVENT, now)
         if self._first is None:
             self._first = now
             self._recorder.camera(self._playground.intrinsics, now)

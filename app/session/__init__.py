@@ -3,10 +3,12 @@
 from app.session.frames import FrameEncoder, check_codec, frame_encoder
 from app.session.options import SessionOptions
 from app.session.reading import (
+    INSIDE_EVENT,
     START_OVER_EVENT,
     SessionInfo,
     events,
     messages,
+    opening_times,
     session_info,
     spoken_lines,
     start_over_times,
@@ -14,6 +16,7 @@ from app.session.reading import (
 from app.session.recorder import Recorder
 
 __all__ = [
+    "INSIDE_EVENT",
     "START_OVER_EVENT",
     "FrameEncoder",
     "Recorder",
@@ -23,6 +26,7 @@ __all__ = [
     "events",
     "frame_encoder",
     "messages",
+    "opening_times",
     "session_info",
     "spoken_lines",
     "start_over_times",

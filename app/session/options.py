@@ -66,6 +66,9 @@ class SessionOptions:
     realism: tuple[str, ...] = tuple(REALISM_CHOICES)
     """What makes the characters look real, of `REALISM_CHOICES`."""
 
+    inside: str = "auto"
+    """When the character is inside the cube: one of `INSIDE_CHOICES`."""
+
     quality: str = "auto"
     """How finely characters are drawn: one of `characters.rendering.QUALITIES`, or "auto" for the
     best that holds the camera's rate. Videos are always drawn in the best, unless one is named."""
@@ -155,6 +158,7 @@ class SessionOptions:
             "turns": f"{self.turns:g}",
             "personality": self.personality or "",
             "look": self.look,
+            "inside": self.inside,
             "source": source.split("://")[0] if "://" in source else Path(source).name,
         }
 
@@ -173,4 +177,5 @@ class SessionOptions:
             turns=float(metadata.get("turns", "2")),
             personality=metadata.get("personality") or None,
             look=metadata.get("look", "auto"),
+            inside=metadata.get("inside", "auto"),
         )

@@ -31,6 +31,9 @@ from characters import CharacterCommand
 START_OVER_EVENT = "start over"
 """Event of a player who starts over. It is an input, so a replay repeats it."""
 
+INSIDE_EVENT = "cube opened or closed"
+"""Event of a player who asks to open the cube, or to close it; an input, as `START_OVER_EVENT`."""
+
 MCAP_MAGIC = b"\x89MCAP0\r\n"
 """The first and the last bytes of an MCAP file."""
 
@@ -171,6 +174,11 @@ def messages(path: Path, *topics: str) -> Iterator[tuple[str, float, bytes]]:
 def start_over_times(path: Path) -> frozenset[float]:
     """Return the timestamps of the frames in which the player started over [s]."""
     return frozenset(time for time, event in events(path) if event == START_OVER_EVENT)
+
+
+def opening_times(path: Path) -> frozenset[float]:
+    """Return the timestamps of the frames in which the player opened or closed the cube [s]."""
+    return frozenset(time for time, event in events(path) if event == INSIDE_EVENT)
 
 
 def events(path: Path) -> list[tuple[float, str]]:

@@ -11,6 +11,7 @@ from app.commands.output import OverwriteOption
 from app.commands.session.preference_options import GivenPreferences, with_preferences
 from app.commands.session.progress import play_session
 from app.errors import AppError
+from app.pipeline.cube_window import INSIDE_CHOICES, inside_of
 from app.pipeline.surroundings import NO_REALISM, REALISM_CHOICES, realism_of
 from app.running.network import DEFAULT_SITE
 from app.running.quality_control import AUTO_QUALITY, checked_quality
@@ -115,6 +116,9 @@ RealismOption = Annotated[
     ),
 ]
 ALL_REALISM = ",".join(REALISM_CHOICES)
+INSIDE_HELP = "When the cube is a window with the character inside: " + "; ".join(
+    f"{name}, {meaning}" for name, meaning in INSIDE_CHOICES.items()
+)
 QualityOption = Annotated[
     str,
     typer.Option(
@@ -212,6 +216,7 @@ def play(
     ] = "auto",
     pictures: PicturesOption = True,
     realism: RealismOption = ALL_REALISM,
+    inside: Annotated[str, typer.Option(help=f"{INSIDE_HELP}.")] = "auto",
     quality: QualityOption = AUTO_QUALITY,
     sounds: SoundsOption = None,
     folder: FolderOption = None,
@@ -245,6 +250,7 @@ def play(
         profile=DEFAULT_PROFILE if profile is None else SpeechProfile.load(profile),
         look=look,
         realism=realism_of(realism),
+        inside=inside_of(inside),
         quality=checked_quality(quality),
         robot=robot,
         robot_settings=robot_settings,

@@ -12,6 +12,7 @@ from app.commands.output import OverwriteOption
 from app.commands.session.part import EndOption, LoopOption, StartOption
 from app.commands.session.play import (
     ALL_REALISM,
+    INSIDE_HELP,
     CharacterOption,
     CodecOption,
     FolderOption,
@@ -30,6 +31,7 @@ from app.commands.session.play import (
 from app.commands.session.preference_options import GivenPreferences, with_preferences
 from app.commands.session.progress import ProgressLines, play_session
 from app.errors import AppError
+from app.pipeline.cube_window import inside_of
 from app.pipeline.surroundings import realism_of
 from app.running.network import DEFAULT_SITE
 from app.running.quality_control import AUTO_QUALITY, checked_quality
@@ -57,6 +59,7 @@ def replay(
     overwrite: OverwriteOption = False,
     pictures: PicturesOption = True,
     realism: RealismOption = ALL_REALISM,
+    inside: Annotated[str | None, typer.Option(help=f"{INSIDE_HELP}; else as recorded.")] = None,
     quality: QualityOption = AUTO_QUALITY,
     sounds: SoundsOption = None,
     start: StartOption = 0.0,
@@ -117,6 +120,7 @@ def replay(
         overwrite=overwrite,
         pictures=pictures and not check and (output is not None or has_display()),
         realism=realism_of(realism),
+        inside=inside_of(inside or recorded.inside),
         quality=checked_quality(quality),
         sounds=sounds,
         fast=fast,

@@ -6,6 +6,7 @@ from itertools import groupby
 
 from app.ui.playback.requests import (
     MarkMoment,
+    OpenCube,
     Pause,
     PlayScenario,
     Record,
@@ -56,6 +57,7 @@ BINDINGS: tuple[Binding, ...] = (
         "play another scenario",
         {f"{number}": PlayScenario(number) for number in range(1, 10)},
     ),
+    *_row("Play", "look into the cube, and close it", {"I": OpenCube()}),
     *_row("Play", "choose camera, character and robot", {"Tab": WindowRequest.MENU}),
     *_row("Keep", "keep the picture as a PNG file", {"S": WindowRequest.SNAPSHOT}),
     *_row("Keep", "record a session, and end it", {"R": Record()}),

@@ -22,6 +22,7 @@ from app.ui.playback.keys import find_binding
 from app.ui.playback.menu import MENU_KEYS, Menu
 from app.ui.playback.requests import (
     ListChoices,
+    OpenCube,
     Pause,
     PlayScenario,
     Request,
@@ -78,6 +79,7 @@ class PlaybackLayer:
             WindowRequest: lambda request: self._actions[request](),
             StartOver: self._start_over,
             PlayScenario: self._play_scenario,
+            OpenCube: self._open_cube,
         }
         self._status = NO_STATUS
         self._inputs = Inputs()
@@ -210,6 +212,9 @@ class PlaybackLayer:
     def _start_over(self, _: StartOver) -> None:
         self._inputs = replace(self._inputs, clear=True)
         self.notify("Starting over")
+
+    def _open_cube(self, _: OpenCube) -> None:
+        self._inputs = replace(self._inputs, inside=not self._inputs.inside)
 
     def _play_scenario(self, request: PlayScenario) -> None:
         if request.number > len(self._scenarios):

@@ -1,6 +1,7 @@
 """What a player asks for with a key or the mouse.
 
-A scenario sees only `StartOver` and `PlayScenario`, as `Inputs`, and a recording keeps them.
+A scenario sees only `StartOver`, `PlayScenario` and `OpenCube`, as `Inputs`, and a recording keeps
+them.
 """
 
 from dataclasses import dataclass
@@ -31,6 +32,11 @@ class PlayScenario:
 
     number: int
     """Its place in the list of scenarios, from 1."""
+
+
+@dataclass(frozen=True)
+class OpenCube:
+    """Open the cube with the character in it, or close it."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +127,7 @@ class ChangeSpeech:
     """Its new value."""
 
 
-PlayerInput = StartOver | PlayScenario
+PlayerInput = StartOver | PlayScenario | OpenCube
 """What the scenario is told."""
 
 SessionRequest = (

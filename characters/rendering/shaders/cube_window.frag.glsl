@@ -82,6 +82,7 @@ vec3 painted(vec3 point, vec3 facing, float size) {
     float from_middle = length(place);
     float rug = 1.0 - smoothstep(-size, size, from_middle - 0.31);
     float ring = smoothstep(-size, size, from_middle - 0.255) * (1.0 - smoothstep(-size, size, from_middle - 0.285));
+    rug *= smoothstep(0.72, 0.92, rise);
     planks = mix(planks, mix(vec3(0.055, 0.23, 0.26), vec3(0.80, 0.66, 0.42), ring), rug);
 
     // Striped paper above, panels below, a rail between them; only where the cube stands upright on a face.

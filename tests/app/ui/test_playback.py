@@ -16,6 +16,7 @@ from app.ui.playback.layer import PlaybackLayer
 from app.ui.playback.requests import (
     Choose,
     ListChoices,
+    OpenCube,
     Pause,
     PlayScenario,
     Seek,
@@ -70,7 +71,7 @@ def test_every_key_of_the_table_does_what_it_says(desk):
         match binding.request:
             case WindowRequest.MENU:
                 assert made == (ListChoices(),)
-            case WindowRequest() | StartOver() | PlayScenario():
+            case WindowRequest() | StartOver() | PlayScenario() | OpenCube():
                 assert made == ()
             case request:
                 assert made == (request,), binding
