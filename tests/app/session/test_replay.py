@@ -13,7 +13,13 @@ from app.running.opening import intrinsics_for, open_session
 from app.running.replay_check import check_session
 from app.running.runner import run
 from app.scenarios import SCENARIOS
-from app.session import SessionOptions, messages, session_info, start_over_times
+from app.session import (
+    SessionOptions,
+    messages,
+    opening_times,
+    session_info,
+    start_over_times,
+)
 from app.session.bundled import bundled
 from app.session.encoding import MESSAGE_TYPES, decode, encode
 from app.session.replay_inputs import START_STAGES, read_replay_inputs
@@ -94,6 +100,35 @@ def test_a_player_who_starts_over_does_so_in_the_replay(tmp_path, short_session)
         run(session)
     assert len(start_over_times(path)) == 1
     assert check_session(path, replace(options, source=str(path))).identical
+
+
+def test_a_player_who_looks_into_the_cube_does_so_in_the_replay(tmp_path, short_session):
+    class Looks(NullScreen):
+        """Presses I after 10 and after 40 frames, and keeps what was seen."""
+
+        def __init__(self, *presses):
+            self.presses, self.openings = presses, []
+
+        def show(self, step, robot):
+            interior = step.interior
+            self.openings.append(0.0 if interior is None else interior.box.opening)
+            return Inputs(inside=len(self.openings) in self.presses)
+
+    path = tmp_path / "inside.mcap"
+    options = SessionOptions(
+        scenario="companion", source=str(short_session), robot="none", record=path, pictures=False
+    )
+    player, nobody = Looks(10, 40), Looks()
+    with open_session(options, screen=player) as session:
+        run(session)
+    assert max(player.openings) == 1.0
+    assert player.openings[-1] == 0.0
+    assert len(opening_times(path)) == 2
+    again = replace(session_info(path).options, robot="none", pictures=False)
+    with open_session(again, screen=nobody) as session:
+        run(session)
+    assert nobody.openings == player.openings
+    assert check_session(path, again).identical
 
 
 def assert_close(topic, time, one, other):
