@@ -41,6 +41,9 @@ TONE_EXPONENT = 2.2
 INTERVAL_FRAMES = 4
 """Only one frame of so many is measured: a lens changes slowly."""
 
+MAX_INTERVAL_S = 0.25
+"""Frames further apart than this are not compared [s]: after a seek the cube lies elsewhere."""
+
 SMOOTHING_SHARE = 0.2
 """Share of the way to a new measurement."""
 
@@ -96,16 +99,20 @@ class QualityMeter:
         self._projection = Projection(intrinsics)
         self._quality: PictureQuality | None = None
         self._last: Image | None = None
+        self._last_time = 0.0
         self._frames = 0
 
     def update(self, image: Image, state: CubeState) -> PictureQuality | None:
         """Take a frame (height, width, 3) BGR into account; None until something was measured."""
         before, self._last = self._last, image
+        interval, self._last_time = state.timestamp - self._last_time, state.timestamp
         self._frames += 1
         if self._quality is not None and self._frames % INTERVAL_FRAMES:
             return self._quality
         places = self._places(state, image)
         if before is None or before.shape != image.shape or places is None:
+            return self._quality
+        if abs(interval) > MAX_INTERVAL_S:
             return self._quality
         measured = _measured(*(_sampled(each, places) for each in (before, image)))
         if measured is not None:
