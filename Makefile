@@ -100,6 +100,7 @@ pictures: .venv/ready-dev  ## draw the pictures of the documents again
 	$(BIN)/python -m tools.pictures
 	$(BIN)/python -m tools.realism
 	$(BIN)/python -m tools.effects
+	$(BIN)/python -m tools.in_the_cube
 	$(BIN)/python -m tools.sound_sheet
 	$(BIN)/python -m tools.face_sheet
 	$(BIN)/python -m tools.wiring

@@ -185,8 +185,8 @@ EXPORT_TABLES = (
     Table(
         "events",
         "/events",
-        (Column("event", "", "placed FACE, shaken, start over, camera lost, camera back",
-                lambda event: event.get("event")),),
+        (Column("event", "", "placed FACE, shaken, start over, cube opened or closed, camera lost, "
+                "camera back", lambda event: event.get("event")),),
     ),
 )  # fmt: skip
 """The tables besides `sessions`."""

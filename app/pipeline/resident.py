@@ -20,7 +20,7 @@ from tracking.gestures.table import SIDE_NORMALS
 
 Array = NDArray[np.float64]
 
-MAX_HEIGHT, MAX_WIDTH = 0.66, 0.92
+MAX_HEIGHT, MAX_WIDTH = 0.60, 0.92
 """Most that the character takes of the room's height, so that the beam of the walls' rims does not
 hide its face from a camera that looks down, and of its width, as shares of the room's side."""
 

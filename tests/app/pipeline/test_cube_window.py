@@ -12,7 +12,9 @@ from app.pipeline.scenario import Inputs
 from app.running.opening import intrinsics_for
 from app.session.encoding import encode
 from characters import ActionIntent, Character, CharacterCommand
+from characters.rendering import Stage, View, create_context
 from characters.rendering.passes.cube_window import WALL
+from characters.rendering.projection import project
 from tracking import CubeModel, CubeState
 from tracking.gestures.table import SIDE_NORMALS
 from tracking.synthetic import open_synthetic
@@ -217,7 +219,7 @@ def source():
 
 @pytest.fixture(scope="module")
 def frames(source):
-    return [source.frame(index) for index in range(30)]
+    return [source.frame(index) for index in range(40)]
 
 
 def playground(source, **settings):
@@ -235,6 +237,28 @@ def test_an_open_cube_changes_no_message_of_a_session(source, frames):
         assert closed.interior is None
         for topic, message in opened.messages().items():
             assert encode(message) == encode(closed.messages()[topic])
+
+
+def test_a_character_in_the_cube_leaves_nothing_on_the_table(source, frames):
+    context = create_context()
+    playing = playground(source, inside="always", context=context, realism=())
+    for frame in frames:
+        step = playing.step(frame, drawn=frame is frames[-1])
+    assert step.interior.box.opening == 1.0
+    stage = Stage(context, source.size)
+    lens = playing.intrinsics
+    bare = stage.draw(View(frames[-1].image, lens.matrix, lens.distortion, None), [])
+    rows, columns = np.nonzero((step.picture != bare).any(axis=2))
+    assert len(rows) > 2000
+    corners = 0.03 * np.stack(np.meshgrid([-1, 1], [-1, 1], [-1, 1]), -1).reshape(-1, 3)
+    pose = step.state.camera_from_cube
+    pixels = project(corners @ pose[:3, :3].T + pose[:3, 3], lens.matrix)
+    assert (np.array([columns.min(), rows.min()]) > pixels.min(axis=0) - 2).all()
+    assert (np.array([columns.max(), rows.max()]) < pixels.max(axis=0) + 2).all()
+    assert len(step.subjects) == 1  # cards need not avoid the place where it stood
+    playing.close()
+    stage.release()
+    context.release()
 
 
 def test_after_a_checkpoint_the_cube_opens_in_the_same_way(source, frames):

@@ -74,11 +74,12 @@ def test_a_cube_partly_out_of_the_picture_is_measured_where_it_is_seen(light):
 
 def test_frames_before_and_after_a_seek_are_not_compared(light):
     """The cube has moved since: its print would count as noise."""
-    aside = replace(STILL, camera_from_cube=held(0.35, 0.5, 0.1, at=(0.03, 0.02, 0.3)))
-    there = scene((CUBE, aside.camera_from_cube), camera=WIDE)
+    moved = held(0.35, 0.5, 0.1, at=(0.03, 0.02, 0.3))
+    aside, there = replace(STILL, camera_from_cube=moved), scene((CUBE, moved), camera=WIDE)
     meter = QualityMeter(CUBE, WIDE)
     for number in range(24):
         state, seen = ((STILL, light), (aside, there))[number // 3 % 2]
         state = replace(state, timestamp=number / 30 + 10.0 * (number // 3))
         quality = meter.update(photograph(seen, noise=2.0, seed=number), state)
+    assert quality is not None
     assert quality.noise == pytest.approx(2.0, abs=0.5)
