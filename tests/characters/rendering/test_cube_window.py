@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from characters.model.mesh import Material
-from characters.rendering import Cover, SceneCharacter, Stage
+from characters.rendering import QUALITIES, Cover, SceneCharacter, Stage
 from characters.rendering.passes.cube_window import RIM, WALL
 from characters.rendering.projection import project
 
@@ -163,8 +163,12 @@ def test_in_a_hole_a_character_has_the_pixels_that_it_has_without_a_cube(
     assert np.abs(inside - empty)[seen].sum(axis=1).mean() > 60.0
 
 
-def test_a_character_inside_is_drawn_at_no_pixel_outside_of_the_cube(stage, view, opened, pawn):
+@pytest.mark.parametrize("quality", QUALITIES.values(), ids=list(QUALITIES))
+def test_a_character_inside_is_drawn_at_no_pixel_outside_of_the_cube(
+    stage, view, opened, pawn, quality
+):
     """Not even one that is far too large for it and sticks out on all sides."""
+    stage.quality = quality
     for tilt in (0.0, 25.0):
         box = opened(tilt_deg=tilt)
         giant = resident(pawn, view, box, height=0.2, foot=-0.6)
@@ -248,6 +252,25 @@ def test_light_changes_smoothly_while_a_wall_turns_to_the_camera(stage, view, op
         means.append(picture[changed(picture, view)].mean())
     steps = np.abs(np.diff(means))
     assert steps.max() < 3.0
+
+
+@pytest.mark.parametrize("quality", QUALITIES.values(), ids=list(QUALITIES))
+def test_every_quality_draws_an_empty_room_and_a_character_beside_it(
+    stage, view, opened, pawn, quality
+):
+    stage.quality = quality
+    box = opened(at=(-0.06, 0.03, 0.05))
+    beside = pawn.posed(at=(0.07, 0.03))
+    shown = replace(view, occluders=(box,))
+    empty = stage.draw(shown, [])
+    assert changed(empty, view)[:, :160].sum() > 500
+    both = stage.draw(shown, [beside])
+    outline = np.zeros(both.shape[:2], bool)
+    for normal in near_faces(box):
+        outline |= filled(outline.shape, pixels(view, box, square(normal, 0.5)))
+    inner = eroded(outline)
+    assert np.abs(both.astype(int) - empty)[inner].max() <= 2
+    assert changed(both, view)[:, 160:].sum() > 500
 
 
 def test_an_empty_room_and_a_second_open_cube_can_be_drawn(stage, view, opened, pawn):
