@@ -34,6 +34,9 @@ LEAVE_SHARE, ARRIVE_SHARE = 0.5, 0.4
 """Shares of this time at which the character on the table has left, and the one in the cube begins
 to appear."""
 
+INVITATION_S = 5.0
+"""The player is asked to look inside for so long after the cube has opened [s]."""
+
 HOLD_S = 0.25
 """A cube that is lost for no longer than this stays open where it was last seen [s]: fingers hide
 it for moments."""
@@ -88,13 +91,16 @@ class CubeWindow:
         self._changing_since: float | None = None
         self._opening = 0.0
         self._now: float | None = None
+        self._opened_at: float | None = None
         self._seen: tuple[float, Array] | None = None
         self._resident: Resident | None = None
 
     @property
-    def is_open(self) -> bool:
-        """Whether it is open, or about to be."""
-        return self._wanted
+    def invites(self) -> bool:
+        """Whether it has opened only just, so that the player is asked to look inside."""
+        if self._opened_at is None or self._now is None or not self._wanted:
+            return False
+        return self._now - self._opened_at < INVITATION_S
 
     def cast(self, character: Character) -> None:
         """Let another character be inside."""
@@ -115,13 +121,15 @@ class CubeWindow:
         pose = self._pose(now, state)
         if table is None or pose is None:
             if self._seen is None:
-                self._opening, self._resident = 0.0, None
+                self._opening, self._resident, self._opened_at = 0.0, None, None
             return None if self._opening <= 0.0 else Interior(None, None, self._left)
         change = elapsed / OPENING_S * (1.0 if self._wanted else -1.0)
         self._opening = min(max(self._opening + change, 0.0), 1.0)
         if self._opening <= 0.0:
-            self._resident = None
+            self._resident = self._opened_at = None
             return None
+        if self._opened_at is None:
+            self._opened_at = now
         if self._resident is None:
             self._resident = Resident(self._character, self._cube.edge)
         size = _smooth((self._opening - ARRIVE_SHARE) / (1.0 - ARRIVE_SHARE))

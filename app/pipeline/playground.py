@@ -49,7 +49,7 @@ SUBTITLE_S = 1.2
 """A line stays in the command for so long after its end [s], for those who read it."""
 
 LOOK_INSIDE = "Look into the cube: turn it, or tip it"
-"""What the player is told while the cube is open."""
+"""What the player is told when the cube has opened."""
 
 STATE_NAMES = (
     "scenario",
@@ -278,7 +278,7 @@ class Playground:
         self._posed, self._body = posed, Body(self.character, self._parts, posed)
         self._complexion.update(outcome.command.timestamp, outcome.command.emotion)
         interior = self._window.update(state, controls, outcome.command, inputs.inside)
-        if interior is not None and self._window.is_open and self.other_cube is None:
+        if self._window.invites and self.other_cube is None:
             outcome = replace(outcome, hint=LOOK_INSIDE)
         self._lap("animation")
         picture = self.draw(frame, state, controls, outcome, posed, interior) if drawn else None

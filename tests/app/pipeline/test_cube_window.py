@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from app.errors import AppError
-from app.pipeline.cube_window import DWELL_S, HOLD_S, OPENING_S, CubeWindow, inside_of
+from app.pipeline.cube_window import (
+    DWELL_S,
+    HOLD_S,
+    INVITATION_S,
+    OPENING_S,
+    CubeWindow,
+    inside_of,
+)
 from app.pipeline.playground import Playground
 from app.pipeline.scenario import Inputs
 from app.running.opening import intrinsics_for
@@ -175,6 +182,15 @@ def test_a_cube_that_is_lost_for_a_moment_stays_open_where_it_was(hand, table):
     assert table.show(hand, "left", 0.5, seen=False) is None
     again = table.show(hand, "left", 0.3)
     assert 0.0 < again.box.opening < 1.0
+
+
+def test_the_player_is_asked_to_look_inside_when_the_cube_has_opened(hand, table):
+    table.show(hand, "top", 1.0)
+    assert not table.window.invites
+    table.show(hand, "left", 1.0)
+    assert table.window.invites
+    table.show(hand, "left", INVITATION_S)
+    assert not table.window.invites
 
 
 @pytest.mark.parametrize("name", ["human", "vleo", "robot"])
