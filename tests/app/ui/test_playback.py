@@ -92,6 +92,10 @@ def test_the_scenario_is_told_once_what_it_is_asked(desk):
     desk.press("C", "2")
     assert desk.layer.take_inputs() == Inputs(clear=True, scenario="sketch")
     assert desk.layer.take_inputs() == Inputs()
+    desk.press("I")
+    assert desk.layer.take_inputs() == Inputs(inside=True)
+    desk.press("I", "I")  # in the same frame: as it was
+    assert desk.layer.take_inputs() == Inputs()
     before = desk.shown()
     desk.press("7")
     assert desk.layer.take_inputs() == Inputs()
