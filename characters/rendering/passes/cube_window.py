@@ -133,7 +133,11 @@ def is_open(box: Box | None) -> bool:
 
 
 def clip_to(context: moderngl.Context, character: CharacterInstance | None) -> None:
-    """Cut off what a character inside a cube has outside of it, or nothing of another one."""
+    """Cut off what a character inside a cube has outside of it, or nothing of another one.
+
+    Some drivers cut off wherever a program writes distances, so those of a character on the table
+    are all positive.
+    """
     inside = character is not None and character.inside is not None
     for number in range(6):
         (context.enable_direct if inside else context.disable_direct)(GL_CLIP_DISTANCE0 + number)

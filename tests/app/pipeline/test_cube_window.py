@@ -8,7 +8,6 @@ import pytest
 from app.errors import AppError
 from app.pipeline.cube_window import (
     DWELL_S,
-    HOLD_S,
     INVITATION_S,
     OPENING_S,
     CubeWindow,
@@ -94,7 +93,7 @@ def test_a_face_without_a_role_opens_the_cube_and_one_with_a_role_closes_it(hand
 
 def test_a_face_that_is_shown_for_a_moment_changes_nothing(hand, table):
     for _ in range(4):
-        assert table.show(hand, "left", DWELL_S - 0.1) is None
+        assert table.show(hand, "left", 0.35) is None
         assert table.show(hand, "top", 0.2) is None
 
 
@@ -176,7 +175,7 @@ def test_the_walls_take_the_same_time_at_every_frame_rate(hand, vleo, rate):
 
 def test_a_cube_that_is_lost_for_a_moment_stays_open_where_it_was(hand, table):
     before = table.show(hand, "left", 2.0)
-    held = table.show(hand, "left", HOLD_S - 0.05, seen=False)
+    held = table.show(hand, "left", 0.2, seen=False)
     assert held.box.opening == 1.0
     assert np.array_equal(held.box.camera_from_box, before.box.camera_from_box)
     assert table.show(hand, "left", 0.5, seen=False) is None

@@ -81,6 +81,13 @@ def changed(picture, view):
     return (picture != view.image).any(axis=2)
 
 
+@pytest.fixture
+def hd_stage(ctx):
+    stage = Stage(ctx, (1280, 720))
+    yield stage
+    stage.release()
+
+
 def test_a_closed_cube_draws_bit_for_bit_what_it_did(stage, view, pawn, cube):
     actors = [pawn.posed(at=(-0.03, 0.0))]
     plain = stage.draw(replace(view, occluders=(cube,)), actors)
@@ -108,6 +115,31 @@ def test_holes_and_rims_are_where_a_pinhole_camera_sees_them(stage, view, opened
     assert (full & ~holes).sum() > 200
 
 
+def round_square(normal, half, radius):
+    """Return points (n, 3) around a hole with round corners, in order."""
+    corner = radius * np.exp(1j * np.linspace(0.0, np.pi / 2.0, 9)) + (half - radius) * (1 + 1j)
+    outline = np.concatenate([corner * 1j**quarter for quarter in range(4)])
+    axis = int(np.argmax(np.abs(normal)))
+    first, second = np.roll(np.eye(3), -axis - 1, axis=0)[:2]
+    return 0.5 * normal + outline.real[:, None] * first + outline.imag[:, None] * second
+
+
+@pytest.mark.parametrize("opening", [0.4, 1.0])
+@pytest.mark.parametrize("turn_deg", [0.0, 35.0])
+def test_holes_have_the_size_and_the_round_corners_of_their_outlines(
+    hd_stage, hd_view, cube, turn_deg, opening
+):
+    box = replace(cube, camera_from_box=placed(hd_view, turn_deg), opening=opening)
+    drawn = changed(hd_stage.draw(replace(hd_view, occluders=(box,)), []), hd_view)
+    holes = np.zeros(drawn.shape, np.uint8)
+    half = (0.5 - RIM) * opening
+    for normal in near_faces(box):
+        outline = pixels(hd_view, box, round_square(normal, half, min(0.08, half)))
+        cv2.fillConvexPoly(holes, np.rint(16 * outline).astype(np.int32), 1, cv2.LINE_8, 4)
+    shared, either = (drawn & (holes > 0)).sum(), (drawn | (holes > 0)).sum()
+    assert shared / either > 0.955  # half a pixel around each hole
+
+
 def test_a_half_open_cube_has_holes_of_half_the_size(stage, view, opened):
     box = opened(opening=0.5)
     drawn = changed(stage.draw(replace(view, occluders=(box,)), []), view)
@@ -116,14 +148,6 @@ def test_a_half_open_cube_has_holes_of_half_the_size(stage, view, opened):
         holes |= filled(holes.shape, pixels(view, box, square(normal, 0.5 * (0.5 - RIM))))
     assert 0.85 < drawn.sum() / holes.sum() < 1.25
     assert not drawn[~cv2.dilate(holes.astype(np.uint8), np.ones((3, 3))).astype(bool)].any()
-
-
-@pytest.fixture(scope="module")
-def hd_stage(_context):
-    with _context:
-        stage = Stage(_context, (1280, 720))
-        yield stage
-        stage.release()
 
 
 @pytest.mark.parametrize("turn_deg", [-15.0, 0.0, 30.0])
@@ -144,11 +168,10 @@ def test_a_point_inside_is_seen_where_a_pinhole_camera_sees_it(
         assert np.abs(places.max(axis=0) - expected.max(axis=0)).max() < 1.3
 
 
-@pytest.mark.parametrize("turn_deg", [-40.0, 10.0])
 def test_in_a_hole_a_character_has_the_pixels_that_it_has_without_a_cube(
-    hd_stage, hd_view, cube, turn_deg, pawn
+    hd_stage, hd_view, cube, pawn
 ):
-    box = replace(cube, camera_from_box=placed(hd_view, turn_deg), opening=1.0)
+    box = replace(cube, camera_from_box=placed(hd_view, 10.0), opening=1.0)
     actor = resident(pawn, hd_view, box, height=0.03)
     inside = hd_stage.draw(replace(hd_view, occluders=(box,)), [actor]).astype(int)
     empty = hd_stage.draw(replace(hd_view, occluders=(box,)), []).astype(int)
@@ -246,12 +269,15 @@ def test_a_hand_in_front_hides_room_and_character(stage, view, opened, pawn):
 
 def test_light_changes_smoothly_while_a_wall_turns_to_the_camera(stage, view, opened):
     """A hole opens where a wall begins to face the camera: nothing may flash by that."""
-    means = []
-    for turn in np.arange(-6.0, 6.1, 0.5):
-        picture = stage.draw(replace(view, occluders=(opened(turn_deg=turn),)), [])
-        means.append(picture[changed(picture, view)].mean())
-    steps = np.abs(np.diff(means))
-    assert steps.max() < 3.0
+    low = WALL - 0.5
+    places = [[0.2, -0.1, low], [0.3, low, -0.3], [-0.3, low, -0.3]]  # a wall, and two corners
+    seen = []
+    for turn in np.arange(-12.0, 12.1, 0.5):
+        box = opened(turn_deg=turn)
+        picture = stage.draw(replace(view, occluders=(box,)), [])
+        columns, rows = np.rint(pixels(view, box, places)).astype(int).T
+        seen.append(picture[rows, columns].mean(axis=1))
+    assert np.abs(np.diff(seen, axis=0)).max() < 4.0
 
 
 @pytest.mark.parametrize("quality", QUALITIES.values(), ids=list(QUALITIES))
