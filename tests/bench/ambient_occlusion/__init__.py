@@ -1,0 +1,1 @@
+"""Ambient occlusion against a ray tracer: quality, time, and the search for the constants."""
