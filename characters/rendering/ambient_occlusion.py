@@ -14,8 +14,8 @@ from characters.rendering.target import SIZE_STEP_PX
 class Estimator:
     """What the samples around a pixel say about its occlusion, and the constants that suit it.
 
-    The constants are those with the least squared error against ray-traced pictures:
-    `python -m tests.bench.ambient_occlusion.tuning`.
+    The constants are those with the least squared error against ray-traced pictures, for 2 lines of
+    11 samples: `python -m tests.bench.ambient_occlusion.tuning`.
     """
 
     darkness: float
@@ -32,8 +32,8 @@ class Estimator:
     """How far it looks, as a share of the radius."""
 
     by_area: float = 0.0
-    """What a sample's weight is: 0 the same for all, 1 the area of the disc that it stands for. Where
-    horizons are looked for, neither matters."""
+    """What a sample's weight is: 0 the same for all, 1 the area of the disc that it stands for.
+    Estimators that look for a horizon have no weights."""
 
     fill: float = 0.0
     """Where between the last sample and this one a rise of the horizon is taken to be: 0 at this, 1
@@ -42,8 +42,8 @@ class Estimator:
 
 ESTIMATORS = {
     "angular": Estimator(darkness=6.27, bias=0.1, crowding=0.75, reach=1.0),
-    "crytek": Estimator(darkness=1.61, bias=0.1, crowding=1.0, reach=0.45),
-    "volumetric": Estimator(darkness=1.12, bias=0.02, crowding=1.0, reach=0.3, by_area=1.0),
+    "crytek": Estimator(darkness=1.11, bias=0.05, crowding=0.75, reach=0.7),
+    "volumetric": Estimator(darkness=1.11, bias=0.02, crowding=0.0, reach=0.3, by_area=1.0),
     "hbao": Estimator(darkness=1.03, bias=0.1, crowding=0.75, reach=1.0, fill=0.4),
     "gtao": Estimator(darkness=1.21, bias=0.02, crowding=0.75, reach=1.0, fill=0.4),
 }
@@ -116,10 +116,10 @@ class AmbientOcclusionSettings:
 class AmbientOcclusion:
     """Computes ambient occlusion from a G-buffer.
 
-    The separable form (Huang 2013, ch. 3.4) looks along two orthogonal lines through each pixel, not
-    at all of the disc around it. The lines turn from pixel to pixel, in a pattern that repeats in
-    small tiles; a blur of a tile's size, which does not cross edges, then gives every pixel the mean
-    of the directions of a whole tile. The full form has as many lines as samples on each.
+    The separable form (Huang 2013, ch. 3.4) looks along two orthogonal lines through each pixel,
+    not at all of the disc around it. The lines turn from pixel to pixel, in a pattern that repeats
+    in small tiles; a blur of a tile's size, which does not cross edges, then gives every pixel the
+    mean of the directions of a whole tile. The full form has as many lines as samples on each.
     """
 
     def __init__(
@@ -188,20 +188,19 @@ class AmbientOcclusion:
             fill=constants.fill,
         )
         self._render(self._march, 0, size)
-        if settings.blur_size > 1:
-            set_uniforms(
-                self._blur.program,
-                normal_id=0,
-                place=1,
-                source=2,
-                size=size,
-                focal=focal_px,
-                tolerance=EDGE_SHARE * settings.radius_m,
-            )
-            for source, direction in ((0, (1, 0)), (1, (0, 1))):
-                self._textures[source].use(2)
-                set_uniforms(self._blur.program, direction=direction)
-                self._render(self._blur, 1 - source, size)
+        set_uniforms(
+            self._blur.program,
+            normal_id=0,
+            place=1,
+            source=2,
+            size=size,
+            focal=focal_px,
+            tolerance=EDGE_SHARE * settings.radius_m,
+        )
+        for source, direction in ((0, (1, 0)), (1, (0, 1))):
+            self._textures[source].use(2)
+            set_uniforms(self._blur.program, direction=direction, last=source == 1)
+            self._render(self._blur, 1 - source, size)
         return self._textures[0]
 
     def release(self) -> None:
@@ -235,7 +234,8 @@ class AmbientOcclusion:
         # moderngl binds the last framebuffer again when it creates the next: it must still exist.
         if self._targets:
             self._context.detect_framebuffer(0).use()
-        for each in (*self._targets, *self._textures):
-            each.release()
+        for target, texture in zip(self._targets, self._textures, strict=True):
+            target.release()
+            texture.release()
         self._targets.clear()
         self._textures.clear()

@@ -23,7 +23,8 @@ float last_far;                 // of the last sample on this half of a line [m]
 
 // The estimator: a half of a line begins; a sample of it, from the pixel outwards, by its way from the
 // pixel, the length of it, its distance on the picture as a share of the radius, and the area of the
-// disc that it stands for, if that counts; the result, 0…1.
+// disc that it stands for, if that counts; the result. It is 0…1 in the mean over a tile: the blur
+// limits it, as limits for each pixel would turn noise into shade.
 void begin_half(vec2 direction);
 void take(vec3 way, float far, float along, float area);
 float occlusion();
@@ -72,5 +73,5 @@ void main() {
             direction = -direction;
         }
     }
-    open_depth = vec2(1.0 - clamp(darkness * occlusion(), 0.0, 1.0), here.z);
+    open_depth = vec2(1.0 - darkness * occlusion(), here.z);
 }

@@ -9,6 +9,7 @@ uniform sampler2D place;
 uniform ivec2 direction;
 uniform ivec2 size;             // of the picture [px]
 uniform float focal;            // [px]
+uniform bool last;              // limits the result: the tile is complete
 uniform float tolerance;        // distance from the tangent plane at which a tap stops to count [m]
 
 out vec2 open_depth;
@@ -35,5 +36,5 @@ void main() {
         sum += weight * tap.x;
         total += weight;
     }
-    open_depth.x = sum / total;
+    open_depth.x = last ? clamp(sum / total, 0.0, 1.0) : sum / total;
 }

@@ -1,7 +1,7 @@
 #version 330 core
 
 // A sample that is nearer to the camera than the pixel hides it (Mittring 2007; Huang 2013, eq. 3.3.1).
-// On any plane one half of the samples is nearer: only more than that is occlusion.
+// On a plane one half of the samples is nearer, or none if it faces the camera: only more is occlusion.
 
 #include "ambient_occlusion"
 
@@ -16,4 +16,4 @@ void take(vec3 way, float far, float along, float area) {
     total += area;
 }
 
-float occlusion() { return max(2.0 * hidden / max(total, 1e-6) - 1.0, 0.0); }
+float occlusion() { return 2.0 * hidden / max(total, 1e-6) - 1.0; }

@@ -18,4 +18,4 @@ void take(vec3 way, float far, float along, float area) {
     whole += area * 2.0 * chord;
 }
 
-float occlusion() { return max(1.0 - 2.0 * free / max(whole, 1e-6), 0.0); }
+float occlusion() { return 1.0 - 2.0 * free / max(whole, 1e-6); }
