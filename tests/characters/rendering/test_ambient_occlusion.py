@@ -1,0 +1,268 @@
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from characters.errors import CharacterError
+from characters.rendering.ambient_occlusion import (
+    ESTIMATORS,
+    AmbientOcclusion,
+    AmbientOcclusionSettings,
+    Estimator,
+)
+from characters.rendering.programs import ShaderPrograms
+from characters.rendering.sample_patterns import PATTERNS, sample_pattern
+from tests.bench.ambient_occlusion.quality import matched_score
+from tests.bench.ambient_occlusion.scenes import load
+from tests.bench.ambient_occlusion.scoring import GBuffer, TracedScene, drawn, score
+from tools.ray_tracing import VisibleSurfaces
+
+SIZE = (192, 144)
+ROWS, COLUMNS = 48, 64
+PITCH = 2.0**-12
+"""Distance between pixels of the orthographic surfaces [m]: sums of it are exact in float32."""
+
+
+@pytest.fixture(scope="module")
+def programs(_context):
+    programs = ShaderPrograms(_context)
+    yield programs
+    programs.release()
+
+
+@pytest.fixture
+def draw(ctx, programs) -> Iterator[Any]:
+    buffers = []
+
+    def draw(surfaces: VisibleSurfaces, focal_px: float, **settings):
+        buffers.append(GBuffer(ctx, surfaces, focal_px))
+        return drawn(ctx, programs, buffers[-1], AmbientOcclusionSettings(**settings))
+
+    yield draw
+    for buffer in buffers:
+        buffer.release()
+
+
+def surfaces(position, normal) -> VisibleSurfaces:
+    """Return a G-buffer without background from arrays (height, width, 3)."""
+    shape = (*position.shape[:2], 1)
+    normal_id = np.concatenate([np.broadcast_to(normal, position.shape), np.ones(shape)], axis=2)
+    with_one = np.concatenate([position, np.ones(shape)], axis=2)
+    return VisibleSurfaces(
+        normal_id.astype(np.float32), with_one.astype(np.float32), normal_id[..., :3]
+    )
+
+
+def orthographic(depth: np.ndarray, normal) -> VisibleSurfaces:
+    """Return surfaces whose pixels are `PITCH` apart; the pinhole's rays do not matter here."""
+    y, x = np.mgrid[: depth.shape[0], : depth.shape[1]] * PITCH
+    return surfaces(np.stack([x, y, depth], axis=-1), normal)
+
+
+def plane(normal) -> VisibleSurfaces:
+    """Return a plane at 1 m seen by a pinhole camera of 64 px."""
+    y, x = np.mgrid[:ROWS, :COLUMNS] + 0.5
+    rays = np.stack([(x - COLUMNS / 2) / 64, (y - ROWS / 2) / 64, np.ones_like(x)], axis=-1)
+    normal = np.asarray(normal) / np.linalg.norm(normal)
+    return surfaces(rays * (normal[2] / (rays @ normal))[..., None], normal)
+
+
+def wall_and_floor() -> VisibleSurfaces:
+    """Return a wall above a floor, both seen at 45°; they meet between rows 23 and 24."""
+    row = np.arange(ROWS)
+    depth = 2.0 - np.abs(row - 23.5) * PITCH
+    normal = np.sqrt(0.5) * np.where((row < 24)[:, None], [0.0, 1.0, -1.0], [0.0, -1.0, -1.0])
+    return orthographic(
+        np.repeat(depth[:, None], COLUMNS, axis=1), np.repeat(normal[:, None], COLUMNS, axis=1)
+    )
+
+
+@pytest.mark.parametrize("estimator", ESTIMATORS)
+@pytest.mark.parametrize("normal", [(0, 0, -1), (0, -1, -0.7), (0.5, -0.5, -0.7)])
+def test_a_plane_is_open(draw, estimator, normal):
+    found = draw(plane(normal), 64.0, estimator=estimator, radius_m=0.15)
+    assert found[16:-16, 16:-16].min() > 0.999
+
+
+@pytest.mark.parametrize("estimator", ESTIMATORS)
+def test_a_corner_is_darkest_where_its_sides_meet_and_open_beyond_the_radius(draw, estimator):
+    radius = 10 * PITCH
+    found = draw(
+        wall_and_floor(), 2.0 / PITCH, estimator=estimator, samples=21, radius_m=radius, blur_size=4
+    )
+    floor = found[24:, 32]
+    assert floor[0] < 0.9
+    # The last pixel of the floor beside the edge of the picture sees less: rows 24 to 40 count.
+    assert (np.diff(floor[:16]) > -0.004).all()
+    assert floor[15:18].min() > 0.995
+
+
+@pytest.mark.parametrize(("share", "weight"), [(0.5, 0.1875), (1.0, 0.0), (1.5, 0.0), (1e-4, 1.0)])
+def test_an_occluder_straight_above_counts_by_wendlands_weight_of_its_distance(draw, share, weight):
+    depth = np.full((9, 9), 2.0)
+    seen = orthographic(depth, (0.0, 0.0, -1.0))
+    middle = seen.position[4, 4, :3].copy()
+    seen.position[..., :3] = middle + (0.0, 0.0, -share)
+    seen.position[4, 4, :3] = middle
+    plain = Estimator(darkness=1.0, bias=0.0, crowding=0.0, reach=1.0)
+    found = draw(
+        seen,
+        4.0,
+        estimator="angular",
+        radius_m=1.0,
+        constants=plain,
+        blur_size=0,
+        samples=3,
+        pattern="regular",
+    )
+    assert found[4, 4] == pytest.approx(1.0 - weight, abs=1e-4)
+
+
+@pytest.mark.parametrize("samples", [5, 11, 21])
+def test_the_separable_form_takes_2k_samples_and_the_full_form_k_squared(samples):
+    assert AmbientOcclusionSettings(samples=samples).samples_per_pixel == 2 * samples
+    assert AmbientOcclusionSettings(samples=samples, lines=None).samples_per_pixel == samples**2
+
+
+def test_a_tile_leaves_no_noise_along_a_wall_and_random_lines_for_each_pixel_do(draw):
+    def noise(pattern_size: int) -> float:
+        found = draw(
+            wall_and_floor(),
+            2.0 / PITCH,
+            estimator="angular",  # to the others, the eye's direction matters, which varies
+            pattern="random",
+            pattern_size=pattern_size,
+            radius_m=10 * PITCH,
+        )
+        return float(found[16:40, 16:-16].std(axis=1).mean())
+
+    assert noise(4) < 1e-6
+    assert noise(64) > 1e-3
+
+
+@pytest.fixture(scope="module")
+def balls():
+    return TracedScene(load("balls"), SIZE, 16)
+
+
+@pytest.mark.parametrize("estimator", ESTIMATORS)
+def test_two_lines_miss_less_of_the_full_form_than_one_with_as_many_samples(
+    ctx, programs, balls, estimator
+):
+    def error(samples: int, lines: int) -> float:
+        """Return the error against the full form with as many samples on each line."""
+        few = AmbientOcclusionSettings(estimator, samples, lines, radius_m=balls.scene.radius_m)
+        found, full = (
+            drawn(ctx, programs, buffer, each) for each in (few, replace(few, lines=None))
+        )
+        return matched_score(found, full, balls.surfaces.seen).rmse
+
+    buffer = GBuffer.of(ctx, balls)
+    assert error(11, 2) <= 0.6 * error(22, 1)
+    buffer.release()
+
+
+@pytest.mark.parametrize("samples", [11, 21])
+def test_two_lines_are_closer_to_a_dense_disc_than_one_with_as_many_samples(
+    ctx, programs, balls, samples
+):
+    by_area = replace(ESTIMATORS["angular"], crowding=0.0, by_area=1.0)
+    two = AmbientOcclusionSettings(
+        "angular", samples, radius_m=balls.scene.radius_m, constants=by_area
+    )
+    buffer = GBuffer.of(ctx, balls)
+    variants = two, replace(two, samples=2 * samples, lines=1), replace(two, samples=41, lines=16)
+    found, one_line, dense = (drawn(ctx, programs, buffer, each) for each in variants)
+    buffer.release()
+    seen = balls.surfaces.seen
+    error = matched_score(found, dense, seen).rmse
+    assert error <= 0.6 * matched_score(one_line, dense, seen).rmse
+
+
+@pytest.mark.parametrize("samples", [5, 11, 21])
+@pytest.mark.parametrize("estimator", ESTIMATORS)
+def test_the_separable_form_is_close_to_the_full_form(ctx, programs, balls, estimator, samples):
+    buffer = GBuffer.of(ctx, balls)
+    separable = AmbientOcclusionSettings(estimator, samples, radius_m=balls.scene.radius_m)
+    found, full = (
+        drawn(ctx, programs, buffer, each) for each in (separable, replace(separable, lines=None))
+    )
+    buffer.release()
+    result = matched_score(found, full, balls.surfaces.seen)
+    assert result.rmse <= 0.03
+    assert result.correlation >= 0.98
+
+
+@pytest.mark.parametrize("name", ["corner", "human", "vleo"])
+def test_the_default_settings_are_close_to_ray_traced_pictures(ctx, programs, name):
+    traced = TracedScene(load(name), (320, 240), 32)
+    buffer = GBuffer.of(ctx, traced)
+    found = drawn(ctx, programs, buffer, AmbientOcclusionSettings(radius_m=traced.scene.radius_m))
+    buffer.release()
+    result = score(found, traced.truth, traced.surfaces.seen)
+    nothing = score(np.ones_like(found), traced.truth, traced.surfaces.seen)
+    assert result.rmse <= 0.03
+    assert result.delta_e < 3.0
+    assert result.rmse < 0.5 * nothing.rmse
+
+
+def test_the_background_is_open(draw, balls):
+    focal = float(balls.scene.matrix(SIZE)[0, 0])
+    found = draw(balls.surfaces, focal, radius_m=balls.scene.radius_m)
+    assert (found[~balls.surfaces.seen] == 1.0).all()
+
+
+def test_only_the_first_texels_of_larger_textures_count(ctx, programs, balls):
+    small, large = GBuffer.of(ctx, balls), GBuffer.of(ctx, balls)
+    rng = np.random.default_rng(0)
+    for name in ("normal_id", "position"):
+        values = getattr(balls.surfaces, name)
+        padded = rng.normal(size=(SIZE[1] + 40, SIZE[0] + 30, 4)).astype(np.float32)
+        padded[: SIZE[1], : SIZE[0]] = values
+        getattr(large, name).release()
+        setattr(large, name, ctx.texture(padded.shape[1::-1], 4, padded.tobytes(), dtype="f4"))
+    settings = AmbientOcclusionSettings(radius_m=balls.scene.radius_m)
+    expected, found = (drawn(ctx, programs, buffer, settings) for buffer in (small, large))
+    np.testing.assert_array_equal(found, expected)
+    small.release()
+    large.release()
+
+
+def test_a_smaller_picture_draws_in_the_same_texture_and_a_larger_one_in_a_new_one(ctx, programs):
+    effect = AmbientOcclusion(ctx, programs)
+    normal_id, position = (ctx.texture((200, 150), 4, dtype="f4") for _ in range(2))
+    first = effect.draw(normal_id, position, (100, 100), 100.0)
+    assert effect.draw(normal_id, position, (64, 30), 100.0) is first
+    larger = effect.draw(normal_id, position, (200, 150), 100.0)
+    assert larger is not first
+    assert larger.size == (256, 192)
+    effect.release()
+    effect.release()
+    normal_id.release()
+    position.release()
+
+
+@pytest.mark.parametrize("name", PATTERNS)
+def test_a_pattern_turns_all_pixels_of_a_tile_differently(name):
+    pattern = sample_pattern(name, 4)
+    assert ((pattern >= 0.0) & (pattern < 1.0)).all()
+    assert len(np.unique(pattern[..., 0])) == 16
+    np.testing.assert_array_equal(pattern, sample_pattern(name, 4))
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        ({"estimator": "magic"}, "unknown estimator of ambient occlusion 'magic'"),
+        ({"pattern": "plaid"}, "choose one of random, regular"),
+        ({"samples": 1}, "not 1 on 2"),
+        ({"lines": 0}, "not 11 on 0"),
+        ({"radius_m": float("nan")}, "a radius above 0 m"),
+    ],
+)
+def test_settings_that_cannot_be_drawn_are_refused_in_one_line(settings, said):
+    with pytest.raises(CharacterError, match=said) as refusal:
+        AmbientOcclusionSettings(**settings)
+    assert "\n" not in str(refusal.value)
