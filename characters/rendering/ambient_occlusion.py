@@ -41,10 +41,10 @@ class Estimator:
 
 
 ESTIMATORS = {
-    "angular": Estimator(darkness=6.27, bias=0.1, crowding=0.75, reach=1.0),
+    "angular": Estimator(darkness=6.3, bias=0.1, crowding=0.75, reach=1.0),
     "crytek": Estimator(darkness=1.11, bias=0.05, crowding=0.75, reach=0.7),
     "volumetric": Estimator(darkness=1.11, bias=0.02, crowding=0.0, reach=0.3, by_area=1.0),
-    "hbao": Estimator(darkness=1.03, bias=0.1, crowding=0.75, reach=1.0, fill=0.4),
+    "hbao": Estimator(darkness=1.04, bias=0.1, crowding=0.75, reach=1.0, fill=0.4),
     "gtao": Estimator(darkness=1.21, bias=0.02, crowding=0.75, reach=1.0, fill=0.4),
 }
 """The estimators by name. Each has a shader `ambient_occlusion_NAME.frag` that defines it."""
