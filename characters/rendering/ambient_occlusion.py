@@ -3,11 +3,13 @@
 from dataclasses import dataclass
 
 import moderngl
+import numpy as np
 
 from characters.errors import CharacterError
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.sample_patterns import PATTERNS, sample_pattern
 from characters.rendering.target import SIZE_STEP_PX
+from characters.skeleton.pose import Array
 
 
 @dataclass(frozen=True)
@@ -148,6 +150,7 @@ class AmbientOcclusion:
         position: moderngl.Texture,
         size: tuple[int, int],
         focal_px: float,
+        ground: Array | None = None,
     ) -> moderngl.Texture:
         """Return the share of the ambient light that reaches each pixel, in the red channel.
 
@@ -165,6 +168,9 @@ class AmbientOcclusion:
             Width and height of the part of both textures that is used, from the first texel on.
         focal_px
             Focal length: pixels that one metre covers at a distance of one metre.
+        ground
+            A plane that goes on outside of the textures, for parts of a picture: a point (3,) of
+            the camera frame is on it if its product with this is 1 [1/m]. None for nothing there.
         """
         self._fit(size)
         settings = self.settings
@@ -181,6 +187,7 @@ class AmbientOcclusion:
             size=size,
             radius=constants.reach * settings.radius_m,
             focal=focal_px,
+            ground=np.zeros(3) if ground is None else ground,
             darkness=constants.darkness,
             bias=constants.bias,
             crowding=constants.crowding,

@@ -78,7 +78,9 @@ class DeferredVisibilityPass(RenderPass):
         self._reduce_geometry(frame, layer, pixels)
         if self._occlusion is not None:
             focal = float(frame.camera_matrix[1, 1])
-            found = self._occlusion.draw(pixels.normal_id, pixels.position, size, focal)
+            up, table = frame.camera_from_table[:3, 1], frame.camera_from_table[:3, 3]
+            ground = up / (up @ table)
+            found = self._occlusion.draw(pixels.normal_id, pixels.position, size, focal, ground)
             found.use(OCCLUSION_UNIT)
         pixels.bind()
         if self._blockers is not None:

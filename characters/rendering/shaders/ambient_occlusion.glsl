@@ -8,6 +8,7 @@ uniform sampler2D normal_id;    // unit normal in the camera frame, and ID in w:
 uniform sampler2D place;        // position in the camera frame [m]; z is 0 in the background
 uniform sampler2D pattern;      // of the tile: turn of the lines, shift of their samples, both 0…1
 uniform ivec2 size;             // of the picture [px]
+uniform vec3 ground;            // a point is on the plane that goes on outside if its product with this is 1
 uniform float radius;           // occluders farther away do not count [m]
 uniform float focal;            // focal length [px]
 uniform float crowding;         // 0: samples are spread evenly along a line, 1: they crowd at the pixel
@@ -37,6 +38,18 @@ float falloff(float far) {
 // How much a rise of the horizon counts: what hides the view is between the last sample and this one.
 float rise_falloff(float far) { return falloff(mix(far, min(last_far, far), fill)); }
 
+// The way to what is seen in another texel. Outside of the picture it is the ground, if there is one.
+vec3 way_to(ivec2 texel, ivec2 offset) {
+    vec3 there;
+    if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size))) {
+        vec3 ray = vec3(here.xy / here.z + vec2(offset) / focal, 1.0);
+        float nearness = dot(ground, ray);
+        there = nearness > 0.0 ? ray / nearness : vec3(0.0);
+    } else
+        there = texelFetch(place, texel, 0).xyz;
+    return there.z > 0.0 ? there - here : vec3(0.0, 0.0, FAR_BEHIND * radius);
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 surface = texelFetch(normal_id, pixel, 0);
@@ -57,14 +70,10 @@ void main() {
             for (int i = 0; i < SAMPLES / 2; ++i) {
                 float t = (float(i) + random.y) / float(SAMPLES / 2);
                 float along = t * mix(1.0, t, crowding);
-                ivec2 texel = pixel + ivec2(round(direction * along * reach));
-                if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size)))
-                    break;
-                if (texel == pixel)
+                ivec2 offset = ivec2(round(direction * along * reach));
+                if (offset == ivec2(0))
                     continue;
-                vec3 way = texelFetch(place, texel, 0).xyz - here;
-                if (way.z == -here.z)
-                    way = vec3(0.0, 0.0, FAR_BEHIND * radius);  // background
+                vec3 way = way_to(pixel + offset, offset);
                 float far = length(way);
                 float area = along * mix(1.0, 2.0 * t, crowding);
                 take(way, far, along, mix(1.0, area, by_area));

@@ -8,6 +8,7 @@ import numpy as np
 
 from characters.model.character import Character
 from characters.rendering.geometry.vertices import CharacterVertices
+from characters.skeleton.pose import Pose
 from tools.ray_tracing import Triangles
 from tools.ray_tracing.mesh import Array
 
@@ -169,23 +170,27 @@ def room() -> Triangles:
     )
 
 
+def posed(body: Character, pose: Pose, table_from_character: Array) -> Triangles:
+    """Return the skinned mesh of a character in the table frame; no morph is active."""
+    vertices = CharacterVertices.of(body.meshes)
+    palette = vertices.palette(table_from_character @ pose.globals(body.skeleton))
+    turns = palette.copy()
+    turns[:, :3, 3] = 0.0
+    normals = vertices.skinned(turns, slice(None), vertices.normals)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
+    positions = vertices.skinned(palette, slice(None))
+    return Triangles.of(positions, normals, vertices.indices.reshape(-1, 3))
+
+
 def character(name: str, clip: str, time: float) -> Triangles:
     """Return a bundled character in a moment of one of its clips [s], on a table."""
     body = Character.load(name)
-    vertices = CharacterVertices.of(body.meshes)
-    pose = body.clips[clip].sample(time)
-    palette = vertices.palette(pose.globals(body.skeleton))
-    positions = vertices.skinned(palette, slice(None))
-    turned = palette.copy()
-    turned[:, :3, 3] = 0.0
-    normals = vertices.skinned(turned, slice(None), vertices.normals)
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
-    scale = CHARACTER_HEIGHT_M / np.ptp(positions[:, 1])
-    positions *= scale
-    middle = 0.5 * (positions.min(axis=0) + positions.max(axis=0))
-    positions -= (middle[0], positions[:, 1].min(), middle[2])
-    corners = vertices.indices.reshape(-1, 3)
-    return Triangles.joined([floor(3.0), Triangles.of(positions, normals, corners)])
+    mesh = posed(body, body.clips[clip].sample(time), np.eye(4))
+    low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+    scale = CHARACTER_HEIGHT_M / (high[1] - low[1])
+    place = np.diag([scale, scale, scale, 1.0])
+    place[:3, 3] = -scale * np.array([(low[0] + high[0]) / 2, low[1], (low[2] + high[2]) / 2])
+    return Triangles.joined([floor(3.0), mesh.transformed(place)])
 
 
 def seen_from(mesh: Triangles, eye: Sequence[float], target: Sequence[float]) -> Triangles:

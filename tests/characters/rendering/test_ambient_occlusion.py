@@ -230,6 +230,30 @@ def test_only_the_first_texels_of_larger_textures_count(ctx, programs, balls):
     large.release()
 
 
+def test_the_ground_goes_on_outside_of_a_part_of_a_picture(ctx, programs):
+    """A wall stands on a floor; the picture ends just above the floor."""
+    focal, radius = 64.0, 0.4
+    y, x = np.mgrid[:ROWS, :COLUMNS] + 0.5
+    rays = np.stack([(x - COLUMNS / 2) / focal, (y - ROWS / 2) / focal, np.ones_like(x)], axis=-1)
+    wall = GBuffer(ctx, surfaces(rays, (0.0, 0.0, -1.0)), focal)
+    foot = np.array([0.0, 1.0 / (rays[-1, 0, 1] + 0.5 / focal), 0.0])
+    effect = AmbientOcclusion(ctx, programs, AmbientOcclusionSettings(samples=21, radius_m=radius))
+    textures = wall.normal_id, wall.position, wall.size, focal
+
+    def row_means(ground: np.ndarray | None) -> np.ndarray:
+        texture = effect.draw(*textures, ground)
+        rows = np.frombuffer(texture.read(), np.float32).reshape(*texture.size[::-1], 2)
+        return np.asarray(rows[:ROWS, :COLUMNS, 0].mean(axis=1))
+
+    alone, on_floor = row_means(None), row_means(foot)
+    assert alone.min() > 0.999
+    assert on_floor[-1] < 0.8
+    assert (np.diff(on_floor[ROWS // 2 :]) < 0.002).all()
+    assert on_floor[: ROWS - 27].min() > 0.99
+    effect.release()
+    wall.release()
+
+
 def test_a_smaller_picture_draws_in_the_same_texture_and_a_larger_one_in_a_new_one(ctx, programs):
     effect = AmbientOcclusion(ctx, programs)
     normal_id, position = (ctx.texture((200, 150), 4, dtype="f4") for _ in range(2))
