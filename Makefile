@@ -75,6 +75,7 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.wrinkles
 	-$(BIN)/python -m tests.bench.hand_mask
 	-$(BIN)/python -m tests.bench.cube_light --rooms 2
+	-$(BIN)/python -m tests.bench.ambient_occlusion
 	$(BIN)/python -m tests.bench.panels
 	$(BIN)/python -m tests.bench.looks
 	$(BIN)/python -m tests.bench.wire
@@ -101,6 +102,7 @@ pictures: .venv/ready-dev  ## draw the pictures of the documents again
 	$(BIN)/python -m tools.realism
 	$(BIN)/python -m tools.effects
 	$(BIN)/python -m tools.in_the_cube
+	$(BIN)/python -m tests.bench.ambient_occlusion.picture
 	$(BIN)/python -m tools.sound_sheet
 	$(BIN)/python -m tools.face_sheet
 	$(BIN)/python -m tools.wiring

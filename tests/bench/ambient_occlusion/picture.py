@@ -11,14 +11,26 @@ from characters.rendering import create_context
 from characters.rendering.ambient_occlusion import ESTIMATORS, AmbientOcclusionSettings
 from characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.scenes import load
-from tests.bench.ambient_occlusion.scoring import Floats, GBuffer, TracedScene, drawn
+from tests.bench.ambient_occlusion.scoring import (
+    Floats,
+    GBuffer,
+    TracedScene,
+    drawn,
+    lab_difference,
+)
 
-PATH = Path(__file__).parents[3] / "docs" / "pictures" / "ambient-occlusion.png"
+PATH = Path(__file__).parents[3] / "docs" / "pictures" / "ambient-occlusion.jpg"
 
 SIZE, RAYS = (640, 480), 256
 
 SHOWN = {"human": (208, 40, 222, 390), "vleo": (196, 70, 258, 370), "boxes": (150, 170, 330, 250)}
 """Scenes, and the part of each picture that is shown: x, y, width, height [px]."""
+
+COMPARED = "boxes"
+"""The scene whose difference in CIE Lab is shown too: white is no difference, black `BLACK_DELTA_E`
+or more."""
+
+BLACK_DELTA_E = 30.0
 
 COLUMN_PX, CAPTION_PX, GAP_PX = 240, 30, 4
 
@@ -43,15 +55,22 @@ def main() -> None:
         buffer = GBuffer.of(context, traced)
         part = np.s_[y : y + height, x : x + width]
         columns = [captioned("ray-traced", traced.truth[part])]
+        differences = [captioned("Lab difference:", np.ones_like(traced.truth[part]))]
         for estimator in ESTIMATORS:
             settings = AmbientOcclusionSettings(estimator, radius_m=traced.scene.radius_m)
             found = drawn(context, programs, buffer, settings)
             error = (found - traced.truth)[traced.surfaces.seen]
             rmse = float(np.sqrt(np.mean(error**2)))
             columns.append(captioned(f"{estimator}: {rmse:.3f}", found[part]))
+            difference = lab_difference(found, traced.truth)
+            mean = float(difference[traced.surfaces.seen].mean())
+            shown = (1.0 - difference[part] / BLACK_DELTA_E).astype(np.float32)
+            differences.append(captioned(f"mean {mean:.1f}", shown))
         buffer.release()
         rows.append(np.hstack(columns))
-    cv2.imwrite(str(PATH), np.vstack(rows), (cv2.IMWRITE_PNG_COMPRESSION, 9))
+        if name == COMPARED:
+            rows.append(np.hstack(differences))
+    cv2.imwrite(str(PATH), np.vstack(rows), (cv2.IMWRITE_JPEG_QUALITY, 90))
     Console().print(f"{PATH.name}: {PATH.stat().st_size / 1e3:.0f} kB")
     programs.release()
     context.release()
