@@ -16,7 +16,7 @@ SURFACES_UNIT = 8
 """Texture unit of the records of all surfaces, see `surface_records`."""
 
 OCCLUSION_UNIT, SUM_UNIT, VISIBILITY_UNIT = 10, 11, 12
-"""Texture units of the ambient occlusion, the sum of all light, and the share of it that arrives."""
+"""Texture units of ambient occlusion, of the sum of all light, and of the share that arrives."""
 
 
 class GeometryBuffer:

@@ -58,7 +58,6 @@ def held(context: moderngl.Context, pictures: int) -> Held:
     framebuffer = context.framebuffer([texture])
     program = context.program(vertex_shader="#version 330\nvoid main() { gl_Position = vec4(0); }")
     array = context.vertex_array(program, [])
-    library = ctypes.CDLL(ctypes.util.find_library("GL"))
     names = (texture.glo, buffer.glo, framebuffer.glo, array.glo)
     counts = tuple(_count(kind, name) for kind, name in zip(KINDS, names, strict=True))
     context.detect_framebuffer(0).use()
