@@ -17,9 +17,12 @@ BLOCKER_UNIT = 9
 FREE_M = 1e3
 """Distance in the map where nothing blocks the light [m]."""
 
-BIAS_TEXELS = 3.0
-"""Distance that a character must be behind what shadows it, in texels of the map: less is rounding,
-as the map has one distance for a whole texel."""
+CHARACTER_RANGE_TEXELS = (3.0, 6.0)
+"""Distances behind a surface from which on it shadows a character, and shadows it completely, in
+texels of the map: less is rounding, as the map has one distance for a whole texel."""
+
+TABLE_RANGE_TEXELS = (-4.0, -3.0)
+"""The same for the table, which is in no map: soles shadow it that sink into it a little."""
 
 
 class BlockerMap:
@@ -60,11 +63,16 @@ class BlockerMap:
         context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
         context.front_face, context.cull_face = "ccw", "back"
 
-    def set_uniforms(self, program: moderngl.Program, table_from_point: Array, bias: float) -> None:
+    def set_uniforms(
+        self,
+        program: moderngl.Program,
+        table_from_point: Array,
+        range_texels: tuple[float, float],
+    ) -> None:
         """Bind the map, and set the uniforms of a program that asks which light is left.
 
-        `table_from_point` (4, 4) is the frame in which the program has its points. `bias` is in
-        texels of the map.
+        `table_from_point` (4, 4) is the frame in which the program has its points. `range_texels`
+        is one of the ranges above.
         """
         assert self._lamp is not None
         lamp = self._lamp
@@ -77,7 +85,7 @@ class BlockerMap:
             lamp_area=(*lamp.low.tolist(), *(1.0 / (lamp.high - lamp.low)).tolist()),
             lamp_width=lamp.width,
             nearest_blocker=lamp.nearest,
-            shadow_bias=bias * texel,
+            shadow_range=[each * texel for each in range_texels],
         )
 
     def release(self) -> None:

@@ -13,6 +13,11 @@ LAMP_DISTANCE_M = 3.0
 LAMP_WIDTH_M = 1.1
 """Width of the square lamp: from a desk it is about 20° across [m]."""
 
+MIN_DROP_M = 0.1
+"""Casters are at least so far below the lamp [m]."""
+
+_SIGNS = np.array([(-1, -1), (-1, 1), (1, 1), (1, -1)])
+
 MARGIN = 0.02
 """Margin around the casters, as a share of their extent."""
 
@@ -72,19 +77,25 @@ class Lamp:
         rim = MARGIN * (high - low) + 1e-6
         return cls(pose, low - rim, high + rim, float(depths.min()), float(depths.max()), width)
 
-    def spread(self, receivers: Array) -> float:
-        """Return how much further than in parallel light a shadow reaches on receivers [m].
+    def shadow(self, casters: Array) -> Array:
+        """Return lowest x and z, highest x and z of the shadow of casters on the table [m].
 
-        Rays from the lamp spread by its width and by that of the casters. `receivers` are points
-        (n, 3) of the table frame.
+        Points (n, 3) of the table frame are projected from the corners of the lamp.
+
+        >>> lamp = Lamp.over(np.array([[0.0, 0.3, 0.0]]), np.array([0, 1.0, 0]), 2.7, 0.9)
+        >>> lamp.shadow(np.array([[0.0, 0.3, 0.0]])).round(6).tolist()
+        [-0.05, -0.05, 0.05, 0.05]
         """
-        furthest = (
-            float((receivers @ self.lamp_from_table[2, :3]).max()) + self.lamp_from_table[2, 3]
-        )
-        casters = float((self.high - self.low).max()) * self.furthest
-        return float(
-            max(furthest - self.nearest, 0.0) * (0.5 * self.width + casters) / self.nearest
-        )
+        table_from_lamp = np.linalg.inv(self.lamp_from_table)
+        sides = 0.5 * self.width * table_from_lamp[:3, :2]
+        corners = [table_from_lamp[:3, 3] + sides @ signs for signs in _SIGNS]
+        ends = []
+        for corner in corners:
+            way = casters - corner
+            share = corner[1] / np.maximum(corner[1] - np.maximum(casters[:, 1], 0.0), MIN_DROP_M)
+            ends.append((corner + share[:, None] * way)[:, [0, 2]])
+        reached = np.concatenate(ends)
+        return np.concatenate([reached.min(axis=0), reached.max(axis=0)])
 
     @property
     def clip_from_table(self) -> Array:

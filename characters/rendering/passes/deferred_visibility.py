@@ -4,7 +4,7 @@ import moderngl
 import numpy as np
 
 from characters.rendering.ambient_occlusion import AmbientOcclusion
-from characters.rendering.blocker_map import BIAS_TEXELS, BlockerMap
+from characters.rendering.blocker_map import CHARACTER_RANGE_TEXELS, BlockerMap
 from characters.rendering.deferred_buffers import (
     NORMAL_UNIT,
     OCCLUSION_UNIT,
@@ -85,7 +85,9 @@ class DeferredVisibilityPass(RenderPass):
         pixels.bind()
         if self._blockers is not None:
             table_from_camera = np.asarray(np.linalg.inv(frame.camera_from_table), float)
-            self._blockers.set_uniforms(self._find.program, table_from_camera, BIAS_TEXELS)
+            self._blockers.set_uniforms(
+                self._find.program, table_from_camera, CHARACTER_RANGE_TEXELS
+            )
         pixels.use_visibility(0, size)
         self._find.render(moderngl.TRIANGLES, vertices=3)
         pixels.use_visibility(1, size)

@@ -216,6 +216,11 @@ class ShadowMap:
             texture.release()
 
 
+def sky_extent(enclosing: Array, height: float) -> Array:
+    """Return lowest x and z, highest x and z where a character takes light from all around [m]."""
+    return _extent(enclosing, height, np.zeros(2))
+
+
 def _extent(enclosing: Array, height: float, slope: Array) -> Array:
     """Return lowest x and z, highest x and z that a character's shadow can reach [m]."""
     below = enclosing[:, [0, 2]]

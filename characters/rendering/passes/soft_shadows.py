@@ -5,16 +5,16 @@ from collections.abc import Sequence
 import moderngl
 import numpy as np
 
-from characters.rendering.blocker_map import BlockerMap
+from characters.rendering.blocker_map import TABLE_RANGE_TEXELS, BlockerMap
 from characters.rendering.lamp import Lamp
 from characters.rendering.light import Light
-from characters.rendering.passes.shadows import ShadowPass
+from characters.rendering.passes.shadows import ShadowPass, sky_extent
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.projection import Rectangle
 from characters.rendering.resources import FrameResources, Region
 from characters.skeleton.pose import Array
 
-TABLE_SIDE = 192
+TABLE_SIDE = 256
 """Texels along each side of the square of the table whose light is found."""
 
 LEFT_UNIT, OPENNESS_UNIT = 0, 1
@@ -60,9 +60,8 @@ class SoftShadowPass(ShadowPass):
         casters = np.concatenate([each.enclosing for each in frame.on_table])
         lamp = Lamp.over(casters, frame.light.to_light)
         self._blockers.render(frame, lamp)
-        extent = _united([shadow.extent for shadow in self._maps[: self._count]])
-        spread = lamp.spread(_corners(extent))
-        self._extent = extent + [-spread, -spread, spread, spread]
+        around = [sky_extent(each.enclosing, each.height) for each in frame.characters]
+        self._extent = _united([lamp.shadow(casters), *around])
         self._find_openness()
         self._find_left(super()._key_share(frame.light))
         self._area = frame.area_of(np.concatenate([casters, _corners(self._extent)]))
@@ -124,7 +123,7 @@ class SoftShadowPass(ShadowPass):
             openness=OPENNESS_UNIT,
         )
         self._openness.use(OPENNESS_UNIT)
-        self._blockers.set_uniforms(self._find.program, np.eye(4), bias=0.5)
+        self._blockers.set_uniforms(self._find.program, np.eye(4), TABLE_RANGE_TEXELS)
         self._find.render(moderngl.TRIANGLES, vertices=3)
         self._targets[2].use()
         self.left.use(LEFT_UNIT)

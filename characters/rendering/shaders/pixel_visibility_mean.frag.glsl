@@ -3,6 +3,7 @@
 // The mean of the lamp's light over a tile of 4 × 4 pixels, whose samples differ; others of another depth do not count.
 
 #include "geometry_buffer"
+#include "tile_mean"
 
 uniform sampler2D visibility;
 uniform ivec2 last_pixel;
@@ -17,9 +18,9 @@ void main() {
     float depth = texelFetch(position, here, 0).z;
     vec3 sum = vec3(0.0);
     float total = 0.0;
-    for (int i = 0; i < 16; ++i) {
-        ivec2 there = clamp(here + ivec2(i & 3, i >> 2) - 2, ivec2(0), last_pixel);
-        float near = max(1.0 - abs(texelFetch(position, there, 0).z - depth) / depth_tolerance, 0.0);
+    for (int i = 0; i < TILE_TAPS; ++i) {
+        ivec2 there = clamp(here + tile_step(i), ivec2(0), last_pixel);
+        float near = tile_weight(i) * max(1.0 - abs(texelFetch(position, there, 0).z - depth) / depth_tolerance, 0.0);
         if (!is_seen(texelFetch(normal_id, there, 0).w)) continue;
         sum += near * texelFetch(visibility, there, 0).rgb;
         total += near;

@@ -39,8 +39,11 @@ def left(ctx, view):
         for _ in range(120):  # the light changes to the measured one smoothly
             stage.draw(lit, [])
         stage.draw(lit, [Still(panes).posed()])
+        tile = np.array([0.5, 1.0, 1.0, 1.0, 0.5]) / 4.0
         texels = np.frombuffer(shadows.left.read(), np.float16).reshape(TABLE_SIDE, TABLE_SIDE, 4)
-        return cv2.blur(texels[..., :3].astype(np.float32), (4, 4)), shadows.square[2]
+        return cv2.sepFilter2D(texels[..., :3].astype(np.float32), -1, tile, tile), shadows.square[
+            2
+        ]
 
     yield below
     stage.release()
@@ -68,7 +71,7 @@ def test_the_penumbra_grows_as_the_law_says(left):
 def test_there_is_full_light_beside_and_none_in_the_umbra(left):
     texels, _ = left(pane(0.03))
     assert texels[TABLE_SIDE // 2, TABLE_SIDE // 2].max() == 0.0
-    assert texels[2, 2].min() == 1.0
+    assert texels[2, 2].min() == pytest.approx(1.0, abs=0.01)
 
 
 def test_a_shadow_is_sharp_where_its_caster_touches_the_table(left):
