@@ -26,8 +26,8 @@ from tests.bench.picture import SIZE, scene
 from tools.ray_tracing import AreaLight, RayTracer, light_fraction
 
 MAX_ERROR = 0.06
-"""RMSE of the share of the lamp, 0…1, that one blocker for each point allows: where a foot stands in
-the shadow of a head, both have one distance."""
+"""RMSE of the share of the lamp, 0…1, that one blocker for each point allows: where a foot stands
+in the shadow of a head, both have one distance."""
 
 STEP = 2
 """Rays are cast for one in so many texels along each side."""
