@@ -34,6 +34,9 @@ class Quality:
     matched: bool
     """Whether characters get the blur and the noise of the picture."""
 
+    max_error_px: float
+    """Error of a character's surface in the picture up to which its triangles are left out [px]."""
+
     deferred: bool = False
     """Whether characters are lit after all of them are drawn, which effects need."""
 
@@ -44,9 +47,9 @@ class Quality:
 QUALITIES = {
     each.name: each
     for each in (
-        Quality("rich", 2, True, deferred=True, effects=frozenset(Effect)),
-        Quality("full", 2, True),
-        Quality("reduced", 1, False),
+        Quality("rich", 2, True, 0.85, deferred=True, effects=frozenset(Effect)),
+        Quality("full", 2, True, 0.85),
+        Quality("reduced", 1, False, 1.2),
     )
 }
 """The qualities by name, the best first."""

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from characters.errors import CharacterError
 from characters.rendering.cover import CoverTexture
-from characters.rendering.geometry.character_cache import CharacterCache
+from characters.rendering.geometry.character_cache import CharacterCache, PictureFineness
 from characters.rendering.light import LightEstimator, paper_color
 from characters.rendering.occlusion import visible_cubes
 from characters.rendering.passes.by_quality import passes_for
@@ -163,5 +163,8 @@ class Stage:
             softness=self._softness(view),
             cubes=visible_cubes(view.occluders, matrix, self.size),
             cover=None if cover is None else self._cover.upload(cover),
-            characters=self._characters.skin(scene.characters),
+            characters=self._characters.skin(
+                scene.characters,
+                PictureFineness(table, float(matrix[1, 1]), self._quality.max_error_px),
+            ),
         )

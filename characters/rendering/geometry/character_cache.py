@@ -16,6 +16,9 @@ from characters.skeleton.pose import Array
 MAX_CHARACTERS = 8
 """Characters that stay on the graphics card; more only if one picture shows more."""
 
+NEARER_SHARE = 0.2
+"""How much nearer than its axis a character reaches, as a share of its height."""
+
 
 @dataclass(frozen=True)
 class CharacterInstance:
@@ -37,6 +40,31 @@ class CharacterInstance:
     """The open cube that it stands in; None for the table."""
 
 
+@dataclass(frozen=True)
+class PictureFineness:
+    """How finely the picture shows what is where on the table."""
+
+    camera_from_table: Array
+    """Pose of the table, (4, 4) [m]."""
+
+    focal: float
+    """Focal length of the picture [px]."""
+
+    max_error_px: float
+    """Largest error of a surface in the picture [px]; 0 for the finest triangles."""
+
+    def error(self, table_from_character: Array, height: float) -> float:
+        """Return the largest error of a character's surface [m in the character frame].
+
+        `height` is the character's [m in the character frame].
+        """
+        camera_from_character = self.camera_from_table @ table_from_character
+        scale = float(np.linalg.norm(table_from_character[:3, 1]))
+        ends = camera_from_character[2, 3] + camera_from_character[2, 1] * np.array([0.0, height])
+        nearest = float(ends.min()) - NEARER_SHARE * scale * height
+        return self.max_error_px * max(nearest, 0.0) / (self.focal * scale)
+
+
 class CharacterCache:
     """Skins characters, and keeps the buffers of the most recently drawn."""
 
@@ -46,8 +74,10 @@ class CharacterCache:
         # By character, and by its number among its copies in the picture: each has own vertices.
         self._kept: OrderedDict[tuple[int, int], tuple[Drawable, SkinnedCharacter]] = OrderedDict()
 
-    def skin(self, characters: Sequence[SceneCharacter]) -> tuple[CharacterInstance, ...]:
-        """Skin the visible characters whose pose is finite.
+    def skin(
+        self, characters: Sequence[SceneCharacter], fineness: PictureFineness
+    ) -> tuple[CharacterInstance, ...]:
+        """Skin the visible characters whose pose is finite, as finely as they are seen.
 
         A framebuffer must be bound: transform feedback needs one, although it draws nothing.
         """
@@ -61,7 +91,9 @@ class CharacterCache:
             copies[id(each.character)] += 1
             with np.errstate(invalid="ignore", over="ignore"):  # `skin` checks the result
                 joints = each.posed.pose.globals(each.character.skeleton)
-                enclosing = skinned.skin(joints, place, each.posed.pose.morphs)
+                enclosing = skinned.skin(
+                    joints, place, each.posed.pose.morphs, fineness.error(place, skinned.height)
+                )
             if enclosing is not None:
                 skinned.show_face(each.posed.pose.morphs, each.blood, place, each.wrinkles)
                 height = skinned.height * float(np.linalg.norm(place[:3, 1]))

@@ -1,13 +1,16 @@
 """A character on the graphics card: uploaded once, skinned in every picture."""
 
+from dataclasses import replace
+
 import moderngl
 import numpy as np
 
 from characters.face.action_units import ActionUnits
+from characters.rendering.geometry.detail_levels import DetailLevel, chosen_level, with_levels
 from characters.rendering.geometry.face_split import split_faces
 from characters.rendering.geometry.face_texture import FaceTexture
 from characters.rendering.geometry.morph_mixer import MorphMixer
-from characters.rendering.geometry.surfaces import SurfaceBuffers
+from characters.rendering.geometry.surfaces import Surface, SurfaceBuffers
 from characters.rendering.geometry.vertices import CharacterVertices
 from characters.rendering.programs import ShaderPrograms
 from characters.rendering.scene import Drawable
@@ -16,6 +19,9 @@ from characters.skeleton.pose import Array
 SHADOW_CELLS = 44
 """Grid cells along a character's height to which the mesh for its shadow is simplified; a shadow
 map is not much finer."""
+
+RECORD_BYTES = 24
+"""Bytes of the position and the normal of a vertex."""
 
 
 class SkinnedCharacter:
@@ -29,7 +35,8 @@ class SkinnedCharacter:
     def __init__(
         self, context: moderngl.Context, programs: ShaderPrograms, character: Drawable
     ) -> None:
-        self._vertices = vertices = CharacterVertices.of(character.meshes)
+        vertices, self._levels = with_levels(CharacterVertices.of(character.meshes))
+        self._vertices, self._level = vertices, 0
         self._extreme = vertices.extreme()
         rest = vertices.palette(character.skeleton.rest.globals(character.skeleton))
         heights = vertices.skinned(rest, slice(None))[:, 1]
@@ -42,11 +49,19 @@ class SkinnedCharacter:
         self._shapes = context.buffer(vertices.shape_records)
         joints = context.buffer(np.hstack([vertices.joints.view(np.float32), vertices.weights]))
         colors = context.buffer(np.hstack([vertices.colors, vertices.uvs]))
-        splits, again = split_faces(vertices)
-        indices = context.buffer(np.concatenate([vertices.indices, again]))
-        simplified, self.caster_runs = vertices.simplified(SHADOW_CELLS)
+        leveled = [
+            replace(vertices, indices=level.indices, materials=level.materials)
+            for level in self._levels
+        ]
+        splits = [split_faces(each) for each in leveled]
+        drawn = [
+            np.concatenate([each.indices, again])
+            for each, (_, again) in zip(leveled, splits, strict=True)
+        ]
+        indices = context.buffer(np.concatenate(drawn))
+        simplified, self.caster_runs = leveled[-1].simplified(SHADOW_CELLS)
         caster_indices = context.buffer(simplified)
-        self.skinned = context.buffer(reserve=24 * len(vertices.positions))
+        self.skinned = context.buffer(reserve=RECORD_BYTES * len(vertices.positions))
         """Positions and normals in the table frame, 3 + 3 float32 for each vertex."""
         self._palette = context.texture((3, len(rest)), 4, dtype="f4")
         self._palette.filter = (moderngl.NEAREST, moderngl.NEAREST)
@@ -64,24 +79,52 @@ class SkinnedCharacter:
         )
         """Draws its shadow, in runs of indices `caster_runs`: (first, count, double-sided)."""
         self._surfaces = SurfaceBuffers(context, programs, self.skinned, colors, indices)
-        self._plain = self._surfaces.surfaces(vertices)
-        self.surfaces = self._plain
-        """A run of triangles for each material; those of a face that shows something, apart."""
+        starts = np.cumsum([0, *(len(each) for each in drawn)]).tolist()
+        self._plain = [
+            self._surfaces.surfaces(level.materials, start)
+            for level, start in zip(self._levels, starts, strict=False)
+        ]
+        self._faced = self._plain
+        self._shows_face = False
         self.face: FaceTexture | None = None
         """Wrinkles and blood, if its sidecar file has them."""
-        maps = vertices.materials[splits[0].run][0].face if splits else None
+        finest = splits[0][0]
+        maps = vertices.materials[finest[0].run][0].face if finest else None
         if maps is not None:
             self.face = FaceTexture(context, maps, ActionUnits.of(character.morphs))
-            self._faced = self._surfaces.with_faces(self._plain, splits, self.face)
+            self._faced = [
+                self._surfaces.with_faces(plain, level_splits, self.face, start)
+                for plain, (level_splits, _), start in zip(
+                    self._plain, splits, starts, strict=False
+                )
+            ]
         self._buffers = (self._shapes, joints, colors, indices, caster_indices, self.skinned)
 
+    @property
+    def surfaces(self) -> tuple[Surface, ...]:
+        """A run of triangles for each material, at the level of detail of the last `skin`.
+
+        Those of a face that shows something are apart.
+        """
+        return (self._faced if self._shows_face else self._plain)[self._level]
+
+    @property
+    def level(self) -> DetailLevel:
+        """The level of detail of the last `skin`."""
+        return self._levels[self._level]
+
     def skin(
-        self, character_from_joint: Array, table_from_character: Array, morphs: Array | None = None
+        self,
+        character_from_joint: Array,
+        table_from_character: Array,
+        morphs: Array | None = None,
+        max_error: float = 0.0,
     ) -> Array | None:
         """Skin the vertices, and return points in the table frame that enclose them, (n, 3).
 
         The joints are (joints, 4, 4), the weights of the morphs (morphs,), None for all zero. The
-        result is None if the pose is not finite; then there is nothing to draw.
+        level of detail is the coarsest with an error of at most `max_error` [m in the character
+        frame]. The result is None if the pose is not finite; then there is nothing to draw.
         """
         palette = self._vertices.palette(table_from_character @ character_from_joint)
         if not np.isfinite(palette).all():
@@ -95,8 +138,8 @@ class SkinnedCharacter:
             self._extreme_positions[moved] = mixed[self._extreme[moved], :3]
         self._palette.write(np.ascontiguousarray(palette[:, :3], "f4"))
         self._palette.use(0)
-        count = len(self._vertices.positions)
-        self._skinning.transform(self.skinned, moderngl.POINTS, vertices=count)
+        self._level = chosen_level(self._levels, self._level, max_error)
+        self._skin_used()
         return self._vertices.skinned(palette, self._extreme, self._extreme_positions)
 
     def array(self, features: frozenset[str]) -> moderngl.VertexArray:
@@ -110,8 +153,24 @@ class SkinnedCharacter:
         if self.face is None:
             return
         scale = float(np.linalg.norm(table_from_character[:3, 1]))
-        shown = self.face.update(morphs, blood, scale, wrinkles)
-        self.surfaces = self._faced if shown else self._plain
+        self._shows_face = self.face.update(morphs, blood, scale, wrinkles)
+
+    def _skin_used(self) -> None:
+        """Skin the vertices of the level, which are the first of two parts of the buffer."""
+        level, moved = self.level, self._vertices.moved
+        if level.moved == moved:
+            parts = [(0, moved + level.fixed)]
+        else:
+            parts = [(0, level.moved), (moved, level.fixed)]
+        for first, count in parts:
+            if count:
+                self._skinning.transform(
+                    self.skinned,
+                    moderngl.POINTS,
+                    vertices=count,
+                    first=first,
+                    buffer_offset=RECORD_BYTES * first,
+                )
 
     def release(self) -> None:
         """Release the buffers; a second call does nothing."""

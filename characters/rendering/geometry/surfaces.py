@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from characters.model.mesh import Material
 from characters.rendering.geometry.face_split import FaceSplit
 from characters.rendering.geometry.face_texture import FaceTexture
-from characters.rendering.geometry.vertices import CharacterVertices
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 
 GL_SRGB8_ALPHA8 = 0x8C43
@@ -123,11 +122,12 @@ class SurfaceBuffers:
         self._arrays: dict[frozenset[str], moderngl.VertexArray] = {}
         self._textures: dict[tuple[int, bool], moderngl.Texture] = {}
 
-    def surfaces(self, vertices: CharacterVertices) -> tuple[Surface, ...]:
-        """Return a surface for each material of a character."""
+    def surfaces(
+        self, materials: Sequence[tuple[Material, int]], first: int
+    ) -> tuple[Surface, ...]:
+        """Return a surface for each material, with its number of indices, from one index on."""
         surfaces: list[Surface] = []
-        first = 0
-        for material, count in vertices.materials:
+        for material, count in materials:
             features = surface_features(material)
             textures = tuple(
                 (unit, self._texture(image, srgb=unit in _COLOR_UNITS))
@@ -141,9 +141,16 @@ class SurfaceBuffers:
         return tuple(surfaces)
 
     def with_faces(
-        self, surfaces: Sequence[Surface], splits: Sequence[FaceSplit], face: FaceTexture
+        self,
+        surfaces: Sequence[Surface],
+        splits: Sequence[FaceSplit],
+        face: FaceTexture,
+        start: int,
     ) -> tuple[Surface, ...]:
-        """Return surfaces of which the triangles of `splits` are drawn with a face."""
+        """Return surfaces of which the triangles of `splits` are drawn with a face.
+
+        The splits count indices from the first of the surfaces, `start`.
+        """
         drawn: list[Surface] = []
         for number, surface in enumerate(surfaces):
             split = next((each for each in splits if each.run == number), None)
@@ -151,12 +158,12 @@ class SurfaceBuffers:
                 drawn.append(surface)
                 continue
             if split.plain:
-                drawn.append(replace(surface, first=split.first, count=split.plain))
+                drawn.append(replace(surface, first=start + split.first, count=split.plain))
             features = surface.features | {FACE_FEATURE}
             drawn.append(
                 replace(
                     surface,
-                    first=split.first + split.plain,
+                    first=start + split.first + split.plain,
                     count=split.painted,
                     features=features,
                     array=self.array(features),

@@ -101,6 +101,10 @@ class CharacterVertices:
         fixed = np.ones(len(self.positions), bool)
         fixed[moved] = False
         order = np.concatenate([moved, np.flatnonzero(fixed)])
+        return replace(self.reordered(order), moved=len(moved))
+
+    def reordered(self, order: NDArray[np.intp]) -> Self:
+        """Return a copy in which vertex i is the vertex `order[i]`, (vertices,), of this one."""
         new_index = np.empty(len(order), np.uint32)
         new_index[order] = np.arange(len(order))
         return replace(
@@ -112,8 +116,7 @@ class CharacterVertices:
             colors=self.colors[order],
             uvs=self.uvs[order],
             indices=new_index[self.indices],
-            morphs=tuple(replace(m, vertices=new_index[m.vertices]) for m in self.morphs),
-            moved=len(moved),
+            morphs=tuple(_renumbered(morph, new_index) for morph in self.morphs),
         )
 
     def palette(self, world_from_joint: Array) -> Array:
@@ -167,17 +170,20 @@ class CharacterVertices:
         largest side has that many `cells`. The result is the indices, three for each triangle, and
         the runs (first index, count, double-sided) of single-sided and double-sided triangles.
         """
-        low, high = self.positions.min(axis=0), self.positions.max(axis=0)
+        used, number = np.unique(self.indices, return_inverse=True)
+        positions = self.positions[used]
+        low, high = positions.min(axis=0), positions.max(axis=0)
         cell_size = max(float((high - low).max()) / cells, 1e-9)
-        grid = np.floor((self.positions - low) / cell_size).astype(np.int64)
+        grid = np.floor((positions - low) / cell_size).astype(np.int64)
         sizes = grid.max(axis=0) + 1
         # One number for cell and joint: to sort rows of four takes thirty times as long.
-        keys = ((self.owners * sizes[0] + grid[:, 0]) * sizes[1] + grid[:, 1]) * sizes[2]
+        keys = ((self.owners[used] * sizes[0] + grid[:, 0]) * sizes[1] + grid[:, 1]) * sizes[2]
         _, first, cluster = np.unique(keys + grid[:, 2], return_index=True, return_inverse=True)
-        corners = first[cluster].astype(np.uint32)[self.indices].reshape(-1, 3)
+        corners = used[first[cluster]][number].reshape(-1, 3)
         kept = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
         if not kept.any():  # every triangle lies in one cell
-            corners, kept = self.indices.reshape(-1, 3), np.ones_like(kept)
+            corners = self.indices.reshape(-1, 3)
+            kept = np.ones_like(kept)
         sides = np.repeat(
             [material.double_sided for material, _ in self.materials],
             [count // 3 for _, count in self.materials],
@@ -191,6 +197,19 @@ class CharacterVertices:
     def shape_records(self) -> NDArray[np.float32]:
         """Position and normal of each vertex, (vertices, 6)."""
         return np.hstack([self.positions, self.normals])
+
+
+def _renumbered(morph: Morph, new_index: NDArray[np.uint32]) -> Morph:
+    """Return a morph with new numbers of its vertices, ascending."""
+    vertices = new_index[morph.vertices]
+    order = np.argsort(vertices)
+    normals = morph.normal_displacements
+    return replace(
+        morph,
+        vertices=vertices[order],
+        displacements=morph.displacements[order],
+        normal_displacements=None if normals is None else normals[order],
+    )
 
 
 def _or_default(

@@ -1,0 +1,149 @@
+"""Levels of detail: fewer triangles for a character that is small in the picture."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.model.mesh import Material
+from characters.rendering.geometry.edge_collapse import collapsed_levels
+from characters.rendering.geometry.vertices import CharacterVertices
+
+TOLERANCES = (1 / 850, 1 / 600, 1 / 425, 1 / 300, 1 / 200)
+"""Errors of the coarser levels, as shares of the character's largest side; each is for half the
+size in the picture of the one before."""
+
+HYSTERESIS = 1.15
+"""Factor by which the size in the picture changes back before the level does."""
+
+MIN_TRIANGLES = 1500
+"""Fewer triangles are drawn as they are: they cost little."""
+
+NORMAL_SCALE, COLOR_SCALE = 0.012, 0.02
+"""Distance that counts as much as an error of 1 in a unit normal, or in a linear colour, as shares
+of the largest side."""
+
+JOINT_SCALE = 0.3
+"""Distance that counts as much as weights that move the mean of a vertex's joints by 1 m [m]."""
+
+MORPH_SCALE = 1.0
+"""Distance that counts as much as a displacement by morphs by 1 m [m]."""
+
+MORPH_FEATURES, MORPH_SEED = 4, 1
+"""Number of projections of the displacements, and seed of their directions."""
+
+
+@dataclass(frozen=True)
+class DetailLevel:
+    """The triangles of a character at one level of detail."""
+
+    tolerance: float
+    """Root mean square distance from the finest triangles [m in the character frame]."""
+
+    indices: NDArray[np.uint32]
+    """Three for each triangle, sorted by material."""
+
+    materials: tuple[tuple[Material, int], ...]
+    """Each material with the number of its indices, in their order."""
+
+    moved: int
+    """How many of the first vertices, those that morphs move, cover the ones in use."""
+
+    fixed: int
+    """The same of the vertices after all that morphs move."""
+
+
+def with_levels(
+    vertices: CharacterVertices,
+) -> tuple[CharacterVertices, tuple[DetailLevel, ...]]:
+    """Return the vertices in an order that suits all levels, and the levels, the finest first.
+
+    The vertices of a coarser level come before those that only finer ones use, among the vertices
+    that morphs move and among the others, so that only they need to be skinned.
+    """
+    stands = [np.arange(len(vertices.positions))]
+    sizes = np.ptp(vertices.positions, axis=0)
+    side = float(sizes.max())
+    if len(vertices.indices) >= 3 * MIN_TRIANGLES and side > 0.0:
+        stands += collapsed_levels(
+            vertices.positions,
+            _features(vertices, side),
+            vertices.indices.reshape(-1, 3).astype(np.intp),
+            [side * tolerance for tolerance in TOLERANCES],
+        )
+    drawn = [_drawn(vertices, stand) for stand in stands]
+    last = np.zeros(len(vertices.positions), int)
+    for number, (indices, _) in enumerate(drawn):
+        last[indices] = number
+    moved = np.arange(len(last)) < vertices.moved
+    order = np.lexsort((-last, ~moved))
+    new_index = np.empty(len(order), np.uint32)
+    new_index[order] = np.arange(len(order))
+    levels = []
+    for number, ((indices, materials), tolerance) in enumerate(
+        zip(drawn, (0.0, *TOLERANCES), strict=False)
+    ):
+        counts = [int(np.count_nonzero(each & (last >= number))) for each in (moved, ~moved)]
+        levels.append(DetailLevel(side * tolerance, new_index[indices], materials, *counts))
+    return vertices.reordered(order), tuple(levels)
+
+
+def chosen_level(levels: Sequence[DetailLevel], last: int, max_error: float) -> int:
+    """Return the number of the coarsest level with an error of at most `max_error` [m].
+
+    It stays the last one while that is only worse by `HYSTERESIS`, so that they do not alternate.
+    """
+    allowed = [number for number, each in enumerate(levels) if each.tolerance <= max_error]
+    fits = max(allowed, default=0)
+    if fits > last and HYSTERESIS * levels[fits].tolerance > max_error:
+        fits -= 1
+    stays = levels[last].tolerance <= HYSTERESIS * max_error
+    return last if last > fits and stays else fits
+
+
+def _drawn(
+    vertices: CharacterVertices, stand: NDArray[np.intp]
+) -> tuple[NDArray[np.uint32], tuple[tuple[Material, int], ...]]:
+    """Return the indices of the triangles that are left, and the number for each material."""
+    corners = stand[vertices.indices].reshape(-1, 3)
+    points = vertices.positions[corners]
+    kept = (points != np.roll(points, 1, axis=1)).any(axis=2).all(axis=1)
+    if (stand == np.arange(len(stand))).all():
+        kept[:] = True  # the finest level is as it was given
+    ends = np.cumsum([0, *(count // 3 for _, count in vertices.materials)])
+    counts = [3 * int(kept[start:end].sum()) for start, end in pairwise(ends)]
+    materials = [(each, count) for (each, _), count in zip(vertices.materials, counts, strict=True)]
+    return corners[kept].ravel().astype(np.uint32), tuple(materials)
+
+
+def _features(vertices: CharacterVertices, side: float) -> NDArray[np.float64]:
+    """Return what an edge collapse must keep besides the shape, (vertices, n) [m]."""
+    joints = np.concatenate([np.linalg.inv(bind)[:, :3, 3] for bind in vertices.binds])
+    moving = np.einsum("vj,vjk->vk", vertices.weights, joints[vertices.joints])
+    columns = [
+        NORMAL_SCALE * side * vertices.normals,
+        COLOR_SCALE * side * vertices.colors[:, :3],
+        JOINT_SCALE * moving,
+    ]
+    if vertices.morphs:
+        columns.append(MORPH_SCALE * _morph_features(vertices))
+    if vertices.uvs.any():
+        columns.append(COLOR_SCALE * side * vertices.uvs)
+    return np.hstack(columns).astype(float)
+
+
+def _morph_features(vertices: CharacterVertices) -> NDArray[np.float64]:
+    """Return a few numbers that differ where morphs do different things, (vertices, n) [m].
+
+    They are random projections of the displacements by all morphs, which keep their distances on
+    average (Johnson and Lindenstrauss, 1984).
+    """
+    signs = np.random.default_rng(MORPH_SEED).choice(
+        [-1.0, 1.0], (len(vertices.morphs), 3, MORPH_FEATURES)
+    )
+    features = np.zeros((len(vertices.positions), MORPH_FEATURES))
+    for morph, each in zip(vertices.morphs, signs, strict=True):
+        features[morph.vertices] += np.einsum("vk,kf->vf", morph.displacements, each)
+    return np.asarray(features / np.sqrt(MORPH_FEATURES))

@@ -1,0 +1,200 @@
+"""Levels of detail: fewer triangles, the same picture."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from characters import Character
+from characters.control.command import PosedCharacter
+from characters.rendering import QUALITIES, SceneCharacter, Stage, View
+from characters.rendering.geometry.character_cache import PictureFineness
+from characters.rendering.geometry.detail_levels import DetailLevel, chosen_level, with_levels
+from characters.rendering.geometry.edge_collapse import collapsed_levels
+from characters.rendering.geometry.vertices import CharacterVertices
+
+
+def ball(center=(0.0, 0.0, 0.0), radius=1.0, rows=32):
+    """Return positions and triangles of a closed sphere whose poles are small holes' rims."""
+    turn, rise = np.meshgrid(
+        np.arange(2 * rows) * np.pi / rows, np.linspace(-1.5, 1.5, rows), indexing="xy"
+    )
+    points = np.stack([np.cos(rise) * np.cos(turn), np.sin(rise), np.cos(rise) * np.sin(turn)], -1)
+    number = np.arange(rows * 2 * rows).reshape(rows, -1)
+    a, b = number[:-1], np.roll(number, -1, axis=1)[:-1]
+    c, d = number[1:], np.roll(number, -1, axis=1)[1:]
+    triangles = np.concatenate([np.stack(t, -1).reshape(-1, 3) for t in ((a, c, b), (b, c, d))])
+    return (radius * points.reshape(-1, 3) + center).astype(np.float32), triangles
+
+
+def open_edges(places, triangles):
+    """Return how many edges of the surface belong to one triangle only."""
+    edges = places[np.stack([triangles, np.roll(triangles, -1, axis=1)], -1).reshape(-1, 2)]
+    _, uses = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
+    return int(np.count_nonzero(uses == 1))
+
+
+def left(triangles, stand):
+    corners = stand[triangles]
+    return corners[(corners != np.roll(corners, 1, axis=1)).all(axis=1)]
+
+
+def test_a_coarser_ball_is_still_a_ball():
+    positions, triangles = ball()
+    levels = collapsed_levels(positions, np.zeros((len(positions), 0)), triangles, [0.01, 0.05])
+    counts = [len(left(triangles, stand)) for stand in levels]
+    assert len(triangles) > 2 * counts[0] > 2 * counts[1] > 0
+    for stand, tolerance in zip(levels, (0.01, 0.05), strict=True):
+        middles = positions[left(triangles, stand)].mean(axis=1)
+        heights = np.abs(middles[:, 1]) < 0.9  # beside the holes
+        assert np.abs(np.linalg.norm(middles, axis=1)[heights] - 1.0).mean() < tolerance
+
+
+def test_levels_are_nested():
+    positions, triangles = ball()
+    fine, coarse = collapsed_levels(
+        positions, np.zeros((len(positions), 0)), triangles, [0.01, 0.05]
+    )
+    assert set(coarse) < set(fine)
+    assert (coarse[fine] == coarse).all()
+
+
+def test_a_seam_of_two_colours_does_not_tear():
+    positions, triangles = ball()
+    low = positions[triangles].mean(axis=1)[:, 1] < 0.1
+    # The lower half has vertices of its own, as at a border of two colours.
+    both = np.concatenate([positions, positions])
+    split = np.where(low[:, None], triangles + len(positions), triangles)
+    colors = np.repeat([0.0, 0.1], len(positions))[:, None]
+    (stand,) = collapsed_levels(both, colors, split, [0.03])
+    _, places = np.unique(both, axis=0, return_inverse=True)
+    places = places.ravel()
+    coarse = left(split, stand)
+    assert len(coarse) < 0.6 * len(split)
+    assert open_edges(places, coarse) <= open_edges(places, split)  # the rims of the poles
+    of_low = coarse[:, 0] >= len(positions)
+    assert (coarse[of_low] >= len(positions)).all()
+    assert (coarse[~of_low] < len(positions)).all()
+
+
+def test_what_joints_or_morphs_move_apart_stays():
+    positions, triangles = ball()
+    steps = 0.2 * np.sin(40.0 * positions[:, :1])
+    plain = collapsed_levels(positions, np.zeros((len(positions), 0)), triangles, [0.03])[0]
+    moving = collapsed_levels(positions, steps, triangles, [0.03])[0]
+    assert len(left(triangles, moving)) > 2 * len(left(triangles, plain))
+
+
+def test_a_spot_on_a_ball_stays_as_it_is():
+    positions, triangles = ball()
+    # A lens as thin as paper, with a rim.
+    spot, spot_triangles = ball((0.0, 0.0, 1.0), 0.2, 8)
+    spot[:, 2] = 1.0 + 0.01 * (spot[:, 2] - 1.0)
+    both = np.concatenate([positions, spot])
+    all_triangles = np.concatenate([triangles, spot_triangles + len(positions)])
+    (stand,) = collapsed_levels(both, np.zeros((len(both), 0)), all_triangles, [0.05])
+    coarse = left(all_triangles, stand)
+    of_spot = (coarse >= len(positions)).all(axis=1)
+    outline = both[coarse[of_spot]].reshape(-1, 3)
+    assert np.ptp(outline[:, :2], axis=0) == pytest.approx(np.ptp(spot[:, :2], axis=0), rel=0.02)
+    assert np.ptp(outline[:, 2]) > 0.9 * np.ptp(spot[:, 2])
+    assert (~of_spot).sum() < 0.5 * len(triangles)
+
+
+@pytest.fixture(scope="module")
+def human():
+    return Character.load("human")
+
+
+def test_vertices_of_a_coarser_level_come_first(human):
+    vertices, levels = with_levels(CharacterVertices.of(human.meshes))
+    assert len(levels) > 1
+    for level in levels:
+        used = np.unique(level.indices)
+        is_moved = used < vertices.moved
+        assert used[is_moved].max() < level.moved
+        assert used[~is_moved].max() < vertices.moved + level.fixed
+        assert sum(count for _, count in level.materials) == len(level.indices)
+    assert levels[-1].fixed < 0.6 * levels[0].fixed
+    for morph in vertices.morphs:
+        assert (np.diff(morph.vertices.astype(int)) > 0).all()
+
+
+def test_the_finest_level_has_the_triangles_as_they_were_given(human):
+    given = CharacterVertices.of(human.meshes)
+    vertices, levels = with_levels(given)
+    corners = vertices.positions[levels[0].indices]
+    assert np.array_equal(corners, given.positions[given.indices])
+
+
+def test_a_small_model_has_one_level(pawn):
+    _, levels = with_levels(CharacterVertices.of(pawn.meshes))
+    assert len(levels) == 1
+
+
+def test_the_level_does_not_alternate():
+    nothing = np.zeros(0, np.uint32)
+    levels = [DetailLevel(tolerance, nothing, (), 0, 0) for tolerance in (0.0, 1.0, 2.0, 4.0)]
+    assert [chosen_level(levels, 0, error) for error in (0.0, 0.9, 1.2, 2.1, 9.0)] == [
+        0, 0, 1, 1, 3,
+    ]  # fmt: skip
+    number, seen = 0, []
+    for error in (2.05, 1.95, 2.05, 2.35, 1.95, 1.8, 1.7, 1.9, 0.0):
+        number = chosen_level(levels, number, error)
+        seen.append(number)
+    assert seen == [1, 1, 1, 2, 2, 2, 1, 1, 0]
+
+
+HEIGHT_PX = 240
+MAX_RMS = 4.0
+"""Largest difference of the pictures, over the pixels of the character, of 255. It is of our own
+characters and views, so an upper bound of how well others do."""
+
+
+@pytest.mark.parametrize("name", ["human", "vleo", "robot"])
+def test_the_coarser_character_looks_the_same(ctx, name):
+    character = Character.load(name)
+    side = HEIGHT_PX + 120
+    matrix = np.array([[900.0, 0, side / 2], [0, 900.0, side / 2], [0, 0, 1.0]])
+    table = np.eye(4)
+    pitch = np.deg2rad(25.0)
+    table[1, 1:3] = -np.cos(pitch), np.sin(pitch)
+    table[2, 1:3] = -np.sin(pitch), -np.cos(pitch)
+    height = HEIGHT_PX * 0.6 / 900.0
+    table[:3, 3] = 0.0, 0.5 * height, 0.6
+    view = View(np.full((side, side, 3), (150, 170, 160), np.uint8), matrix, np.zeros(5), table)
+    clip = character.clips.get("Walk") or next(iter(character.clips.values()))
+    scale = height / character.height
+
+    def posed(turn):
+        place = np.diag([scale, scale, scale, 1.0])
+        c, s = np.cos(turn), np.sin(turn)
+        place[:3, :3] = place[:3, :3] @ [[c, 0, s], [0, 1, 0], [-s, 0, c]]
+        pose = clip.sample(0.3 * clip.duration)
+        return SceneCharacter(
+            character, PosedCharacter(pose, place, True, "walk", 0.0, 0.0, 0.0, 0.0)
+        )
+
+    full = QUALITIES["full"]
+    stage = Stage(ctx, (side, side))
+    turns = (0.4, 2.4)
+    coarse = [stage.draw(view, [posed(turn)]).astype(float) for turn in turns]
+    stage.quality = replace(full, max_error_px=0.0)
+    fine = [stage.draw(view, [posed(turn)]).astype(float) for turn in turns]
+    nothing = stage.draw(view, []).astype(float)
+    stage.release()
+    for one, other in zip(coarse, fine, strict=True):
+        difference = one - other
+        assert difference.any()  # there was something to leave out
+        seen = np.maximum(np.abs(one - nothing), np.abs(other - nothing)).max(axis=2) > 8.0
+        assert np.sqrt((difference[seen] ** 2).mean()) < MAX_RMS
+        assert (np.abs(difference[seen]).max(axis=1) > 25.0).mean() < 0.01
+
+
+def test_the_error_is_that_of_the_nearest_part(ctx, human):
+    fineness = PictureFineness(np.diag([1.0, -1.0, -1.0, 1.0]), 900.0, 0.4)
+    fineness.camera_from_table[2, 3] = 0.3
+    error = fineness.error(np.diag([0.1, 0.1, 0.1, 1.0]), human.height)
+    assert error == pytest.approx(0.4 * (0.3 - 0.2 * 0.1 * human.height) / (900.0 * 0.1))
+    behind = PictureFineness(np.eye(4), 900.0, 0.4)
+    assert behind.error(np.eye(4), human.height) == 0.0
