@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import moderngl
 import numpy as np
+from numpy.typing import NDArray
 
 from characters.rendering.programs import set_uniforms
 from characters.rendering.projection import Rectangle
@@ -24,8 +25,11 @@ class PictureCover:
     distance: float
     """Of the surface behind it from the camera, along its axis [m]."""
 
+    share: NDArray[np.uint8]
+    """Share of each pixel that is covered, 0…255, (height, width)."""
+
     texture: moderngl.Texture
-    """Share of each pixel that is covered, in the first texels."""
+    """The same, in the first texels."""
 
     def set_uniforms(self, program: moderngl.Program, area: Rectangle) -> None:
         """Bind the texture, and set the uniforms of a program that draws an area of the picture."""
@@ -38,8 +42,8 @@ class PictureCover:
         )
 
 
-class CoverTexture:
-    """Keeps one texture that grows with the covers written to it."""
+class ShareTexture:
+    """Keeps one texture that grows with the shares of pixels written to it."""
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
@@ -48,9 +52,15 @@ class CoverTexture:
     def upload(self, cover: Cover) -> PictureCover:
         """Return a cover, given in pixels of the picture, uploaded."""
         height, width = cover.share.shape
+        area = Rectangle(cover.x, cover.y, width, height)
+        return PictureCover(area, cover.distance, cover.share, self.write(cover.share))
+
+    def write(self, share: NDArray[np.uint8]) -> moderngl.Texture:
+        """Return the texture with shares (height, width) 0…255 in its first texels."""
+        height, width = share.shape
         texture = self._at_least(width, height)
-        texture.write(np.ascontiguousarray(cover.share), viewport=(0, 0, width, height))
-        return PictureCover(Rectangle(cover.x, cover.y, width, height), cover.distance, texture)
+        texture.write(np.ascontiguousarray(share), viewport=(0, 0, width, height))
+        return texture
 
     def _at_least(self, width: int, height: int) -> moderngl.Texture:
         kept = self._texture

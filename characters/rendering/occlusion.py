@@ -1,11 +1,10 @@
-"""Where real cubes are in the picture, and the outlines of what they hide."""
+"""Where real cubes are in the picture, and what they hide."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Self
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from characters.rendering.projection import (
     NEAR_M,
@@ -26,45 +25,18 @@ _CORNERS = (np.arange(8)[:, None] >> np.arange(3) & 1) - 0.5
 CUBE_EDGES = _CORNERS[_EDGE_ENDS]
 """Both ends of its twelve edges, (12, 2, 3)."""
 
-MAX_SIDES = 10
-"""Sides that a cube's outline can have, when the near plane cuts it; `MAX_SIDES` in the shaders
-too. The outline of a cube that lies completely before the camera has six at most."""
 
-MAX_CUBES = 8
-"""Cubes whose outlines a region keeps, the nearest ones; `MAX_CUBES` in the shaders too."""
+def hidden_by_cube(box: Box, matrix: Array, area: Rectangle) -> NDArray[np.uint8]:
+    """Return the share of each pixel of an area that a box hides, (height, width) 0…255.
 
-NO_SIDE = 1e6
-"""Distance [px] that stands for a side that does not exist: everything is inside of it."""
-
-
-@dataclass(frozen=True)
-class CubeOutlines:
-    """Outlines of cubes in a region of the picture. They hide the part of the table inside."""
-
-    count: int
-    """Number of cubes."""
-
-    longest: int
-    """Number of sides of the outline that has the most."""
-
-    sides: Array
-    """(`MAX_CUBES`, `MAX_SIDES`, 3). A side times (x, y, 1) is how far inside of it a point lies
-    [px]; the origin is the corner of the region's first pixel."""
-
-    @classmethod
-    def of(cls, boxes: Sequence[Box], matrix: Array, region: Rectangle) -> Self:
-        """Return the outlines of boxes under the picture's pinhole matrix (3, 3)."""
-        nearest = sorted(boxes, key=lambda box: float(np.linalg.norm(box.camera_from_box[:3, 3])))
-        pixel_from_point = np.eye(3)
-        pixel_from_point[:2, 2] = region.x - 0.5, region.y - 0.5
-        sides = np.zeros((MAX_CUBES, MAX_SIDES, 3))
-        sides[..., 2] = NO_SIDE
-        longest = 0
-        for row, box in zip(sides, nearest, strict=False):
-            outline = _outline(box, matrix)
-            row[: len(outline)] = outline @ pixel_from_point
-            longest = max(longest, len(outline))
-        return cls(min(len(boxes), MAX_CUBES), longest, sides)
+    A side of its outline gives the distance inside of it [px]; the transition is one pixel wide.
+    """
+    x = np.arange(area.x, area.x + area.width, dtype=np.float32)
+    y = np.arange(area.y, area.y + area.height, dtype=np.float32)[:, None]
+    inside = np.ones((area.height, area.width), np.float32)
+    for a, b, c in _outline(box, matrix).astype(np.float32):
+        np.minimum(inside, a * x + (b * y + (c + np.float32(0.5))), out=inside)
+    return np.asarray(np.rint(255.0 * np.maximum(inside, 0.0)), np.uint8)
 
 
 def corners_of(box: Box, camera_from_table: Array) -> Array:
@@ -100,4 +72,4 @@ def _outline(box: Box, matrix: Array) -> Array:
     inward = np.stack([-along[:, 1], along[:, 0]], axis=1)
     inward /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
     lines = np.column_stack([inward, -np.einsum("ij,ij->i", inward, hull)])
-    return np.asarray(lines * np.sign(lines @ [*hull.mean(axis=0), 1.0])[:, None])[:MAX_SIDES]
+    return np.asarray(lines * np.sign(lines @ [*hull.mean(axis=0), 1.0])[:, None])

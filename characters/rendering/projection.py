@@ -62,6 +62,10 @@ class Rectangle:
         bottom = min(self.y + self.height, other.y + other.height)
         return Rectangle(x, y, right - x, bottom - y) if right > x and bottom > y else None
 
+    def within(self, other: "Rectangle") -> "Rectangle":
+        """Return the same pixels, counted from the first pixel of another rectangle."""
+        return Rectangle(self.x - other.x, self.y - other.y, self.width, self.height)
+
     def union(self, other: "Rectangle") -> "Rectangle":
         """Return the smallest rectangle that contains both.
 

@@ -8,10 +8,11 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.cover import PictureCover
+from characters.rendering.cover import PictureCover, ShareTexture
 from characters.rendering.geometry.character_cache import CharacterInstance
+from characters.rendering.hidden_table import hidden_table
 from characters.rendering.light import Light
-from characters.rendering.occlusion import CubeOutlines, corners_of
+from characters.rendering.occlusion import corners_of
 from characters.rendering.programs import set_uniforms
 from characters.rendering.projection import Rectangle, bounding_rectangle, clip_from_camera
 from characters.rendering.scene import Box, Scene, Softness
@@ -19,6 +20,9 @@ from characters.rendering.target import RenderTarget, RenderTargets
 from characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
+
+HIDDEN_UNIT = 10
+"""Texture unit of what hides the table."""
 
 
 @dataclass(frozen=True)
@@ -81,11 +85,8 @@ class Region:
     """Projection to the region, (4, 4); its first row is the top row, so triangles turn
     clockwise."""
 
-    outlines: CubeOutlines
-    """Of the real cubes in this region. They hide what lies on the table."""
-
-    cover: PictureCover | None
-    """The hand, if it is in this region. It hides what lies on the table."""
+    hidden: moderngl.Texture | None
+    """Share of each pixel in which real cubes or the hand hide the table; None if in no pixel."""
 
     characters: CharacterLayer | None
     """For the characters; None if there are none in this region."""
@@ -96,15 +97,9 @@ class Region:
 
     def set_table_uniforms(self, program: moderngl.Program) -> None:
         """Set the uniforms of a program that paints on the table, except where it is hidden."""
-        set_uniforms(
-            program,
-            clip_from_table=self.clip_from_table,
-            cube_count=self.outlines.count,
-            longest=self.outlines.longest,
-            outlines=self.outlines.sides,
-        )
-        if self.cover is not None:
-            self.cover.set_uniforms(program, self.area)
+        set_uniforms(program, clip_from_table=self.clip_from_table, hidden=HIDDEN_UNIT)
+        if self.hidden is not None:
+            self.hidden.use(HIDDEN_UNIT)
 
 
 @dataclass(frozen=True)
@@ -140,6 +135,9 @@ class FrameResources:
 
     cover: PictureCover | None
     """The hand in front of the cube."""
+
+    hidden: ShareTexture
+    """Keeps the texture of what hides the table."""
 
     characters: tuple[CharacterInstance, ...]
     """The visible characters, skinned on the graphics card."""
@@ -208,12 +206,12 @@ class FrameResources:
 
     def _region(self, area: Rectangle, characters: Rectangle | None) -> Region:
         inner = None if characters is None else area.intersection(characters)
+        hidden = hidden_table(self.cubes, self.cover, self.camera_matrix, area)
         return Region(
             area,
             self.targets.at_least(area.width, area.height),
             clip_from_camera(self.camera_matrix, area) @ self.camera_from_table,
-            CubeOutlines.of(self._cubes_in(area), self.camera_matrix, area),
-            self.cover if self.cover and self.cover.area.intersection(area) else None,
+            None if hidden is None else self.hidden.write(hidden),
             None if inner is None else self._character_layer(inner),
         )
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
-from characters.rendering.cover import CoverTexture
+from characters.rendering.cover import ShareTexture
 from characters.rendering.geometry.character_cache import CharacterCache, PictureFineness
 from characters.rendering.light import LightEstimator, paper_color
 from characters.rendering.occlusion import visible_cubes
@@ -68,7 +68,7 @@ class Stage:
         self._light = LightEstimator()
         self._quality = FULL
         self._targets = RenderTargets(context, FULL)
-        self._cover = CoverTexture(context)
+        self._cover, self._hidden = ShareTexture(context), ShareTexture(context)
         self._characters = CharacterCache(context, self.programs)
 
     @property
@@ -133,6 +133,7 @@ class Stage:
         self._characters.release()
         self._targets.release()
         self._cover.release()
+        self._hidden.release()
         self.programs.release()
 
     def _softness(self, view: View) -> Softness | None:
@@ -163,6 +164,7 @@ class Stage:
             softness=self._softness(view),
             cubes=visible_cubes(view.occluders, matrix, self.size),
             cover=None if cover is None else self._cover.upload(cover),
+            hidden=self._hidden,
             characters=self._characters.skin(
                 scene.characters,
                 PictureFineness(table, float(matrix[1, 1]), self._quality.max_error_px),

@@ -69,6 +69,7 @@ class Undistorter:
 
         It has an empty rim, so that it ends softly.
         """
+        cover = _cropped(cover)
         height, width = cover.share.shape
         if not height or not width:
             return None
@@ -149,6 +150,13 @@ class Undistorter:
             rows = (top + (bottom - top) * share).round().astype(np.uint8)
             self._backdrop = np.ascontiguousarray(np.broadcast_to(rows, (height, width, 3)))
         return self._backdrop.copy()
+
+
+def _cropped(cover: Cover) -> Cover:
+    """Return the part of a cover that covers anything."""
+    x, y, width, height = cv2.boundingRect(cover.share) if cover.share.size else (0, 0, 0, 0)
+    share = np.ascontiguousarray(cover.share[y : y + height, x : x + width])
+    return Cover(cover.x + x, cover.y + y, share, cover.distance)
 
 
 def _usable(distortion: Array) -> Array:

@@ -34,7 +34,7 @@ class FloorPathPass(RenderPass):
         content = [(self._buffer, "2f 2f 3f 3f", "position", "local", "shape", "color")]
         self._arrays = [
             context.vertex_array(programs.load("floor_paths", "floor_paths", *defines), content)
-            for defines in ((), ("COVERED",))
+            for defines in ((), ("HIDDEN",))
         ]
         self._count = 0
         self.owned = (*self._arrays, self._buffer)
@@ -61,7 +61,7 @@ class FloorPathPass(RenderPass):
         region.use()
         frame.context.enable_only(moderngl.BLEND)
         frame.context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-        array = self._arrays[region.cover is not None]
+        array = self._arrays[region.hidden is not None]
         region.set_table_uniforms(array.program)
         set_uniforms(array.program, light=frame.light.white)
         array.render(moderngl.TRIANGLES, vertices=self._count)

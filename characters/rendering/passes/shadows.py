@@ -47,7 +47,7 @@ class ShadowPass(RenderPass):
         self._programs = programs
         self._tables = [
             context.vertex_array(programs.load("shadow", "shadow", *defines), [])
-            for defines in ((), ("COVERED",))
+            for defines in ((), ("HIDDEN",))
         ]
         self.owned = self._tables
         self._maps: list[ShadowMap] = []
@@ -86,7 +86,7 @@ class ShadowPass(RenderPass):
         """Multiply what is drawn on by the light that each character leaves."""
         frame.context.enable_only(moderngl.BLEND)
         frame.context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
-        table = self._tables[region.cover is not None]
+        table = self._tables[region.hidden is not None]
         region.set_table_uniforms(table.program)
         for shadow in self._maps[: self._count]:
             set_uniforms(table.program, area=shadow.area, extent=shadow.extent, map_share=0.5)

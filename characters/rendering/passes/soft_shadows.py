@@ -81,7 +81,7 @@ class SoftShadowPass(ShadowPass):
         """Multiply the table by the light that all characters leave."""
         frame.context.enable_only(moderngl.BLEND)
         frame.context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
-        table = self._tables[region.cover is not None]
+        table = self._tables[region.hidden is not None]
         region.set_table_uniforms(table.program)
         area = (*self.square, 1.0)
         set_uniforms(table.program, area=area, extent=self._extent, map_share=1.0)

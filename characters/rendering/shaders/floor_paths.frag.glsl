@@ -11,7 +11,7 @@ in vec3 paint;
 
 out vec4 color;
 
-#include "cube_outlines"
+#include "hidden"
 
 void main() {
     float off = length(vec2(max(abs(at.x) - capsule.x, 0.0), at.y));

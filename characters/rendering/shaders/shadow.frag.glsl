@@ -9,7 +9,7 @@ in vec2 at;
 
 out vec4 factor;
 
-#include "cube_outlines"
+#include "hidden"
 
 void main() {
     vec2 place = at * vec2(map_share, 1.0);

@@ -1,11 +1,15 @@
-"""Outlines of real cubes, which hide the table behind them."""
+"""Real cubes and the hand hide the table behind them."""
 
+import cv2
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from characters.rendering import Box
-from characters.rendering.occlusion import MAX_CUBES, MAX_SIDES, UNIT_CUBE, CubeOutlines
+from characters.rendering.cover import PictureCover
+from characters.rendering.hidden_table import hidden_table
+from characters.rendering.occlusion import UNIT_CUBE, hidden_by_cube
 from characters.rendering.projection import Rectangle
 
 MATRIX = np.array([[300.0, 0, 159.5], [0, 300.0, 89.5], [0, 0, 1]])
@@ -22,45 +26,51 @@ def box_at(turn, place):
     return Box(pose, 0.06)
 
 
-def inside(outlines, places):
-    """Return how far inside the first cube places (n, 2) of the part are [px]."""
-    return (np.column_stack([places, np.ones(len(places))]) @ outlines.sides[0].T).min(axis=1)
-
-
-def on_part(box, points):
-    seen = points @ box.camera_from_box[:3, :3].T + box.camera_from_box[:3, 3]
-    pixels = (seen / seen[:, 2:]) @ MATRIX[:2].T
-    return pixels + 0.5 - [PART.x, PART.y]
+def mask(box):
+    """Return what a box hides of the part, 0…1."""
+    return hidden_by_cube(box, MATRIX, PART) / 255.0
 
 
 coordinate = st.floats(-1.5, 1.5)
 
 
-@given(st.tuples(coordinate, coordinate, coordinate), st.floats(0.2, 0.9))
-def test_an_outline_bounds_the_cube_tightly(turn, depth):
-    box = box_at(turn, (0.02, -0.01, depth))
-    outlines = CubeOutlines.of([box], MATRIX, PART)
-    corners = inside(outlines, on_part(box, box.edge * UNIT_CUBE))
-    assert outlines.count == 1
-    assert corners.min() > -1e-3  # all within it
-    sides = outlines.sides[0][outlines.sides[0][:, 2] < 1e6]
-    at = on_part(box, box.edge * UNIT_CUBE)
-    nearest = (np.column_stack([at, np.ones(len(at))]) @ sides.T).min(axis=0)
-    assert nearest.max() < 1e-3  # and each side touches it
-    assert 4 <= len(sides) <= MAX_SIDES
+@given(st.tuples(coordinate, coordinate, coordinate), st.floats(0.35, 0.9))
+def test_a_cube_hides_the_pixels_of_its_faces(turn, depth):
+    box = box_at(turn, (0.0, 0.0, depth))
+    corners = box.edge * UNIT_CUBE @ box.camera_from_box[:3, :3].T + box.camera_from_box[:3, 3]
+    pixels = (corners / corners[:, 2:]) @ MATRIX[:2].T - [PART.x, PART.y]
+    faces = np.zeros((PART.height, PART.width), np.uint8)
+    for triangle in pixels.reshape(-1, 3, 2):
+        cv2.fillConvexPoly(faces, np.rint(16 * triangle).astype(np.int32), 255, shift=4)
+    hidden = mask(box)
+    assert hidden[cv2.erode(faces, np.ones((5, 5))) > 0].min() == 1.0
+    assert hidden[cv2.dilate(faces, np.ones((5, 5))) == 0].max() == 0.0
+
+
+def test_the_edge_of_a_cube_is_soft_over_one_pixel():
+    hidden = mask(box_at((0, 0, 0), (0.0, 0.0005, 0.5)))
+    row = hidden[PART.height // 2]
+    assert ((row > 0) & (row < 1)).sum() <= 2
+    assert row.sum() == pytest.approx(0.06 * 300.0 / 0.47, abs=0.01)
 
 
 def test_a_cube_behind_the_camera_is_clipped_at_the_near_plane():
-    box = box_at((0.3, 0.5, 0.1), (0.0, 0.0, 0.03))
-    outlines = CubeOutlines.of([box], MATRIX, PART)
-    assert np.isfinite(outlines.sides).all()
-    assert inside(outlines, np.array([[100.0, 60.0]]))[0] > 0.0
+    hidden = mask(box_at((0.3, 0.5, 0.1), (0.0, 0.0, 0.03)))
+    assert hidden[60, 100] == 1.0
 
 
-def test_the_nearest_of_many_cubes_are_kept():
-    boxes = [box_at((0, 0, 0), (0, 0, 0.9 - 0.05 * number)) for number in range(MAX_CUBES + 2)]
-    outlines = CubeOutlines.of(boxes, MATRIX, PART)
-    assert outlines.count == MAX_CUBES
-    np.testing.assert_array_equal(
-        outlines.sides[0], CubeOutlines.of(boxes[-1:], MATRIX, PART).sides[0]
-    )
+def test_a_cube_and_a_hand_hide_the_table_independently_of_each_other():
+    box = box_at((0, 0, 0), (0.0, 0.0, 0.5))
+    place = Rectangle(110, 60, 100, 60)
+    share = np.full((40, 90), 128, np.uint8)
+    cover = PictureCover(Rectangle(155, 70, 90, 40), 0.5, share, None)
+    hidden = hidden_table([(box, place)], cover, MATRIX, PART)
+    of_cube = mask(box)
+    assert hidden[69, 110] == 255  # on the cube, beside the hand
+    assert hidden[69, 125] == 255  # where both are
+    only_hand = np.s_[50:90, 150:200]
+    assert (of_cube[only_hand] == 0.0).all()
+    assert (hidden[only_hand] == 128).all()
+    assert hidden[5, 5] == 0
+    assert hidden_table([], None, MATRIX, PART) is None
+    assert hidden_table([(box, place)], cover, MATRIX, Rectangle(0, 0, 20, 20)) is None
