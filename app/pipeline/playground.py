@@ -257,6 +257,8 @@ class Playground:
             Every message of the frame, and the picture if there is a graphics context.
         """
         replay = replay or ReplayInputs()
+        if drawn:
+            self.expect(frame)
         state = replay.state or self.track(frame)
         self._lap("tracking")
         controls = replay.controls or self.gesture(state)
@@ -292,6 +294,11 @@ class Playground:
     def lens(self) -> LensEstimate:
         """What the cube has shown of the camera's lens so far, besides what its intrinsics say."""
         return self._tracker.lens
+
+    def expect(self, frame: Frame) -> None:
+        """Begin to draw a frame, as far as nothing of what is in it is known."""
+        if self._stage is not None:
+            self._stage.expect(frame.image, self.intrinsics.matrix, self.intrinsics.distortion)
 
     def track(self, frame: Frame) -> CubeState:
         """Find the cube."""

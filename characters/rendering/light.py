@@ -1,5 +1,6 @@
 """How the scene is lit, estimated from the camera's own picture."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -209,7 +210,9 @@ def _face_papers(picture: NDArray[np.uint8], matrix: Array, box: Box) -> list[Ar
     for columns, rows in pixels[inside].transpose(0, 2, 1):
         colors = LINEAR_FROM_SRGB[picture[rows, columns, ::-1]]
         luminance = colors @ LUMA_WEIGHTS
-        papers.append(colors[luminance >= np.quantile(luminance, PAPER_QUANTILE)].mean(axis=0))
+        # `numpy.quantile` takes five times as long for so few.
+        least = np.sort(luminance)[math.ceil(PAPER_QUANTILE * (len(luminance) - 1))]
+        papers.append(colors[luminance >= least].mean(axis=0))
     return papers
 
 

@@ -20,6 +20,7 @@ from characters.rendering.resources import FrameResources
 from characters.rendering.scene import FloorPath, Scene, SceneCharacter, Softness, View
 from characters.rendering.target import RenderTargets
 from characters.rendering.undistortion import Undistorter
+from characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
 
@@ -89,6 +90,13 @@ class Stage:
             self._own_passes = passes_for(quality, self._context, self.programs)
             self.passes = [*self._own_passes, *added]
 
+    def expect(self, image: Image, matrix: Array, distortion: Array) -> None:
+        """Begin with a frame that `draw` gets next, while the caller still finds out what is in it.
+
+        The picture is the same without this call, only later.
+        """
+        self._undistorter.start(image, matrix, distortion)
+
     def draw(
         self, view: View, characters: Sequence[SceneCharacter], floor: Sequence[FloorPath] = ()
     ) -> Image:
@@ -132,6 +140,7 @@ class Stage:
             render_pass.release()
         self._characters.release()
         self._targets.release()
+        self._undistorter.release()
         self._cover.release()
         self._hidden.release()
         self.programs.release()

@@ -1,5 +1,7 @@
 """The camera's frame as an ideal pinhole camera of the picture's size would have taken it."""
 
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +38,33 @@ class Undistorter:
         self._matrix = np.eye(3)
         self._lens = np.eye(3), np.zeros(5)
         self._backdrop: Image | None = None
+        self._worker: ThreadPoolExecutor | None = None
+        self._ahead: tuple[Image, Future[tuple[Image, Array]]] | None = None
+
+    def start(self, image: Image, matrix: Array, distortion: Array) -> None:
+        """Begin to undistort a frame on another thread: its view follows.
+
+        OpenCV leaves the interpreter to others meanwhile, and the tracker seldom needs all cores.
+        A view of another frame or camera is undistorted as if this had not been called.
+        """
+        self._finish()
+        if self._worker is None:
+            self._worker = ThreadPoolExecutor(1, "undistortion")
+        view = View(image, matrix, distortion, None)
+        self._ahead = image, self._worker.submit(self._undistorted, view)
+
+    def _finish(self) -> None:
+        """Wait for the other thread: the buffers are in use until then."""
+        if self._ahead is not None:
+            wait([self._ahead[1]])
+            self._ahead = None
+
+    def release(self) -> None:
+        """End the other thread; a second call does nothing."""
+        self._finish()
+        if self._worker is not None:
+            self._worker.shutdown()
+            self._worker = None
 
     def undistort(self, view: View) -> tuple[Image, Array]:
         """Return the undistorted picture, (height, width, 3) BGR, and its pinhole matrix (3, 3).
@@ -49,13 +78,22 @@ class Undistorter:
         """
         if view.image is None:
             return self._plain_backdrop(), np.asarray(view.matrix, float)
+        ahead = self._ahead
+        self._finish()
+        if ahead is not None and ahead[0] is view.image and self._camera_key == _camera_key(view):
+            return ahead[1].result()
+        return self._undistorted(view)
+
+    def _undistorted(self, view: View) -> tuple[Image, Array]:
+        """Return the same, of a view that has an image."""
+        assert view.image is not None
         image = _checked(view.image)
         frame_size = (image.shape[1], image.shape[0])
         if not is_pinhole(view.matrix):
             return self._fitted(image, frame_size), np.eye(3)
         matrix = np.asarray(view.matrix, float)
         distortion = _usable(np.asarray(view.distortion, float).ravel())
-        camera_key = (matrix.tobytes(), distortion.tobytes(), bytes(repr(frame_size), "ascii"))
+        camera_key = _camera_key(view)
         if camera_key != self._camera_key:
             self._matrix, self._maps = self._make_maps(matrix, distortion, frame_size)
             self._camera_key = camera_key
@@ -157,6 +195,14 @@ def _cropped(cover: Cover) -> Cover:
     x, y, width, height = cv2.boundingRect(cover.share) if cover.share.size else (0, 0, 0, 0)
     share = np.ascontiguousarray(cover.share[y : y + height, x : x + width])
     return Cover(cover.x + x, cover.y + y, share, cover.distance)
+
+
+def _camera_key(view: View) -> tuple[bytes, ...]:
+    """Return what the maps of a view depend on."""
+    matrix = np.asarray(view.matrix, float)
+    shape = None if view.image is None else view.image.shape[:2]
+    distortion = _usable(np.asarray(view.distortion, float).ravel())
+    return matrix.tobytes(), distortion.tobytes(), bytes(repr(shape), "ascii")
 
 
 def _usable(distortion: Array) -> Array:

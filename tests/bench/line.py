@@ -70,6 +70,7 @@ def measure(
             if frame is None:
                 break
             marks.append(time.perf_counter())
+            playground.expect(frame)
             state = playground.track(frame)
             marks.append(time.perf_counter())
             controls = playground.gesture(state)

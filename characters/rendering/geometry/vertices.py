@@ -137,7 +137,7 @@ class CharacterVertices:
         points = np.concatenate([positions, np.ones((len(positions), 1))], axis=1)
         skinned = np.zeros((len(points), 3))
         for joint, weight in zip(self.joints[selection].T, self.weights[selection].T, strict=True):
-            skinned += weight[:, None] * (palette[joint, :3] @ points[:, :, None])[..., 0]
+            skinned += weight[:, None] * np.einsum("vij,vj->vi", palette[joint, :3], points)
         return skinned
 
     def extreme(self) -> NDArray[np.intp]:

@@ -17,7 +17,8 @@ MAX_SPREAD_PX = 1.5
 """More blur would show as a fourfold picture."""
 
 GRAIN_SIDE, GRAIN_RANGE, GRAIN_SEED = 128, 6.0, 1
-"""Texels along a side of the noise, and the standard deviations that its 8 bits span."""
+"""Texels along a side of the noise, a power of two; and the standard deviations that its 8 bits
+span."""
 
 GRAIN_STEP = np.array([53, 97])
 """Shift of the noise from picture to picture [px], so that it does not stand still."""
@@ -27,14 +28,14 @@ class ResolvePass(RenderPass):
     """Blends the character layer over the picture, as soft and as noisy as the picture is."""
 
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
-        self._sharp, self._soft = (
+        self._sharp, self._soft, self._grainy = (
             context.vertex_array(programs.load("full_screen", "resolve", *defines), [])
-            for defines in ((), ("SOFT",))
+            for defines in ((), ("SOFT",), ("GRAIN", "SOFT"))
         )
         grain = np.random.default_rng(GRAIN_SEED).standard_normal((GRAIN_SIDE, GRAIN_SIDE, 4))
         levels = np.clip(255 * (0.5 + grain / GRAIN_RANGE), 0, 255).round().astype(np.uint8)
         self._grain = context.texture((GRAIN_SIDE, GRAIN_SIDE), 4, levels.tobytes())
-        self.owned = (self._sharp, self._soft, self._grain)
+        self.owned = (self._sharp, self._soft, self._grainy, self._grain)
         self._pictures = 0
 
     def draw(self, frame: FrameResources, region: Region) -> None:
@@ -43,7 +44,9 @@ class ResolvePass(RenderPass):
         if layer is None:
             return
         softness = frame.softness
-        triangle = self._sharp if softness is None else self._soft
+        triangle = self._sharp
+        if softness is not None:
+            triangle = self._grainy if softness.noise > 0.0 else self._soft
         corner = layer.area.x - region.area.x, layer.area.y - region.area.y
         region.target.use_picture((*corner, layer.area.width, layer.area.height))
         frame.context.enable_only(moderngl.BLEND)
