@@ -142,7 +142,7 @@ class _Mesh:
         self._known = keys, error
         self._changed[:] = False
         area = np.bincount(pair, self._quadrics[sources, -1])
-        return np.where(whole, np.bincount(pair, error), np.inf) / area
+        return np.where(whole, np.bincount(pair, error), np.inf) / np.maximum(area, 1e-30)
 
     def _picked(self, froms: Indices, tos: Indices, error: Floats) -> Indices:
         """Return pairs of small error of which no two are neighbours."""

@@ -17,7 +17,7 @@ MAP_SIDE = 80
 """Texels along each side of a shadow map; a character covers about half of them."""
 
 BLUR_TAPS = 10
-"""Taps of the blur on each side; `BLUR_TAPS` in `shadow_blur.frag` too."""
+"""Taps of the blur on each side; `BLUR_TAPS` in `shadow_blur` and `shadow_factor` too."""
 
 SHADOW_LEVELS = (0.0, 0.1, 0.4, 1.0)
 """Heights whose shadows are blurred separately, as shares of the character's height."""
@@ -119,7 +119,7 @@ class ShadowMap:
         for texture in self._textures:
             texture.repeat_x = texture.repeat_y = False
         self._targets = [context.framebuffer([texture]) for texture in self._textures]
-        self.texture = self._textures[1]
+        self.texture = self._textures[0]
         """What is left of the light, in its left half."""
         self.area = np.zeros(4)
         """Origin x, z and side of the square that the map covers, and the character's height."""
@@ -152,10 +152,10 @@ class ShadowMap:
             levels=SHADOW_LEVELS,
             floor_from_table=floor_from_table,
         )
-        for target in reversed(self._targets):
-            target.use()
-            target.viewport = (0, 0, 2 * MAP_SIDE, MAP_SIDE)
-            target.clear()
+        target = self._targets[0]
+        target.use()
+        target.viewport = (0, 0, 2 * MAP_SIDE, MAP_SIDE)
+        target.clear()
         # Faces that look away from the light are drawn: they are nearest to the table, and soles
         # touch it.
         context.enable_only(moderngl.BLEND | moderngl.CULL_FACE)
@@ -167,37 +167,41 @@ class ShadowMap:
             character.skinned.caster.render(vertices=count, first=first, instances=2)
         context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
         context.enable_only(moderngl.NOTHING)
-        self._soften(height)
-        self._combine(share)
+        self._soften(height, share)
         x, z = self.extent[[0, 2, 2, 0]], self.extent[[1, 1, 3, 3]]
         return np.stack([x, np.zeros(4), z], axis=1)
 
-    def _soften(self, height: float) -> None:
-        """Blur the part of the map that can have a shadow: along x, then along z."""
-        texels_per_height = MAP_SIDE / self.area[2] * height
-        set_uniforms(self._blur, side=MAP_SIDE)
-        x, z, width, depth = self._used_texels()
-        halves = [
-            (left, _gaussian_kernels(texels_per_height * np.array(deviations)))
-            for left, deviations in ((0, KEY_BLUR), (MAP_SIDE, SKY_BLUR))
-        ]
-        for source, target, direction in ((0, 1, (1, 0)), (1, 0, (0, 1))):
-            self._targets[target].use()
-            self._textures[source].use(0)
-            set_uniforms(self._blur, direction=direction)
-            for left, weights in halves:
-                self._targets[target].viewport = (x + left, z, width, depth)
-                set_uniforms(self._blur, weights=weights, left=left)
-                self._blur_triangle.render(moderngl.TRIANGLES, vertices=3)
+    def _soften(self, height: float, key_share: Array) -> None:
+        """Blur the part of the map that can have a shadow along x; then along z, to one factor.
 
-    def _combine(self, key_share: Array) -> None:
-        """Write what is left of both lights to one map: it has fewer texels than the table."""
-        set_uniforms(self._factor, side=MAP_SIDE, key=key_share, sky_occlusion=SKY_OCCLUSION)
-        self._targets[1].use()
+        The factor is what is left of both lights: the map has fewer texels than the table.
+        """
+        texels_per_height = MAP_SIDE / self.area[2] * height
+        key, sky = (
+            _gaussian_kernels(texels_per_height * np.array(deviations))
+            for deviations in (KEY_BLUR, SKY_BLUR)
+        )
         x, z, width, depth = self._used_texels()
-        # One more texel on each side, for the interpolation between texels.
-        self._targets[1].viewport = (x - 1, z - 1, width + 2, depth + 2)
+        used = x, z, x + width - 1, z + depth - 1
+        self._targets[1].use()
         self._textures[0].use(0)
+        for left, weights in ((0, key), (MAP_SIDE, sky)):
+            self._targets[1].viewport = (x + left, z, width, depth)
+            set_uniforms(self._blur, weights=weights, first=x + left, last=x + left + width - 1)
+            self._blur_triangle.render(moderngl.TRIANGLES, vertices=3)
+        self._targets[0].use()
+        # One more texel on each side, for the interpolation between texels.
+        self._targets[0].viewport = (x - 1, z - 1, width + 2, depth + 2)
+        self._textures[1].use(0)
+        set_uniforms(
+            self._factor,
+            key_weights=key,
+            sky_weights=sky,
+            used=used,
+            side=MAP_SIDE,
+            key=key_share,
+            sky_occlusion=SKY_OCCLUSION,
+        )
         self._factor_triangle.render(moderngl.TRIANGLES, vertices=3)
 
     def _used_texels(self) -> tuple[int, int, int, int]:
