@@ -21,7 +21,7 @@ from characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
 
-HIDDEN_UNIT = 10
+HIDDEN_UNIT = 13
 """Texture unit of what hides the table."""
 
 

@@ -35,8 +35,9 @@ SKY_OCCLUSION = (0.78, 0.7, 0.48, 0.2)
 ON_TABLE = np.eye(4)
 """`floor_from_table` of the table itself."""
 
-BLUR_MARGIN = 0.22
-"""Margin around the character for the blur, as a share of its height."""
+BLUR_DEVIATIONS, MAX_BLUR_MARGIN = 2.2, 0.22
+"""Margin around a shadow for the blur, in standard deviations of it, and at most as a share of the
+character's height."""
 
 
 class ShadowPass(RenderPass):
@@ -227,10 +228,15 @@ def sky_extent(enclosing: Array, height: float) -> Array:
 
 def _extent(enclosing: Array, height: float, slope: Array) -> Array:
     """Return lowest x and z, highest x and z that a character's shadow can reach [m]."""
+    above = np.maximum(enclosing[:, 1:2], 0.0)
     below = enclosing[:, [0, 2]]
-    shadow = below - slope * np.maximum(enclosing[:, 1:2], 0.0)
-    low = np.minimum(below.min(axis=0), shadow.min(axis=0)) - BLUR_MARGIN * height
-    high = np.maximum(below.max(axis=0), shadow.max(axis=0)) + BLUR_MARGIN * height
+    ends = []
+    for points, deviations in ((below, SKY_BLUR), (below - slope * above, KEY_BLUR)):
+        blur = np.interp(above / height, SHADOW_LEVELS, deviations)
+        margin = height * np.minimum(BLUR_DEVIATIONS * blur, MAX_BLUR_MARGIN)
+        ends.append((points - margin, points + margin))
+    low = np.minimum(*(low.min(axis=0) for low, _ in ends))
+    high = np.maximum(*(high.max(axis=0) for _, high in ends))
     return np.concatenate([low, high])
 
 
