@@ -90,6 +90,11 @@ class Stage:
             self._own_passes = passes_for(quality, self._context, self.programs)
             self.passes = [*self._own_passes, *added]
 
+    @property
+    def triangles(self) -> int:
+        """How many triangles the characters of the last picture had."""
+        return self._characters.triangles
+
     def expect(self, image: Image, matrix: Array, distortion: Array) -> None:
         """Begin with a frame that `draw` gets next, while the caller still finds out what is in it.
 

@@ -71,6 +71,8 @@ class CharacterCache:
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
         self._context = context
         self._programs = programs
+        self.triangles = 0
+        """Number of triangles of the characters that were skinned last."""
         # By character, and by its number among its copies in the picture: each has own vertices.
         self._kept: OrderedDict[tuple[int, int], tuple[Drawable, SkinnedCharacter]] = OrderedDict()
 
@@ -99,6 +101,7 @@ class CharacterCache:
                 height = skinned.height * float(np.linalg.norm(place[:3, 1]))
                 instances.append(CharacterInstance(skinned, enclosing, height, place, each.inside))
         self._evict(copies.total())
+        self.triangles = sum(len(each.skinned.level.indices) // 3 for each in instances)
         return tuple(instances)
 
     def release(self) -> None:

@@ -1,17 +1,15 @@
 """Levels of detail: fewer triangles, the same picture."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from characters import Character
-from characters.control.command import PosedCharacter
-from characters.rendering import QUALITIES, SceneCharacter, Stage, View
+from characters.rendering import QUALITIES
 from characters.rendering.geometry.character_cache import PictureFineness
 from characters.rendering.geometry.detail_levels import DetailLevel, chosen_level, with_levels
 from characters.rendering.geometry.edge_collapse import collapsed_levels
 from characters.rendering.geometry.vertices import CharacterVertices
+from tests.bench.detail import compared
 
 
 def ball(center=(0.0, 0.0, 0.0), radius=1.0, rows=32):
@@ -145,50 +143,19 @@ def test_the_level_does_not_alternate():
     assert seen == [1, 1, 1, 2, 2, 2, 1, 1, 0]
 
 
-HEIGHT_PX = 240
-MAX_RMS = 4.0
-"""Largest difference of the pictures, over the pixels of the character, of 255. It is of our own
-characters and views, so an upper bound of how well others do."""
+MAX_RMS, MAX_MUCH = 4.0, 0.01
+"""Largest difference of the pictures, and largest share of pixels that differ by more than 25 of
+255: see `tests.bench.detail`."""
 
 
 @pytest.mark.parametrize("name", ["human", "vleo", "robot"])
 def test_the_coarser_character_looks_the_same(ctx, name):
     character = Character.load(name)
-    side = HEIGHT_PX + 120
-    matrix = np.array([[900.0, 0, side / 2], [0, 900.0, side / 2], [0, 0, 1.0]])
-    table = np.eye(4)
-    pitch = np.deg2rad(25.0)
-    table[1, 1:3] = -np.cos(pitch), np.sin(pitch)
-    table[2, 1:3] = -np.sin(pitch), -np.cos(pitch)
-    height = HEIGHT_PX * 0.6 / 900.0
-    table[:3, 3] = 0.0, 0.5 * height, 0.6
-    view = View(np.full((side, side, 3), (150, 170, 160), np.uint8), matrix, np.zeros(5), table)
-    clip = character.clips.get("Walk") or next(iter(character.clips.values()))
-    scale = height / character.height
-
-    def posed(turn):
-        place = np.diag([scale, scale, scale, 1.0])
-        c, s = np.cos(turn), np.sin(turn)
-        place[:3, :3] = place[:3, :3] @ [[c, 0, s], [0, 1, 0], [-s, 0, c]]
-        pose = clip.sample(0.3 * clip.duration)
-        return SceneCharacter(
-            character, PosedCharacter(pose, place, True, "walk", 0.0, 0.0, 0.0, 0.0)
-        )
-
-    full = QUALITIES["full"]
-    stage = Stage(ctx, (side, side))
-    turns = (0.4, 2.4)
-    coarse = [stage.draw(view, [posed(turn)]).astype(float) for turn in turns]
-    stage.quality = replace(full, max_error_px=0.0)
-    fine = [stage.draw(view, [posed(turn)]).astype(float) for turn in turns]
-    nothing = stage.draw(view, []).astype(float)
-    stage.release()
-    for one, other in zip(coarse, fine, strict=True):
-        difference = one - other
-        assert difference.any()  # there was something to leave out
-        seen = np.maximum(np.abs(one - nothing), np.abs(other - nothing)).max(axis=2) > 8.0
-        assert np.sqrt((difference[seen] ** 2).mean()) < MAX_RMS
-        assert (np.abs(difference[seen]).max(axis=1) > 25.0).mean() < 0.01
+    for each in compared(ctx, character, 240, QUALITIES["full"]):
+        assert each.triangles < sum(len(mesh.triangles) for mesh in character.meshes)
+        assert (each.coarse != each.fine).any()
+        assert each.rms < MAX_RMS
+        assert each.much < MAX_MUCH
 
 
 def test_the_error_is_that_of_the_nearest_part(ctx, human):
