@@ -137,11 +137,10 @@ class LightEstimator:
             Pose of the table, (4, 4), which a measured light needs.
         """
         step = max(1, picture.shape[1] // 64)
-        linear = LINEAR_FROM_SRGB[
-            picture[step // 2 :: step, step // 2 :: step, ::-1].reshape(-1, 3)
-        ]
+        samples = picture[step // 2 :: step, step // 2 :: step, ::-1].reshape(-1, 3)
+        linear = LINEAR_FROM_SRGB[samples]
         if paper is None:
-            white = self._white_from_picture(linear)
+            white = self._white_from_picture(samples)
         else:
             white = _reduce_cast(paper / self.PAPER_ALBEDO, self.PAPER_CAST_SHARE)
         white = np.maximum(white, 1e-3)
@@ -178,9 +177,13 @@ class LightEstimator:
         share = share * _reduce_cast(white, self.PAPER_CAST_SHARE) / white
         return replace(light, key=share * light.key, sky=share * light.sky)
 
-    def _white_from_picture(self, linear: Array) -> Array:
-        """Return the colour of a white sheet, estimated from the whole picture."""
-        bright = (linear**self.MINKOWSKI_P).mean(axis=0) ** (1 / self.MINKOWSKI_P)
+    def _white_from_picture(self, samples: NDArray[np.uint8]) -> Array:
+        """Return the colour of a white sheet, estimated from pixels (n, 3) RGB of all the picture.
+
+        Two hundred and fifty-six powers take less time than those of all samples.
+        """
+        powers = LINEAR_FROM_SRGB**self.MINKOWSKI_P
+        bright = powers[samples].mean(axis=0) ** (1 / self.MINKOWSKI_P)
         bright = bright / self.BRIGHT_ALBEDO
         gain = float(np.sqrt(self.EXPOSED_WHITE / max(float(bright @ LUMA_WEIGHTS), 1e-6)))
         return _reduce_cast(bright, self.PICTURE_CAST_SHARE) * gain
