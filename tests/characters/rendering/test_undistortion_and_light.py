@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from characters.errors import CharacterError
 from characters.rendering.context import create_context
 from characters.rendering.light import MIN_RISE, LightEstimator, paper_color
 from characters.rendering.scene import Cover, MeasuredLight
@@ -55,6 +56,47 @@ def test_the_maps_are_computed_once_for_each_camera(view, monkeypatch):
         undistorter.undistort(replace(view, distortion=2 * BENT))
 
 
+def noise(seed):
+    return np.random.default_rng(seed).integers(0, 256, (180, 320, 3), np.uint8)
+
+
+def test_a_frame_that_was_begun_before_is_the_same(view):
+    bent = replace(view, image=noise(1), distortion=BENT)
+    expected, expected_matrix = Undistorter(SIZE).undistort(bent)
+    undistorter = Undistorter(SIZE)
+    for _ in range(2):  # with maps to compute, and with maps that are known
+        undistorter.start(bent.image, bent.matrix, bent.distortion)
+        picture, matrix = undistorter.undistort(bent)
+        assert np.array_equal(picture, expected)
+        assert np.array_equal(matrix, expected_matrix)
+    again, _ = undistorter.undistort(bent)
+    assert not np.shares_memory(again, picture)
+    undistorter.release()
+    undistorter.release()
+
+
+def test_a_frame_that_was_begun_but_is_not_drawn_changes_nothing(view):
+    undistorter = Undistorter(SIZE)
+    expected, _ = Undistorter(SIZE).undistort(replace(view, image=noise(2), distortion=BENT))
+    undistorter.start(noise(1), view.matrix, BENT)
+    undistorter.start(noise(3), view.matrix, 2 * BENT)
+    picture, _ = undistorter.undistort(replace(view, image=noise(2), distortion=BENT))
+    assert np.array_equal(picture, expected)
+    undistorter.start(noise(2), view.matrix, 2 * BENT)  # by another lens than the view's
+    picture, _ = undistorter.undistort(replace(view, image=noise(2), distortion=BENT))
+    assert np.array_equal(picture, expected)
+    undistorter.release()
+
+
+def test_a_frame_that_cannot_be_drawn_is_refused_when_it_is_drawn(view):
+    undistorter = Undistorter(SIZE)
+    wrong = np.zeros((180, 320), np.uint8)
+    undistorter.start(wrong, view.matrix, view.distortion)
+    with pytest.raises(CharacterError, match="cannot draw on an image"):
+        undistorter.undistort(replace(view, image=wrong))
+    undistorter.release()
+
+
 @pytest.mark.parametrize(("distortion", "size"), [(BENT, SIZE), (np.zeros(5), (640, 400))])
 def test_a_cover_lies_on_the_same_pixels_as_the_picture(view, distortion, size):
     frame = np.zeros((180, 320, 3), np.uint8)
@@ -68,6 +110,19 @@ def test_a_cover_lies_on_the_same_pixels_as_the_picture(view, distortion, size):
     shown[found.y :, found.x :][: found.share.shape[0], : found.share.shape[1]] = found.share
     assert shown.max() == 255
     assert np.abs(shown.astype(int) - picture[..., 0]).max() <= 2
+
+
+def test_an_empty_rim_of_a_cover_is_left_out(view):
+    share = np.zeros((100, 120), np.uint8)
+    share[40:50, 60:80] = 255
+    undistorter = Undistorter(SIZE)
+    undistorter.undistort(view)
+    found = undistorter.cover_in_picture(Cover(100, 50, share, 0.5))
+    assert found is not None
+    assert found.share.shape[0] < 20
+    assert found.share.shape[1] < 30
+    assert (found.share[90 - found.y, 160 - found.x], found.share[0, 0]) == (255, 0)
+    assert undistorter.cover_in_picture(Cover(100, 50, 0 * share, 0.5)) is None
 
 
 def test_a_low_light_is_raised_so_that_shadows_stay_short(view):
