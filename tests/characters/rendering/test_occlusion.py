@@ -7,10 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from characters.rendering import Box
-from characters.rendering.cover import PictureCover
+from characters.rendering.cover import ShareTexture
 from characters.rendering.hidden_table import hidden_table
 from characters.rendering.occlusion import UNIT_CUBE, hidden_by_cube
 from characters.rendering.projection import Rectangle
+from characters.rendering.scene import Cover
 
 MATRIX = np.array([[300.0, 0, 159.5], [0, 300.0, 89.5], [0, 0, 1]])
 PART = Rectangle(40, 20, 200, 120)
@@ -59,12 +60,13 @@ def test_a_cube_behind_the_camera_is_clipped_at_the_near_plane():
     assert hidden[60, 100] == 1.0
 
 
-def test_a_cube_and_a_hand_hide_the_table_independently_of_each_other():
+def test_a_cube_and_a_hand_hide_the_table_independently_of_each_other(ctx):
     box = box_at((0, 0, 0), (0.0, 0.0, 0.5))
     place = Rectangle(110, 60, 100, 60)
-    share = np.full((40, 90), 128, np.uint8)
-    cover = PictureCover(Rectangle(155, 70, 90, 40), 0.5, share, None)
+    texture = ShareTexture(ctx)
+    cover = texture.upload(Cover(155, 70, np.full((40, 90), 128, np.uint8), 0.5))
     hidden = hidden_table([(box, place)], cover, MATRIX, PART)
+    assert hidden is not None
     of_cube = mask(box)
     assert hidden[69, 110] == 255  # on the cube, beside the hand
     assert hidden[69, 125] == 255  # where both are
@@ -74,3 +76,4 @@ def test_a_cube_and_a_hand_hide_the_table_independently_of_each_other():
     assert hidden[5, 5] == 0
     assert hidden_table([], None, MATRIX, PART) is None
     assert hidden_table([(box, place)], cover, MATRIX, Rectangle(0, 0, 20, 20)) is None
+    texture.release()
