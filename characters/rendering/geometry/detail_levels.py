@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from characters.model.mesh import Material
 from characters.rendering.geometry.edge_collapse import collapsed_levels
 from characters.rendering.geometry.vertices import CharacterVertices
+from characters.rendering.projection import is_invertible
 
 TOLERANCES = (1 / 850, 1 / 600, 1 / 425, 1 / 300, 1 / 200)
 """Errors of the coarser levels, as shares of the character's largest side; each is for half the
@@ -17,6 +19,9 @@ size in the picture of the one before."""
 
 HYSTERESIS = 1.15
 """Factor by which the size in the picture changes back before the level does."""
+
+GROUP_TRIANGLES = 256
+"""Triangles that follow each other in the given order, and are sorted as one."""
 
 MIN_TRIANGLES = 1500
 """Fewer triangles are drawn as they are: they cost little."""
@@ -64,16 +69,17 @@ def with_levels(
     that morphs move and among the others, so that only they need to be skinned.
     """
     stands = [np.arange(len(vertices.positions))]
+    bones = _moving_joints(vertices)
     sizes = np.ptp(vertices.positions, axis=0)
     side = float(sizes.max())
     if len(vertices.indices) >= 3 * MIN_TRIANGLES and side > 0.0:
         stands += collapsed_levels(
             vertices.positions,
-            _features(vertices, side),
+            _features(vertices, side, bones),
             vertices.indices.reshape(-1, 3).astype(np.intp),
             [side * tolerance for tolerance in TOLERANCES],
         )
-    drawn = [_drawn(vertices, stand) for stand in stands]
+    drawn = [_drawn(vertices, stand, bones) for stand in stands]
     last = np.zeros(len(vertices.positions), int)
     for number, (indices, _) in enumerate(drawn):
         last[indices] = number
@@ -104,7 +110,7 @@ def chosen_level(levels: Sequence[DetailLevel], last: int, max_error: float) -> 
 
 
 def _drawn(
-    vertices: CharacterVertices, stand: NDArray[np.intp]
+    vertices: CharacterVertices, stand: NDArray[np.intp], bones: NDArray[np.float64]
 ) -> tuple[NDArray[np.uint32], tuple[tuple[Material, int], ...]]:
     """Return the indices of the triangles that are left, and the number for each material."""
     corners = stand[vertices.indices].reshape(-1, 3)
@@ -113,19 +119,44 @@ def _drawn(
     if (stand == np.arange(len(stand))).all():
         kept[:] = True  # the finest level is as it was given
     ends = np.cumsum([0, *(count // 3 for _, count in vertices.materials)])
-    counts = [3 * int(kept[start:end].sum()) for start, end in pairwise(ends)]
-    materials = [(each, count) for (each, _), count in zip(vertices.materials, counts, strict=True)]
-    return corners[kept].ravel().astype(np.uint32), tuple(materials)
+    away = np.linalg.norm(vertices.positions - bones, axis=1)
+    runs = [
+        _outer_first(corners[start:end][kept[start:end]], away) for start, end in pairwise(ends)
+    ]
+    materials = [(each, run.size) for (each, _), run in zip(vertices.materials, runs, strict=True)]
+    return np.concatenate(runs).ravel().astype(np.uint32), tuple(materials)
 
 
-def _features(vertices: CharacterVertices, side: float) -> NDArray[np.float64]:
+def _outer_first(triangles: NDArray[Any], away: NDArray[np.float64]) -> NDArray[Any]:
+    """Return triangles (n, 3) in another order: groups far away from their joints come first.
+
+    What they hide is then not shaded: clothes come before the body, the head before the mouth. A
+    group keeps its order, so that a vertex is shaded for all its triangles at once. `away` is the
+    distance of each vertex from its joints [m].
+    """
+    if not len(triangles):
+        return triangles
+    group = np.arange(len(triangles)) // GROUP_TRIANGLES
+    mean = np.bincount(group, away[triangles].mean(axis=1)) / np.bincount(group)
+    return np.asarray(triangles[np.argsort(-mean[group], kind="stable")])
+
+
+def _moving_joints(vertices: CharacterVertices) -> NDArray[np.float64]:
+    """Return the mean position of the joints that move each vertex, (vertices, 3) [m]."""
+    binds = np.concatenate(vertices.binds)
+    usable = [is_invertible(bind) for bind in binds]
+    joints = np.linalg.inv(np.where(np.array(usable)[:, None, None], binds, np.eye(4)))[:, :3, 3]
+    return np.asarray(np.einsum("vj,vjk->vk", vertices.weights, joints[vertices.joints]))
+
+
+def _features(
+    vertices: CharacterVertices, side: float, bones: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Return what an edge collapse must keep besides the shape, (vertices, n) [m]."""
-    joints = np.concatenate([np.linalg.inv(bind)[:, :3, 3] for bind in vertices.binds])
-    moving = np.einsum("vj,vjk->vk", vertices.weights, joints[vertices.joints])
     columns = [
         NORMAL_SCALE * side * vertices.normals,
         COLOR_SCALE * side * vertices.colors[:, :3],
-        JOINT_SCALE * moving,
+        JOINT_SCALE * bones,
     ]
     if vertices.morphs:
         columns.append(MORPH_SCALE * _morph_features(vertices))
