@@ -114,8 +114,7 @@ def _drawn(
 ) -> tuple[NDArray[np.uint32], tuple[tuple[Material, int], ...]]:
     """Return the indices of the triangles that are left, and the number for each material."""
     corners = stand[vertices.indices].reshape(-1, 3)
-    points = vertices.positions[corners]
-    kept = (points != np.roll(points, 1, axis=1)).any(axis=2).all(axis=1)
+    kept = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
     if (stand == np.arange(len(stand))).all():
         kept[:] = True  # the finest level is as it was given
     ends = np.cumsum([0, *(count // 3 for _, count in vertices.materials)])
