@@ -122,11 +122,14 @@ class Background:
         unchanged = lit & (np.abs(lab[0] - mean[0]) < SAME_LIGHTNESS)
         same = np.count_nonzero(unchanged & known) / total
         trust = float(np.clip((same - LOST_SHARE) / (TRUSTED_SHARE - LOST_SHARE), 0, 1))
-        odds = np.where(unchanged, UNCHANGED, np.where(lit, SHADED, CHANGED)) * np.float32(trust)
-        odds = UNKNOWN + (odds - UNKNOWN) * np.minimum(age * (1 / FULL_AGE), 1)
+        looks = lit.view(np.uint8) + unchanged  # an unchanged pixel is lit
+        odds = np.take(
+            np.array([CHANGED, SHADED, UNCHANGED], np.float32) * np.float32(trust), looks
+        )
+        odds = UNKNOWN + (odds - UNKNOWN) * np.minimum(age * np.float32(1 / FULL_AGE), 1)
         odds[~known] = UNKNOWN
         self._lit_anew = lit & ~unchanged
-        return odds.astype(np.float32), (odds > 0) & known, trust > 0
+        return odds, (odds > 0) & known, trust > 0
 
     def learn(self, lab: Floats, box: Box, free: Flags, changed: Flags) -> None:
         """Learn the pixels of a window that are free of cube and hand."""

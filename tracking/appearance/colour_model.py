@@ -55,6 +55,7 @@ class ColourModel:
     def __init__(self) -> None:
         bins = LIGHTNESS_BINS * CHROMA_BINS**2
         self._hand, self._behind = np.zeros(bins), np.zeros(bins)
+        self._hand_density: Floats | None = None
 
     @property
     def knows_hand(self) -> bool:
@@ -69,6 +70,7 @@ class ColourModel:
     def learn_hand(self, bins: Indices, where: Flags) -> None:
         """Add the marked pixels to the hand's colours."""
         self._hand = _learned(self._hand, bins[where])
+        self._hand_density = None
 
     def learn_behind(self, bins: Indices, where: Flags) -> None:
         """Add the marked pixels to the colours behind the hand."""
@@ -78,9 +80,9 @@ class ColourModel:
         """Return what the colour of each bin speaks for a hand, as the logarithm of odds."""
         if not self.knows_hand:
             return np.zeros(len(self._hand), np.float32)
-        ratio = np.log(
-            (_density(self._hand) + MIN_DENSITY) / (_density(self._behind) + MIN_DENSITY)
-        )
+        if self._hand_density is None:
+            self._hand_density = _density(self._hand)
+        ratio = np.log((self._hand_density + MIN_DENSITY) / (_density(self._behind) + MIN_DENSITY))
         return np.asarray(np.clip(ratio, -MAX_ODDS, MAX_ODDS), np.float32)
 
 
