@@ -34,7 +34,7 @@ class Quality:
     matched: bool
     """Whether characters get the blur and the noise of the picture."""
 
-    max_error_px: float
+    max_error_px: float = 0.0
     """Error of a character's surface in the picture up to which its triangles are left out [px]."""
 
     deferred: bool = False

@@ -128,7 +128,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("-o", "--output", type=Path, help="folder for enlarged pictures")
     options = parser.parse_args()
-    headings = ("character", "height [px]", "quality", "triangles", "RMS", "more than 25", "levels, CPU")
+    headings = (
+        "character",
+        "height [px]",
+        "quality",
+        "triangles",
+        "RMS",
+        "more than 25",
+        "levels, CPU",
+    )
     table = Table(*headings)
     context = create_context()
     for name in Character.bundled():

@@ -36,7 +36,7 @@ JOINT_SCALE = 0.3
 MORPH_SCALE = 1.0
 """Distance that counts as much as a displacement by morphs by 1 m [m]."""
 
-MORPH_FEATURES, MORPH_SEED = 4, 1
+MORPH_FEATURES, MORPH_SEED = 3, 1
 """Number of projections of the displacements, and seed of their directions."""
 
 
