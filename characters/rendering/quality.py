@@ -34,22 +34,22 @@ class Quality:
     matched: bool
     """Whether characters get the blur and the noise of the picture."""
 
-    max_error_px: float = 0.0
-    """Error of a character's surface in the picture up to which its triangles are left out [px]."""
-
     deferred: bool = False
     """Whether characters are lit after all of them are drawn, which effects need."""
 
     effects: frozenset[Effect] = frozenset()
     """What deferred shading adds. Without any, the picture is that of forward shading."""
 
+    max_error_px: float = 0.0
+    """Error of a character's surface in the picture up to which its triangles are left out [px]."""
+
 
 QUALITIES = {
     each.name: each
     for each in (
-        Quality("rich", 2, True, 0.85, deferred=True, effects=frozenset(Effect)),
-        Quality("full", 2, True, 0.85),
-        Quality("reduced", 1, False, 1.2),
+        Quality("rich", 2, True, deferred=True, effects=frozenset(Effect), max_error_px=0.85),
+        Quality("full", 2, True, max_error_px=0.85),
+        Quality("reduced", 1, False, max_error_px=1.2),
     )
 }
 """The qualities by name, the best first."""
