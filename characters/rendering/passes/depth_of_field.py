@@ -10,8 +10,8 @@ from characters.rendering.projection import NEAR_M
 from characters.rendering.resources import FrameResources, Region
 from characters.rendering.scene import Focus
 
-MIN_RADIUS_TEXELS = 0.5
-"""A smaller circle of confusion is not seen."""
+MIN_RADIUS_TEXELS = 1.0
+"""A smaller circle of confusion is not seen: texels are half as large as pixels."""
 
 MAX_RADIUS_TEXELS = 24.0
 """A larger one would show its single taps."""

@@ -14,7 +14,7 @@ from characters.rendering.projection import Rectangle
 from characters.rendering.resources import FrameResources, Region
 from characters.skeleton.pose import Array
 
-TABLE_SIDE = 256
+TABLE_SIDE = 192
 """Texels along each side of the square of the table whose light is found."""
 
 LEFT_UNIT, OPENNESS_UNIT = 0, 1

@@ -8,7 +8,7 @@
 #include "encoding"
 #include "tile_offset"
 
-const int TAPS = 32;
+const int MOST_TAPS = 32, FEWEST_TAPS = 8;
 const float GOLDEN_ANGLE = 2.39996323;
 
 uniform sampler2D light;        // of the characters, linear, and 1 where one is seen
@@ -29,11 +29,12 @@ void main() {
     float depth = seen ? texelFetch(position, here, 0).z : 1e3;
     float radius = seen ? radius_at(depth) : widest;
     if (seen && radius < 0.5) discard;  // the sharp texel that is there is right
+    int taps = clamp(int(2.0 * radius * radius), FEWEST_TAPS, MOST_TAPS);
     vec2 offset = tile_offset(here);
     vec4 sum = seen ? vec4(texelFetch(light, here, 0).rgb, 1.0) : vec4(0.0);
     float total = 1.0;
-    for (int i = 0; i < TAPS; ++i) {
-        float away = radius * sqrt((float(i) + offset.y) / float(TAPS));
+    for (int i = 0; i < taps; ++i) {
+        float away = radius * sqrt((float(i) + offset.y) / float(taps));
         float angle = float(i) * GOLDEN_ANGLE + 6.2831853 * offset.x;
         ivec2 there = clamp(here + ivec2(round(away * vec2(cos(angle), sin(angle)))), ivec2(0), last_texel);
         if (!is_seen(texelFetch(normal_id, there, 0).w)) {

@@ -49,6 +49,7 @@ vec3 key_left(vec3 point, ivec2 texel) {
             count += dot(share, vec3(1.0));
         }
         if (count == 0.0) return vec3(1.0);
+        if (count >= 3.0 * float(SHADOW_TAPS * SHADOW_TAPS)) return vec3(0.0);  // each tap blocks each colour
         blocker = sum / count;
     }
 
