@@ -106,7 +106,7 @@ class SoftShadowPass(ShadowPass):
         square[1, [2, 3]] = 2.0 / side, -2.0 * z / side - 1.0
         square[3, 3] = 1.0
         table = self._tables[0]
-        set_uniforms(table.program, clip_from_table=square, cube_count=0, map_share=0.5)
+        set_uniforms(table.program, clip_from_table=square, map_share=0.5)
         for shadow in self._maps[: self._count]:
             set_uniforms(table.program, area=shadow.area, extent=shadow.extent)
             shadow.texture.use(0)
