@@ -60,7 +60,7 @@ class SoftShadowPass(ShadowPass):
         casters = np.concatenate([each.enclosing for each in frame.on_table])
         lamp = Lamp.over(casters, frame.light.to_light)
         self._blockers.render(frame, lamp)
-        around = [sky_extent(each.enclosing, each.height) for each in frame.characters]
+        around = [sky_extent(each.enclosing, each.height) for each in frame.on_table]
         self._extent = _united([lamp.shadow(casters), *around])
         self._find_openness()
         self._find_left(super()._key_share(frame.light))

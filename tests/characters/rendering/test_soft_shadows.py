@@ -99,3 +99,15 @@ def test_two_panes_multiply_their_light(left):
     for second, expected in ((RED, [1.0, 0.25, 0.25]), (green, [0.5, 0.5, 0.25])):
         found = light_behind(left, pane(0.03, RED, 0.5), pane(0.035, second, 0.5))
         assert found == pytest.approx(expected, abs=0.05)
+
+
+def test_who_is_inside_a_cube_does_not_coarsen_the_shadow_on_the_table(ctx, view, pawn, cube):
+    stage = Stage(ctx, (320, 180))
+    stage.quality = QUALITIES["rich"]
+    (shadows,) = (each for each in stage.passes if isinstance(each, SoftShadowPass))
+    stage.draw(view, [pawn.posed()])
+    alone = shadows.square
+    inside = replace(pawn.posed(at=(0.6, 0.0)), inside=replace(cube, opening=1.0))
+    stage.draw(view, [pawn.posed(), inside])
+    assert shadows.square == alone
+    stage.release()
