@@ -24,6 +24,9 @@ Image = NDArray[np.uint8]
 HIDDEN_UNIT = 13
 """Texture unit of what hides the table."""
 
+MIN_TABLE_DISTANCE_M = 1e-6
+"""A camera that is nearer to the plane of the table sees its edge, and nothing on it [m]."""
+
 
 @dataclass(frozen=True)
 class CharacterLayer:
@@ -156,6 +159,16 @@ class FrameResources:
     def camera_position(self) -> Array:
         """The camera in the table frame, (3,) [m]."""
         return np.asarray(np.linalg.inv(self.camera_from_table)[:3, 3], float)
+
+    @cached_property
+    def table_plane(self) -> Array:
+        """The table in the camera frame, (3,) [1/m]: a point is on it if its product is 1.
+
+        It is zero, which no point is on, if the camera looks along the table.
+        """
+        up, point = self.camera_from_table[:3, 1], self.camera_from_table[:3, 3]
+        distance = float(up @ point)
+        return up / distance if abs(distance) > MIN_TABLE_DISTANCE_M else np.zeros(3)
 
     def area_of(self, points: Array) -> Rectangle | None:
         """Return the area of the picture around points (n, 3) of the table frame, or None."""

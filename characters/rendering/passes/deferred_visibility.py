@@ -78,9 +78,9 @@ class DeferredVisibilityPass(RenderPass):
         self._reduce_geometry(frame, layer, pixels)
         if self._occlusion is not None:
             focal = float(frame.camera_matrix[1, 1])
-            up, table = frame.camera_from_table[:3, 1], frame.camera_from_table[:3, 3]
-            ground = up / (up @ table)
-            found = self._occlusion.draw(pixels.normal_id, pixels.position, size, focal, ground)
+            found = self._occlusion.draw(
+                pixels.normal_id, pixels.position, size, focal, frame.table_plane
+            )
             found.use(OCCLUSION_UNIT)
         pixels.bind()
         if self._blockers is not None:
@@ -124,12 +124,11 @@ class DeferredVisibilityPass(RenderPass):
         layer.target.geometry.bind()
         matrix = frame.camera_matrix.copy()
         matrix[:2, 2] += 0.5 - np.array([layer.area.x, layer.area.y])
-        up, table = frame.camera_from_table[:3, 1], frame.camera_from_table[:3, 3]
         set_uniforms(
             self._reduce.program,
             fineness=layer.target.fineness,
             ray_from_pixel=np.asarray(np.linalg.inv(matrix), float).T,
-            plane=up / (up @ table),
+            plane=frame.table_plane,
         )
         self._reduce.render(moderngl.TRIANGLES, vertices=3)
 

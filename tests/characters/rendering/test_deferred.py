@@ -55,6 +55,16 @@ def test_the_hand_hides_what_is_lit_later(deferred, view, pawn):
     assert np.array_equal(hidden[:, 151:209], view.image[:, 151:209])
 
 
+def test_a_camera_that_looks_along_the_table_draws_who_stands_on_it(ctx, view, pawn):
+    along = np.diag([1.0, -1.0, -1.0, 1.0])
+    along[2, 3] = 0.45
+    stage = Stage(ctx, (320, 180))
+    stage.quality = QUALITIES["rich"]
+    picture = stage.draw(replace(view, camera_from_table=along), [pawn.posed()])
+    stage.release()
+    assert (picture != view.image).any(axis=2).sum() > 1000
+
+
 class WatchPass(RenderPass):
     """Keeps the frame that it was given."""
 
