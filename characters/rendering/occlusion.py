@@ -51,11 +51,16 @@ def visible_cubes(
     """Return the boxes in a picture of a `size` (width, height) [px], and where they are in it."""
     visible = []
     for box in boxes:
-        if is_invertible(box.camera_from_box) and np.isfinite(box.edge) and box.edge > 0.0:
+        if is_usable(box):
             area = bounding_rectangle(box.edge * UNIT_CUBE, matrix, box.camera_from_box, size)
             if area is not None:
                 visible.append((box, area))
     return tuple(visible)
+
+
+def is_usable(box: Box) -> bool:
+    """Return whether a box has a pose and a size."""
+    return is_invertible(box.camera_from_box) and bool(np.isfinite(box.edge) and box.edge > 0.0)
 
 
 def _outline(box: Box, matrix: Array) -> Array:

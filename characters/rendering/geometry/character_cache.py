@@ -8,6 +8,7 @@ import moderngl
 import numpy as np
 
 from characters.rendering.geometry.skinned_character import SkinnedCharacter
+from characters.rendering.occlusion import is_usable
 from characters.rendering.programs import ShaderPrograms
 from characters.rendering.projection import is_invertible
 from characters.rendering.scene import Box, Drawable, SceneCharacter
@@ -81,6 +82,8 @@ class CharacterCache:
     ) -> tuple[CharacterInstance, ...]:
         """Skin the visible characters whose pose is finite, as finely as they are seen.
 
+        One inside a cube without a pose or a size is not visible.
+
         A framebuffer must be bound: transform feedback needs one, although it draws nothing.
         """
         instances: list[CharacterInstance] = []
@@ -88,6 +91,8 @@ class CharacterCache:
         for each in characters:
             place = np.asarray(each.posed.table_from_character, float)
             if not each.posed.visible or not is_invertible(place):
+                continue
+            if each.inside is not None and not is_usable(each.inside):
                 continue
             skinned = self._buffers(each.character, copies[id(each.character)])
             copies[id(each.character)] += 1

@@ -312,3 +312,11 @@ def test_an_open_cube_at_the_lens_or_behind_the_camera_breaks_nothing(stage, vie
         pose = np.eye(4)
         pose[2, 3] = depth
         stage.draw(replace(view, occluders=(replace(opened(), camera_from_box=pose),)), [])
+
+
+@pytest.mark.parametrize("change", [{"edge": 0.0}, {"camera_from_box": np.diag([0.0, 0, 0, 1])}])
+def test_nobody_is_drawn_inside_a_cube_that_has_no_size_or_pose(stage, view, pawn, opened, change):
+    box = replace(opened(), **change)
+    actor = replace(pawn.posed(), inside=box)
+    picture = stage.draw(replace(view, occluders=(box,)), [actor])
+    assert np.array_equal(picture, view.image)
