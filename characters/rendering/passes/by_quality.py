@@ -68,7 +68,6 @@ def _deferred_shading(
     passes.append(DeferredLightingPass(context, programs, visibility))
     if Effect.SKIN_SCATTERING in effects:
         passes.append(DeferredScatteringPass(context, programs, adaptive=occluded))
-    passes.append(composite)
     if Effect.DEPTH_OF_FIELD in effects:
-        passes.append(DepthOfFieldPass(context, programs, composite))
-    return passes
+        return [*passes, DepthOfFieldPass(context, programs, composite)]
+    return [*passes, composite]

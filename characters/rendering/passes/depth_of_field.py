@@ -2,7 +2,14 @@
 
 import moderngl
 
-from characters.rendering.deferred_buffers import NORMAL_UNIT, POSITION_UNIT, SUM_UNIT
+from characters.rendering.deferred_buffers import (
+    AMBIENT_UNIT,
+    DIFFUSE_UNIT,
+    NORMAL_UNIT,
+    POSITION_UNIT,
+    SPECULAR_UNIT,
+    SUM_UNIT,
+)
 from characters.rendering.passes.deferred_composite import DeferredCompositePass
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
@@ -20,8 +27,9 @@ MAX_RADIUS_TEXELS = 24.0
 class DepthOfFieldPass(RenderPass):
     """Gathers the light of each texel from its circle of confusion.
 
-    It draws what the composite drew, which it asks to leave it linear and apart where there is
-    something to blur.
+    Where there is something to blur, it takes the place of the composite, which leaves it the light
+    linear and apart: what a blurred edge does not cover is what was drawn before, as the room in an
+    open cube. Otherwise the composite draws. The pass releases it.
     """
 
     def __init__(
@@ -32,38 +40,48 @@ class DepthOfFieldPass(RenderPass):
     ) -> None:
         self._composite = composite
         self._triangle = context.vertex_array(programs.load("full_screen", "depth_of_field"), [])
-        self.owned = (self._triangle,)
+        self.owned = (self._triangle, composite)
         set_uniforms(
             self._triangle.program,
             normal_id=NORMAL_UNIT,
             position=POSITION_UNIT,
             light=SUM_UNIT,
+            diffuse=DIFFUSE_UNIT,
+            specular=SPECULAR_UNIT,
+            ambient=AMBIENT_UNIT,
         )
 
     def draw(self, frame: FrameResources, region: Region) -> None:
         """Draw the characters, sharp in the focus alone."""
         layer, focus = region.characters, frame.scene.view.focus
-        if layer is None or focus is None:
+        if layer is None:
             return
         texels = layer.target.fineness * float(frame.camera_matrix[1, 1])
-        widest = texels * _widest(frame, focus)
-        if widest < MIN_RADIUS_TEXELS:
+        widest = 0.0 if focus is None else texels * _widest(frame, focus)
+        if focus is None or widest < MIN_RADIUS_TEXELS:
+            self._composite.draw(frame, region)
             return
         self._composite.draw_light(frame, layer)
-        layer.use()
-        frame.context.enable_only(moderngl.NOTHING)
+        framebuffer = layer.use()
+        framebuffer.depth_mask = False
+        framebuffer.use()  # the mask takes effect here
+        frame.context.enable_only(moderngl.BLEND | moderngl.DEPTH_TEST)
+        frame.context.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
         layer.target.light.sum.use(SUM_UNIT)
         set_uniforms(
             self._triangle.program,
             half_aperture=0.5 * texels * focus.aperture,
             focus=(focus.nearest, focus.furthest),
             widest=min(widest, MAX_RADIUS_TEXELS),
+            clip_depth=layer.clip_from_camera[2, 2:],
             last_texel=(
                 layer.target.fineness * layer.area.width - 1,
                 layer.target.fineness * layer.area.height - 1,
             ),
         )
         self._triangle.render(moderngl.TRIANGLES, vertices=3)
+        framebuffer.depth_mask = True
+        framebuffer.use()
 
 
 def _widest(frame: FrameResources, focus: Focus) -> float:

@@ -4,18 +4,14 @@
 
 #include "geometry_buffer"
 #include "encoding"
-
-uniform sampler2D diffuse;
-uniform sampler2D specular;
-uniform sampler2D ambient;
+#include "light_sum"
 
 out vec4 color;
 
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
     if (!is_seen(texelFetch(normal_id, here, 0).w)) discard;
-    vec3 sum = texelFetch(diffuse, here, 0).rgb + texelFetch(specular, here, 0).rgb
-             + texelFetch(ambient, here, 0).rgb;
+    vec3 sum = light_sum(here);
 #ifdef LINEAR
     color = vec4(sum, 1.0);
 #else

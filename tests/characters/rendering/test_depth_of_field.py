@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
@@ -73,3 +74,34 @@ def test_a_blurred_pawn_keeps_its_light(lens, view, pawn):
     blurred = lens.draw(replace(black, focus=Focus(0.9, 0.9, 0.02)), [pawn.posed()]).astype(float)
     assert (blurred.sum(axis=2) > 0).sum() > 1.1 * (sharp.sum(axis=2) > 0).sum()
     assert blurred.sum() == pytest.approx(sharp.sum(), rel=0.1)
+
+
+@pytest.fixture
+def room(view, cube):
+    """Return a view of an open cube before a black picture."""
+    opened = replace(cube, opening=1.0)
+    return replace(view, image=np.zeros_like(view.image), occluders=(opened,))
+
+
+def test_the_blur_of_what_is_behind_a_cube_does_not_cover_it(lens, room, pawn):
+    empty = lens.draw(room, [])
+    inner = cv2.erode(empty.max(axis=2), np.ones((3, 3))) > 20
+    behind = pawn.posed(at=(-0.05, -0.03))
+    blurred = lens.draw(replace(room, focus=Focus(0.3, 0.3, 0.02)), [behind])
+    assert (blurred.max(axis=2) > 20).sum() > (empty.max(axis=2) > 20).sum() + 500
+    assert np.abs(blurred.astype(int) - empty)[inner].max() <= 2  # the light changes a little
+
+
+def test_behind_the_blurred_edge_of_who_is_inside_a_cube_is_the_room(lens, room, pawn):
+    box = room.occluders[0]
+    empty = lens.draw(room, [])
+    inner = cv2.erode(empty.max(axis=2), np.ones((3, 3))) > 40
+    stands = np.diag([0.04, 0.04, 0.04, 1.0])
+    stands[1, 3] = -0.45 * box.edge
+    place = np.linalg.inv(room.camera_from_table) @ box.camera_from_box @ stands
+    posed = replace(pawn.posed().posed, table_from_character=place)
+    actor = replace(pawn.posed(), posed=posed, inside=box)
+    blurred = lens.draw(replace(room, focus=Focus(0.25, 0.25, 0.02)), [actor])
+    changed = np.abs(blurred.astype(int) - empty).max(axis=2) > 10
+    assert (changed & inner).sum() > 100
+    assert blurred.max(axis=2)[inner].min() > 30  # the picture is black
