@@ -18,6 +18,10 @@ SURFACES_UNIT = 8
 OCCLUSION_UNIT, SUM_UNIT, VISIBILITY_UNIT = 10, 11, 12
 """Texture units of ambient occlusion, of the sum of all light, and of the share that arrives."""
 
+MAX_SURFACES = 1024
+"""Surfaces of one picture that can be told apart, as 16-bit floats count to 2048: all others are
+lit as the last of these."""
+
 
 class GeometryBuffer:
     """What is seen in each texel of a character layer, before it is lit (G-buffer).

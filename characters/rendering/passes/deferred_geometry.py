@@ -2,6 +2,7 @@
 
 import moderngl
 
+from characters.rendering.deferred_buffers import MAX_SURFACES
 from characters.rendering.geometry.surfaces import GEOMETRY
 from characters.rendering.passes.characters import CharacterPass
 from characters.rendering.passes.cube_window import clip_to, unit_cube_from_table
@@ -36,7 +37,7 @@ class DeferredGeometryPass(CharacterPass):
                     clip_from_table=clip_from_table,
                     camera_from_table=frame.camera_from_table,
                     cube_from_table=cube_from_table,
-                    surface_id=float(surface_id),
+                    surface_id=float(min(surface_id, MAX_SURFACES)),
                 )
                 part.render(frame.context, array)
         clip_to(frame.context, None)

@@ -5,6 +5,7 @@ import numpy as np
 
 from characters.rendering.deferred_buffers import (
     ALBEDO_UNIT,
+    MAX_SURFACES,
     NORMAL_UNIT,
     POSITION_UNIT,
     SHADE_UNIT,
@@ -15,9 +16,6 @@ from characters.rendering.passes.deferred_visibility import DeferredVisibilityPa
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.resources import FrameResources, Region
-
-MAX_SURFACES = 1024
-"""Surfaces of one picture that can be told apart; 16-bit floats count to 2048."""
 
 
 class DeferredLightingPass(RenderPass):

@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters.model.mesh import ToonShading
+from characters.model.mesh import Material, ToonShading
 from characters.rendering import QUALITIES, Cover, Stage
 from characters.rendering.deferred_buffers import surface_records
+from characters.rendering.passes import deferred_geometry, deferred_lighting
 from characters.rendering.passes.render_pass import RenderPass
+from tests.characters.rendering.shapes import Still, plate
 
 
 @pytest.fixture
@@ -63,6 +65,20 @@ def test_a_camera_that_looks_along_the_table_draws_who_stands_on_it(ctx, view, p
     picture = stage.draw(replace(view, camera_from_table=along), [pawn.posed()])
     stage.release()
     assert (picture != view.image).any(axis=2).sum() > 1000
+
+
+def test_surfaces_beyond_the_last_record_are_lit_too(stage, deferred, view, monkeypatch):
+    for module in (deferred_geometry, deferred_lighting):
+        monkeypatch.setattr(module, "MAX_SURFACES", 3)
+    deferred.quality = replace(deferred.quality, name="with few records")
+    plates = tuple(
+        plate(Material(base_color=(0.6, 0.3, 0.2, 1.0), roughness=0.5 + 0.1 * number), side=side)
+        for number, side in enumerate([0.01, 0.01, 0.01, 0.12])
+    )
+    actors = [Still(plates).posed()]
+    forward, later = stage.draw(view, actors), deferred.draw(view, actors)
+    assert (forward != view.image).any(axis=2).sum() > 1000
+    assert np.abs(forward.astype(int) - later).max() <= 1
 
 
 class WatchPass(RenderPass):
