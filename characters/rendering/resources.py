@@ -183,7 +183,7 @@ class FrameResources:
     @property
     def open_cubes(self) -> tuple[Box, ...]:
         """Real cubes in the picture whose inside is seen."""
-        return tuple(box for box, _ in self.cubes if box.opening > 0.0)
+        return tuple(box for box, _ in self.cubes if box.is_open)
 
     @cached_property
     def character_area(self) -> Rectangle | None:

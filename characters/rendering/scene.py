@@ -25,6 +25,11 @@ class Box:
     opening: float = 0.0
     """How far the walls that look at the camera are open, 0…1: through them its inside is seen."""
 
+    @property
+    def is_open(self) -> bool:
+        """Whether its inside is seen."""
+        return self.opening > 0.0
+
 
 @dataclass(frozen=True)
 class Cover:

@@ -31,7 +31,7 @@ class CubeOcclusionPass(RenderPass):
         framebuffer.use()  # the mask takes effect here
         frame.context.enable_only(moderngl.DEPTH_TEST)
         for box in layer.cubes:
-            if box.opening > 0.0:  # `CubeWindowPass` draws it
+            if box.is_open:  # `CubeWindowPass` draws it
                 continue
             clip_from_box = layer.clip_from_camera @ box.camera_from_box
             scale = np.diag([box.edge, box.edge, box.edge, 1.0])

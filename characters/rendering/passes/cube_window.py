@@ -57,14 +57,14 @@ class CubeWindowPass(RenderPass):
         inside = (each for each in frame.characters if each.inside is not None)
         resident = next(inside, None)
         self._resident = None
-        if resident is not None and is_open(resident.inside):
+        if resident is not None and resident.inside is not None and resident.inside.is_open:
             self._resident = resident, self._render_shadow(frame, resident)
-        return tuple(area for box, area in frame.cubes if is_open(box))
+        return tuple(area for box, area in frame.cubes if box.is_open)
 
     def draw(self, frame: FrameResources, region: Region) -> None:
         """Draw the open cubes."""
         layer = region.characters
-        boxes = () if layer is None else tuple(filter(is_open, layer.cubes))
+        boxes = () if layer is None else tuple(box for box in layer.cubes if box.is_open)
         if layer is None or not boxes:
             return
         layer.use()
@@ -125,11 +125,6 @@ class CubeWindowPass(RenderPass):
             extent=shadow.extent,
             edge=box.edge,
         )
-
-
-def is_open(box: Box | None) -> bool:
-    """Return whether the inside of a cube is seen."""
-    return box is not None and box.opening > 0.0
 
 
 def clip_to(context: moderngl.Context, character: CharacterInstance | None) -> None:
