@@ -4,6 +4,7 @@ uniform mat4 clip_from_table;
 uniform vec3 eye;           // in the table frame
 uniform float height;       // of the character [m]
 #include "inside_cube"
+#include "near_table"
 
 in vec3 position;
 in vec3 normal;
@@ -26,7 +27,7 @@ out float covering;
 
 void main() {
     toward = normalize(eye - position);
-    above = position.y / (0.28 * height);
+    above = position.y / (NEAR_TABLE * height);
     facing = normal;
     tint = color.rgb;
 #ifdef MAPPED

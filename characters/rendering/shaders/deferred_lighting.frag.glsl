@@ -4,6 +4,7 @@
 
 #include "geometry_buffer"
 #include "shading"
+#include "near_table"
 #ifdef VISIBILITY
 #include "visibility"
 #endif
@@ -11,8 +12,6 @@
 uniform sampler2D surfaces; // a row for each surface, see surface_records
 uniform vec3 up;            // normal of the table
 uniform vec3 table;         // a point of the table
-
-const float NEAR_TABLE = 0.28;  // share of a character's height that counts as near the table, see light_around
 
 layout(location = 0) out vec4 diffuse;
 layout(location = 1) out vec4 specular;
