@@ -73,6 +73,10 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.bml
 	$(BIN)/python -m tests.bench.picture
 	$(BIN)/python -m tests.bench.wrinkles
+	$(BIN)/python -m tests.bench.effects
+	$(BIN)/python -m tests.bench.soft_shadows
+	$(BIN)/python -m tests.bench.detail
+	$(BIN)/python -m tests.bench.in_the_cube
 	-$(BIN)/python -m tests.bench.hand_mask
 	-$(BIN)/python -m tests.bench.cube_light --rooms 2
 	-$(BIN)/python -m tests.bench.ambient_occlusion
@@ -102,6 +106,7 @@ pictures: .venv/ready-dev  ## draw the pictures of the documents again
 	$(BIN)/python -m tools.realism
 	$(BIN)/python -m tools.effects
 	$(BIN)/python -m tools.in_the_cube
+	$(BIN)/python -m tools.skin_sheet
 	$(BIN)/python -m tests.bench.ambient_occlusion.picture
 	$(BIN)/python -m tools.sound_sheet
 	$(BIN)/python -m tools.face_sheet
