@@ -33,7 +33,7 @@ from characters import Animator, Character, CharacterCommand, PosedCharacter, Ro
 from characters.control.command import SpeechIntent
 from characters.control.controllers import ControllerFactory, first_suitable
 from characters.face.complexion import Complexion
-from characters.rendering import FULL, Quality, SceneCharacter, Stage
+from characters.rendering import FULL, Quality, SceneCharacter, Stage, draws_in_software
 from tracking import (
     CubeControls,
     CubeGestures,
@@ -198,6 +198,11 @@ class Playground:
             self._stage = Stage(self._context, intrinsics.size)
             self._stage.quality = self._quality
         self.intrinsics = intrinsics
+
+    @property
+    def draws_in_software(self) -> bool:
+        """Whether pictures are drawn on the processor, not on a graphics card."""
+        return self._context is not None and draws_in_software(self._context)
 
     @property
     def quality(self) -> Quality:

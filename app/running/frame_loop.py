@@ -30,7 +30,8 @@ class FrameLoop:
         if options.quality != AUTO_QUALITY:
             session.playground.quality = QUALITIES[options.quality]
         elif options.windowed and (session.source.live or session.pace is not None):
-            self._quality = QualityControl(session.source.rate)
+            software = session.playground.draws_in_software
+            self._quality = QualityControl(session.source.rate, software)
 
     def step(self, frame: Frame) -> Step:
         """Process one frame and show it."""

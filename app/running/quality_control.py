@@ -36,12 +36,15 @@ def checked_quality(name: str) -> str:
 class QualityControl:
     """Steps down where frames take too long, and up where there is time; `full` comes first.
 
-    `rate` is that of the camera [frames/s].
+    `rate` is that of the camera [frames/s]. In `software`, deferred shading is not tried: it takes
+    four times as long, and each trial would be seen.
     """
 
-    def __init__(self, rate: float) -> None:
+    def __init__(self, rate: float, software: bool = False) -> None:
         self._interval = 1.0 / max(rate, 1.0)
-        self._qualities = tuple(QUALITIES.values())
+        self._qualities = tuple(
+            each for each in QUALITIES.values() if not (software and each.deferred)
+        )
         self._level = self._qualities.index(FULL)
         self._mean = 0.0
         self._waited = 0.0  # since frames are too slow, or fast enough [s]

@@ -1,6 +1,6 @@
 """Draws characters into the camera's picture: `Stage` and what it is given."""
 
-from characters.rendering.context import create_context
+from characters.rendering.context import create_context, draws_in_software
 from characters.rendering.quality import FULL, QUALITIES, Effect, Quality
 from characters.rendering.scene import (
     Box,
@@ -31,4 +31,5 @@ __all__ = [
     "Stage",
     "View",
     "create_context",
+    "draws_in_software",
 ]

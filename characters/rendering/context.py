@@ -37,6 +37,16 @@ def create_context(window: bool = False) -> moderngl.Context:
         raise CharacterError(_diagnosis(window, str(error))) from error
 
 
+SOFTWARE_RENDERERS = ("llvmpipe", "softpipe", "swiftshader", "microsoft basic render")
+"""Parts of the names of drivers that draw on the processor, in lower case."""
+
+
+def draws_in_software(context: moderngl.Context) -> bool:
+    """Return whether a context draws on the processor, not on a graphics card."""
+    name = str(context.info["GL_RENDERER"]).lower()
+    return any(each in name for each in SOFTWARE_RENDERERS)
+
+
 def _diagnosis(window: bool, reason: str) -> str:
     """Return what is missing, and the command that installs it."""
     if window:

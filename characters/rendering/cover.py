@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.rendering.programs import set_uniforms
-from characters.rendering.projection import Rectangle
+from characters.rendering.projection import SIZE_STEP_PX, Rectangle
 from characters.rendering.scene import Cover
-from characters.rendering.target import SIZE_STEP_PX
 
 COVER_UNIT = 7
 """Texture unit of the cover."""

@@ -14,6 +14,10 @@ NEAR_M, FAR_M = 0.02, 20.0
 MARGIN_PX, RELATIVE_MARGIN = 3, 0.02
 """Margin around projected points: pixels, and a share of their extent, as few stand for many."""
 
+SIZE_STEP_PX = 64
+"""Sizes of textures are rounded up to a multiple, so that a walking character does not need a new
+one in each picture."""
+
 COST_PER_REGION_PX = 12_000
 """Pixels that software rendering draws in the time that one more region costs."""
 

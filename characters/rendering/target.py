@@ -8,14 +8,11 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.deferred_buffers import GeometryBuffer, LightBuffer
+from characters.rendering.deferred.buffers import GeometryBuffer, LightBuffer
+from characters.rendering.projection import SIZE_STEP_PX
 from characters.rendering.quality import Quality
 
 Image = NDArray[np.uint8]
-
-SIZE_STEP_PX = 64
-"""Sizes are rounded up to a multiple, so that a walking character does not need a new target in
-each picture."""
 
 MAX_WASTE = 1.5
 """How many times more pixels than needed a target may have: all are filtered, but a new target

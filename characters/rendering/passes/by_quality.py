@@ -2,8 +2,8 @@
 
 import moderngl
 
-from characters.rendering.ambient_occlusion import AmbientOcclusion
-from characters.rendering.blocker_map import BlockerMap
+from characters.rendering.deferred.ambient_occlusion import AmbientOcclusion
+from characters.rendering.deferred.blocker_map import BlockerMap
 from characters.rendering.passes.background import BackgroundPass
 from characters.rendering.passes.characters import CharacterPass
 from characters.rendering.passes.cube_occlusion import CubeOcclusionPass

@@ -2,7 +2,7 @@
 
 import moderngl
 
-from characters.rendering.deferred_buffers import MAX_SURFACES
+from characters.rendering.deferred.buffers import MAX_SURFACES
 from characters.rendering.geometry.surfaces import GEOMETRY
 from characters.rendering.passes.characters import CharacterPass
 from characters.rendering.passes.cube_window import clip_to, unit_cube_from_table

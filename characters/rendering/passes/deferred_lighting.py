@@ -3,7 +3,7 @@
 import moderngl
 import numpy as np
 
-from characters.rendering.deferred_buffers import (
+from characters.rendering.deferred.buffers import (
     ALBEDO_UNIT,
     MAX_SURFACES,
     NORMAL_UNIT,

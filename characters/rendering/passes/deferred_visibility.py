@@ -3,9 +3,9 @@
 import moderngl
 import numpy as np
 
-from characters.rendering.ambient_occlusion import AmbientOcclusion
-from characters.rendering.blocker_map import CHARACTER_RANGE_TEXELS, BlockerMap
-from characters.rendering.deferred_buffers import (
+from characters.rendering.deferred.ambient_occlusion import AmbientOcclusion
+from characters.rendering.deferred.blocker_map import CHARACTER_RANGE_TEXELS, BlockerMap
+from characters.rendering.deferred.buffers import (
     NORMAL_UNIT,
     OCCLUSION_UNIT,
     POSITION_UNIT,

@@ -2,7 +2,7 @@
 
 import moderngl
 
-from characters.rendering.deferred_buffers import (
+from characters.rendering.deferred.buffers import (
     AMBIENT_UNIT,
     DIFFUSE_UNIT,
     NORMAL_UNIT,

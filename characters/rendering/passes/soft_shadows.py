@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import moderngl
 import numpy as np
 
-from characters.rendering.blocker_map import TABLE_RANGE_TEXELS, BlockerMap
-from characters.rendering.lamp import Lamp
+from characters.rendering.deferred.blocker_map import TABLE_RANGE_TEXELS, BlockerMap
+from characters.rendering.deferred.lamp import Lamp
 from characters.rendering.light import Light
 from characters.rendering.passes.shadows import ShadowPass, sky_extent
 from characters.rendering.programs import ShaderPrograms, set_uniforms
@@ -59,7 +59,7 @@ class SoftShadowPass(ShadowPass):
             return ()
         casters = np.concatenate([each.enclosing for each in frame.on_table])
         lamp = Lamp.over(casters, frame.light.to_light)
-        self._blockers.render(frame, lamp)
+        self._blockers.render(frame.on_table, lamp)
         around = [sky_extent(each.enclosing, each.height) for each in frame.on_table]
         self._extent = _united([lamp.shadow(casters), *around])
         self._find_openness()
@@ -71,7 +71,7 @@ class SoftShadowPass(ShadowPass):
         """Empty the map of blockers, if some characters that are not on the table ask for it."""
         points = frame.points_on_layer
         if len(points):
-            self._blockers.render(frame, Lamp.over(points, frame.light.to_light))
+            self._blockers.render(frame.on_table, Lamp.over(points, frame.light.to_light))
 
     def _key_share(self, light: Light) -> Array:
         """Return zero: the maps of `ShadowPass` hold the light from all around alone."""

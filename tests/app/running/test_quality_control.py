@@ -38,6 +38,10 @@ def test_fast_frames_become_rich():
     assert 10.0 < when < 11.0
 
 
+def test_software_does_not_try_deferred_shading():
+    assert changes(played(QualityControl(RATE, software=True), 60, lambda name: 0.004)) == []
+
+
 def test_slow_frames_lower_the_quality_after_a_moment():
     cost = {"full": 0.05, "reduced": 0.02}
     ((when, name),) = changes(played(QualityControl(RATE), 30, cost.__getitem__))

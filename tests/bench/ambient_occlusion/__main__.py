@@ -25,7 +25,7 @@ from rich.console import Console
 from rich.table import Table
 
 from characters.rendering import create_context
-from characters.rendering.ambient_occlusion import ESTIMATORS, AmbientOcclusionSettings
+from characters.rendering.deferred.ambient_occlusion import ESTIMATORS, AmbientOcclusionSettings
 from characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.product import ProductQuality, product_quality
 from tests.bench.ambient_occlusion.quality import (

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 
 from characters.rendering import create_context
-from characters.rendering.ambient_occlusion import ESTIMATORS, AmbientOcclusionSettings
+from characters.rendering.deferred.ambient_occlusion import ESTIMATORS, AmbientOcclusionSettings
 from characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.scenes import load
 from tests.bench.ambient_occlusion.scoring import (

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from characters.model.character import Character
 from characters.rendering import Effect, Quality, Stage
-from characters.rendering.ambient_occlusion import AmbientOcclusionSettings
+from characters.rendering.deferred.ambient_occlusion import AmbientOcclusionSettings
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.resources import FrameResources, Region
 from tests.bench.ambient_occlusion.scenes import floor, posed

@@ -8,7 +8,10 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.ambient_occlusion import AmbientOcclusion, AmbientOcclusionSettings
+from characters.rendering.deferred.ambient_occlusion import (
+    AmbientOcclusion,
+    AmbientOcclusionSettings,
+)
 from characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.scenes import Scene
 from tools.ray_tracing import RayTracer, VisibleSurfaces, ambient_occlusion, trace_camera

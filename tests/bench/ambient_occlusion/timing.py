@@ -7,7 +7,10 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
-from characters.rendering.ambient_occlusion import AmbientOcclusion, AmbientOcclusionSettings
+from characters.rendering.deferred.ambient_occlusion import (
+    AmbientOcclusion,
+    AmbientOcclusionSettings,
+)
 from characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.scoring import GBuffer
 

@@ -16,7 +16,7 @@ from rich.console import Console
 from rich.table import Table
 
 from characters.rendering import create_context
-from characters.rendering.ambient_occlusion import (
+from characters.rendering.deferred.ambient_occlusion import (
     ESTIMATORS,
     AmbientOcclusionSettings,
     Estimator,

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from characters.errors import CharacterError
-from characters.rendering.ambient_occlusion import (
+from characters.rendering.deferred.ambient_occlusion import (
     ESTIMATORS,
     AmbientOcclusion,
     AmbientOcclusionSettings,
     Estimator,
 )
+from characters.rendering.deferred.sample_patterns import PATTERNS, sample_pattern
 from characters.rendering.programs import ShaderPrograms
-from characters.rendering.sample_patterns import PATTERNS, sample_pattern
 from tests.bench.ambient_occlusion.quality import matched_score
 from tests.bench.ambient_occlusion.scenes import load
 from tests.bench.ambient_occlusion.scoring import GBuffer, TracedScene, drawn, score

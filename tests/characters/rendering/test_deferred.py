@@ -7,7 +7,7 @@ import pytest
 
 from characters.model.mesh import Material, ToonShading
 from characters.rendering import QUALITIES, Cover, Stage
-from characters.rendering.deferred_buffers import surface_records
+from characters.rendering.deferred.buffers import surface_records
 from characters.rendering.passes import deferred_geometry, deferred_lighting
 from characters.rendering.passes.render_pass import RenderPass
 from tests.characters.rendering.shapes import Still, plate

@@ -1,11 +1,13 @@
 """What stands between the lamp and the table, for shadows that are soft with distance."""
 
+from collections.abc import Sequence
+
 import moderngl
 
+from characters.rendering.deferred.lamp import Lamp
+from characters.rendering.geometry.character_cache import CharacterInstance
 from characters.rendering.geometry.surfaces import CASTER
-from characters.rendering.lamp import Lamp
 from characters.rendering.programs import set_uniforms
-from characters.rendering.resources import FrameResources
 from characters.skeleton.pose import Array
 
 MAP_SIDE = 256
@@ -41,8 +43,8 @@ class BlockerMap:
         self._target = context.framebuffer([self.texture])
         self._lamp: Lamp | None = None
 
-    def render(self, frame: FrameResources, lamp: Lamp) -> None:
-        """Draw the characters on the table as a lamp sees them."""
+    def render(self, characters: Sequence[CharacterInstance], lamp: Lamp) -> None:
+        """Draw characters as a lamp sees them."""
         self._lamp = lamp
         context = self._context
         self._target.use()
@@ -51,7 +53,7 @@ class BlockerMap:
         context.blend_equation = moderngl.MIN, moderngl.MIN
         # Faces that look away from the lamp are drawn: what it lights does not shadow itself.
         context.front_face, context.cull_face = "cw", "front"
-        for character in frame.on_table:
+        for character in characters:
             for part in character.skinned.surfaces:
                 array = character.skinned.array(part.features | {CASTER})
                 set_uniforms(

@@ -6,9 +6,9 @@ import moderngl
 import numpy as np
 
 from characters.errors import CharacterError
+from characters.rendering.deferred.sample_patterns import PATTERNS, sample_pattern
 from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.sample_patterns import PATTERNS, sample_pattern
-from characters.rendering.target import SIZE_STEP_PX
+from characters.rendering.projection import SIZE_STEP_PX
 from characters.skeleton.pose import Array
 
 

@@ -1,0 +1,1 @@
+"""What deferred passes share: buffers, ambient occlusion, and what blocks the lamp."""
