@@ -18,8 +18,8 @@ from rich.table import Table
 from characters.model.character import Character
 from characters.rendering import QUALITIES, Stage, View, create_context
 from characters.rendering.deferred.lamp import Lamp
+from characters.rendering.passes.deferred.soft_shadows import TABLE_SIDE, SoftShadowPass
 from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.passes.soft_shadows import TABLE_SIDE, SoftShadowPass
 from characters.rendering.resources import FrameResources, Region
 from tests.bench.ambient_occlusion.scenes import posed
 from tests.bench.picture import SIZE, scene

@@ -116,7 +116,7 @@ def print_composing(context: moderngl.Context, human: Character, frames: int) ->
         least = min(least, 1e3 * (time.perf_counter() - start))
     face.release()
     Console().print(
-        f"composing the layers of a smile with raised brows anew takes {least:.2f} ms of a picture"
+        f"composing the layers of a smile with raised brows takes {least:.2f} ms of a picture"
     )
 
 

@@ -18,7 +18,7 @@ MIN_DROP_M = 0.1
 
 _SIGNS = np.array([(-1, -1), (-1, 1), (1, 1), (1, -1)])
 
-MARGIN = 0.02
+CASTER_MARGIN = 0.02
 """Margin around the casters, as a share of their extent."""
 
 
@@ -74,7 +74,7 @@ class Lamp:
         depths = np.maximum(seen[:, 2], 1e-3 * distance)
         tangents = seen[:, :2] / depths[:, None]
         low, high = tangents.min(axis=0), tangents.max(axis=0)
-        rim = MARGIN * (high - low) + 1e-6
+        rim = CASTER_MARGIN * (high - low) + 1e-6
         return cls(pose, low - rim, high + rim, float(depths.min()), float(depths.max()), width)
 
     def shadow(self, casters: Array) -> Array:

@@ -13,7 +13,7 @@ from characters.rendering.geometry.edge_collapse import collapsed_levels
 from characters.rendering.geometry.vertices import CharacterVertices
 from characters.rendering.projection import is_invertible
 
-TOLERANCES = (1 / 850, 1 / 600, 1 / 425, 1 / 300, 1 / 200)
+LEVEL_TOLERANCES = (1 / 850, 1 / 600, 1 / 425, 1 / 300, 1 / 200)
 """Errors of the coarser levels, as shares of the character's largest side; each is for half the
 size in the picture of the one before."""
 
@@ -77,7 +77,7 @@ def with_levels(
             vertices.positions,
             _features(vertices, side, bones),
             vertices.indices.reshape(-1, 3).astype(np.intp),
-            [side * tolerance for tolerance in TOLERANCES],
+            [side * tolerance for tolerance in LEVEL_TOLERANCES],
         )
     drawn = [_drawn(vertices, stand, bones) for stand in stands]
     last = np.zeros(len(vertices.positions), int)
@@ -89,7 +89,7 @@ def with_levels(
     new_index[order] = np.arange(len(order))
     levels = []
     for number, ((indices, materials), tolerance) in enumerate(
-        zip(drawn, (0.0, *TOLERANCES), strict=False)
+        zip(drawn, (0.0, *LEVEL_TOLERANCES), strict=False)
     ):
         counts = [int(np.count_nonzero(each & (last >= number))) for each in (moved, ~moved)]
         levels.append(DetailLevel(side * tolerance, new_index[indices], materials, *counts))

@@ -31,7 +31,7 @@ MIN_COLLAPSED_SHARE = 0.04
 MAX_ROUNDS = 8
 """Most rounds of collapses for one tolerance."""
 
-PICKS = 3
+PICKS_PER_ROUND = 3
 """How often a round picks collapses that do not touch those picked before."""
 
 
@@ -154,7 +154,7 @@ class _Mesh:
         pair_of = np.zeros(len(self._place), np.intp)
         pair_of[froms[best]] = best
         picked = []
-        for _ in range(PICKS):
+        for _ in range(PICKS_PER_ROUND):
             nearest = np.full(len(rank), np.inf)
             np.minimum.at(nearest, froms, rank[tos])
             places = np.flatnonzero(rank < nearest)

@@ -8,18 +8,18 @@ from characters.rendering.passes.background import BackgroundPass
 from characters.rendering.passes.characters import CharacterPass
 from characters.rendering.passes.cube_occlusion import CubeOcclusionPass
 from characters.rendering.passes.cube_window import CubeWindowPass
-from characters.rendering.passes.deferred_composite import DeferredCompositePass
-from characters.rendering.passes.deferred_geometry import DeferredGeometryPass
-from characters.rendering.passes.deferred_lighting import DeferredLightingPass
-from characters.rendering.passes.deferred_scattering import DeferredScatteringPass
-from characters.rendering.passes.deferred_visibility import DeferredVisibilityPass
-from characters.rendering.passes.depth_of_field import DepthOfFieldPass
+from characters.rendering.passes.deferred.composite import DeferredCompositePass
+from characters.rendering.passes.deferred.depth_of_field import DepthOfFieldPass
+from characters.rendering.passes.deferred.geometry import DeferredGeometryPass
+from characters.rendering.passes.deferred.lighting import DeferredLightingPass
+from characters.rendering.passes.deferred.scattering import DeferredScatteringPass
+from characters.rendering.passes.deferred.soft_shadows import SoftShadowPass
+from characters.rendering.passes.deferred.visibility import DeferredVisibilityPass
 from characters.rendering.passes.floor_paths import FloorPathPass
 from characters.rendering.passes.hand_occlusion import HandOcclusionPass
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.passes.resolve import ResolvePass
 from characters.rendering.passes.shadows import ShadowPass
-from characters.rendering.passes.soft_shadows import SoftShadowPass
 from characters.rendering.programs import ShaderPrograms
 from characters.rendering.quality import Effect, Quality
 

@@ -19,7 +19,7 @@ RIM, WALL = 0.055, 0.025
 """Width of the rim that an open wall keeps, and thickness of the walls, as shares of the cube's
 edge; in `cube_window.frag` too. The rim lies within the white border around a marker."""
 
-FACING = (0.02, 0.25)
+OPEN_COSINES = (0.02, 0.25)
 """Cosines of a wall's angle to the camera from which on light comes in through it, and all of it:
 the holes are in the walls that look at the camera, so the light changes smoothly as the cube
 turns."""
@@ -157,7 +157,7 @@ def _seen_from_inside(frame: FrameResources, box: Box) -> dict[str, Array]:
     table = turn @ frame.camera_from_table[:3, :3]
     sights = eye - 0.5 * _OUTWARD
     cosines = (sights * _OUTWARD).sum(axis=1) / np.maximum(np.linalg.norm(sights, axis=1), 1e-9)
-    share = np.clip((cosines - FACING[0]) / (FACING[1] - FACING[0]), 0.0, 1.0)
+    share = np.clip((cosines - OPEN_COSINES[0]) / (OPEN_COSINES[1] - OPEN_COSINES[0]), 0.0, 1.0)
     # A direction along a wall would divide by zero in the shader.
     to_light = table @ frame.light.to_light
     to_light = np.where(np.abs(to_light) < 1e-4, 1e-4, to_light)

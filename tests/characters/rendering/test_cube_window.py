@@ -182,7 +182,7 @@ def test_in_a_hole_a_character_has_the_pixels_that_it_has_without_a_cube(
         holes |= filled(body.shape, pixels(hd_view, box, square(normal, 0.5 - RIM - 0.05)))
     seen = eroded(holes & body)
     assert seen.sum() > 500
-    assert np.abs(inside - free)[seen].mean() < 6.0  # the light is estimated anew
+    assert np.abs(inside - free)[seen].mean() < 6.0  # the light is estimated again
     assert np.abs(inside - empty)[seen].sum(axis=1).mean() > 60.0
 
 

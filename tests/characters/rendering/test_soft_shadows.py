@@ -9,7 +9,7 @@ import pytest
 from characters.model.mesh import Material
 from characters.rendering import QUALITIES, MeasuredLight, Stage
 from characters.rendering.deferred.lamp import LAMP_DISTANCE_M, LAMP_WIDTH_M
-from characters.rendering.passes.soft_shadows import TABLE_SIDE, SoftShadowPass
+from characters.rendering.passes.deferred.soft_shadows import TABLE_SIDE, SoftShadowPass
 from tests.characters.rendering.shapes import Still, plate
 
 RED = (1.0, 0.0, 0.0)

@@ -10,7 +10,7 @@ from characters.rendering.deferred.buffers import (
     SPECULAR_UNIT,
     SUM_UNIT,
 )
-from characters.rendering.passes.deferred_composite import DeferredCompositePass
+from characters.rendering.passes.deferred.composite import DeferredCompositePass
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.projection import NEAR_M

@@ -12,7 +12,7 @@ from characters.rendering.deferred.buffers import (
     SURFACES_UNIT,
     surface_records,
 )
-from characters.rendering.passes.deferred_visibility import DeferredVisibilityPass
+from characters.rendering.passes.deferred.visibility import DeferredVisibilityPass
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.resources import FrameResources, Region
