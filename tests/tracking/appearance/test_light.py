@@ -35,7 +35,8 @@ def lit_one(normal: Array) -> Array:
 
 def picture(pose: Array, shade: Shade = lit_one, gain: float = 1.0) -> Image:
     """Draw the faces as bare paper, (H, W, 3) BGR: ink is where no sample is taken."""
-    light = np.full((WIDE.size[1], WIDE.size[0], 3), 0.2)
+    seen = np.empty((WIDE.size[1], WIDE.size[0], 3), np.uint8)
+    seen[:] = _encoded(np.full(3, 0.2 * gain))
     planes = FacePlanes(CUBE)
     for number in planes.facing(pose, 0.0):
         face = CUBE.faces[number]
@@ -43,8 +44,13 @@ def picture(pose: Array, shade: Shade = lit_one, gain: float = 1.0) -> Image:
         outline = np.array([(-1, 1), (1, 1), (1, -1), (-1, -1)]) * CUBE.edge / 2
         corners = outline[:, :1] * right + outline[:, 1:] * up + face.normal * CUBE.edge / 2
         value = PAPER_ALBEDO * shade(pose[:3, :3] @ face.normal)
-        cv2.fillConvexPoly(light, _pixels(corners, pose), value[::-1].tolist())
-    encoded = 1.055 * np.clip(light * gain, 0.0031308, 1) ** (1 / 2.4) - 0.055
+        cv2.fillConvexPoly(seen, _pixels(corners, pose), _encoded(value[::-1] * gain).tolist())
+    return seen
+
+
+def _encoded(light: Array) -> Image:
+    """Encode the few colours of a picture, not each pixel."""
+    encoded = 1.055 * np.clip(light, 0.0031308, 1) ** (1 / 2.4) - 0.055
     return np.asarray(np.rint(255 * encoded), np.uint8)
 
 
