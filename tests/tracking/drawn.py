@@ -62,7 +62,7 @@ def scene(
         way = np.zeros(6) if sweep is None else sweep
         count = 1 if sweep is None else 24
         poses = [se3.moved(pose, ((n + 0.5) / count - 0.5) * way) for n in range(count)]
-        left, top, right, bottom = _window(cube, poses, camera)
+        left, top, right, bottom = window(cube, poses, camera)
         part = light[top:bottom, left:right]
         drawn = [_drawn(cube, each, camera, part, (left, top)) for each in poses]
         light[top:bottom, left:right] = np.mean(drawn, axis=0)
@@ -71,20 +71,25 @@ def scene(
 
 def photograph(light: Light, exponent: float = 2.2, noise: float = 1.0, seed: int = 1) -> Picture:
     """Grey values of a camera whose light is the grey value to the power `exponent`, (H, W, 3)."""
-    grey = 255 * np.clip(light, 0, 1) ** (1 / exponent)
-    grey += np.random.default_rng(seed).normal(0, noise, grey.shape)
+    return digitised(grey_values(light, exponent), noise, seed)
+
+
+def grey_values(light: Light, exponent: float = 2.2) -> Light:
+    """Grey values of a camera without noise, not yet rounded, (H, W)."""
+    return np.asarray(255 * np.clip(light, 0, 1) ** (1 / exponent), np.float32)
+
+
+def digitised(grey: Light, noise: float = 1.0, seed: int = 1) -> Picture:
+    """Grey values with the noise of one frame, rounded, (H, W, 3)."""
+    if noise:
+        grey = grey.copy()
+        grey += np.random.default_rng(seed).normal(0, noise, grey.shape)
     levels = np.clip(np.rint(grey), 0, 255).astype(np.uint8)
     return np.repeat(levels[..., None], 3, axis=2)
 
 
-def off(pose: Array | None, truth: Array) -> tuple[float, float]:
-    """Errors of a pose [mm, °]."""
-    assert pose is not None
-    step = se3.delta(pose, truth)
-    return float(1000 * np.linalg.norm(step[:3])), float(np.rad2deg(np.linalg.norm(step[3:])))
-
-
-def _window(cube: CubeModel, poses: Sequence[Array], camera: Intrinsics) -> tuple[int, ...]:
+def window(cube: CubeModel, poses: Sequence[Array], camera: Intrinsics) -> tuple[int, ...]:
+    """Left, top, right and bottom of the pixels around a cube at its poses, with a rim."""
     signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     points = np.concatenate([signs * cube.edge / 2 @ p[:3, :3].T + p[:3, 3] for p in poses])
     seen = points @ camera.matrix.T
@@ -93,6 +98,13 @@ def _window(cube: CubeModel, poses: Sequence[Array], camera: Intrinsics) -> tupl
     right, bottom = np.minimum(high, camera.size).astype(int).tolist()
     left, top = low.astype(int).tolist()
     return left, top, right, bottom
+
+
+def off(pose: Array | None, truth: Array) -> tuple[float, float]:
+    """Errors of a pose [mm, °]."""
+    assert pose is not None
+    step = se3.delta(pose, truth)
+    return float(1000 * np.linalg.norm(step[:3])), float(np.rad2deg(np.linalg.norm(step[3:])))
 
 
 def _drawn(
