@@ -17,8 +17,15 @@ def test_an_object_that_is_kept_is_counted():
 
 
 @pytest.mark.parametrize(
-    ("last", "wrong"),
-    [(Held(9, 500, (3, 4)), False), (Held(9, 500, (4, 4)), True), (Held(9, 10**9, (3, 4)), True)],
+    ("counts", "memory", "wrong"),
+    [
+        ((3, 4), (0.5e9, 0.9e9), False),
+        ((4, 4), (0.5e9, 0.5e9), True),
+        ((3, 4), (0.6e9, 0.7e9), True),
+    ],
+    ids=["a peak", "an object", "a leak"],
 )
-def test_growth_is_reported(last, wrong):
-    assert grown([Held(1, 400, (3, 4)), Held(5, 600, (3, 4)), Held(7, 500, (3, 4)), last]) is wrong
+def test_growth_is_reported(counts, memory, wrong):
+    early = [Held(1, int(0.4e9), (3, 4)), Held(5, int(0.8e9), (3, 4))]
+    late = [Held(7, int(memory[0]), (3, 4)), Held(9, int(memory[1]), counts)]
+    assert grown([*early, *late]) is wrong
