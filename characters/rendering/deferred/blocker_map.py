@@ -54,14 +54,12 @@ class BlockerMap:
         # Faces that look away from the lamp are drawn: what it lights does not shadow itself.
         context.front_face, context.cull_face = "cw", "front"
         for character in characters:
-            for part in character.skinned.surfaces:
-                array = character.skinned.array(part.features | {CASTER})
-                set_uniforms(
-                    array.program,
-                    clip_from_table=lamp.clip_from_table,
-                    lamp_axis=lamp.lamp_from_table[2],
-                )
-                part.render(context, array)
+            character.skinned.render(
+                context,
+                frozenset([CASTER]),
+                clip_from_table=lamp.clip_from_table,
+                lamp_axis=lamp.lamp_from_table[2],
+            )
         context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
         context.front_face, context.cull_face = "ccw", "back"
 

@@ -4,19 +4,17 @@ import moderngl
 import numpy as np
 
 from characters.rendering.geometry.character_cache import CharacterInstance
+from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.skeleton.pose import Array
 
-NORMAL_UNIT, POSITION_UNIT, ALBEDO_UNIT, SHADE_UNIT = 0, 1, 2, 3
-"""Texture units of the four layers of `GeometryBuffer`."""
-
-DIFFUSE_UNIT, SPECULAR_UNIT, AMBIENT_UNIT, FALLING_UNIT = 4, 5, 6, 7
-"""Texture units of the layers of `LightBuffer`."""
-
-SURFACES_UNIT = 8
-"""Texture unit of the records of all surfaces, see `surface_records`."""
-
-OCCLUSION_UNIT, SUM_UNIT, VISIBILITY_UNIT = 10, 11, 12
-"""Texture units of ambient occlusion, of the sum of all light, and of the share that arrives."""
+BUFFER_UNITS = {
+    **{"normal_id": 0, "position": 1, "albedo_rough": 2, "shade_metal": 3},
+    **{"diffuse": 4, "specular": 5, "ambient": 6, "falling": 7},
+    **{"surfaces": 8, "occlusion": 10, "light": 11, "visibility": 12, "pixel_position": 14},
+}
+"""Texture units by the names that shaders have for them: the layers of `GeometryBuffer`, those of
+`LightBuffer`, the records of all surfaces (see `surface_records`), ambient occlusion, the sum of
+all light, and the share of it that arrives, with the places of the pixels that it is known for."""
 
 MAX_SURFACES = 1024
 """Surfaces of one picture that can be told apart, as 16-bit floats count to 2048: all others are
@@ -47,7 +45,7 @@ class GeometryBuffer:
 
     def bind(self) -> None:
         """Bind the layers to their units."""
-        for unit, layer in enumerate(self._layers):
+        for unit, layer in enumerate(self._layers, BUFFER_UNITS["normal_id"]):
             layer.use(unit)
 
     def release(self) -> None:
@@ -85,10 +83,10 @@ class LightBuffer:
 
     def bind(self) -> None:
         """Bind the layers to their units."""
-        for unit, layer in enumerate(self._layers, DIFFUSE_UNIT):
+        for unit, layer in enumerate(self._layers, BUFFER_UNITS["diffuse"]):
             layer.use(unit)
         if self.is_scattered:
-            self.scattered.use(DIFFUSE_UNIT)
+            self.scattered.use(BUFFER_UNITS["diffuse"])
 
     def release(self) -> None:
         """Release the textures; a second call does nothing."""
@@ -114,8 +112,8 @@ class PixelBuffer:
 
     def bind(self) -> None:
         """Bind what is seen to the units of a geometry buffer."""
-        self.normal_id.use(NORMAL_UNIT)
-        self.position.use(POSITION_UNIT)
+        self.normal_id.use(BUFFER_UNITS["normal_id"])
+        self.position.use(BUFFER_UNITS["position"])
 
     def use_visibility(self, number: int, size: tuple[int, int]) -> None:
         """Draw on the first pixels of one of `visibility`."""
@@ -128,6 +126,15 @@ class PixelBuffer:
             framebuffer.release()
         for texture in (self.normal_id, self.position, *self.visibility):
             texture.release()
+
+
+def buffer_triangle(
+    context: moderngl.Context, programs: ShaderPrograms, fragment: str, *defines: str
+) -> moderngl.VertexArray:
+    """Return a triangle over all texels, with a program that reads the buffers from their units."""
+    program = programs.load("full_screen", fragment, *defines)
+    set_uniforms(program, **BUFFER_UNITS)
+    return context.vertex_array(program, [])
 
 
 def surface_records(characters: tuple[CharacterInstance, ...]) -> Array:

@@ -1,5 +1,6 @@
 """A character on the graphics card: uploaded once, skinned in every picture."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import moderngl
@@ -12,7 +13,7 @@ from characters.rendering.geometry.face_texture import FaceTexture
 from characters.rendering.geometry.morph_mixer import MorphMixer
 from characters.rendering.geometry.surfaces import Surface, SurfaceBuffers
 from characters.rendering.geometry.vertices import CharacterVertices
-from characters.rendering.programs import ShaderPrograms
+from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.scene import Drawable
 from characters.skeleton.pose import Array
 
@@ -142,9 +143,25 @@ class SkinnedCharacter:
         self._skin_used()
         return self._vertices.skinned(palette, self._extreme, self._extreme_positions)
 
-    def array(self, features: frozenset[str]) -> moderngl.VertexArray:
-        """Return all triangles with the program for some features."""
-        return self._surfaces.array(features)
+    def render(
+        self,
+        context: moderngl.Context,
+        features: frozenset[str] = frozenset(),
+        first_surface: int = 1,
+        **uniforms: "bool | float | Sequence[float] | Array",
+    ) -> None:
+        """Draw all surfaces with programs that have some features besides those of the surface.
+
+        `uniforms` are set once for each program; `surface_id` counts from `first_surface` on.
+        """
+        prepared: set[int] = set()
+        for number, surface in enumerate(self.surfaces, first_surface):
+            array = self._surfaces.array(surface.features | features)
+            if array.program.glo not in prepared:
+                prepared.add(array.program.glo)
+                set_uniforms(array.program, **uniforms)
+            set_uniforms(array.program, surface_id=float(number))
+            surface.render(context, array)
 
     def show_face(
         self, morphs: Array | None, blood: float, table_from_character: Array, wrinkles: bool

@@ -58,9 +58,6 @@ class Surface:
     screen_layer: int
     """Its number among the partly transparent surfaces of its character."""
 
-    array: moderngl.VertexArray
-    """All triangles, with the program for these features."""
-
     textures: tuple[tuple[int, moderngl.Texture], ...]
     """Units and textures of the material, see `TEXTURE_UNITS`."""
 
@@ -134,9 +131,8 @@ class SurfaceBuffers:
                 for unit, image in enumerate(material.textures)
                 if image is not None
             )
-            array = self.array(features)
             layer = sum(BLENDED in each.features for each in surfaces)
-            surfaces.append(Surface(first, count, material, features, layer, array, textures))
+            surfaces.append(Surface(first, count, material, features, layer, textures))
             first += count
         return tuple(surfaces)
 
@@ -159,14 +155,12 @@ class SurfaceBuffers:
                 continue
             if split.plain:
                 drawn.append(replace(surface, first=start + split.first, count=split.plain))
-            features = surface.features | {FACE_FEATURE}
             drawn.append(
                 replace(
                     surface,
                     first=start + split.first + split.plain,
                     count=split.painted,
-                    features=features,
-                    array=self.array(features),
+                    features=surface.features | {FACE_FEATURE},
                     textures=(*surface.textures, (TEXTURE_UNITS["face_map"], face.texture)),
                     face=face,
                 )

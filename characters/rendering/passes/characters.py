@@ -6,9 +6,9 @@ import moderngl
 
 from characters.rendering.passes.cube_window import clip_to, unit_cube_from_table
 from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.programs import set_uniforms
 from characters.rendering.projection import Rectangle
-from characters.rendering.resources import FrameResources, Region
+from characters.rendering.resources import CharacterLayer, FrameResources, Region
+from characters.skeleton.pose import Array
 
 
 class CharacterPass(RenderPass):
@@ -25,27 +25,37 @@ class CharacterPass(RenderPass):
         if layer is None:
             return
         layer.use()
-        context, light = frame.context, frame.light
-        context.enable_only(moderngl.DEPTH_TEST)
-        clip_from_table = layer.clip_from_camera @ frame.camera_from_table
-        eye = frame.camera_position
+        light = frame.light
+        self._render(
+            frame,
+            layer,
+            eye=frame.camera_position,
+            to_light=light.to_light,
+            key=light.key,
+            sky=light.sky,
+            ground=light.ground,
+        )
+
+    def _render(
+        self,
+        frame: FrameResources,
+        layer: CharacterLayer,
+        features: frozenset[str] = frozenset(),
+        **uniforms: "bool | float | Sequence[float] | Array",
+    ) -> None:
+        """Draw all characters with programs of some features, where depth lets them be seen."""
+        frame.context.enable_only(moderngl.DEPTH_TEST)
+        first_surface = 1
         for character in frame.characters:
-            clip_to(context, character)
-            prepared: set[int] = set()
-            for part in character.skinned.surfaces:
-                program = part.array.program
-                if program.glo not in prepared:
-                    prepared.add(program.glo)
-                    set_uniforms(
-                        program,
-                        clip_from_table=clip_from_table,
-                        eye=eye,
-                        to_light=light.to_light,
-                        key=light.key,
-                        sky=light.sky,
-                        ground=light.ground,
-                        height=character.height,
-                        cube_from_table=unit_cube_from_table(frame, character.inside),
-                    )
-                part.render(context, part.array)
-        clip_to(context, None)
+            clip_to(frame.context, character)
+            character.skinned.render(
+                frame.context,
+                features,
+                first_surface,
+                clip_from_table=layer.clip_from_camera @ frame.camera_from_table,
+                cube_from_table=unit_cube_from_table(frame, character.inside),
+                height=character.height,
+                **uniforms,
+            )
+            first_surface += len(character.skinned.surfaces)
+        clip_to(frame.context, None)

@@ -9,7 +9,6 @@
 #include "visibility"
 #endif
 
-uniform sampler2D surfaces; // a row for each surface, see surface_records
 uniform vec3 up;            // normal of the table
 uniform vec3 table;         // a point of the table
 
@@ -22,7 +21,7 @@ void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
     vec4 n = texelFetch(normal_id, here, 0);
     if (!is_seen(n.w)) discard;
-    int surface = int(n.w + 0.5) - 1;
+    int surface = surface_row(n.w);
     vec4 toon = texelFetch(surfaces, ivec2(0, surface), 0);
     vec4 glow_height = texelFetch(surfaces, ivec2(1, surface), 0);
     vec3 p = texelFetch(position, here, 0).xyz;

@@ -14,7 +14,6 @@ const float GOLDEN_ANGLE = 2.39996323;
 uniform sampler2D diffuse;
 uniform sampler2D ambient;          // with the share of it that arrives
 uniform sampler2D falling;          // light that falls on skin, and 1; 0 elsewhere
-uniform sampler2D surfaces;         // a row for each surface, see surface_records
 uniform vec3 level_radius;          // of each level, for skin of scale 1 [m]
 uniform float level_depth;          // difference in depth at which a level ends, as a share of its radius
 uniform vec3 unscattered;           // share of the light that leaves where it enters, by colour
@@ -56,7 +55,7 @@ void main() {
     vec4 light = texelFetch(falling, here, 0);
     scattered = vec4(texelFetch(diffuse, here, 0).rgb, 0.0);
     if (light.w < 0.5) return;      // not skin
-    float scale = texelFetch(surfaces, ivec2(2, int(n.w + 0.5) - 1), 0).x;
+    float scale = texelFetch(surfaces, ivec2(2, surface_row(n.w)), 0).x;
     float depth = texelFetch(position, here, 0).z;
     vec3 radius = scale * level_radius;
     float wide = 1.0, narrow = 1.0; // how far the wide levels, and the narrow one, replace the light itself

@@ -10,3 +10,10 @@ uniform sampler2D shade_metal;
 bool is_seen(float id) {
     return id > 0.5;
 }
+
+uniform sampler2D surfaces;     // a row for each surface, see surface_records
+
+// Row of a surface in the records; those beyond the last share it.
+int surface_row(float id) {
+    return min(int(id + 0.5), textureSize(surfaces, 0).y) - 1;
+}

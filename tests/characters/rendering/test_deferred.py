@@ -8,7 +8,7 @@ import pytest
 from characters.model.mesh import Material, ToonShading
 from characters.rendering import QUALITIES, Cover, Stage
 from characters.rendering.deferred.buffers import surface_records
-from characters.rendering.passes.deferred import geometry, lighting
+from characters.rendering.passes.deferred import lighting
 from characters.rendering.passes.render_pass import RenderPass
 from tests.characters.rendering.shapes import Still, plate
 
@@ -68,8 +68,7 @@ def test_a_camera_that_looks_along_the_table_draws_who_stands_on_it(ctx, view, p
 
 
 def test_surfaces_beyond_the_last_record_are_lit_too(stage, deferred, view, monkeypatch):
-    for module in (geometry, lighting):
-        monkeypatch.setattr(module, "MAX_SURFACES", 3)
+    monkeypatch.setattr(lighting, "MAX_SURFACES", 3)
     deferred.quality = replace(deferred.quality, name="with few records")
     plates = tuple(
         plate(Material(base_color=(0.6, 0.3, 0.2, 1.0), roughness=0.5 + 0.1 * number), side=side)

@@ -2,14 +2,9 @@
 
 import moderngl
 
-from characters.rendering.deferred.buffers import (
-    AMBIENT_UNIT,
-    DIFFUSE_UNIT,
-    NORMAL_UNIT,
-    SPECULAR_UNIT,
-)
+from characters.rendering.deferred.buffers import buffer_triangle
 from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.programs import ShaderPrograms, set_uniforms
+from characters.rendering.programs import ShaderPrograms
 from characters.rendering.resources import CharacterLayer, FrameResources, Region
 
 
@@ -18,18 +13,10 @@ class DeferredCompositePass(RenderPass):
 
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
         self._shown, self._linear = (
-            context.vertex_array(programs.load("full_screen", "deferred_composite", *names), [])
+            buffer_triangle(context, programs, "deferred_composite", *names)
             for names in ((), ("LINEAR",))
         )
         self.owned = (self._shown, self._linear)
-        for triangle in self.owned:
-            set_uniforms(
-                triangle.program,
-                normal_id=NORMAL_UNIT,
-                diffuse=DIFFUSE_UNIT,
-                specular=SPECULAR_UNIT,
-                ambient=AMBIENT_UNIT,
-            )
 
     def draw(self, frame: FrameResources, region: Region) -> None:
         """Write all texels that show a character."""

@@ -2,14 +2,7 @@
 
 import moderngl
 
-from characters.rendering.deferred.buffers import (
-    AMBIENT_UNIT,
-    DIFFUSE_UNIT,
-    NORMAL_UNIT,
-    POSITION_UNIT,
-    SPECULAR_UNIT,
-    SUM_UNIT,
-)
+from characters.rendering.deferred.buffers import BUFFER_UNITS, buffer_triangle
 from characters.rendering.passes.deferred.composite import DeferredCompositePass
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
@@ -39,17 +32,8 @@ class DepthOfFieldPass(RenderPass):
         composite: DeferredCompositePass,
     ) -> None:
         self._composite = composite
-        self._triangle = context.vertex_array(programs.load("full_screen", "depth_of_field"), [])
+        self._triangle = buffer_triangle(context, programs, "depth_of_field")
         self.owned = (self._triangle, composite)
-        set_uniforms(
-            self._triangle.program,
-            normal_id=NORMAL_UNIT,
-            position=POSITION_UNIT,
-            light=SUM_UNIT,
-            diffuse=DIFFUSE_UNIT,
-            specular=SPECULAR_UNIT,
-            ambient=AMBIENT_UNIT,
-        )
 
     def draw(self, frame: FrameResources, region: Region) -> None:
         """Draw the characters, sharp in the focus alone."""
@@ -67,7 +51,7 @@ class DepthOfFieldPass(RenderPass):
         framebuffer.use()  # the mask takes effect here
         frame.context.enable_only(moderngl.BLEND | moderngl.DEPTH_TEST)
         frame.context.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
-        layer.target.light.sum.use(SUM_UNIT)
+        layer.target.light.sum.use(BUFFER_UNITS["light"])
         set_uniforms(
             self._triangle.program,
             half_aperture=0.5 * texels * focus.aperture,

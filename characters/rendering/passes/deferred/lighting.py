@@ -4,12 +4,9 @@ import moderngl
 import numpy as np
 
 from characters.rendering.deferred.buffers import (
-    ALBEDO_UNIT,
+    BUFFER_UNITS,
     MAX_SURFACES,
-    NORMAL_UNIT,
-    POSITION_UNIT,
-    SHADE_UNIT,
-    SURFACES_UNIT,
+    buffer_triangle,
     surface_records,
 )
 from characters.rendering.passes.deferred.visibility import DeferredVisibilityPass
@@ -34,20 +31,10 @@ class DeferredLightingPass(RenderPass):
         self._visibility = visibility
         occluded = visibility is not None and visibility.is_occluded
         features = [*["VISIBILITY"] * bool(visibility), *["OCCLUDED"] * occluded]
-        self._triangle = context.vertex_array(
-            programs.load("full_screen", "deferred_lighting", *features), []
-        )
+        self._triangle = buffer_triangle(context, programs, "deferred_lighting", *features)
         self._records = context.texture((3, MAX_SURFACES), 4, dtype="f4")
         self._records.filter = moderngl.NEAREST, moderngl.NEAREST
         self.owned = (self._triangle, self._records)
-        set_uniforms(
-            self._triangle.program,
-            normal_id=NORMAL_UNIT,
-            position=POSITION_UNIT,
-            albedo_rough=ALBEDO_UNIT,
-            shade_metal=SHADE_UNIT,
-            surfaces=SURFACES_UNIT,
-        )
 
     def draw(self, frame: FrameResources, region: Region) -> None:
         """Light all texels."""
@@ -72,5 +59,5 @@ class DeferredLightingPass(RenderPass):
         layer.target.light.is_scattered = False
         frame.context.enable_only(moderngl.NOTHING)
         layer.target.geometry.bind()
-        self._records.use(SURFACES_UNIT)
+        self._records.use(BUFFER_UNITS["surfaces"])
         self._triangle.render(moderngl.TRIANGLES, vertices=3)

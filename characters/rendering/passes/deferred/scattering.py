@@ -3,15 +3,7 @@
 import moderngl
 import numpy as np
 
-from characters.rendering.deferred.buffers import (
-    ALBEDO_UNIT,
-    AMBIENT_UNIT,
-    DIFFUSE_UNIT,
-    FALLING_UNIT,
-    NORMAL_UNIT,
-    POSITION_UNIT,
-    SURFACES_UNIT,
-)
+from characters.rendering.deferred.buffers import buffer_triangle
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.projection import NEAR_M
@@ -46,19 +38,10 @@ class DeferredScatteringPass(RenderPass):
 
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms, adaptive: bool) -> None:
         features = ("ADAPTIVE",) if adaptive else ()
-        self._triangle = context.vertex_array(
-            programs.load("full_screen", "deferred_scattering", *features), []
-        )
+        self._triangle = buffer_triangle(context, programs, "deferred_scattering", *features)
         self.owned = (self._triangle,)
         set_uniforms(
             self._triangle.program,
-            normal_id=NORMAL_UNIT,
-            position=POSITION_UNIT,
-            albedo_rough=ALBEDO_UNIT,
-            diffuse=DIFFUSE_UNIT,
-            ambient=AMBIENT_UNIT,
-            falling=FALLING_UNIT,
-            surfaces=SURFACES_UNIT,
             level_radius=LEVEL_RADII_M,
             level_depth=LEVEL_DEPTH,
             unscattered=UNSCATTERED,

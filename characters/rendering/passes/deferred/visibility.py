@@ -5,13 +5,7 @@ import numpy as np
 
 from characters.rendering.deferred.ambient_occlusion import AmbientOcclusion
 from characters.rendering.deferred.blocker_map import CHARACTER_RANGE_TEXELS, BlockerMap
-from characters.rendering.deferred.buffers import (
-    NORMAL_UNIT,
-    OCCLUSION_UNIT,
-    POSITION_UNIT,
-    VISIBILITY_UNIT,
-    PixelBuffer,
-)
+from characters.rendering.deferred.buffers import BUFFER_UNITS, PixelBuffer, buffer_triangle
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.resources import CharacterLayer, FrameResources, Region
@@ -47,7 +41,7 @@ class DeferredVisibilityPass(RenderPass):
         self._blockers, self._occlusion = blockers, occlusion
         names = [*["SHADOWED"] * bool(blockers), *["OCCLUDED"] * bool(occlusion)]
         self._reduce, self._find, self._smooth = (
-            context.vertex_array(programs.load("full_screen", fragment, *defines), [])
+            buffer_triangle(context, programs, fragment, *defines)
             for fragment, defines in (
                 ("pixel_geometry", ()),
                 ("pixel_visibility", names),
@@ -57,15 +51,7 @@ class DeferredVisibilityPass(RenderPass):
         self._pixels: PixelBuffer | None = None
         arrays = (self._reduce, self._find, self._smooth)
         self.owned = arrays if occlusion is None else (*arrays, occlusion)
-        for array in arrays:
-            set_uniforms(
-                array.program,
-                normal_id=NORMAL_UNIT,
-                position=POSITION_UNIT,
-                occlusion=OCCLUSION_UNIT,
-                visibility=VISIBILITY_UNIT,
-                depth_tolerance=DEPTH_TOLERANCE_M,
-            )
+        set_uniforms(self._smooth.program, depth_tolerance=DEPTH_TOLERANCE_M)
 
     def draw(self, frame: FrameResources, region: Region) -> None:
         """Find the visible light in each pixel of the characters."""
@@ -81,7 +67,7 @@ class DeferredVisibilityPass(RenderPass):
             found = self._occlusion.draw(
                 pixels.normal_id, pixels.position, size, focal, frame.table_plane
             )
-            found.use(OCCLUSION_UNIT)
+            found.use(BUFFER_UNITS["occlusion"])
         pixels.bind()
         if self._blockers is not None:
             table_from_camera = np.asarray(np.linalg.inv(frame.camera_from_table), float)
@@ -91,19 +77,17 @@ class DeferredVisibilityPass(RenderPass):
         pixels.use_visibility(0, size)
         self._find.render(moderngl.TRIANGLES, vertices=3)
         pixels.use_visibility(1, size)
-        pixels.visibility[0].use(VISIBILITY_UNIT)
+        pixels.visibility[0].use(BUFFER_UNITS["visibility"])
         set_uniforms(self._smooth.program, last_pixel=(size[0] - 1, size[1] - 1))
         self._smooth.render(moderngl.TRIANGLES, vertices=3)
 
     def set_uniforms(self, program: moderngl.Program, layer: CharacterLayer) -> None:
         """Bind what was found, and set the uniforms of a program that asks for it in a layer."""
         pixels = self._pixels_of(layer)
-        pixels.visibility[1].use(VISIBILITY_UNIT)
-        pixels.position.use(OCCLUSION_UNIT)
+        pixels.visibility[1].use(BUFFER_UNITS["visibility"])
+        pixels.position.use(BUFFER_UNITS["pixel_position"])
         set_uniforms(
             program,
-            visibility=VISIBILITY_UNIT,
-            pixel_position=OCCLUSION_UNIT,
             fineness=layer.target.fineness,
             last_pixel=(layer.area.width - 1, layer.area.height - 1),
             depth_tolerance=DEPTH_TOLERANCE_M,
