@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.rendering.programs import set_uniforms
-from characters.rendering.projection import SIZE_STEP_PX, Rectangle
+from characters.rendering.projection import Rectangle, grown_size
 from characters.rendering.scene import Cover
 
 COVER_UNIT = 7
@@ -57,19 +57,16 @@ class ShareTexture:
     def write(self, share: NDArray[np.uint8]) -> moderngl.Texture:
         """Return the texture with shares (height, width) 0…255 in its first texels."""
         height, width = share.shape
-        texture = self._at_least(width, height)
+        texture = self._at_least((width, height))
         texture.write(np.ascontiguousarray(share), viewport=(0, 0, width, height))
         return texture
 
-    def _at_least(self, width: int, height: int) -> moderngl.Texture:
-        kept = self._texture
-        if kept is not None and kept.width >= width and kept.height >= height:
-            return kept
-        if kept is not None:
-            width, height = max(width, kept.width), max(height, kept.height)
-        self.release()
-        columns, rows = (-(-length // SIZE_STEP_PX) * SIZE_STEP_PX for length in (width, height))
-        self._texture = self._context.texture((columns, rows), 1, alignment=1)
+    def _at_least(self, needed: tuple[int, int]) -> moderngl.Texture:
+        size = grown_size(None if self._texture is None else self._texture.size, needed)
+        if size is not None:
+            self.release()
+            self._texture = self._context.texture(size, 1, alignment=1)
+        assert self._texture is not None
         return self._texture
 
     def release(self) -> None:

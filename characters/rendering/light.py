@@ -89,6 +89,7 @@ class LightEstimator:
     """
 
     MINKOWSKI_P = 6.0
+    _POWERS = LINEAR_FROM_SRGB**MINKOWSKI_P
     BRIGHT_ALBEDO = 0.6
     """Albedo of the surfaces that dominate the Minkowski mean: light ones, seldom white ones."""
 
@@ -182,8 +183,7 @@ class LightEstimator:
 
         Two hundred and fifty-six powers take less time than those of all samples.
         """
-        powers = LINEAR_FROM_SRGB**self.MINKOWSKI_P
-        bright = powers[samples].mean(axis=0) ** (1 / self.MINKOWSKI_P)
+        bright = self._POWERS[samples].mean(axis=0) ** (1 / self.MINKOWSKI_P)
         bright = bright / self.BRIGHT_ALBEDO
         gain = float(np.sqrt(self.EXPOSED_WHITE / max(float(bright @ LUMA_WEIGHTS), 1e-6)))
         return _reduce_cast(bright, self.PICTURE_CAST_SHARE) * gain

@@ -39,6 +39,18 @@ def hidden_by_cube(box: Box, matrix: Array, area: Rectangle) -> NDArray[np.uint8
     return np.asarray(np.rint(255.0 * np.maximum(inside, 0.0)), np.uint8)
 
 
+def camera_from_unit_cube(box: Box) -> Array:
+    """Return the pose of a box scaled by its edge, (4, 4): in its frame, the edge is 1 long."""
+    return np.asarray(box.camera_from_box @ np.diag([box.edge, box.edge, box.edge, 1.0]))
+
+
+def unit_cube_from_table(box: Box | None, camera_from_table: Array) -> Array:
+    """Return the table in the frame of a box whose edge is 1 long, (4, 4); zeros for no box."""
+    if box is None:
+        return np.zeros((4, 4))
+    return np.asarray(np.linalg.inv(camera_from_unit_cube(box)) @ camera_from_table)
+
+
 def corners_of(box: Box, camera_from_table: Array) -> Array:
     """Return the eight corners of a box in the table frame, (8, 3) [m]."""
     table_from_box = np.linalg.inv(camera_from_table) @ box.camera_from_box

@@ -153,6 +153,30 @@ def merge_rectangles(rectangles: Sequence[Rectangle]) -> list[Rectangle]:
     return merged
 
 
+def texture_size(width: int, height: int) -> tuple[int, int]:
+    """Return a size that is rounded up to multiples of `SIZE_STEP_PX`.
+
+    >>> texture_size(1, 65)
+    (64, 128)
+    """
+    return -(-width // SIZE_STEP_PX) * SIZE_STEP_PX, -(-height // SIZE_STEP_PX) * SIZE_STEP_PX
+
+
+def grown_size(kept: tuple[int, int] | None, needed: tuple[int, int]) -> tuple[int, int] | None:
+    """Return the size of the texture that must replace a kept one, which never shrinks.
+
+    It is None if the kept one is large enough.
+
+    >>> grown_size((128, 64), (100, 80)), grown_size((128, 64), (100, 60))
+    ((128, 128), None)
+    """
+    if kept is None:
+        return texture_size(*needed)
+    if kept[0] >= needed[0] and kept[1] >= needed[1]:
+        return None
+    return texture_size(max(kept[0], needed[0]), max(kept[1], needed[1]))
+
+
 def is_invertible(transform: Array | None) -> bool:
     """Return whether a transform is a finite, non-singular (4, 4) matrix; it may be scaled."""
     if transform is None or np.shape(transform) != (4, 4) or not np.isfinite(transform).all():

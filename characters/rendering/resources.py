@@ -14,7 +14,7 @@ from characters.rendering.hidden_table import hidden_table
 from characters.rendering.light import Light
 from characters.rendering.occlusion import corners_of
 from characters.rendering.programs import set_uniforms
-from characters.rendering.projection import Rectangle, bounding_rectangle, clip_from_camera
+from characters.rendering.projection import NEAR_M, Rectangle, bounding_rectangle, clip_from_camera
 from characters.rendering.scene import Box, Scene, Softness
 from characters.rendering.target import RenderTarget, RenderTargets
 from characters.skeleton.pose import Array
@@ -169,6 +169,12 @@ class FrameResources:
         up, point = self.camera_from_table[:3, 1], self.camera_from_table[:3, 3]
         distance = float(up @ point)
         return up / distance if abs(distance) > MIN_TABLE_DISTANCE_M else np.zeros(3)
+
+    def depths_of(self, character: CharacterInstance) -> tuple[float, float]:
+        """Return the least and the greatest depth of a character, not before the near plane [m]."""
+        row = self.camera_from_table[2]
+        depths = character.enclosing @ row[:3] + row[3]
+        return max(float(depths.min()), NEAR_M), max(float(depths.max()), NEAR_M)
 
     def area_of(self, points: Array) -> Rectangle | None:
         """Return the area of the picture around points (n, 3) of the table frame, or None."""

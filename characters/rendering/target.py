@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.rendering.deferred.buffers import GeometryBuffer, LightBuffer
-from characters.rendering.projection import SIZE_STEP_PX
+from characters.rendering.projection import texture_size
 from characters.rendering.quality import Quality
 
 Image = NDArray[np.uint8]
@@ -92,7 +92,7 @@ class RenderTargets:
 
     def at_least(self, width: int, height: int) -> RenderTarget:
         """Return a target that is large enough, and not much larger."""
-        size = (-(-width // SIZE_STEP_PX) * SIZE_STEP_PX, -(-height // SIZE_STEP_PX) * SIZE_STEP_PX)
+        size = texture_size(width, height)
         fitting = [
             kept
             for kept in self._kept

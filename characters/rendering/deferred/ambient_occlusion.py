@@ -8,7 +8,7 @@ import numpy as np
 from characters.errors import CharacterError
 from characters.rendering.deferred.sample_patterns import PATTERNS, sample_pattern
 from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.projection import SIZE_STEP_PX
+from characters.rendering.projection import grown_size
 from characters.skeleton.pose import Array
 
 
@@ -223,15 +223,12 @@ class AmbientOcclusion:
 
     def _fit(self, size: tuple[int, int]) -> None:
         """Have two textures for the occlusion that are large enough; they never shrink."""
-        kept = self._textures[0].size if self._textures else (0, 0)
-        if kept[0] >= size[0] and kept[1] >= size[1]:
+        grown = grown_size(self._textures[0].size if self._textures else None, size)
+        if grown is None:
             return
         self._release_targets()
-        width, height = (
-            -(-max(each) // SIZE_STEP_PX) * SIZE_STEP_PX for each in zip(kept, size, strict=True)
-        )
         for _ in range(2):
-            texture = self._context.texture((width, height), 2, dtype="f4")
+            texture = self._context.texture(grown, 2, dtype="f4")
             texture.filter = moderngl.NEAREST, moderngl.NEAREST
             texture.repeat_x = texture.repeat_y = False
             self._textures.append(texture)

@@ -17,7 +17,7 @@ LEVEL_TOLERANCES = (1 / 850, 1 / 600, 1 / 425, 1 / 300, 1 / 200)
 """Errors of the coarser levels, as shares of the character's largest side; each is for half the
 size in the picture of the one before."""
 
-HYSTERESIS = 1.15
+SIZE_HYSTERESIS = 1.15
 """Factor by which the size in the picture changes back before the level does."""
 
 GROUP_TRIANGLES = 256
@@ -99,13 +99,13 @@ def with_levels(
 def chosen_level(levels: Sequence[DetailLevel], last: int, max_error: float) -> int:
     """Return the number of the coarsest level with an error of at most `max_error` [m].
 
-    It stays the last one while that is only worse by `HYSTERESIS`, so that they do not alternate.
+    It stays the last one while that is worse by `SIZE_HYSTERESIS` at most: they do not alternate.
     """
     allowed = [number for number, each in enumerate(levels) if each.tolerance <= max_error]
     fits = max(allowed, default=0)
-    if fits > last and HYSTERESIS * levels[fits].tolerance > max_error:
+    if fits > last and SIZE_HYSTERESIS * levels[fits].tolerance > max_error:
         fits -= 1
-    stays = levels[last].tolerance <= HYSTERESIS * max_error
+    stays = levels[last].tolerance <= SIZE_HYSTERESIS * max_error
     return last if last > fits and stays else fits
 
 

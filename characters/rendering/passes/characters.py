@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import moderngl
 
-from characters.rendering.passes.cube_window import clip_to, unit_cube_from_table
+from characters.rendering.occlusion import unit_cube_from_table
+from characters.rendering.passes.cube_window import clip_to
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.projection import Rectangle
 from characters.rendering.resources import CharacterLayer, FrameResources, Region
@@ -53,7 +54,7 @@ class CharacterPass(RenderPass):
                 features,
                 first_surface,
                 clip_from_table=layer.clip_from_camera @ frame.camera_from_table,
-                cube_from_table=unit_cube_from_table(frame, character.inside),
+                cube_from_table=unit_cube_from_table(character.inside, frame.camera_from_table),
                 height=character.height,
                 **uniforms,
             )

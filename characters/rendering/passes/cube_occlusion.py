@@ -1,9 +1,8 @@
 """The depth of the real cubes, which hide the characters behind them."""
 
 import moderngl
-import numpy as np
 
-from characters.rendering.occlusion import UNIT_CUBE
+from characters.rendering.occlusion import UNIT_CUBE, camera_from_unit_cube
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.resources import FrameResources, Region
@@ -33,9 +32,8 @@ class CubeOcclusionPass(RenderPass):
         for box in layer.cubes:
             if box.is_open:  # `CubeWindowPass` draws it
                 continue
-            clip_from_box = layer.clip_from_camera @ box.camera_from_box
-            scale = np.diag([box.edge, box.edge, box.edge, 1.0])
-            set_uniforms(self._program, clip_from_cube=clip_from_box @ scale)
+            clip_from_cube = layer.clip_from_camera @ camera_from_unit_cube(box)
+            set_uniforms(self._program, clip_from_cube=clip_from_cube)
             self._cube.render(moderngl.TRIANGLES)
         framebuffer.color_mask = True, True, True, True
         framebuffer.use()

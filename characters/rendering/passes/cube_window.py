@@ -6,7 +6,7 @@ import moderngl
 import numpy as np
 
 from characters.rendering.geometry.character_cache import CharacterInstance
-from characters.rendering.occlusion import UNIT_CUBE
+from characters.rendering.occlusion import UNIT_CUBE, camera_from_unit_cube
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.passes.shadows import ShadowMap, key_share
 from characters.rendering.programs import ShaderPrograms, set_uniforms
@@ -136,18 +136,6 @@ def clip_to(context: moderngl.Context, character: CharacterInstance | None) -> N
     inside = character is not None and character.inside is not None
     for number in range(6):
         (context.enable_direct if inside else context.disable_direct)(GL_CLIP_DISTANCE0 + number)
-
-
-def unit_cube_from_table(frame: FrameResources, box: Box | None) -> Array:
-    """Return the table in the frame of a cube whose edge is 1 long, (4, 4); zeros for no cube."""
-    if box is None:
-        return np.zeros((4, 4))
-    return np.asarray(np.linalg.inv(camera_from_unit_cube(box)) @ frame.camera_from_table)
-
-
-def camera_from_unit_cube(box: Box) -> Array:
-    """Return the pose of a cube scaled by its edge, (4, 4)."""
-    return np.asarray(box.camera_from_box @ np.diag([box.edge, box.edge, box.edge, 1.0]))
 
 
 def _seen_from_inside(frame: FrameResources, box: Box) -> dict[str, Array]:

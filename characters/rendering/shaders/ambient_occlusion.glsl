@@ -1,6 +1,8 @@
 // Ambient occlusion in the picture's plane (Huang 2013, ch. 3): LINES lines of SAMPLES samples through
 // each pixel, the pixel itself among them. The estimator that includes this file says what they mean.
 
+#include "wendland"
+
 const float PI = 3.14159265;
 const float FAR_BEHIND = 4.0;   // where the background is taken to be [radii]
 
@@ -30,10 +32,7 @@ void begin_half(vec2 direction);
 void take(vec3 way, float far, float along, float area);
 float occlusion();
 
-float falloff(float far) {
-    float share = min(far / radius, 1.0), rest = 1.0 - share;
-    return rest * rest * rest * rest * (4.0 * share + 1.0);     // Wendland 1995; Huang (3.3.3)
-}
+float falloff(float far) { return wendland(far / radius); }
 
 // How much a rise of the horizon counts: what hides the view is between the last sample and this one.
 float rise_falloff(float far) { return falloff(mix(far, min(last_far, far), fill)); }

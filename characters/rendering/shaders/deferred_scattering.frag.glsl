@@ -6,10 +6,11 @@
 
 #include "geometry_buffer"
 #include "tile_offset"
+#include "disc_taps"
+#include "wendland"
 
 const int LEVELS = 3;
 const int TAPS = 12;                // of each level
-const float GOLDEN_ANGLE = 2.39996323;
 
 uniform sampler2D diffuse;
 uniform sampler2D ambient;          // with the share of it that arrives
@@ -23,21 +24,14 @@ uniform vec2 open_limits;           // open share below which all levels count, 
 
 layout(location = 0) out vec4 scattered;    // light of the skin, and the share of all taps that it took
 
-float wendland(float t) {
-    float rest = max(1.0 - t, 0.0);
-    rest *= rest;
-    return rest * rest * (4.0 * t + 1.0);
-}
-
 vec3 filtered(ivec2 here, vec3 light, vec3 n, float depth, float radius) {
     float texels = radius * focal / depth;
-    float turn = 6.2831853 * tile_offset(here).x, shift = tile_offset(here).y;
+    vec2 offset = tile_offset(here);
     vec3 sum = light;
     float total = 1.0;
     for (int i = 0; i < TAPS; ++i) {
-        float away = sqrt((float(i) + shift) / float(TAPS));
-        float angle = float(i) * GOLDEN_ANGLE + turn;
-        ivec2 there = here + ivec2(round(away * texels * vec2(cos(angle), sin(angle))));
+        float away = disc_reach(i, TAPS, offset);
+        ivec2 there = here + ivec2(round(away * texels * disc_direction(i, offset)));
         vec4 tap = texelFetch(falling, there, 0);
         float behind = abs(texelFetch(position, there, 0).z - depth) / (level_depth * radius);
         float weight = wendland(away) * wendland(behind) * tap.w

@@ -8,9 +8,9 @@
 #include "encoding"
 #include "light_sum"
 #include "tile_offset"
+#include "disc_taps"
 
 const int MOST_TAPS = 32, FEWEST_TAPS = 8;
-const float GOLDEN_ANGLE = 2.39996323;
 
 uniform sampler2D light;        // of the characters, linear, and 1 where one is seen
 uniform float half_aperture;    // of the lens, times the focal length [texels m]
@@ -40,9 +40,8 @@ void main() {
     vec4 sum = seen ? vec4(texelFetch(light, here, 0).rgb, 1.0) : vec4(0.0);
     float total = 1.0, depths = 0.0;
     for (int i = 0; i < taps; ++i) {
-        float away = radius * sqrt((float(i) + offset.y) / float(taps));
-        float angle = float(i) * GOLDEN_ANGLE + 6.2831853 * offset.x;
-        ivec2 there = clamp(here + ivec2(round(away * vec2(cos(angle), sin(angle)))), ivec2(0), last_texel);
+        float away = radius * disc_reach(i, taps, offset);
+        ivec2 there = clamp(here + ivec2(round(away * disc_direction(i, offset))), ivec2(0), last_texel);
         if (!is_seen(texelFetch(normal_id, there, 0).w)) {
             total += 1.0;
             continue;

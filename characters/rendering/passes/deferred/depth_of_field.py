@@ -6,7 +6,6 @@ from characters.rendering.deferred.buffers import BUFFER_UNITS, buffer_triangle
 from characters.rendering.passes.deferred.composite import DeferredCompositePass
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.projection import NEAR_M
 from characters.rendering.resources import FrameResources, Region
 from characters.rendering.scene import Focus
 
@@ -70,9 +69,5 @@ class DepthOfFieldPass(RenderPass):
 
 def _widest(frame: FrameResources, focus: Focus) -> float:
     """Return the radius of the largest circle of confusion of all characters, as a tangent."""
-    row = frame.camera_from_table[2]
-    radii = [0.0]
-    for character in frame.characters:
-        depths = character.enclosing @ row[:3] + row[3]
-        radii += [focus.radius(max(float(depth), NEAR_M)) for depth in (depths.min(), depths.max())]
-    return max(radii)
+    depths = (depth for character in frame.characters for depth in frame.depths_of(character))
+    return max(map(focus.radius, depths), default=0.0)

@@ -6,7 +6,6 @@ import numpy as np
 from characters.rendering.deferred.buffers import buffer_triangle
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.projection import NEAR_M
 from characters.rendering.resources import FrameResources, Region
 
 LEVEL_RADII_M = (0.0023, 0.0053, 0.0103)
@@ -70,8 +69,7 @@ class DeferredScatteringPass(RenderPass):
         """Return how far light spreads in the skin that is nearest to the camera [px]."""
         reaches = [0.0]
         for character in frame.characters:
-            depths = character.enclosing @ frame.camera_from_table[2, :3]
-            nearest = max(float(depths.min() + frame.camera_from_table[2, 3]), NEAR_M)
+            nearest, _ = frame.depths_of(character)
             scattering = max(each.material.scattering for each in character.skinned.surfaces)
             scale = character.height / character.skinned.height
             reaches.append(scale * scattering * LEVEL_RADII_M[-1] / nearest)

@@ -8,7 +8,7 @@ import numpy as np
 from characters.rendering.deferred.blocker_map import TABLE_RANGE_TEXELS, BlockerMap
 from characters.rendering.deferred.lamp import Lamp
 from characters.rendering.light import Light
-from characters.rendering.passes.shadows import ShadowPass, sky_extent
+from characters.rendering.passes.shadows import ShadowPass, key_share, sky_extent
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.projection import Rectangle
 from characters.rendering.resources import FrameResources, Region
@@ -63,7 +63,7 @@ class SoftShadowPass(ShadowPass):
         around = [sky_extent(each.enclosing, each.height) for each in frame.on_table]
         self._extent = _united([lamp.shadow(casters), *around])
         self._find_openness()
-        self._find_left(super()._key_share(frame.light))
+        self._find_left(key_share(frame.light))
         self._area = frame.area_of(np.concatenate([casters, _corners(self._extent)]))
         return () if self._area is None else (self._area,)
 
@@ -112,8 +112,8 @@ class SoftShadowPass(ShadowPass):
             shadow.texture.use(0)
             table.render(moderngl.TRIANGLE_STRIP, vertices=4)
 
-    def _find_left(self, key_share: Array) -> None:
-        """Find the light that is left in each texel of the square."""
+    def _find_left(self, share: Array) -> None:
+        """Find the light that is left in each texel of the square; see `key_share` for `share`."""
         self._context.enable_only(moderngl.NOTHING)
         self._targets[1].use()
         set_uniforms(
@@ -127,7 +127,7 @@ class SoftShadowPass(ShadowPass):
         self._find.render(moderngl.TRIANGLES, vertices=3)
         self._targets[2].use()
         self.left.use(LEFT_UNIT)
-        set_uniforms(self._combine.program, left=LEFT_UNIT, key=key_share)
+        set_uniforms(self._combine.program, left=LEFT_UNIT, key=share)
         self._combine.render(moderngl.TRIANGLES, vertices=3)
 
 

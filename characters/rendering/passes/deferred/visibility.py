@@ -8,6 +8,7 @@ from characters.rendering.deferred.blocker_map import CHARACTER_RANGE_TEXELS, Bl
 from characters.rendering.deferred.buffers import BUFFER_UNITS, PixelBuffer, buffer_triangle
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
+from characters.rendering.projection import grown_size
 from characters.rendering.resources import CharacterLayer, FrameResources, Region
 
 DEPTH_TOLERANCE_M = 0.01
@@ -118,12 +119,14 @@ class DeferredVisibilityPass(RenderPass):
 
     def _pixels_of(self, layer: CharacterLayer) -> PixelBuffer:
         """Return the buffer for the pixels of a layer; it grows, and never shrinks."""
-        size = layer.target.picture_texture.size
         kept = self._pixels
-        if kept is None or kept.position.width < size[0] or kept.position.height < size[1]:
+        size = grown_size(
+            None if kept is None else kept.position.size, layer.target.picture_texture.size
+        )
+        if size is not None:
             if kept is not None:
-                size = max(size[0], kept.position.width), max(size[1], kept.position.height)
                 self._context.detect_framebuffer(0).use()
                 kept.release()
             self._pixels = kept = PixelBuffer(self._context, size)
+        assert kept is not None
         return kept
