@@ -13,6 +13,7 @@ from characters.locomotion.foot_trajectories import FootTrajectories
 from characters.locomotion.stride_blending import StrideBlend
 from characters.motion.blend import Blend, BlendSpace1D, TimeScaled
 from characters.motion.clip import Clip
+from characters.motion.contacts import find_contacts
 from characters.motion.motion import Motion
 from characters.motion.phase import PhasedMotion, StaticPose, phased
 from characters.skeleton.pose import Pose, Skeleton
@@ -79,6 +80,8 @@ class Gaits:
         self._run = BlendSpace1D(tuple(runs), tuple(runs.values())) if runs else self._walk
         self.legs = find_legs(skeleton)
         """The legs that keep feet from sliding, or None if the skeleton has no suitable legs."""
+        self._skeleton = skeleton
+        self._contacts: dict[int, tuple[Clip, list[list[bool]]]] = {}
         self._still = StaticPose(standing, self._walk.at(0.0).duration)
         self._trajectories: FootTrajectories | None = None
         if self.legs is not None:
@@ -92,6 +95,17 @@ class Gaits:
         self._speeds = [IDLE_SPEED, *WALK_RUN_SPEEDS, TOP_SPEED]
         paces = [_SLOW_WALK * walk, _FAST_WALK * walk, _SLOW_RUN * run, _FAST_RUN * run]
         self._paces = [max(paces[: count + 1]) for count in range(len(paces))]
+
+    def contacts(self, clip: Clip) -> list[list[bool]]:
+        """Return which feet of the legs are on the ground in each frame of a clip.
+
+        They are found once for each clip, which takes some hundredths of a second.
+        """
+        if id(clip) not in self._contacts:
+            feet = () if self.legs is None else self.legs.feet
+            found: list[list[bool]] = find_contacts(clip, self._skeleton, feet).tolist()
+            self._contacts[id(clip)] = clip, found  # the clip is kept, so that its number stays its
+        return self._contacts[id(clip)][1]
 
     def pace(self, speed: float) -> float:
         """Return the ground speed straight ahead at a Speed [m/s]; monotonic."""

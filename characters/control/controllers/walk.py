@@ -1,9 +1,6 @@
 """A character that walks and runs to where it is sent."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -23,13 +20,10 @@ from characters.locomotion.gaits import (
     RUN_SPEED,
     TOP_SPEED,
     WALK_CLIPS,
-    Gaits,
 )
 from characters.locomotion.steering import STANDSTILL, Steering, SteeringOutput
 from characters.locomotion.stride_blending import StrideBlend
 from characters.model.character import Character
-from characters.motion.clip import Clip
-from characters.motion.contacts import find_contacts
 from characters.motion.motion import Motion, RootDelta
 from characters.motion.phase import Cyclic, RetimedMotion
 from characters.motion.state_machine import StateMachine
@@ -59,7 +53,7 @@ class WalkController:
         clips, skeleton = character.clips, character.skeleton
         self._standing = character.stand()
         idle: Motion = self._standing or clips.get("idle", clips["Walk"])
-        self.gaits = _gaits_of(_Body(dict(clips), skeleton, idle.sample(0.0)))
+        self.gaits = character.gaits
         self.place = place or RootDelta()
         """Where it stands on the table [m] and faces [rad]."""
         self._scale = scale
@@ -74,10 +68,10 @@ class WalkController:
         self._machine = StateMachine({"idle": idle, "move": self._strides, **self._actions}, "idle")
         self._time = 0.0
         self._weight = 0.0
-        feet = () if self.gaits.legs is None else tuple(map(tuple, self.gaits.legs.feet))
-        self._feet = len(feet)
-        acted = {name: action.clip for name, action in self._actions.items()}
-        self._contacts = _contacts_of(_Body(acted, skeleton), feet)
+        self._feet = 0 if self.gaits.legs is None else len(self.gaits.legs.feet)
+        self._contacts = {
+            name: self.gaits.contacts(action.clip) for name, action in self._actions.items()
+        }
 
     @property
     def actions(self) -> tuple[str, ...]:
@@ -218,48 +212,3 @@ def _most_similar_phase(pose: Pose, motion: Cyclic, skeleton: Skeleton) -> float
     phases = np.arange(32) / 32
     errors = [np.square(motion.at(p).globals(skeleton)[:, :3, 3] - places).sum() for p in phases]
     return float(phases[int(np.argmin(errors))])
-
-
-_KEPT_BODIES = 4  # as many characters as are often on the table
-
-
-@dataclass(frozen=True, eq=False)
-class _Body:
-    """Clips of a skeleton; equal where they are the same objects, and stand alike.
-
-    To find footfalls and contacts in all clips takes 0.1 to 0.2 s, too long for a frame in which
-    the user starts over. They never change, so that animators of one character share them.
-    """
-
-    clips: Mapping[str, Clip]
-    skeleton: Skeleton
-    standing: Pose | None = None
-
-    def _key(self) -> tuple[object, ...]:
-        pose = self.standing
-        arrays = (
-            () if pose is None else (pose.translations, pose.rotations, pose.scales, pose.morphs)
-        )
-        numbers = tuple(b"" if array is None else array.tobytes() for array in arrays)
-        clips = tuple((name, id(clip)) for name, clip in self.clips.items())
-        return id(self.skeleton), clips, numbers
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Body) and self._key() == other._key()
-
-    def __hash__(self) -> int:
-        return hash(self._key())
-
-
-@lru_cache(maxsize=_KEPT_BODIES)
-def _gaits_of(body: _Body) -> Gaits:
-    assert body.standing is not None
-    return Gaits(body.clips, body.skeleton, body.standing)
-
-
-@lru_cache(maxsize=_KEPT_BODIES)
-def _contacts_of(body: _Body, feet: tuple[tuple[int, ...], ...]) -> dict[str, list[list[bool]]]:
-    """Return which feet each frame of each clip has on the ground."""
-    return {
-        name: find_contacts(clip, body.skeleton, feet).tolist() for name, clip in body.clips.items()
-    }
