@@ -24,7 +24,9 @@ from characters.rendering import (
     View,
     create_context,
 )
-from characters.skeleton.pose import Array
+from tools.captions import framed
+from tracking.geometry import se3
+from tracking.synthetic.source import look_at
 
 Image = NDArray[np.uint8]
 
@@ -123,7 +125,7 @@ def main() -> None:
 
 
 def _pair(context: moderngl.Context, shot: Shot) -> Image:
-    """Return both pictures of a shot, with its caption below."""
+    """Return both pictures of a shot, with captions below."""
     view, actors = _scene(shot)
     pictures = []
     for quality in (shot.off, shot.on):
@@ -131,16 +133,8 @@ def _pair(context: moderngl.Context, shot: Shot) -> Image:
         stage.quality = quality
         pictures.append(stage.draw(view, actors))
         stage.release()
-    width, height = SIZE
-    page = np.full((height + 40, 2 * width + 12, 3), 255, np.uint8)
-    page[4 : height + 4, 4 : width + 4] = pictures[0]
-    page[4 : height + 4, width + 6 : 2 * width + 6] = pictures[1]
-    for text, middle in (("off", 0.5 * width), (shot.caption, 1.5 * width)):
-        font, scale = cv2.FONT_HERSHEY_SIMPLEX, 0.6
-        (length, _), _ = cv2.getTextSize(text, font, scale, 1)
-        at = (round(middle - length / 2) + 5, height + 28)
-        cv2.putText(page, text, at, font, scale, (70, 60, 60), 1, cv2.LINE_AA)
-    return page
+    captions = "off", shot.caption
+    return np.hstack([framed(*each) for each in zip(pictures, captions, strict=True)])
 
 
 def _scene(shot: Shot) -> tuple[View, Sequence[SceneCharacter]]:
@@ -155,14 +149,12 @@ def _scene(shot: Shot) -> tuple[View, Sequence[SceneCharacter]]:
     for x, z in shot.places:
         place = np.diag([scale, scale, scale, 1.0])
         place[:3, 3] = x, 0.0, z
-        place[:3, :3] = place[:3, :3] @ _turn(-0.35)
+        place[:3, :3] = place[:3, :3] @ se3.rotation(np.array([0.0, -0.35, 0.0]))
         posed = PosedCharacter(pose, place, True, "walk", 0.0, 0.0, 0.0, 0.0)
         actors.append(SceneCharacter(character, posed))
-    table = np.eye(4)
     pitch = np.deg2rad(28.0)
-    table[1, 1:3] = -np.cos(pitch), np.sin(pitch)
-    table[2, 1:3] = -np.sin(pitch), -np.cos(pitch)
-    table[:3, 3] = 0.0, 0.0, 0.62
+    eye = 0.62 * np.array([0.0, np.sin(pitch), np.cos(pitch)])
+    table = look_at(eye, np.zeros(3))
     width, height = SIZE
     focal = 620.0 * shot.zoom
     seen = table[:3, :3] @ [0.0, shot.look_at * shot.height, 0.0] + table[:3, 3]
@@ -183,12 +175,6 @@ def _glass(character: Character, opacity: float) -> Character:
         for mesh in character.meshes
     ]
     return replace(character, meshes=tuple(meshes))
-
-
-def _turn(angle: float) -> Array:
-    """Return the rotation by an angle about the vertical axis, (3, 3)."""
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
 
 
 def _desk() -> Image:

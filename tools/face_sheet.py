@@ -10,7 +10,6 @@ from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
@@ -22,9 +21,10 @@ from characters.face.visemes.coarticulation import EMPHASIS_LEVELS
 from characters.face.visemes.mouth_morphs import MouthMorphs
 from characters.face.visemes.sets import MOUTH_SHAPES, VOWEL_SHAPES
 from characters.rendering import create_context
-from characters.rendering.portrait import PAPER_BGR, PortraitRenderer, side_by_side
+from characters.rendering.portrait import PortraitRenderer, side_by_side
 from characters.speech.speech import Utterance
 from characters.speech.voices import espeak
+from tools.captions import underlined
 
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures"
 
@@ -60,10 +60,7 @@ class FaceSheets:
         picture = self._renderer.portrait(
             self._character, pose, azimuth=azimuth, elevation=0.03, focus=(centre, self._radius)
         )
-        band = np.full((CAPTION_PX, picture.shape[1], 3), PAPER_BGR, np.uint8)
-        place_px, font = (4, CAPTION_PX - 4), cv2.FONT_HERSHEY_SIMPLEX
-        cv2.putText(band, caption, place_px, font, 0.42, (60, 50, 40), 1, cv2.LINE_AA)
-        return np.vstack([picture, band])
+        return underlined(picture, caption, CAPTION_PX, 0.42)
 
     def shaped(self, shape: str, level: int = 1) -> Pose:
         """Return the character standing with a shape of the mouth."""

@@ -1,11 +1,9 @@
 """Draws a cube that opens, and looks into it from several places: `python -m tools.in_the_cube`."""
 
-import math
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
-import cv2
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +14,7 @@ from app.pipeline.scenario import Inputs
 from app.running.opening import intrinsics_for
 from app.ui.contact_sheets import save
 from characters.rendering import create_context
+from tools.captions import framed
 from tracking.synthetic import open_synthetic
 from tracking.synthetic.source import look_at
 
@@ -75,7 +74,7 @@ def main() -> None:
     with ExitStack() as closing:
         context = create_context()
         closing.callback(context.release)
-        parts = [_labelled(_drawn(context, shot), shot.caption) for shot in SHOTS]
+        parts = [framed(_drawn(context, shot), shot.caption) for shot in SHOTS]
     picture = np.vstack([np.hstack(parts[:3]), np.hstack(parts[3:])])
     save(picture, PATH, MAX_BYTES)
     Console().print(f"{PATH.name}: {PATH.stat().st_size / 1e3:.0f} kB")
@@ -97,18 +96,6 @@ def _drawn(context: moderngl.Context, shot: Shot) -> Image:
     left = x + shot.beside_px[0] - CROP_PX[0] // 2
     top = y + shot.beside_px[1] - CROP_PX[1] // 2
     return picture[top : top + CROP_PX[1], left : left + CROP_PX[0]]
-
-
-def _labelled(picture: Image, text: str) -> Image:
-    """Return a picture with a caption below and a white rim."""
-    height, width = picture.shape[:2]
-    page = np.full((height + 44, width + 8, 3), 255, np.uint8)
-    page[4 : height + 4, 4 : width + 4] = picture
-    scale, font = 0.62, cv2.FONT_HERSHEY_SIMPLEX
-    (length, _), _ = cv2.getTextSize(text, font, scale, 1)
-    at = (math.ceil((width - length) / 2), height + 30)
-    cv2.putText(page, text, at, font, scale, (70, 60, 60), 1, cv2.LINE_AA)
-    return page
 
 
 if __name__ == "__main__":

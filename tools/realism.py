@@ -1,11 +1,9 @@
 """Draws what `--realism` does, each part off and on: `python -m tools.realism`."""
 
-import math
 from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
-import cv2
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +13,7 @@ from app.pipeline.surroundings import Surroundings
 from app.ui.contact_sheets import save
 from characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
 from characters.rendering import SceneCharacter, Stage, create_context
+from tools.captions import framed
 from tracking import CubeControls, CubeGestures, CubeState, CubeTracker, Frame
 from tracking.synthetic import SyntheticSource, open_synthetic
 
@@ -55,7 +54,7 @@ def main() -> None:
         closing.callback(context.release)
         parts = [_drawn(context, source, seen, chosen)[CROP] for chosen in ROWS]
     captions = ["off", *(" + ".join(chosen) for chosen in ROWS[1:])]
-    labelled = [_labelled(part, text) for part, text in zip(parts, captions, strict=True)]
+    labelled = [framed(part, text) for part, text in zip(parts, captions, strict=True)]
     picture = np.vstack([np.hstack(labelled[:2]), np.hstack(labelled[2:])])
     save(picture, PATH, MAX_BYTES)
     Console().print(f"{PATH.name}: {PATH.stat().st_size / 1e3:.0f} kB")
@@ -93,18 +92,6 @@ def _drawn(
         picture = stage.draw(view, [SceneCharacter(character, posed)])
     stage.release()
     return picture
-
-
-def _labelled(picture: Image, text: str) -> Image:
-    """Return a picture with a caption below and a white rim."""
-    height, width = picture.shape[:2]
-    page = np.full((height + 44, width + 8, 3), 255, np.uint8)
-    page[4 : height + 4, 4 : width + 4] = picture
-    scale, font = 0.62, cv2.FONT_HERSHEY_SIMPLEX
-    (length, _), _ = cv2.getTextSize(text, font, scale, 1)
-    at = (math.ceil((width - length) / 2), height + 30)
-    cv2.putText(page, text, at, font, scale, (70, 60, 60), 1, cv2.LINE_AA)
-    return page
 
 
 if __name__ == "__main__":

@@ -5,7 +5,6 @@ from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
@@ -14,8 +13,9 @@ from app.ui.contact_sheets import save
 from characters import Character
 from characters.model.mesh import Mesh
 from characters.rendering import create_context
-from characters.rendering.portrait import PAPER_BGR, PortraitRenderer, side_by_side
+from characters.rendering.portrait import PortraitRenderer, side_by_side
 from tools.authoring.human.skull import SKIN
+from tools.captions import underlined
 
 Image = NDArray[np.uint8]
 
@@ -86,17 +86,12 @@ def _darkened(mesh: Mesh) -> Mesh:
 
 
 def _save(name: str, pictures: Sequence[Image], captions: Sequence[str]) -> None:
-    labelled = [_labelled(*each) for each in zip(pictures, captions, strict=True)]
+    labelled = [
+        underlined(*each, CAPTION_PX, 0.45) for each in zip(pictures, captions, strict=True)
+    ]
     path = FOLDER / name
     save(side_by_side(labelled, len(MOVED)), path, MAX_BYTES)
     Console().print(f"{path.name}: {path.stat().st_size / 1e3:.0f} kB")
-
-
-def _labelled(picture: Image, caption: str) -> Image:
-    band = np.full((CAPTION_PX, picture.shape[1], 3), PAPER_BGR, np.uint8)
-    font, place = cv2.FONT_HERSHEY_SIMPLEX, (8, CAPTION_PX - 6)
-    cv2.putText(band, caption, place, font, 0.45, (60, 50, 40), 1, cv2.LINE_AA)
-    return np.vstack([picture, band])
 
 
 if __name__ == "__main__":

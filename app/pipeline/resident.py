@@ -14,7 +14,7 @@ from characters import (
     PosedCharacter,
     RootDelta,
 )
-from characters.rendering.passes.cube_window import WALL
+from characters.rendering import WALL_SHARE
 from tracking.geometry import se3
 from tracking.gestures.table import SIDE_NORMALS
 
@@ -41,7 +41,7 @@ class Resident:
     def __init__(self, character: Character, edge: float) -> None:
         self._animator = Animator(character, place=RootDelta())
         low, high = character.bounds * self._animator.scale
-        room = (1.0 - 2.0 * WALL) * edge
+        room = (1.0 - 2.0 * WALL_SHARE) * edge
         width, height = float((high - low)[[0, 2]].max()), float(high[1] - min(low[1], 0.0))
         self._fit = min(MAX_HEIGHT * room / max(height, 1e-9), MAX_WIDTH * room / max(width, 1e-9))
         self._centre = np.eye(4)

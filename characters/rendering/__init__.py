@@ -3,6 +3,8 @@
 from characters.rendering.context import create_context, draws_in_software
 from characters.rendering.quality import FULL, QUALITIES, Effect, Quality
 from characters.rendering.scene import (
+    RIM_SHARE,
+    WALL_SHARE,
     Box,
     Cover,
     FloorPath,
@@ -18,6 +20,8 @@ from characters.rendering.stage import Stage
 __all__ = [
     "FULL",
     "QUALITIES",
+    "RIM_SHARE",
+    "WALL_SHARE",
     "Box",
     "Cover",
     "Effect",

@@ -11,6 +11,10 @@ from characters.control.command import PosedCharacter
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Array, Skeleton
 
+RIM_SHARE, WALL_SHARE = 0.055, 0.025
+"""Width of the rim that an open wall of a cube keeps, and thickness of the walls, as shares of the
+cube's edge; in `cube_window.frag` too. The rim lies within the white border around a marker."""
+
 
 @dataclass(frozen=True)
 class Box:

@@ -18,8 +18,7 @@ from app.pipeline.playground import Playground
 from app.running.opening import intrinsics_for
 from app.scenarios import SCENARIOS
 from app.session.bundled import bundled
-from characters.rendering import create_context
-from characters.rendering.passes.cube_window import WALL
+from characters.rendering import WALL_SHARE, create_context
 from characters.rendering.projection import project
 from tracking import CubeTracker, open_source
 from tracking.synthetic import open_synthetic
@@ -65,7 +64,7 @@ def corner_errors(scene: str, frames: int) -> Array:
     assert source.intrinsics is not None
     tracker = CubeTracker(source.cube, source.intrinsics)
     signs = (np.arange(8)[:, None] >> np.arange(3) & 1) - 0.5
-    corners = np.column_stack([(1.0 - 2.0 * WALL) * source.cube.edge * signs, np.ones(8)])
+    corners = np.column_stack([(1.0 - 2.0 * WALL_SHARE) * source.cube.edge * signs, np.ones(8)])
     errors = []
     for index in range(min(frames, source.count)):
         state = tracker.update(source.frame(index))

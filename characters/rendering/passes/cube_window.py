@@ -15,10 +15,6 @@ from characters.rendering.resources import FrameResources, Region
 from characters.rendering.scene import Box
 from characters.skeleton.pose import Array
 
-RIM, WALL = 0.055, 0.025
-"""Width of the rim that an open wall keeps, and thickness of the walls, as shares of the cube's
-edge; in `cube_window.frag` too. The rim lies within the white border around a marker."""
-
 OPEN_COSINES = (0.02, 0.25)
 """Cosines of a wall's angle to the camera from which on light comes in through it, and all of it:
 the holes are in the walls that look at the camera, so the light changes smoothly as the cube

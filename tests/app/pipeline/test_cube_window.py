@@ -18,8 +18,7 @@ from app.pipeline.scenario import Inputs
 from app.running.opening import intrinsics_for
 from app.session.encoding import encode
 from characters import ActionIntent, Character, CharacterCommand
-from characters.rendering import Stage, View, create_context
-from characters.rendering.passes.cube_window import WALL
+from characters.rendering import WALL_SHARE, Stage, View, create_context
 from characters.rendering.projection import project
 from tracking import CubeModel, CubeState
 from tracking.gestures.table import SIDE_NORMALS
@@ -204,8 +203,8 @@ def test_who_is_inside_fits_stands_on_the_lowest_wall_and_faces_the_camera(hand,
         cube_from_table = np.linalg.inv(interior.box.camera_from_box) @ UP_TO_CAMERA
         placed = cube_from_table @ interior.resident.table_from_character
         points = (corners @ placed[:3, :3].T + placed[:3, 3]) / interior.box.edge
-        assert (points @ up).min() == pytest.approx(WALL - 0.5, abs=0.02)
-        assert (points @ up).max() < 0.5 - WALL
+        assert (points @ up).min() == pytest.approx(WALL_SHARE - 0.5, abs=0.02)
+        assert (points @ up).max() < 0.5 - WALL_SHARE
         assert np.abs(points).max() < 0.5 + 0.12  # the corners of its box, where it has nothing
         assert 0.3 < np.ptp(points @ up) < 0.7
         camera = (cube_from_table @ np.linalg.inv(UP_TO_CAMERA))[:3, 3]

@@ -8,8 +8,8 @@ import pytest
 
 from characters.model.mesh import Material
 from characters.rendering import QUALITIES, Cover, SceneCharacter, Stage
-from characters.rendering.passes.cube_window import RIM, WALL
 from characters.rendering.projection import project
+from characters.rendering.scene import RIM_SHARE, WALL_SHARE
 
 EDGE = 0.06
 
@@ -35,7 +35,7 @@ def opened(cube, view):
     return make
 
 
-def resident(pawn, view, box, at=(0.0, 0.0), height=0.03, foot=WALL):
+def resident(pawn, view, box, at=(0.0, 0.0), height=0.03, foot=WALL_SHARE):
     """Return a pawn in a cube, which stands on the wall that is its floor; at in the box [m]."""
     table_from_box = np.linalg.inv(view.camera_from_table) @ box.camera_from_box
     stands = np.diag([height, height, height, 1.0])
@@ -103,13 +103,13 @@ def test_holes_and_rims_are_where_a_pinhole_camera_sees_them(stage, view, opened
     holes = np.zeros(picture.shape[:2], bool)
     full = np.zeros_like(holes)
     for normal in near_faces(box):
-        holes |= filled(holes.shape, pixels(view, box, square(normal, 0.5 - RIM)))
+        holes |= filled(holes.shape, pixels(view, box, square(normal, 0.5 - RIM_SHARE)))
         full |= filled(holes.shape, pixels(view, box, square(normal, 0.5)))
     drawn = changed(picture, view)
     # The corners of holes are round: a cross in the middle of each face is surely open.
     crosses = np.zeros_like(holes)
     for normal in near_faces(box):
-        crosses |= filled(holes.shape, pixels(view, box, square(normal, 0.5 - RIM - 0.08)))
+        crosses |= filled(holes.shape, pixels(view, box, square(normal, 0.5 - RIM_SHARE - 0.08)))
     assert drawn[eroded(crosses)].all()
     assert not drawn[~cv2.dilate(holes.astype(np.uint8), np.ones((3, 3))).astype(bool)].any()
     assert (full & ~holes).sum() > 200
@@ -132,7 +132,7 @@ def test_holes_have_the_size_and_the_round_corners_of_their_outlines(
     box = replace(cube, camera_from_box=placed(hd_view, turn_deg), opening=opening)
     drawn = changed(hd_stage.draw(replace(hd_view, occluders=(box,)), []), hd_view)
     holes = np.zeros(drawn.shape, np.uint8)
-    half = (0.5 - RIM) * opening
+    half = (0.5 - RIM_SHARE) * opening
     for normal in near_faces(box):
         outline = pixels(hd_view, box, round_square(normal, half, min(0.08, half)))
         cv2.fillConvexPoly(holes, np.rint(16 * outline).astype(np.int32), 1, cv2.LINE_8, 4)
@@ -145,7 +145,7 @@ def test_a_half_open_cube_has_holes_of_half_the_size(stage, view, opened):
     drawn = changed(stage.draw(replace(view, occluders=(box,)), []), view)
     holes = np.zeros(drawn.shape, bool)
     for normal in near_faces(box):
-        holes |= filled(holes.shape, pixels(view, box, square(normal, 0.5 * (0.5 - RIM))))
+        holes |= filled(holes.shape, pixels(view, box, square(normal, 0.5 * (0.5 - RIM_SHARE))))
     assert 0.85 < drawn.sum() / holes.sum() < 1.25
     assert not drawn[~cv2.dilate(holes.astype(np.uint8), np.ones((3, 3))).astype(bool)].any()
 
@@ -162,7 +162,7 @@ def test_a_point_inside_is_seen_where_a_pinhole_camera_sees_it(
         actor = replace(resident(pawn, hd_view, box, (x, z), height), character=lamp)
         seen = hd_stage.draw(replace(hd_view, occluders=(box,)), [actor]).astype(int)
         places = np.argwhere(seen[..., 1] - seen[..., [0, 2]].max(axis=2) > 40)[:, ::-1]
-        points = pawn.meshes[0].positions * height + [x, (WALL - 0.5) * EDGE, z]
+        points = pawn.meshes[0].positions * height + [x, (WALL_SHARE - 0.5) * EDGE, z]
         expected = pixels(hd_view, box, points / EDGE)
         assert np.abs(places.min(axis=0) - expected.min(axis=0)).max() < 1.3
         assert np.abs(places.max(axis=0) - expected.max(axis=0)).max() < 1.3
@@ -179,7 +179,7 @@ def test_in_a_hole_a_character_has_the_pixels_that_it_has_without_a_cube(
     body = free[..., 2] - free[..., 1] > 60
     holes = np.zeros(body.shape, bool)
     for normal in near_faces(box):
-        holes |= filled(body.shape, pixels(hd_view, box, square(normal, 0.5 - RIM - 0.05)))
+        holes |= filled(body.shape, pixels(hd_view, box, square(normal, 0.5 - RIM_SHARE - 0.05)))
     seen = eroded(holes & body)
     assert seen.sum() > 500
     assert np.abs(inside - free)[seen].mean() < 6.0  # the light is estimated again
@@ -212,7 +212,7 @@ def test_walls_and_rims_hide_what_is_inside_behind_them(stage, view, opened, paw
     for normal in near_faces(box):
         rim |= filled(rim.shape, pixels(view, box, square(normal, 0.5)))
     for normal in near_faces(box):
-        hole = filled(rim.shape, pixels(view, box, square(normal, 0.5 - RIM)))
+        hole = filled(rim.shape, pixels(view, box, square(normal, 0.5 - RIM_SHARE)))
         rim &= ~cv2.dilate(hole.astype(np.uint8), np.ones((3, 3))).astype(bool)
     assert rim.sum() > 100
     assert np.array_equal(inside[rim], view.image[rim])
@@ -228,7 +228,7 @@ def test_a_character_inside_has_a_shadow_on_its_floor_and_none_on_the_table(
     for normal in near_faces(box):
         outline |= filled(outline.shape, pixels(view, box, square(normal, 0.52)))
     assert np.array_equal(lived_in[~outline], view.image[~outline])
-    near_feet = np.rint(pixels(view, box, [[0.20, WALL - 0.5, 0.0]])[0]).astype(int)[::-1]
+    near_feet = np.rint(pixels(view, box, [[0.20, WALL_SHARE - 0.5, 0.0]])[0]).astype(int)[::-1]
     assert empty[tuple(near_feet)].sum() - lived_in[tuple(near_feet)].sum() > 8
 
 
@@ -269,7 +269,7 @@ def test_a_hand_in_front_hides_room_and_character(stage, view, opened, pawn):
 
 def test_light_changes_smoothly_while_a_wall_turns_to_the_camera(stage, view, opened):
     """A hole opens where a wall begins to face the camera: nothing may flash by that."""
-    low = WALL - 0.5
+    low = WALL_SHARE - 0.5
     places = [[0.2, -0.1, low], [0.3, low, -0.3], [-0.3, low, -0.3]]  # a wall, and two corners
     seen = []
     for turn in np.arange(-12.0, 12.1, 0.5):
