@@ -33,9 +33,8 @@ from characters.rendering import (
     create_context,
 )
 from characters.rendering.light import LINEAR_FROM_SRGB
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.resources import FrameResources, Region
 from tests.bench.picture import SIZE, scene
+from tests.characters.rendering.watch import WatchPass
 
 RICH = QUALITIES["rich"]
 
@@ -116,22 +115,6 @@ def time_table(name: str, found: dict[str, float]) -> Table:
     return table
 
 
-class WatchPass(RenderPass):
-    """Keeps the scattered light of the last picture, its taps, and where skin is."""
-
-    def draw(self, frame: FrameResources, region: Region) -> None:
-        """Read the light buffer."""
-        if region.characters is not None:
-            light = region.characters.target.light
-            self.scattered = _texels(light.scattered)
-            self.skin = _texels(light.falling)[..., 3] > 0.5
-
-
-def _texels(texture: moderngl.Texture) -> NDArray[np.float64]:
-    rows = np.frombuffer(texture.read(), np.float16)
-    return rows.reshape(texture.height, texture.width, 4).astype(float)
-
-
 def skin_table(context: moderngl.Context, view: View, actor: SceneCharacter) -> Table:
     """Return how near adaptive scattering is to the full one, and the taps that it saves."""
     seen = []
@@ -141,17 +124,16 @@ def skin_table(context: moderngl.Context, view: View, actor: SceneCharacter) -> 
         watch = WatchPass()
         stage.passes.append(watch)
         stage.draw(view, [actor])
+        seen.append((watch.skin, watch.scattered))
         stage.release()
-        seen.append(watch)
-    full, adaptive = seen
+    (skin, full), (_, adaptive) = seen
     table = Table(title="adaptive skin against the full filter")
     for heading in ("texels of skin", "PSNR (dB), target ≥ 35", "taps saved, target ≥ 40 %"):
         table.add_column(heading, justify="right")
-    skin = full.skin
     if not skin.any():
         table.add_row("0", "", "")
         return table
-    light, found = (each.scattered[skin] for each in (full, adaptive))
+    light, found = (each[skin] for each in (full, adaptive))
     # As in the picture: encoded, where 1 is white.
     a, b = (np.clip(each[:, :3], 0.0, 1.0) ** (1.0 / 2.2) for each in (light, found))
     psnr = -10.0 * np.log10(max(float(((a - b) ** 2).mean()), 1e-12))

@@ -19,10 +19,9 @@ from characters.model.character import Character
 from characters.rendering import QUALITIES, Stage, View, create_context
 from characters.rendering.deferred.lamp import Lamp
 from characters.rendering.passes.deferred.soft_shadows import TABLE_SIDE, SoftShadowPass
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.resources import FrameResources, Region
 from tests.bench.ambient_occlusion.scenes import posed
 from tests.bench.picture import SIZE, scene
+from tests.characters.rendering.watch import WatchPass
 from tools.ray_tracing import AreaLight, RayTracer, light_fraction
 
 MAX_ERROR = 0.06
@@ -37,15 +36,6 @@ TILE_MEAN = np.array([0.5, 1.0, 1.0, 1.0, 0.5]) / 4.0
 
 LIFT_M = 1e-5
 """Height above the table at which rays start [m]."""
-
-
-class WatchPass(RenderPass):
-    """Keeps the lamp of the last picture."""
-
-    def draw(self, frame: FrameResources, region: Region) -> None:
-        """Find the lamp as the pass for the shadows does."""
-        casters = np.concatenate([each.enclosing for each in frame.characters])
-        self.lamp = Lamp.over(casters, frame.light.to_light)
 
 
 def area_of(lamp: Lamp) -> AreaLight:
@@ -82,6 +72,9 @@ def main() -> int:
         stage.passes.append(watch)
         who = actor(0)
         stage.draw(view, [who])
+        frame = watch.frame
+        casters = np.concatenate([each.enclosing for each in frame.characters])
+        lamp = Lamp.over(casters, frame.light.to_light)
         (shadows,) = (each for each in stage.passes if isinstance(each, SoftShadowPass))
         texels = np.frombuffer(shadows.left.read(), np.float16).reshape(TABLE_SIDE, TABLE_SIDE, 4)
         light = texels[..., 1].astype(np.float32)
@@ -91,7 +84,7 @@ def main() -> int:
         points = np.stack(np.meshgrid(x + along, z + along), axis=-1).reshape(-1, 2)
         points = np.insert(points, 1, LIFT_M, axis=1)
         tracer = RayTracer(posed(character, who.posed.pose, who.posed.table_from_character))
-        traced = light_fraction(tracer, points.astype("f4"), area_of(watch.lamp), rays=options.rays)
+        traced = light_fraction(tracer, points.astype("f4"), area_of(lamp), rays=options.rays)
         true = traced[:, 1].reshape(found.shape)
         shade = ((true < 0.99) | (found < 0.99)) & seen(tracer, points, view).reshape(found.shape)
         error = float(np.sqrt(((found - true)[shade] ** 2).mean()))

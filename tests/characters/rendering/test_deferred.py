@@ -9,8 +9,8 @@ from characters.model.mesh import Material, ToonShading
 from characters.rendering import QUALITIES, Cover, Stage
 from characters.rendering.deferred.buffers import surface_records
 from characters.rendering.passes.deferred import lighting
-from characters.rendering.passes.render_pass import RenderPass
 from tests.characters.rendering.shapes import Still, plate
+from tests.characters.rendering.watch import WatchPass
 
 
 @pytest.fixture
@@ -78,13 +78,6 @@ def test_surfaces_beyond_the_last_record_are_lit_too(stage, deferred, view, monk
     forward, later = stage.draw(view, actors), deferred.draw(view, actors)
     assert (forward != view.image).any(axis=2).sum() > 1000
     assert np.abs(forward.astype(int) - later).max() <= 1
-
-
-class WatchPass(RenderPass):
-    """Keeps the frame that it was given."""
-
-    def draw(self, frame, region):
-        self.frame = frame
 
 
 def test_each_surface_has_its_record(deferred, view, pawn):

@@ -7,29 +7,12 @@ import pytest
 
 from characters.model.mesh import Material
 from characters.rendering import QUALITIES, Effect, Stage
-from characters.rendering.passes.render_pass import RenderPass
 from tests.characters.rendering.shapes import Still, ball, plate
+from tests.characters.rendering.watch import WatchPass
 
 SKIN = Material(base_color=(0.6, 0.5, 0.4, 1.0), roughness=0.9, scattering=1.0)
 DEEP = replace(SKIN, scattering=8.0)
 """On shapes of a few centimetres, light of human skin would spread over less than a pixel."""
-
-
-class WatchPass(RenderPass):
-    """Keeps the light of the last picture."""
-
-    def draw(self, frame, region):
-        if region.characters is not None:
-            light = region.characters.target.light
-            self.size = light.diffuse.size
-            self.diffuse = texels(light.diffuse)
-            self.scattered = texels(light.scattered)
-            self.skin = texels(light.falling)[..., 3] > 0.5
-
-
-def texels(texture):
-    rows = np.frombuffer(texture.read(), np.float16).reshape(texture.height, texture.width, 4)
-    return rows.astype(float)
 
 
 @pytest.fixture

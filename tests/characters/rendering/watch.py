@@ -1,0 +1,47 @@
+"""A pass that draws nothing: what others made of the last picture is read from it."""
+
+from functools import cached_property
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.rendering.deferred.buffers import LightBuffer
+from characters.rendering.passes.render_pass import RenderPass
+from characters.rendering.resources import FrameResources, Region
+
+Texels = NDArray[np.float64]
+
+
+class WatchPass(RenderPass):
+    """Keeps the frame of one picture, and gives the light of its characters.
+
+    The light, each (height, width, 4), is read when it is first asked for: before another picture
+    is drawn, and before the stage is released.
+    """
+
+    def draw(self, frame: FrameResources, region: Region) -> None:
+        """Keep them."""
+        self.frame = frame
+        if region.characters is not None:
+            self._light: LightBuffer = region.characters.target.light
+
+    @cached_property
+    def diffuse(self) -> Texels:
+        """Diffuse light before it is scattered, and 1 where a character is seen."""
+        return _texels(self._light.diffuse)
+
+    @cached_property
+    def scattered(self) -> Texels:
+        """Diffuse light after it was scattered, and the share of all taps that it took."""
+        return _texels(self._light.scattered)
+
+    @cached_property
+    def skin(self) -> NDArray[np.bool_]:
+        """Where skin is, (height, width)."""
+        return np.asarray(_texels(self._light.falling)[..., 3] > 0.5)
+
+
+def _texels(texture: moderngl.Texture) -> Texels:
+    rows = np.frombuffer(texture.read(), np.float16)
+    return rows.reshape(texture.height, texture.width, 4).astype(float)
