@@ -24,7 +24,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters.rendering import create_context
+from characters.rendering import create_context, draws_in_software
 from characters.rendering.deferred.ambient_occlusion import ESTIMATORS, AmbientOcclusionSettings
 from characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.product import ProductQuality, product_quality
@@ -231,9 +231,14 @@ def main() -> None:
     )
     parser.add_argument("--size", default="512x384", help="WIDTHxHEIGHT [px]")
     parser.add_argument("--quick", action="store_true", help="leave out the third part")
+    parser.add_argument("--characters", nargs="+", help="names or files: the second part of these")
     options = parser.parse_args()
     width, height = (int(each) for each in options.size.split("x"))
     console, context = Console(width=140), create_context()
+    if options.characters:
+        show_product(console, [product_quality(context, who, RAYS) for who in options.characters])
+        context.release()
+        return
     programs = ShaderPrograms(context)
     scenes = [TracedScene(load(name), (width, height), RAYS) for name in TUNED + HELD_OUT]
     qualities = [
@@ -258,7 +263,7 @@ def main() -> None:
         for separable in (False, True)
     }
     renderer = context.info["GL_RENDERER"]
-    show_times(console, measure(context, programs, buffer, variants), "llvmpipe" in renderer)
+    show_times(console, measure(context, programs, buffer, variants), draws_in_software(context))
     console.print(f"{width}×{height}, {renderer}", soft_wrap=True)
     buffer.release()
     programs.release()

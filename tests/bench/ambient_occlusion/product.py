@@ -67,7 +67,7 @@ class ReadPass(RenderPass):
 
 
 def product_quality(context: moderngl.Context, name: str, rays: int) -> ProductQuality:
-    """Draw a bundled character as the program does, and trace the same scene."""
+    """Draw a character as the program does, and trace the same scene; `name` may be a file."""
     body = Character.load(name)
     view, actor_at = scene(body)
     view = replace(view, occluders=(), distortion=np.zeros(0))
@@ -86,7 +86,7 @@ def product_quality(context: moderngl.Context, name: str, rays: int) -> ProductQ
     both: NDArray[np.bool_] = read.seen & (surfaces.normal_id[..., 3] == 2)
     apart = np.linalg.norm(read.position - surfaces.position[..., :3], axis=-1)[both]
     return ProductQuality(
-        name,
+        body.name,
         int(both.sum()),
         1e3 * float(np.median(apart)),
         score(np.ones_like(truth), truth, both).rmse,
