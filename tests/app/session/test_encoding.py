@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from affect import Emotion
 from app.pipeline.scenario import EmotionTarget
 from app.session.encoding import MESSAGE_TYPES, decode, encode, schema, upgraded
-from characters import ActionIntent, CharacterCommand, LocomotionIntent
+from characters import ActionIntent, CharacterCommand, LocomotionIntent, Pose, PosedCharacter
 from tracking import CubeControls, CubeState
 
 NUMBERS = st.floats(-1e3, 1e3)
@@ -52,6 +52,26 @@ def test_a_nested_emotion_is_decoded():
 def test_controls_keep_every_bit(hand):
     controls = hand.frame(turns=1 / 3)
     assert_equal(decode(type(controls), encode(controls)), controls)
+
+
+def posed(*rotation):
+    pose = Pose(np.zeros((1, 3)), np.array([rotation]))
+    return PosedCharacter(
+        pose, np.eye(4), True, "idle", speed=0.0, angular=0.0, weight=0.0, timestamp=0.0
+    )
+
+
+def test_noise_of_rounding_in_a_pose_is_zero():
+    noisy, clean = posed(3e-16, -2e-17, -0.0, 1.0), posed(0.0, 0.0, 0.0, 1.0)
+    assert encode(noisy) == encode(clean)
+    assert encode(posed(1e-7, 0.0, 0.0, 1.0)) != encode(clean)
+
+
+def test_noise_of_rounding_in_an_older_pose_is_no_difference():
+    now = encode(posed(0.0, 0.0, 0.0, 1.0))
+    old = now.replace(b"[[0.0,0.0,0.0,1.0]]", b"[[3e-16,-2e-17,0.0,1.0]]")
+    assert old != now
+    assert upgraded("/character/pose", old) == now
 
 
 @pytest.mark.parametrize("topic", MESSAGE_TYPES)
