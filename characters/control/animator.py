@@ -64,7 +64,9 @@ class Animator:
             scale = default_height(character) / max(character.height, 1e-9)
         self.character = character
         self.scale = scale
-        self.controller = controller(replace(character, seed=seed), scale, place)
+        # A copy would not share the gaits, which take long to find.
+        seeded = character if character.seed == seed else replace(character, seed=seed)
+        self.controller = controller(seeded, scale, place)
         """What moves it."""
         used = layers_of(character) if layers is None else layers
         self._layers = [layer(character, seed) for layer in used]

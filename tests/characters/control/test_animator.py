@@ -16,6 +16,7 @@ from characters import (
     CharacterError,
     LocomotionIntent,
 )
+from characters.control.controllers.walk import WalkController
 from characters.control.layers import FOOT_LAYERS
 from characters.locomotion.gaits import Gaits
 from characters.locomotion.steering import ARRIVAL_DISTANCE_M
@@ -166,6 +167,14 @@ def test_standing_it_turns_to_what_it_is_to_look_at(anyone):
     assert abs(math.remainder(heading(frames[-1]) + 3 * math.pi / 4, math.tau)) < 0.12
     assert np.linalg.norm(place(frames[-1])) < 0.01
     assert {frame.state for frame in frames} == {"idle"}
+
+
+def test_all_that_walk_as_a_character_share_its_gaits(human):
+    """They take 0.2 s to find; a key that changes the scenario would be felt."""
+    for _ in range(2):
+        controller = Animator(human).controller
+        assert isinstance(controller, WalkController)
+        assert controller.gaits is human.gaits
 
 
 def test_the_same_commands_give_the_same_frames(human):
