@@ -84,7 +84,7 @@ def test_no_bundled_cube_is_seen_in_any_photograph(path: Path) -> None:
     for name in views:
         for view in views[name]:
             whole = np.ascontiguousarray(view)
-            states = watched(whole, CubeModel.load(name), lens, 3)
+            states = watched(whole, CubeModel.load(name), lens)
             assert not any(state.visible for state in states)
 
 
