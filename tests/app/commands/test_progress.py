@@ -41,13 +41,13 @@ def interrupt_after(monkeypatch):
 def test_ctrl_c_keeps_what_was_rendered_and_says_so(
     cubeling, short_session, interrupt_after, suffix
 ):
-    interrupt_after(31)
+    interrupt_after(16)
     code, out, err = cubeling("replay", short_session, "-o", f"out{suffix}")
     assert (code, err) == (130, "")
-    assert f"Stopped: 1.0 s are kept in out{suffix}" in out
+    assert f"Stopped: 0.5 s are kept in out{suffix}" in out
     assert [path.name for path in Path().iterdir()] == [f"out{suffix}"]
     with av.open(f"out{suffix}") as file:
-        assert [frame.time for frame in file.decode(video=0)][-1] == pytest.approx(1.0, abs=0.01)
+        assert [frame.time for frame in file.decode(video=0)][-1] == pytest.approx(0.5, abs=0.01)
 
 
 def test_ctrl_c_keeps_the_sheet_of_frames(cubeling, short_session, interrupt_after):
@@ -65,10 +65,13 @@ def test_ctrl_c_before_the_first_picture_leaves_nothing(cubeling, short_session,
     assert not list(Path().iterdir())
 
 
-def test_a_second_ctrl_c_leaves_no_broken_file(cubeling, short_session, monkeypatch):
+def test_a_second_ctrl_c_leaves_no_broken_file(
+    cubeling, short_session, interrupt_after, monkeypatch
+):
     def interrupted(self):
         raise KeyboardInterrupt
 
+    interrupt_after(10)
     monkeypatch.setattr(VideoFile, "_finish", interrupted)
     code, _, _ = cubeling("replay", short_session, "-o", "out.mp4")
     assert code == 130
@@ -111,7 +114,7 @@ def test_progress_outside_a_terminal_is_plain_lines_on_standard_error(
     cubeling, short_session, monkeypatch
 ):
     monkeypatch.setattr(progress, "LINE_INTERVAL_S", 0.0)
-    code, out, err = cubeling("replay", short_session, "-o", "out.gif")
+    code, out, err = cubeling("replay", short_session, "--no-pictures", "--record", "out.mcap")
     assert code == 0
     lines = err.splitlines()
     assert len(lines) == 60
