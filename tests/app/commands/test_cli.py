@@ -82,15 +82,13 @@ def test_the_version_is_that_of_the_package(cubeling):
         ("cubeling play comp", "companion"),
     ],
 )
-def test_the_shell_completes_commands_options_and_scenarios(words, completed):
-    asked = {
-        "_CUBELING_COMPLETE": "complete_bash",
-        "COMP_WORDS": words,
-        "COMP_CWORD": str(len(words.split()) - 1),
-    }
-    program = [sys.executable, "-c", "from app.entry import main; main()"]
-    run = subprocess.run(program, capture_output=True, text=True, env=os.environ | asked)
-    assert run.stdout.split() == [completed]
+def test_the_shell_completes_commands_options_and_scenarios(
+    cubeling, monkeypatch, words, completed
+):
+    monkeypatch.setenv("_CUBELING_COMPLETE", "complete_bash")
+    monkeypatch.setenv("COMP_WORDS", words)
+    monkeypatch.setenv("COMP_CWORD", str(len(words.split()) - 1))
+    assert cubeling()[1].split() == [completed]
 
 
 def test_only_the_whole_command_installs_completion(cubeling):
