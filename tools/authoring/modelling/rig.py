@@ -71,7 +71,12 @@ class PosedRig:
     def places(self, name: str) -> Array:
         """Return the positions of a joint, (frames, 3) [m]."""
         joint = self.skeleton.names.index(name)
-        return np.asarray(self.pose.globals(self.skeleton)[:, joint, :3, 3])
+        place = self._translations[:, joint]
+        while (joint := self.skeleton.parents[joint]) >= 0:
+            place = self._translations[:, joint] + rotations.rotate(
+                self._rotations[:, joint], place
+            )
+        return np.asarray(place)
 
     def facing(self, name: str) -> Array:
         """Return the rotation of a joint in the character frame, (frames, 4)."""
