@@ -149,7 +149,7 @@ moods = st.tuples(st.floats(-1, 1), st.floats(-1, 1), words)
 @settings(max_examples=20, deadline=None, phases=(Phase.explicit, Phase.reuse, Phase.generate))
 @given(
     name=st.sampled_from(list(CAST)),
-    plan=st.lists(st.tuples(st.one_of(st.none(), moods), st.integers(1, 30)), max_size=6),
+    plan=st.lists(st.tuples(st.one_of(st.none(), moods), st.integers(1, 15)), max_size=6),
     action=st.integers(0, 9),
 )
 def test_no_morph_leaves_its_range_and_none_pops(name, plan, action):
