@@ -65,7 +65,8 @@ def _wood(random: np.random.Generator) -> Picture:
     tone = 1 + 0.05 * grain + 0.10 * stains
     shade, warmth = random.uniform(75, 175), random.uniform(0.0, 0.22)
     colour = (shade * (1 + warmth * np.array([-2, 0, 1]))).astype(np.float32)
-    return np.clip(tone[..., None] * colour, 20, 240).astype(np.uint8)
+    boards = tone[..., None] * colour
+    return np.clip(boards, 20, 240, out=boards).astype(np.uint8)
 
 
 def _spot(random: np.random.Generator) -> tuple[float, float]:

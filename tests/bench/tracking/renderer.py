@@ -48,7 +48,7 @@ class Scene:
     light: Light
     """What falls on the cube."""
 
-    background: NDArray[np.float32]
+    background: Callable[[], NDArray[np.float32]]
     """Linear light of all that does not move, blurred by the lens, (height, width, 3) BGR."""
 
     poses: Poses
@@ -101,7 +101,7 @@ def expose(
     random
         Where the rays of a pixel lie is drawn from it.
     """
-    picture = scene.background.copy()
+    picture = scene.background().copy()
     ends = scene.poses(middle + np.array([-0.5, 0.0, 0.5]) * exposure)
     passes = _passes(scene, ends)
     times = middle + exposure * ((np.arange(passes) + 0.5) / passes - 0.5)

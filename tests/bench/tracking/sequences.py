@@ -2,7 +2,7 @@
 
 import zlib
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cache, lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -139,7 +139,9 @@ def sequence(name: str, seed: int = 1, count: int | None = None) -> Sequence:
     hold = _hold(plan, cube, first, random)
     brightness = GAIN * plan.light if plan.light < 1 else 1.0
     lens, sensor = plan.camera.lens, plan.camera.sensor
-    table = desk(lens, plan.height, light, random, cube.dictionary, _foreign(plan, cube, random))
+    foreign = _foreign(plan, cube, random)
+    # Drawn with the first frame: it takes longer than all that the truth alone needs.
+    table = cache(partial(desk, lens, plan.height, light, random, cube.dictionary, foreign))
     scenes = tuple(Scene(lens, cube, light, table, path, hold, brightness) for path in paths)
     if plan.worn:
         scenes = tuple(_worn(plan, scene, time, each)

@@ -35,7 +35,8 @@ def scene(pose: np.ndarray, speed: tuple[float, float, float] = (0, 0, 0)) -> Sc
         return moved
 
     background = np.full((400, 400, 3), 0.02, np.float32)
-    return Scene(SMALL, BenchmarkCube.load("locomotion"), EVEN, background, poses, lambda time: ())
+    cube = BenchmarkCube.load("locomotion")
+    return Scene(SMALL, cube, EVEN, lambda: background, poses, lambda time: ())
 
 
 def facing(name: str, tilt: tuple[float, float, float] = (0.25, -0.3, 0.4)) -> np.ndarray:

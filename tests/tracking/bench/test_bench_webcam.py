@@ -31,7 +31,7 @@ def drawn(lens: LensModel, cube: BenchmarkCube, pose: np.ndarray) -> np.ndarray:
     """Linear light without noise and vignette, on a dark table."""
     background = np.zeros((lens.size[1], lens.size[0], 3), np.float32)
     poses = lambda times: np.repeat(pose[None], len(times), axis=0)  # noqa: E731
-    scene = Scene(lens, cube, EVEN, background, poses, lambda time: ())
+    scene = Scene(lens, cube, EVEN, lambda: background, poses, lambda time: ())
     return np.asarray(expose(scene, 0.0, 0.0, np.random.default_rng(5))[..., 1] / lens.vignette)
 
 
