@@ -1,11 +1,10 @@
 """A simulated hand that makes `CubeControls`, a command-line runner, and short sessions."""
 
 import dataclasses
-import functools
 import itertools
 import math
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +18,12 @@ from app.pipeline.playground import Playground
 from app.pipeline.step import Step
 from app.running.opening import intrinsics_for
 from app.session import Recorder
-from characters import Character
+from tests.bundled_characters import (
+    bundled_characters_are_read_once as bundled_characters_are_read_once,
+)
 from tracking import CubeControls, open_source
 
 FRAME = 1 / 30
-
-BUNDLED = Character.bundled()
 
 
 class Hand:
@@ -79,25 +78,6 @@ class Hand:
     def wait(self, seconds: float) -> list[CubeControls]:
         """Leave the cube alone."""
         return [self.frame() for _ in range(round(seconds / FRAME))]
-
-
-@pytest.fixture(scope="module", autouse=True)
-def bundled_characters_are_read_once() -> Iterator[None]:
-    """Let all sessions of the tests show the same characters, instead of reading them each time.
-
-    They are never changed; `tests/characters` reads the files.
-    """
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Character, "load", staticmethod(_read_once))
-        yield
-
-
-_read = Character.load
-_bundled = functools.cache(_read)
-
-
-def _read_once(name_or_path: str | Path) -> Character:
-    return _bundled(name_or_path) if name_or_path in BUNDLED else _read(name_or_path)
 
 
 @pytest.fixture

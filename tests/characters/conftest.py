@@ -10,6 +10,9 @@ from hypothesis import settings
 from characters import Character, Clip, Mesh, Pose, Skeleton
 from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
+from tests.bundled_characters import (
+    bundled_characters_are_read_once as bundled_characters_are_read_once,
+)
 
 # A suite that runs by the same examples everywhere, however busy the machine is.
 settings.register_profile("suite", derandomize=True, deadline=None)

@@ -7,11 +7,12 @@ from app.behaving.voice import PatientSource, spoken
 from app.pipeline.spoken_line import SpokenLine
 from characters import Character
 from characters.speech.speech import Speech, Word
+from tests.bundled_characters import bundled_character
 
 VOICE_HZ = 16_000
 WORD_S = 0.5
 
-HUMAN = Character.load("human")
+HUMAN = bundled_character("human")
 
 
 def speech_of(text: str, language: str) -> Speech:

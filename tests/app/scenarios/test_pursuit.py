@@ -11,12 +11,13 @@ from app.scenarios import make_scenario
 from app.scenarios.pursuit import IGNORED_S, Pursuit
 from app.session.bundled import bundled
 from characters import Animator, Character, RootDelta
+from tests.bundled_characters import bundled_character
 from tests.characters.commands import command
 
 STOP = 0.06
 
 
-VLEO = Animator(Character.load("vleo")).update(command(0.0, "idle", 1.0))
+VLEO = Animator(bundled_character("vleo")).update(command(0.0, "idle", 1.0))
 
 
 def standing(x=0.0, z=0.0):

@@ -14,7 +14,6 @@ from affect.words import WORD_PLACES
 from characters import (
     ActionIntent,
     Animator,
-    Character,
     CharacterCommand,
     LocomotionIntent,
 )
@@ -30,13 +29,14 @@ from characters.face.blink import BlinkTimer
 from characters.face.expressions import EXPRESSIONS, ExpressionMorphs
 from characters.face.lids import Lids, blink_shares
 from characters.model.character import skin
+from tests.bundled_characters import bundled_character
 from tests.characters.commands import command
 
 STEP_S = 1 / 30
 MAX_WEIGHT_RATE = 8.0
 """What a morph of a face may change by at most [1/s]; a lid that falls is faster."""
 
-CAST = {name: Character.load(name) for name in ("human", "vleo", "robot")}
+CAST = {name: bundled_character(name) for name in ("human", "vleo", "robot")}
 
 GAZE = np.array([0.1, 0.15, 1.0])
 

@@ -5,6 +5,7 @@ from characters import Character, Clip, Pose
 from characters.model.character import skin
 from characters.model.mesh import Mesh
 from characters.retargeting.retarget import retarget
+from tests.bundled_characters import bundled_character
 from tests.characters.skeleton.bodies import DOG, PERSON, named_body
 
 STYLES = {
@@ -23,7 +24,7 @@ STYLES = {
 }
 
 
-HUMAN = Character.load("human")
+HUMAN = bundled_character("human")
 FACES = ((0, 1, 2), (3, 4, 5), (6, 7, 0))
 
 
