@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 
 import moderngl
@@ -89,7 +90,8 @@ def _drawn(
         command = CharacterCommand(frame.timestamp, action=ActionIntent("idle"), gaze=gaze)
         posed = animator.update(command)
         view = surroundings.view(frame, state, controls)
-        picture = stage.draw(view, [SceneCharacter(character, posed)])
+        find_cover = partial(surroundings.cover, frame, state)
+        picture = stage.draw(view, [SceneCharacter(character, posed)], find_cover=find_cover)
     stage.release()
     return picture
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import moderngl
 import numpy as np
@@ -371,7 +372,8 @@ class Playground:
         characters = self._cast_of(posed, outcome, interior) if seen else []
         if interior is not None and interior.box is not None:
             view = replace(view, occluders=(interior.box,))
-        return self._stage.draw(view, characters, outcome.floor if seen else ())
+        find_cover = partial(self._surroundings.cover, frame, state)
+        return self._stage.draw(view, characters, outcome.floor if seen else (), find_cover)
 
     def _cast_of(
         self, posed: PosedCharacter, outcome: Outcome, interior: Interior | None

@@ -80,7 +80,7 @@ class Surroundings:
         self._autofocus = Autofocus() if "focus" in chosen else None
 
     def view(self, frame: Frame, state: CubeState, controls: CubeControls) -> View:
-        """Return the camera's picture with all that is known of the scene in it."""
+        """Return the camera's picture with all that is known of the scene but the hand."""
         pose = state.camera_from_cube
         return View(
             frame.image,
@@ -88,13 +88,13 @@ class Surroundings:
             self._intrinsics.distortion,
             controls.camera_from_table,
             () if pose is None else (Box(pose, self._cube.edge),),
-            self._cover(frame, state),
-            self._measured_light(frame, state, controls),
-            self._softness(frame, state),
-            None if self._autofocus is None else self._autofocus.update(state),
+            light=self._measured_light(frame, state, controls),
+            softness=self._softness(frame, state),
+            focus=None if self._autofocus is None else self._autofocus.update(state),
         )
 
-    def _cover(self, frame: Frame, state: CubeState) -> Cover | None:
+    def cover(self, frame: Frame, state: CubeState) -> Cover | None:
+        """Return the hand in front of the cube; call it once for each frame."""
         found = None if self._hand is None else self._hand.update(frame.image, state)
         return None if found is None else Cover(found.x, found.y, found.cover, found.distance)
 

@@ -16,7 +16,7 @@ from characters.rendering.occlusion import corners_of
 from characters.rendering.programs import set_uniforms
 from characters.rendering.projection import NEAR_M, Rectangle, bounding_rectangle, clip_from_camera
 from characters.rendering.scene import Box, Scene, Softness
-from characters.rendering.target import RenderTarget, RenderTargets
+from characters.rendering.target import LayerTarget, PictureTarget, RenderTargets
 from characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
@@ -30,16 +30,13 @@ MIN_TABLE_DISTANCE_M = 1e-6
 
 @dataclass(frozen=True)
 class CharacterLayer:
-    """Where the characters of a region are drawn: supersampled, with depth, on transparent ground.
-
-    Its target may be that of the region, whose picture it does not touch.
-    """
+    """Where the characters are drawn: supersampled, with depth, on transparent ground."""
 
     area: Rectangle
     """The area of the picture that it covers."""
 
-    target: RenderTarget
-    """Its character layer is drawn on, from its first texel on."""
+    target: LayerTarget
+    """It is drawn on from its first texel on."""
 
     clip_from_camera: Array
     """Projection to the layer, (4, 4)."""
@@ -49,7 +46,7 @@ class CharacterLayer:
 
     def use(self) -> moderngl.Framebuffer:
         """Draw on this layer from now on."""
-        return self.target.use_characters(self.area.width, self.area.height)
+        return self._use(self.target.framebuffer)
 
     def use_geometry(self) -> moderngl.Framebuffer:
         """Draw on the geometry buffer of this layer from now on."""
@@ -81,8 +78,8 @@ class Region:
     area: Rectangle
     """Where it is in the picture."""
 
-    target: RenderTarget
-    """It is drawn on the target's picture, from the first texel on."""
+    target: PictureTarget
+    """It is drawn on from the first texel on."""
 
     clip_from_table: Array
     """Projection to the region, (4, 4); its first row is the top row, so triangles turn
@@ -91,12 +88,15 @@ class Region:
     hidden: moderngl.Texture | None
     """Share of each pixel in which real cubes or the hand hide the table; None if in no pixel."""
 
+    cover: PictureCover | None
+    """The hand in front of the cube."""
+
     characters: CharacterLayer | None
-    """For the characters; None if there are none in this region."""
+    """The characters; None if there are none in this region."""
 
     def use(self) -> None:
         """Draw on the picture of this region from now on."""
-        self.target.use_picture((0, 0, self.area.width, self.area.height))
+        self.target.use((0, 0, self.area.width, self.area.height))
 
     def set_table_uniforms(self, program: moderngl.Program) -> None:
         """Set the uniforms of a program that paints on the table, except where it is hidden."""
@@ -135,9 +135,6 @@ class FrameResources:
 
     cubes: tuple[tuple[Box, Rectangle], ...]
     """Real cubes in the picture, and where they are in it."""
-
-    cover: PictureCover | None
-    """The hand in front of the cube."""
 
     hidden: ShareTexture
     """Keeps the texture of what hides the table."""
@@ -204,7 +201,20 @@ class FrameResources:
         points += [corners_of(box, self.camera_from_table) for box in self.open_cubes]
         return np.concatenate([np.zeros((0, 3)), *points])
 
-    def regions(self, areas: Sequence[Rectangle]) -> Iterator[Region]:
+    @cached_property
+    def layer(self) -> CharacterLayer | None:
+        """Where the characters and open cubes are drawn; None for neither."""
+        area = self.character_area
+        if area is None:
+            return None
+        return CharacterLayer(
+            area,
+            self.targets.layers.at_least(area.width, area.height),
+            clip_from_camera(self.camera_matrix, area),
+            tuple(box for box, place in self.cubes if place.intersection(area)),
+        )
+
+    def regions(self, areas: Sequence[Rectangle], cover: PictureCover | None) -> Iterator[Region]:
         """Yield a region for each area that no other contains.
 
         Where regions overlap, the last one is right. The caller reads each before it asks for the
@@ -217,30 +227,18 @@ class FrameResources:
                 other.contains(area) and (other != area or j > i) for j, other in enumerate(areas)
             )
         ]
-        characters = self.character_area
+        layer = self.layer
         for number, area in enumerate(areas):
-            later = areas[number + 1 :]
-            drawn_later = characters is None or any(each.contains(characters) for each in later)
-            yield self._region(area, None if drawn_later else characters)
-
-    def _region(self, area: Rectangle, characters: Rectangle | None) -> Region:
-        inner = None if characters is None else area.intersection(characters)
-        hidden = hidden_table(self.cubes, self.cover, self.camera_matrix, area)
-        return Region(
-            area,
-            self.targets.at_least(area.width, area.height),
-            clip_from_camera(self.camera_matrix, area) @ self.camera_from_table,
-            None if hidden is None else self.hidden.write(hidden),
-            None if inner is None else self._character_layer(inner),
-        )
-
-    def _character_layer(self, area: Rectangle) -> CharacterLayer:
-        return CharacterLayer(
-            area,
-            self.targets.at_least(area.width, area.height),
-            clip_from_camera(self.camera_matrix, area),
-            self._cubes_in(area),
-        )
-
-    def _cubes_in(self, area: Rectangle) -> tuple[Box, ...]:
-        return tuple(box for box, place in self.cubes if place.intersection(area))
+            drawn_later = layer is None or any(
+                each.contains(layer.area) for each in areas[number + 1 :]
+            )
+            shows = layer is not None and not drawn_later and area.intersection(layer.area)
+            hidden = hidden_table(self.cubes, cover, self.camera_matrix, area)
+            yield Region(
+                area,
+                self.targets.pictures.at_least(area.width, area.height),
+                clip_from_camera(self.camera_matrix, area) @ self.camera_from_table,
+                None if hidden is None else self.hidden.write(hidden),
+                cover,
+                layer if shows else None,
+            )

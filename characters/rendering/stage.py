@@ -1,6 +1,6 @@
 """The picture: characters on the table in the camera's frame."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import moderngl
 import numpy as np
@@ -14,10 +14,10 @@ from characters.rendering.occlusion import visible_cubes
 from characters.rendering.passes.by_quality import passes_for
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms
-from characters.rendering.projection import is_invertible, is_pinhole
+from characters.rendering.projection import Rectangle, is_invertible, is_pinhole
 from characters.rendering.quality import FULL, QUALITIES, Quality
 from characters.rendering.resources import FrameResources
-from characters.rendering.scene import FloorPath, Scene, SceneCharacter, Softness, View
+from characters.rendering.scene import Cover, FloorPath, Scene, SceneCharacter, Softness, View
 from characters.rendering.target import RenderTargets
 from characters.rendering.undistortion import Undistorter
 from characters.skeleton.pose import Array
@@ -103,7 +103,11 @@ class Stage:
         self._undistorter.start(image, matrix, distortion)
 
     def draw(
-        self, view: View, characters: Sequence[SceneCharacter], floor: Sequence[FloorPath] = ()
+        self,
+        view: View,
+        characters: Sequence[SceneCharacter],
+        floor: Sequence[FloorPath] = (),
+        find_cover: Callable[[], Cover | None] | None = None,
     ) -> Image:
         """Return the picture, (height, width, 3) uint8 BGR.
 
@@ -116,6 +120,9 @@ class Stage:
             The posed characters on the table.
         floor
             Paths that are painted on the table, below the characters and their shadows.
+        find_cover
+            Finds `view.cover`, which is left out then. It is called once, while the driver draws
+            the characters: both take their time at once.
 
         Raises
         ------
@@ -123,11 +130,14 @@ class Stage:
             The frame is not an image, or a character has nothing to draw.
         """
         picture, frame = self._frame(Scene(view, characters, floor))
+        areas = [] if frame is None else self._draw_layer(frame)
+        found = view.cover if find_cover is None else find_cover()
         if frame is None:
             return picture
-        areas = [area for each in self.passes for area in each.prepare(frame)]
+        cover = None if found is None else self._undistorter.cover_in_picture(found)
+        uploaded = None if cover is None else self._cover.upload(cover)
         drawn = []
-        for region in frame.regions(areas):
+        for region in frame.regions(areas, uploaded):
             self._context.front_face = "cw"  # the first row of a region is its top row
             for each in self.passes:
                 each.draw(frame, region)
@@ -136,6 +146,21 @@ class Stage:
         for area, pixels in drawn:  # where areas overlap, the last one is right
             picture[area.slices] = pixels
         return picture
+
+    def _draw_layer(self, frame: FrameResources) -> list[Rectangle]:
+        """Prepare all passes and draw the characters; return the areas of the picture that change.
+
+        The driver draws while the caller goes on.
+        """
+        areas: list[Rectangle] = []
+        for each in self.passes:
+            areas.extend(each.prepare(frame))
+            if frame.layer is not None:
+                self._context.front_face = "cw"
+                each.draw_layer(frame, frame.layer)
+        self._context.front_face = "ccw"
+        # The last region is right: the characters are drawn once.
+        return areas if frame.layer is None else [*areas, frame.layer.area]
 
     def release(self) -> None:
         """Release everything but the context; a second call does nothing."""
@@ -165,8 +190,7 @@ class Stage:
         light = self._light.update(picture, paper, view.light, table)
         if table is None or not is_pinhole(view.matrix):
             return picture, None
-        self._targets.at_least(1, 1).use_picture((0, 0, 1, 1))
-        cover = None if view.cover is None else self._undistorter.cover_in_picture(view.cover)
+        self._targets.pictures.at_least(1, 1).use((0, 0, 1, 1))
         return picture, FrameResources(
             context=self._context,
             targets=self._targets,
@@ -177,7 +201,6 @@ class Stage:
             light=light,
             softness=self._softness(view),
             cubes=visible_cubes(view.occluders, matrix, self.size),
-            cover=None if cover is None else self._cover.upload(cover),
             hidden=self._hidden,
             characters=self._characters.skin(
                 scene.characters,

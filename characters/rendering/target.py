@@ -1,7 +1,9 @@
 """Framebuffers that regions of a picture are drawn in."""
 
 from collections import OrderedDict
-from functools import cached_property
+from collections.abc import Callable
+from functools import cached_property, partial
+from typing import Generic, TypeVar
 
 import cv2
 import moderngl
@@ -18,79 +20,90 @@ MAX_WASTE = 1.5
 """How many times more pixels than needed a target may have: all are filtered, but a new target
 costs more."""
 
-MAX_TARGETS, MAX_DEFERRED_TARGETS = 12, 3
-"""How many targets are kept; those of deferred shading take ten times as much memory."""
+MAX_PICTURES, MAX_LAYERS = 12, 3
+"""How many targets of each kind are kept."""
 
 
-class RenderTarget:
-    """Two layers that a region is drawn in: the camera's picture, and the characters above it.
+class PictureTarget:
+    """What a region of the picture is drawn in; `size` is (width, height) [px]."""
 
-    `size` is (width, height) [px], `fineness` that of the characters' layer, see `Quality`.
+    def __init__(self, context: moderngl.Context, size: tuple[int, int]) -> None:
+        self._texture = _texture(context, size)
+        self._framebuffer = context.framebuffer([self._texture])
+
+    def use(self, viewport: tuple[int, int, int, int]) -> None:
+        """Draw on it from now on, in a viewport (x, y, width, height) [px]."""
+        self._framebuffer.use()
+        self._framebuffer.viewport = viewport
+
+    def write(self, bgra: Image) -> None:
+        """Fill the first texels, (height, width, 4), first row first."""
+        self._texture.write(bgra, viewport=(0, 0, bgra.shape[1], bgra.shape[0]))
+
+    def read(self, width: int, height: int) -> Image:
+        """Return the first texels, (height, width, 3)."""
+        data = self._framebuffer.read((0, 0, width, height), components=3, alignment=1)
+        return np.frombuffer(data, np.uint8).reshape(height, width, 3)
+
+    def release(self) -> None:
+        """Release the buffers; a second call does nothing."""
+        self._framebuffer.release()
+        self._texture.release()
+
+
+class LayerTarget:
+    """What the characters are drawn in, above the picture.
+
+    `size` is (width, height) [px], `fineness` that of the layer, see `Quality`.
     """
 
     def __init__(self, context: moderngl.Context, size: tuple[int, int], fineness: int) -> None:
         self._context = context
+        self.size = size
+        """(width, height) [px]."""
         self.fineness = fineness
-        """Texels of the characters' layer for each pixel, along each side."""
+        """Texels for each pixel, along each side."""
         fine_size = (fineness * size[0], fineness * size[1])
         self.characters_texture = _texture(context, fine_size)
         """The characters on a transparent ground, premultiplied, `fineness` times as large."""
         self._depth = context.depth_renderbuffer(fine_size)
-        self._characters = context.framebuffer([self.characters_texture], self._depth)
-        self.picture_texture = _texture(context, size)
-        """The camera's picture with everything that is drawn on it."""
-        self._picture = context.framebuffer([self.picture_texture])
+        self.framebuffer = context.framebuffer([self.characters_texture], self._depth)
+        """Draws on that."""
 
     @cached_property
     def geometry(self) -> GeometryBuffer:
-        """What is seen in each texel of the characters' layer; made when first asked for."""
+        """What is seen in each texel; made when first asked for."""
         return GeometryBuffer(self._context, self.characters_texture.size, self._depth)
 
     @cached_property
     def light(self) -> LightBuffer:
-        """The light of each texel of the characters' layer; made when first asked for."""
+        """The light of each texel; made when first asked for."""
         return LightBuffer(self._context, self.characters_texture.size)
-
-    def use_picture(self, viewport: tuple[int, int, int, int]) -> None:
-        """Draw on the picture, in a viewport (x, y, width, height) [px]."""
-        self._picture.use()
-        self._picture.viewport = viewport
-
-    def use_characters(self, width: int, height: int) -> moderngl.Framebuffer:
-        """Draw on the character layer, whose first texels stand for width × height pixels."""
-        self._characters.use()
-        self._characters.viewport = (0, 0, self.fineness * width, self.fineness * height)
-        return self._characters
-
-    def write(self, bgra: Image) -> None:
-        """Fill the first texels of the picture, (height, width, 4), first row first."""
-        self.picture_texture.write(bgra, viewport=(0, 0, bgra.shape[1], bgra.shape[0]))
-
-    def read(self, width: int, height: int) -> Image:
-        """Return the first texels of the picture, (height, width, 3)."""
-        data = self._picture.read((0, 0, width, height), components=3, alignment=1)
-        return np.frombuffer(data, np.uint8).reshape(height, width, 3)
 
     def release(self) -> None:
         """Release the buffers; a second call does nothing."""
         for name in ("geometry", "light"):
             if name in self.__dict__:
                 self.__dict__[name].release()
-        for framebuffer in (self._characters, self._picture):
-            framebuffer.release()
-        for attachment in (self._depth, self.characters_texture, self.picture_texture):
-            attachment.release()
+        for each in (self.framebuffer, self._depth, self.characters_texture):
+            each.release()
 
 
-class RenderTargets:
-    """Keeps targets of a few sizes for a quality; the least recently used is released first."""
+Target = TypeVar("Target", PictureTarget, LayerTarget)
 
-    def __init__(self, context: moderngl.Context, quality: Quality) -> None:
-        self._context, self._fineness = context, quality.fineness
-        self._limit = MAX_DEFERRED_TARGETS if quality.deferred else MAX_TARGETS
-        self._kept: OrderedDict[tuple[int, int], RenderTarget] = OrderedDict()
 
-    def at_least(self, width: int, height: int) -> RenderTarget:
+class TargetCache(Generic[Target]):
+    """Keeps a few targets of different sizes; the least recently used is released first.
+
+    `make` returns a new one of a size (width, height) [px].
+    """
+
+    def __init__(self, make: Callable[[tuple[int, int]], Target], limit: int) -> None:
+        self._make: Callable[[tuple[int, int]], Target] = make
+        self._limit = limit
+        self._kept: OrderedDict[tuple[int, int], Target] = OrderedDict()
+
+    def at_least(self, width: int, height: int) -> Target:
         """Return a target that is large enough, and not much larger."""
         size = texture_size(width, height)
         fitting = [
@@ -101,7 +114,7 @@ class RenderTargets:
             and kept[0] * kept[1] <= MAX_WASTE * size[0] * size[1]
         ]
         chosen = min(fitting, key=lambda kept: kept[0] * kept[1], default=size)
-        target = self._kept.pop(chosen, None) or RenderTarget(self._context, chosen, self._fineness)
+        target = self._kept.pop(chosen, None) or self._make(chosen)
         self._kept[chosen] = target
         if len(self._kept) > self._limit:
             self._kept.popitem(last=False)[1].release()
@@ -111,6 +124,23 @@ class RenderTargets:
         """Release all targets; a second call does nothing."""
         while self._kept:
             self._kept.popitem()[1].release()
+
+
+class RenderTargets:
+    """The targets of a quality."""
+
+    def __init__(self, context: moderngl.Context, quality: Quality) -> None:
+        self.pictures = TargetCache(partial(PictureTarget, context), MAX_PICTURES)
+        """For regions of the picture."""
+        self.layers = TargetCache(
+            partial(LayerTarget, context, fineness=quality.fineness), MAX_LAYERS
+        )
+        """For the characters."""
+
+    def release(self) -> None:
+        """Release all targets; a second call does nothing."""
+        self.pictures.release()
+        self.layers.release()
 
 
 def bgra_from_bgr(picture: Image) -> Image:

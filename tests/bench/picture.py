@@ -30,7 +30,7 @@ from characters.rendering.passes.cube_occlusion import CubeOcclusionPass
 from characters.rendering.passes.floor_paths import FloorPathPass
 from characters.rendering.passes.resolve import ResolvePass
 from characters.rendering.passes.shadows import ShadowPass
-from characters.rendering.target import RenderTarget
+from characters.rendering.target import PictureTarget
 from characters.rendering.undistortion import Undistorter
 
 SIZE = (1280, 720)
@@ -44,10 +44,10 @@ PARTS = (
     ("background", BackgroundPass, "draw"),
     ("floor paths", FloorPathPass, "draw"),
     ("shadows", ShadowPass, "draw"),
-    ("cube occlusion", CubeOcclusionPass, "draw"),
-    ("characters", CharacterPass, "draw"),
+    ("cube occlusion", CubeOcclusionPass, "draw_layer"),
+    ("characters", CharacterPass, "draw_layer"),
     ("resolve", ResolvePass, "draw"),
-    ("read back", RenderTarget, "read"),
+    ("read back", PictureTarget, "read"),
 )
 
 

@@ -40,10 +40,11 @@ def passes_for(
     return [
         BackgroundPass(),
         FloorPathPass(context, programs),
-        shadows,
+        *[shadows] * quality.deferred,  # characters are shadowed too
         CubeOcclusionPass(context, programs),
         CubeWindowPass(context, programs),
         *shading,
+        *[shadows] * (not quality.deferred),  # its maps while the driver shades
         HandOcclusionPass(context, programs),
         ResolvePass(context, programs),
     ]

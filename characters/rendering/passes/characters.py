@@ -7,24 +7,15 @@ import moderngl
 from characters.rendering.occlusion import unit_cube_from_table
 from characters.rendering.passes.cube_window import clip_to
 from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.projection import Rectangle
-from characters.rendering.resources import CharacterLayer, FrameResources, Region
+from characters.rendering.resources import CharacterLayer, FrameResources
 from characters.skeleton.pose import Array
 
 
 class CharacterPass(RenderPass):
     """Draws the skinned characters on the character layer, whose depth hides what is covered."""
 
-    def prepare(self, frame: FrameResources) -> Sequence[Rectangle]:
-        """Return the area around the characters."""
-        area = frame.character_area
-        return () if area is None else (area,)
-
-    def draw(self, frame: FrameResources, region: Region) -> None:
+    def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Draw all characters."""
-        layer = region.characters
-        if layer is None:
-            return
         layer.use()
         light = frame.light
         self._render(

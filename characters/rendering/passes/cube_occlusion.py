@@ -5,7 +5,7 @@ import moderngl
 from characters.rendering.occlusion import UNIT_CUBE, camera_from_unit_cube
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.resources import FrameResources, Region
+from characters.rendering.resources import CharacterLayer, FrameResources
 
 
 class CubeOcclusionPass(RenderPass):
@@ -17,11 +17,8 @@ class CubeOcclusionPass(RenderPass):
         self._cube = context.vertex_array(self._program, [(corners, "3f", "position")])
         self.owned = (self._cube, corners)
 
-    def draw(self, frame: FrameResources, region: Region) -> None:
+    def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Clear the character layer and write depth."""
-        layer = region.characters
-        if layer is None:
-            return
         framebuffer = layer.use()
         framebuffer.clear()
         if not layer.cubes:

@@ -11,7 +11,7 @@ from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.passes.shadows import ShadowMap, key_share
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.projection import Rectangle
-from characters.rendering.resources import FrameResources, Region
+from characters.rendering.resources import CharacterLayer, FrameResources
 from characters.rendering.scene import Box
 from characters.skeleton.pose import Array
 
@@ -49,19 +49,18 @@ class CubeWindowPass(RenderPass):
         self._resident: tuple[CharacterInstance, Array] | None = None
 
     def prepare(self, frame: FrameResources) -> tuple[Rectangle, ...]:
-        """Render the shadow of the character inside, and return the areas of open cubes."""
+        """Render the shadow of the character inside."""
         inside = (each for each in frame.characters if each.inside is not None)
         resident = next(inside, None)
         self._resident = None
         if resident is not None and resident.inside is not None and resident.inside.is_open:
             self._resident = resident, self._render_shadow(frame, resident)
-        return tuple(area for box, area in frame.cubes if box.is_open)
+        return ()
 
-    def draw(self, frame: FrameResources, region: Region) -> None:
+    def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Draw the open cubes."""
-        layer = region.characters
-        boxes = () if layer is None else tuple(box for box in layer.cubes if box.is_open)
-        if layer is None or not boxes:
+        boxes = tuple(box for box in layer.cubes if box.is_open)
+        if not boxes:
             return
         layer.use()
         # Blending keeps nothing: a nearer cube hides a farther one, also with its rim.

@@ -20,7 +20,7 @@ class HandOcclusionPass(RenderPass):
 
     def draw(self, frame: FrameResources, region: Region) -> None:
         """Clear the character layer behind the hand."""
-        layer, cover = region.characters, frame.cover
+        layer, cover = region.characters, region.cover
         if layer is None or cover is None:
             return
         shared = cover.area.intersection(layer.area)

@@ -1,11 +1,10 @@
 """What every pass has in common."""
 
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import Protocol
 
 from characters.rendering.projection import Rectangle
-from characters.rendering.resources import FrameResources, Region
+from characters.rendering.resources import CharacterLayer, FrameResources, Region
 
 
 class Releasable(Protocol):
@@ -15,13 +14,14 @@ class Releasable(Protocol):
         """Release it; a second call does nothing."""
 
 
-class RenderPass(ABC):
+class RenderPass:
     """One step in drawing a picture.
 
-    The stage calls `prepare` of all passes once a frame, then `draw` of all passes for each region
-    of the picture that something is drawn in. Between passes, only the framebuffers and what
-    `FrameResources` holds are shared: a pass sets the blending, the tests and the uniforms that it
-    needs. `Region` says which framebuffers there are.
+    Once a frame, the stage calls `prepare` and `draw_layer` of one pass after the other. Then it
+    asks for the hand, and calls `draw` of all passes for each region of the picture that something
+    is drawn in. Between passes, only the framebuffers and what `FrameResources` holds are shared: a
+    pass sets the blending, the tests and the uniforms that it needs. `Region` says which
+    framebuffers there are.
     """
 
     owned: Sequence[Releasable] = ()
@@ -31,9 +31,14 @@ class RenderPass(ABC):
         """Make ready for a frame, and return the areas of the picture that this pass changes."""
         return ()
 
-    @abstractmethod
+    def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
+        """Draw on the layer of the characters, whatever the hand hides of it.
+
+        The driver is at work on it already while the hand is found.
+        """
+
     def draw(self, frame: FrameResources, region: Region) -> None:
-        """Draw one region."""
+        """Draw one region of the picture."""
 
     def release(self) -> None:
         """Release what the pass owns; a second call does nothing."""

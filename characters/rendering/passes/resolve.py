@@ -48,7 +48,7 @@ class ResolvePass(RenderPass):
         if softness is not None:
             triangle = self._grainy if softness.noise > 0.0 else self._soft
         corner = layer.area.x - region.area.x, layer.area.y - region.area.y
-        region.target.use_picture((*corner, layer.area.width, layer.area.height))
+        region.target.use((*corner, layer.area.width, layer.area.height))
         frame.context.enable_only(moderngl.BLEND)
         frame.context.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
         set_uniforms(triangle.program, corner=corner, fineness=float(layer.target.fineness))

@@ -52,7 +52,6 @@ def test_only_what_was_chosen_is_measured(source, seen):
     full = last_view(source, seen, tuple(REALISM_CHOICES))
     assert full.softness.blur == pytest.approx(0.5, abs=0.25)
     assert full.focus.nearest == pytest.approx(seen[-1][1].camera_from_cube[2, 3], rel=1e-3)
-    assert full.cover is None  # no hand is near yet
     assert np.array_equal(full.image, plain.image)
 
 

@@ -5,7 +5,7 @@ import moderngl
 from characters.rendering.deferred.buffers import buffer_triangle
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms
-from characters.rendering.resources import CharacterLayer, FrameResources, Region
+from characters.rendering.resources import CharacterLayer, FrameResources
 
 
 class DeferredCompositePass(RenderPass):
@@ -18,11 +18,10 @@ class DeferredCompositePass(RenderPass):
         )
         self.owned = (self._shown, self._linear)
 
-    def draw(self, frame: FrameResources, region: Region) -> None:
+    def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Write all texels that show a character."""
-        if region.characters is not None:
-            region.characters.use()
-            self._draw(frame, region.characters, self._shown)
+        layer.use()
+        self._draw(frame, layer, self._shown)
 
     def draw_light(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Write linear light, and 1, to the sum of the light buffer instead."""

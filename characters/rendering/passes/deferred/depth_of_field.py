@@ -6,7 +6,7 @@ from characters.rendering.deferred.buffers import BUFFER_UNITS, buffer_triangle
 from characters.rendering.passes.deferred.composite import DeferredCompositePass
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.resources import FrameResources, Region
+from characters.rendering.resources import CharacterLayer, FrameResources
 from characters.rendering.scene import Focus
 
 MIN_RADIUS_TEXELS = 1.0
@@ -34,15 +34,13 @@ class DepthOfFieldPass(RenderPass):
         self._triangle = buffer_triangle(context, programs, "depth_of_field")
         self.owned = (self._triangle, composite)
 
-    def draw(self, frame: FrameResources, region: Region) -> None:
+    def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Draw the characters, sharp in the focus alone."""
-        layer, focus = region.characters, frame.scene.view.focus
-        if layer is None:
-            return
+        focus = frame.scene.view.focus
         texels = layer.target.fineness * float(frame.camera_matrix[1, 1])
         widest = 0.0 if focus is None else texels * _widest(frame, focus)
         if focus is None or widest < MIN_RADIUS_TEXELS:
-            self._composite.draw(frame, region)
+            self._composite.draw_layer(frame, layer)
             return
         self._composite.draw_light(frame, layer)
         framebuffer = layer.use()

@@ -2,17 +2,14 @@
 
 from characters.rendering.geometry.surfaces import GEOMETRY
 from characters.rendering.passes.characters import CharacterPass
-from characters.rendering.resources import FrameResources, Region
+from characters.rendering.resources import CharacterLayer, FrameResources
 
 
 class DeferredGeometryPass(CharacterPass):
     """Draws the skinned characters on the geometry buffer (pass 1 of deferred shading)."""
 
-    def draw(self, frame: FrameResources, region: Region) -> None:
+    def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Draw all characters."""
-        layer = region.characters
-        if layer is None:
-            return
         framebuffer = layer.use_geometry()
         framebuffer.depth_mask = False  # the depth of real cubes stays
         framebuffer.clear()

@@ -12,7 +12,7 @@ from characters.rendering.deferred.buffers import (
 from characters.rendering.passes.deferred.visibility import DeferredVisibilityPass
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.resources import FrameResources, Region
+from characters.rendering.resources import CharacterLayer, FrameResources
 
 
 class DeferredLightingPass(RenderPass):
@@ -36,11 +36,8 @@ class DeferredLightingPass(RenderPass):
         self._records.filter = moderngl.NEAREST, moderngl.NEAREST
         self.owned = (self._triangle, self._records)
 
-    def draw(self, frame: FrameResources, region: Region) -> None:
+    def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Light all texels."""
-        layer = region.characters
-        if layer is None:
-            return
         records = surface_records(frame.characters)[:MAX_SURFACES].astype("f4")
         self._records.write(np.ascontiguousarray(records), viewport=(0, 0, 3, len(records)))
         light, rotation = frame.light, frame.camera_from_table[:3, :3]

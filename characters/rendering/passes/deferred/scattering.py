@@ -6,7 +6,7 @@ import numpy as np
 from characters.rendering.deferred.buffers import buffer_triangle
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.resources import FrameResources, Region
+from characters.rendering.resources import CharacterLayer, FrameResources
 
 LEVEL_RADII_M = (0.0023, 0.0053, 0.0103)
 """Radii of the levels in human skin [m]. A Wendland function of a radius of 3.8 standard deviations
@@ -48,10 +48,9 @@ class DeferredScatteringPass(RenderPass):
             open_limits=OPEN_LIMITS,
         )
 
-    def draw(self, frame: FrameResources, region: Region) -> None:
+    def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Replace the diffuse light of skin by what is scattered."""
-        layer = region.characters
-        if layer is None or self._reach(frame) * layer.target.fineness < MIN_REACH_TEXELS:
+        if self._reach(frame) * layer.target.fineness < MIN_REACH_TEXELS:
             return
         layer.use_scattered()
         frame.context.enable_only(moderngl.NOTHING)

@@ -9,7 +9,7 @@ from characters.rendering.deferred.buffers import BUFFER_UNITS, PixelBuffer, buf
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.projection import grown_size
-from characters.rendering.resources import CharacterLayer, FrameResources, Region
+from characters.rendering.resources import CharacterLayer, FrameResources
 
 DEPTH_TOLERANCE_M = 0.01
 """Difference in depth at which a pixel's value does not count for another [m]."""
@@ -54,11 +54,8 @@ class DeferredVisibilityPass(RenderPass):
         self.owned = arrays if occlusion is None else (*arrays, occlusion)
         set_uniforms(self._smooth.program, depth_tolerance=DEPTH_TOLERANCE_M)
 
-    def draw(self, frame: FrameResources, region: Region) -> None:
+    def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Find the visible light in each pixel of the characters."""
-        layer = region.characters
-        if layer is None:
-            return
         pixels = self._pixels_of(layer)
         size = layer.area.width, layer.area.height
         self._context.enable_only(moderngl.NOTHING)
@@ -120,9 +117,7 @@ class DeferredVisibilityPass(RenderPass):
     def _pixels_of(self, layer: CharacterLayer) -> PixelBuffer:
         """Return the buffer for the pixels of a layer; it grows, and never shrinks."""
         kept = self._pixels
-        size = grown_size(
-            None if kept is None else kept.position.size, layer.target.picture_texture.size
-        )
+        size = grown_size(None if kept is None else kept.position.size, layer.target.size)
         if size is not None:
             if kept is not None:
                 self._context.detect_framebuffer(0).use()
