@@ -11,7 +11,7 @@ from characters.rendering.geometry.detail_levels import DetailLevel, chosen_leve
 from characters.rendering.geometry.face_split import split_faces
 from characters.rendering.geometry.face_texture import FaceTexture
 from characters.rendering.geometry.morph_mixer import MorphMixer
-from characters.rendering.geometry.surfaces import Surface, SurfaceBuffers
+from characters.rendering.geometry.surfaces import VERTEX_LIT, Surface, SurfaceBuffers
 from characters.rendering.geometry.vertices import CharacterVertices
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.scene import Drawable
@@ -152,11 +152,15 @@ class SkinnedCharacter:
     ) -> None:
         """Draw all surfaces with programs that have some features besides those of the surface.
 
+        Vertices are shaded alone at coarser levels only: those are for small characters, and what
+        is between their vertices differs little from them, normals included.
         `uniforms` are set once for each program; `surface_id` counts from `first_surface` on.
         """
         prepared: set[int] = set()
+        if self._level == 0:
+            features -= {VERTEX_LIT}
         for number, surface in enumerate(self.surfaces, first_surface):
-            array = self._surfaces.array(surface.features | features)
+            array = self._surfaces.array(surface.program_features(features))
             if array.program.glo not in prepared:
                 prepared.add(array.program.glo)
                 set_uniforms(array.program, **uniforms)

@@ -27,6 +27,13 @@ GEOMETRY, CASTER = "GEOMETRY", "CASTER"
 """Features of programs that write what a surface is like, instead of its colour in the light, and
 its distance from the lamp."""
 
+VERTEX_LIT = "VERTEX_LIT"
+"""Feature of programs that shade vertices, not fragments, for surfaces that allow it."""
+
+MIN_VERTEX_ROUGHNESS = 0.5
+"""Least roughness of a surface of which vertices alone are shaded: highlights of a smoother one are
+as small as triangles."""
+
 BLENDED = "BLENDED"
 """Feature of a surface that is partly transparent, for the programs that can draw it so."""
 
@@ -63,6 +70,17 @@ class Surface:
 
     face: FaceTexture | None = None
     """Wrinkles and blood on it."""
+
+    def program_features(self, wanted: frozenset[str]) -> frozenset[str]:
+        """Return the features of the program that draws it, with `wanted` ones where possible.
+
+        Vertices of a surface with textures, two sides, toon shading or narrow highlights are not
+        shaded alone.
+        """
+        material = self.material
+        plain = self.features <= {"GLOW", SKIN_FEATURE} and not material.double_sided
+        plain &= material.roughness >= MIN_VERTEX_ROUGHNESS
+        return self.features | (wanted if plain else wanted - {VERTEX_LIT})
 
     def render(self, context: moderngl.Context, array: moderngl.VertexArray) -> None:
         """Draw the triangles with the program of an array, which must fit the features."""
@@ -251,6 +269,8 @@ def surface_program(programs: ShaderPrograms, features: frozenset[str]) -> moder
         features -= {BLENDED}
     if GEOMETRY not in features:
         features -= {SKIN_FEATURE}
+    if VERTEX_LIT in features:
+        return programs.load("vertex_lit", "vertex_lit", *sorted(features & {"GLOW"}))
     mapped = {"MAPPED"} if features & MAPPED_FEATURES else set()
     placed = {"PLACED"} if features & {"BUMPS", GEOMETRY, CASTER, FACE_FEATURE} else set()
     program = programs.load("character", "character", *sorted(features | mapped | placed))

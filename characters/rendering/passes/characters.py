@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import moderngl
 
+from characters.rendering.geometry.surfaces import VERTEX_LIT
 from characters.rendering.occlusion import unit_cube_from_table
 from characters.rendering.passes.cube_window import clip_to
 from characters.rendering.passes.render_pass import RenderPass
@@ -21,6 +22,7 @@ class CharacterPass(RenderPass):
         self._render(
             frame,
             layer,
+            frozenset([VERTEX_LIT]),
             eye=frame.camera_position,
             to_light=light.to_light,
             key=light.key,
