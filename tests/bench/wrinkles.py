@@ -112,7 +112,7 @@ def print_composing(context: moderngl.Context, human: Character, frames: int) ->
     least = np.inf
     for frame in range(4 * frames):
         start = time.perf_counter()
-        face.update(moving(human, frame), 0.0, 1.0, wrinkles=True)
+        face.update(moving(human, frame), 0.0, 1.0, 0.0)
         least = min(least, 1e3 * (time.perf_counter() - start))
     face.release()
     Console().print(

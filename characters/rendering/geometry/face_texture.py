@@ -19,6 +19,10 @@ from characters.skeleton.pose import Array
 MIN_INTENSITY = 1e-3
 """A layer of a lower intensity is not drawn."""
 
+WRINKLE_DEPTHS_PX = 0.85, 1.15
+"""Depths of wrinkles in the picture from which on they are seen at all, and as they are [px]:
+smaller ones are narrower than a pixel, and would flicker."""
+
 SMOOTHING_TEXELS = 0.8
 """Standard deviation of the blur that takes the steps of 8 bits out of a height [texels]."""
 
@@ -81,14 +85,15 @@ class FaceTexture:
         self.texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
         self.texture.repeat_x = self.texture.repeat_y = False  # what is beyond the map has no paint
 
-    def update(self, morphs: Array | None, blood: float, scale: float, wrinkles: bool) -> bool:
+    def update(self, morphs: Array | None, blood: float, scale: float, pixel: float) -> bool:
         """Set the face to morph weights (morphs,) and blood, -1…1; return whether it is visible.
 
-        `scale` is metres of the table per metre of the character; without `wrinkles`, the skin
-        stays smooth.
+        `scale` is metres of the table per metre of the character; `pixel` is the size of a pixel
+        of the picture [m in the character frame]: where it is large, the skin stays smooth.
         """
-        units = self._units.intensities(morphs if wrinkles else None)
-        self._blood, self._depth_on_table = blood, scale * self._depth
+        share = float(np.interp(self._depth, np.multiply(WRINKLE_DEPTHS_PX, pixel), (0.0, 1.0)))
+        units = self._units.intensities(morphs if share > 0.0 else None)
+        self._blood, self._depth_on_table = blood, scale * share * self._depth
         if self._mixer.compose(layer_intensities(units)):
             rows, columns = self._mixer.box
             viewport = (

@@ -168,13 +168,13 @@ class SkinnedCharacter:
             surface.render(context, array)
 
     def show_face(
-        self, morphs: Array | None, blood: float, table_from_character: Array, wrinkles: bool
+        self, morphs: Array | None, blood: float, table_from_character: Array, pixel: float
     ) -> None:
         """Set wrinkles and blood of the skin; see `FaceTexture.update`."""
         if self.face is None:
             return
         scale = float(np.linalg.norm(table_from_character[:3, 1]))
-        self._shows_face = self.face.update(morphs, blood, scale, wrinkles)
+        self._shows_face = self.face.update(morphs, blood, scale, pixel)
 
     def _skin_used(self) -> None:
         """Skin the vertices of the level, which are the first of two parts of the buffer."""

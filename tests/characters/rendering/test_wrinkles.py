@@ -169,6 +169,14 @@ def test_any_material_can_have_a_face(shown, view, tile, kind):
     assert changed_cells(view, shown(other), shown(other, blood=1.0)) == {0}
 
 
+def test_wrinkles_narrower_than_a_pixel_are_left_out(shown, tile, cells):
+    mesh = tile.meshes[0]
+    face = replace(cells, depth=0.1 * cells.depth)  # of the tile, whose pixels are a hundredth wide
+    shallow = replace(tile, meshes=(replace(mesh, material=replace(mesh.material, face=face)),))
+    assert not np.array_equal(shown(AU4=1.0), shown())
+    assert np.array_equal(shown(shallow, AU4=1.0), shown(shallow))
+
+
 def test_blood_reddens_and_pales_in_steps(shown):
     reds = []
     for blood in (-1.0, -0.5, 0.0, 0.5, 1.0):
