@@ -1,6 +1,5 @@
 """What the passes of a picture share: the resources of a frame, and of one region of it."""
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -8,9 +7,8 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.cover import PictureCover, ShareTexture
+from characters.rendering.cover import ShareTexture
 from characters.rendering.geometry.character_cache import CharacterInstance
-from characters.rendering.hidden_table import hidden_table
 from characters.rendering.light import Light
 from characters.rendering.occlusion import corners_of
 from characters.rendering.programs import set_uniforms
@@ -88,12 +86,6 @@ class Region:
     hidden: moderngl.Texture | None
     """Share of each pixel in which real cubes or the hand hide the table; None if in no pixel."""
 
-    cover: PictureCover | None
-    """The hand in front of the cube."""
-
-    characters: CharacterLayer | None
-    """The characters; None if there are none in this region."""
-
     def use(self) -> None:
         """Draw on the picture of this region from now on."""
         self.target.use((0, 0, self.area.width, self.area.height))
@@ -119,7 +111,7 @@ class FrameResources:
     """What the picture shows."""
 
     picture: Image
-    """The undistorted camera frame, (height, width, 3) BGR."""
+    """The undistorted camera frame, (height, width, 3) BGR, which passes draw on."""
 
     camera_matrix: Array
     """Pinhole matrix of the picture, (3, 3) [px]."""
@@ -213,32 +205,3 @@ class FrameResources:
             clip_from_camera(self.camera_matrix, area),
             tuple(box for box, place in self.cubes if place.intersection(area)),
         )
-
-    def regions(self, areas: Sequence[Rectangle], cover: PictureCover | None) -> Iterator[Region]:
-        """Yield a region for each area that no other contains.
-
-        Where regions overlap, the last one is right. The caller reads each before it asks for the
-        next, which may use the same target.
-        """
-        areas = [
-            area
-            for i, area in enumerate(areas)
-            if not any(
-                other.contains(area) and (other != area or j > i) for j, other in enumerate(areas)
-            )
-        ]
-        layer = self.layer
-        for number, area in enumerate(areas):
-            drawn_later = layer is None or any(
-                each.contains(layer.area) for each in areas[number + 1 :]
-            )
-            shows = layer is not None and not drawn_later and area.intersection(layer.area)
-            hidden = hidden_table(self.cubes, cover, self.camera_matrix, area)
-            yield Region(
-                area,
-                self.targets.pictures.at_least(area.width, area.height),
-                clip_from_camera(self.camera_matrix, area) @ self.camera_from_table,
-                None if hidden is None else self.hidden.write(hidden),
-                cover,
-                layer if shows else None,
-            )

@@ -14,7 +14,7 @@ from characters.rendering.occlusion import visible_cubes
 from characters.rendering.passes.by_quality import passes_for
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms
-from characters.rendering.projection import Rectangle, is_invertible, is_pinhole
+from characters.rendering.projection import is_invertible, is_pinhole
 from characters.rendering.quality import FULL, QUALITIES, Quality
 from characters.rendering.resources import FrameResources
 from characters.rendering.scene import Cover, FloorPath, Scene, SceneCharacter, Softness, View
@@ -24,7 +24,7 @@ from characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
 
-COARSE_SOFTNESS = Softness(0.45, 0.0)
+COARSE_SOFTNESS = Softness(0.64, 0.0)
 """Blur of a layer as coarse as the picture: it hides the steps along edges."""
 
 
@@ -130,37 +130,29 @@ class Stage:
             The frame is not an image, or a character has nothing to draw.
         """
         picture, frame = self._frame(Scene(view, characters, floor))
-        areas = [] if frame is None else self._draw_layer(frame)
+        if frame is not None:
+            self._draw_layer(frame)
         found = view.cover if find_cover is None else find_cover()
         if frame is None:
             return picture
         cover = None if found is None else self._undistorter.cover_in_picture(found)
         uploaded = None if cover is None else self._cover.upload(cover)
-        drawn = []
-        for region in frame.regions(areas, uploaded):
-            self._context.front_face = "cw"  # the first row of a region is its top row
-            for each in self.passes:
-                each.draw(frame, region)
-            self._context.front_face = "ccw"  # as code outside of the stage expects it
-            drawn.append((region.area, region.target.read(region.area.width, region.area.height)))
-        for area, pixels in drawn:  # where areas overlap, the last one is right
-            picture[area.slices] = pixels
+        self._context.front_face = "cw"  # the first row of a target is its top row
+        for each in self.passes:
+            each.composite(frame, uploaded)
+        self._context.front_face = "ccw"  # as code outside of the stage expects it
         return picture
 
-    def _draw_layer(self, frame: FrameResources) -> list[Rectangle]:
-        """Prepare all passes and draw the characters; return the areas of the picture that change.
-
-        The driver draws while the caller goes on.
-        """
-        areas: list[Rectangle] = []
+    def _draw_layer(self, frame: FrameResources) -> None:
+        """Prepare all passes and draw the characters; the driver draws while the caller goes on."""
         for each in self.passes:
-            areas.extend(each.prepare(frame))
+            each.prepare(frame)
             if frame.layer is not None:
                 self._context.front_face = "cw"
                 each.draw_layer(frame, frame.layer)
         self._context.front_face = "ccw"
-        # The last region is right: the characters are drawn once.
-        return areas if frame.layer is None else [*areas, frame.layer.area]
+        # A software driver starts to work on a framebuffer when another one is drawn on.
+        self._targets.pictures.at_least(1, 1).clear()
 
     def release(self) -> None:
         """Release everything but the context; a second call does nothing."""

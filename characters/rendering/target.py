@@ -36,6 +36,11 @@ class PictureTarget:
         self._framebuffer.use()
         self._framebuffer.viewport = viewport
 
+    def clear(self) -> None:
+        """Draw on it from now on, with black on all of it."""
+        self._framebuffer.use()
+        self._framebuffer.clear()
+
     def write(self, bgra: Image) -> None:
         """Fill the first texels, (height, width, 4), first row first."""
         self._texture.write(bgra, viewport=(0, 0, bgra.shape[1], bgra.shape[0]))
@@ -69,6 +74,12 @@ class LayerTarget:
         self._depth = context.depth_renderbuffer(fine_size)
         self.framebuffer = context.framebuffer([self.characters_texture], self._depth)
         """Draws on that."""
+
+    def read(self, width: int, height: int) -> Image:
+        """Return the texels of the first width × height pixels, (rows, columns, 4) BGRA."""
+        columns, rows = self.fineness * width, self.fineness * height
+        data = self.framebuffer.read((0, 0, columns, rows), components=4)
+        return np.frombuffer(data, np.uint8).reshape(rows, columns, 4)
 
     @cached_property
     def geometry(self) -> GeometryBuffer:

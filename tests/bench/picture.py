@@ -24,13 +24,12 @@ from characters.model.character import Character
 from characters.rendering import Box, FloorPath, SceneCharacter, Stage, View, create_context
 from characters.rendering.geometry.skinned_character import SkinnedCharacter
 from characters.rendering.light import LightEstimator
-from characters.rendering.passes.background import BackgroundPass
 from characters.rendering.passes.characters import CharacterPass
 from characters.rendering.passes.cube_occlusion import CubeOcclusionPass
 from characters.rendering.passes.floor_paths import FloorPathPass
 from characters.rendering.passes.resolve import ResolvePass
 from characters.rendering.passes.shadows import ShadowPass
-from characters.rendering.target import PictureTarget
+from characters.rendering.target import LayerTarget
 from characters.rendering.undistortion import Undistorter
 
 SIZE = (1280, 720)
@@ -41,13 +40,12 @@ PARTS = (
     ("skin", SkinnedCharacter, "skin"),
     ("prepare floor paths", FloorPathPass, "prepare"),
     ("render shadow maps", ShadowPass, "prepare"),
-    ("background", BackgroundPass, "draw"),
-    ("floor paths", FloorPathPass, "draw"),
-    ("shadows", ShadowPass, "draw"),
+    ("floor paths", FloorPathPass, "composite"),
+    ("shadows", ShadowPass, "composite"),
     ("cube occlusion", CubeOcclusionPass, "draw_layer"),
     ("characters", CharacterPass, "draw_layer"),
-    ("resolve", ResolvePass, "draw"),
-    ("read back", PictureTarget, "read"),
+    ("resolve", ResolvePass, "composite"),
+    ("read back", LayerTarget, "read"),
 )
 
 

@@ -4,7 +4,6 @@ import moderngl
 
 from characters.rendering.deferred.ambient_occlusion import AmbientOcclusion
 from characters.rendering.deferred.blocker_map import BlockerMap
-from characters.rendering.passes.background import BackgroundPass
 from characters.rendering.passes.characters import CharacterPass
 from characters.rendering.passes.cube_occlusion import CubeOcclusionPass
 from characters.rendering.passes.cube_window import CubeWindowPass
@@ -38,15 +37,13 @@ def passes_for(
     if quality.deferred:
         shading = _deferred_shading(quality.effects, context, programs, blockers)
     return [
-        BackgroundPass(),
         FloorPathPass(context, programs),
-        *[shadows] * quality.deferred,  # characters are shadowed too
+        shadows,
         CubeOcclusionPass(context, programs),
         CubeWindowPass(context, programs),
         *shading,
-        *[shadows] * (not quality.deferred),  # its maps while the driver shades
         HandOcclusionPass(context, programs),
-        ResolvePass(context, programs),
+        ResolvePass(),
     ]
 
 

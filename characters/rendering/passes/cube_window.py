@@ -10,7 +10,6 @@ from characters.rendering.occlusion import UNIT_CUBE, camera_from_unit_cube
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.passes.shadows import ShadowMap, key_share
 from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.projection import Rectangle
 from characters.rendering.resources import CharacterLayer, FrameResources
 from characters.rendering.scene import Box
 from characters.skeleton.pose import Array
@@ -48,14 +47,13 @@ class CubeWindowPass(RenderPass):
         self._shadow: ShadowMap | None = None
         self._resident: tuple[CharacterInstance, Array] | None = None
 
-    def prepare(self, frame: FrameResources) -> tuple[Rectangle, ...]:
+    def prepare(self, frame: FrameResources) -> None:
         """Render the shadow of the character inside."""
         inside = (each for each in frame.characters if each.inside is not None)
         resident = next(inside, None)
         self._resident = None
         if resident is not None and resident.inside is not None and resident.inside.is_open:
             self._resident = resident, self._render_shadow(frame, resident)
-        return ()
 
     def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Draw the open cubes."""

@@ -1,14 +1,12 @@
 """Paths painted on the table: discs, a ring, and dashes between them."""
 
-from collections.abc import Sequence
-
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.passes.render_pass import RenderPass
+from characters.rendering.passes.render_pass import RegionPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.projection import Rectangle, merge_rectangles
+from characters.rendering.projection import merge_rectangles
 from characters.rendering.resources import FrameResources, Region
 from characters.rendering.scene import FloorPath
 from characters.skeleton.pose import Array
@@ -26,7 +24,7 @@ CLEARANCE_M = 0.006
 """Distance between a disc and the first dash [m]."""
 
 
-class FloorPathPass(RenderPass):
+class FloorPathPass(RegionPass):
     """Paints the floor paths on the table."""
 
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
@@ -39,12 +37,13 @@ class FloorPathPass(RenderPass):
         self._count = 0
         self.owned = (*self._arrays, self._buffer)
 
-    def prepare(self, frame: FrameResources) -> Sequence[Rectangle]:
-        """Upload the paths, and return the areas around them; what lies between is left out."""
+    def prepare(self, frame: FrameResources) -> None:
+        """Upload the paths, and find the areas around them; what lies between is left out."""
         marks = [mark for path in frame.scene.floor for mark in _marks(path)]
         self._count = sum(len(mark) for mark in marks)
+        self.areas = ()
         if self._count == 0:
-            return ()
+            return
         vertices = np.concatenate(marks)
         if vertices.nbytes > self._buffer.size:
             self._buffer.orphan(2 * vertices.nbytes)
@@ -52,12 +51,10 @@ class FloorPathPass(RenderPass):
         areas = [
             frame.area_of(np.insert(mark[:, :2].astype(float), 1, 0.0, axis=1)) for mark in marks
         ]
-        return merge_rectangles([area for area in areas if area is not None])
+        self.areas = merge_rectangles([area for area in areas if area is not None])
 
     def draw(self, frame: FrameResources, region: Region) -> None:
         """Paint the paths, except where real cubes or a hand hide them."""
-        if not self._count:
-            return
         region.use()
         frame.context.enable_only(moderngl.BLEND)
         frame.context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA

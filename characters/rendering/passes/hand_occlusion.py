@@ -2,9 +2,10 @@
 
 import moderngl
 
+from characters.rendering.cover import PictureCover
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.resources import FrameResources, Region
+from characters.rendering.resources import FrameResources
 
 HAND_DEPTH_M = 0.05
 """Depth of a hand in front of the cube that it holds: what is nearer still stands before it."""
@@ -18,9 +19,9 @@ class HandOcclusionPass(RenderPass):
         self._rectangle = context.vertex_array(self._program, [])
         self.owned = (self._rectangle,)
 
-    def draw(self, frame: FrameResources, region: Region) -> None:
+    def composite(self, frame: FrameResources, cover: PictureCover | None) -> None:
         """Clear the character layer behind the hand."""
-        layer, cover = region.characters, region.cover
+        layer = frame.layer
         if layer is None or cover is None:
             return
         shared = cover.area.intersection(layer.area)

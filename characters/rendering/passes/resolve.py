@@ -1,24 +1,28 @@
-"""The supersampled character layer, filtered down onto the picture."""
+"""The supersampled character layer, filtered down onto the picture.
+
+This is done in memory: a software driver takes several times as long for it as OpenCV does.
+"""
 
 import math
 
-import moderngl
+import cv2
 import numpy as np
+from numpy.typing import NDArray
 
+from characters.rendering.cover import PictureCover
 from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.resources import FrameResources, Region
-from characters.rendering.scene import Softness
+from characters.rendering.resources import FrameResources
+
+Image = NDArray[np.uint8]
 
 OWN_BLUR_PX = 0.35
 """Standard deviation of the blur of what is drawn: a pixel is the mean of four texels."""
 
-MAX_SPREAD_PX = 1.5
-"""More blur would show as a fourfold picture."""
+MAX_BLUR_PX = 1.5
+"""More blur would be that of a picture in which nothing is sharp."""
 
-GRAIN_SIDE, GRAIN_RANGE, GRAIN_SEED = 128, 6.0, 1
-"""Texels along a side of the noise, a power of two; and the standard deviations that its 8 bits
-span."""
+GRAIN_SIDE, GRAIN_SEED = 128, 1
+"""Pixels along a side of the noise, which is repeated; and its seed."""
 
 GRAIN_STEP = np.array([53, 97])
 """Shift of the noise from picture to picture [px], so that it does not stand still."""
@@ -27,47 +31,47 @@ GRAIN_STEP = np.array([53, 97])
 class ResolvePass(RenderPass):
     """Blends the character layer over the picture, as soft and as noisy as the picture is."""
 
-    def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
-        self._sharp, self._soft, self._grainy = (
-            context.vertex_array(programs.load("full_screen", "resolve", *defines), [])
-            for defines in ((), ("SOFT",), ("GRAIN", "SOFT"))
-        )
-        grain = np.random.default_rng(GRAIN_SEED).standard_normal((GRAIN_SIDE, GRAIN_SIDE, 4))
-        levels = np.clip(255 * (0.5 + grain / GRAIN_RANGE), 0, 255).round().astype(np.uint8)
-        self._grain = context.texture((GRAIN_SIDE, GRAIN_SIDE), 4, levels.tobytes())
-        self.owned = (self._sharp, self._soft, self._grainy, self._grain)
+    def __init__(self) -> None:
+        side = GRAIN_SIDE
+        grain = np.random.default_rng(GRAIN_SEED).standard_normal((side, side, 3))
+        self._grain = grain.astype(np.float32)
         self._pictures = 0
 
-    def draw(self, frame: FrameResources, region: Region) -> None:
+    def composite(self, frame: FrameResources, cover: PictureCover | None) -> None:
         """Blend the characters over the picture."""
-        layer = region.characters
+        layer, softness = frame.layer, frame.softness
         if layer is None:
             return
-        softness = frame.softness
-        triangle = self._sharp
+        area = layer.area
+        pixels = layer.target.read(area.width, area.height)
+        if layer.target.fineness > 1:
+            size = (area.width, area.height)
+            pixels = np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_AREA), np.uint8)
         if softness is not None:
-            triangle = self._grainy if softness.noise > 0.0 else self._soft
-        corner = layer.area.x - region.area.x, layer.area.y - region.area.y
-        region.target.use((*corner, layer.area.width, layer.area.height))
-        frame.context.enable_only(moderngl.BLEND)
-        frame.context.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
-        set_uniforms(triangle.program, corner=corner, fineness=float(layer.target.fineness))
-        if softness is not None:
-            self._soften(triangle.program, softness, frame)
-        layer.target.characters_texture.use(0)
-        triangle.render(moderngl.TRIANGLES, vertices=3)
+            pixels = blurred(pixels, softness.blur * frame.scale)
+        color, share = pixels[..., :3], pixels[..., 3]
+        behind = frame.picture[area.slices]
+        open_share = cv2.cvtColor(255 - share, cv2.COLOR_GRAY2BGR)
+        drawn = cv2.add(cv2.multiply(behind, open_share, scale=1 / 255), color)
+        if softness is not None and softness.noise > 0.0:
+            self._pictures += 1
+            noise = self._noise(area.height, area.width) * (softness.noise / 255.0)
+            drawn = np.clip(np.rint(drawn + noise * share[..., None]), 0, 255)
+        behind[:] = drawn
 
-    def _soften(self, program: moderngl.Program, softness: Softness, frame: FrameResources) -> None:
-        """Set the uniforms for blur and noise."""
-        self._pictures += 1
-        shift = (self._pictures * GRAIN_STEP) % GRAIN_SIDE
-        blur = softness.blur * frame.scale
-        spread = math.sqrt(max(blur**2 - OWN_BLUR_PX**2, 0.0))
-        self._grain.use(1)
-        set_uniforms(
-            program,
-            spread=min(spread, MAX_SPREAD_PX),
-            grain=1,
-            shift=tuple(shift.tolist()),
-            noise=GRAIN_RANGE * softness.noise / 255.0,
-        )
+    def _noise(self, height: int, width: int) -> NDArray[np.float32]:
+        """Return noise of a standard deviation of 1, (height, width, 3)."""
+        x, y = (self._pictures * GRAIN_STEP) % GRAIN_SIDE
+        rows, columns = (np.arange(y, y + height), np.arange(x, x + width))
+        return np.asarray(self._grain[np.ix_(rows % GRAIN_SIDE, columns % GRAIN_SIDE)])
+
+
+def blurred(pixels: Image, blur_px: float) -> Image:
+    """Return what was drawn with the blur of a camera's picture, a standard deviation [px]."""
+    variance = min(blur_px, MAX_BLUR_PX) ** 2 - OWN_BLUR_PX**2
+    if variance <= 0.0:
+        return pixels
+    if variance >= 0.5:  # a Gaussian of three taps is narrower than it should be
+        return np.asarray(cv2.GaussianBlur(pixels, (0, 0), math.sqrt(variance)), np.uint8)
+    kernel = np.array([0.5 * variance, 1.0 - variance, 0.5 * variance])
+    return np.asarray(cv2.sepFilter2D(pixels, -1, kernel, kernel), np.uint8)

@@ -1,16 +1,15 @@
 """The characters' shadows on the table: sharp under the feet, softer with height."""
 
-from collections.abc import Sequence
-
 import moderngl
 import numpy as np
 
+from characters.rendering.cover import PictureCover
 from characters.rendering.geometry.character_cache import CharacterInstance
 from characters.rendering.light import Light
 from characters.rendering.passes.render_pass import RenderPass
+from characters.rendering.passes.table_factors import TableFactors, darken
 from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.projection import Rectangle
-from characters.rendering.resources import FrameResources, Region
+from characters.rendering.resources import FrameResources
 from characters.skeleton.pose import Array
 
 MAP_SIDE = 80
@@ -46,53 +45,31 @@ class ShadowPass(RenderPass):
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
         self._context = context
         self._programs = programs
-        self._tables = [
-            context.vertex_array(programs.load("shadow", "shadow", *defines), [])
-            for defines in ((), ("HIDDEN",))
-        ]
-        self.owned = self._tables
         self._maps: list[ShadowMap] = []
         self._count = 0
-        self._area: Rectangle | None = None
 
-    def prepare(self, frame: FrameResources) -> Sequence[Rectangle]:
-        """Render the shadow maps, and return one area for all shadows and their characters."""
-        characters = frame.on_table
-        self._count, self._area = len(characters), None
-        if not self._count:
-            return ()
+    def prepare(self, frame: FrameResources) -> None:
+        """Render the shadow maps."""
+        self._count = len(frame.on_table)
         while len(self._maps) < self._count:
             self._maps.append(ShadowMap(self._context, self._programs))
         share = self._key_share(frame.light)
-        corners = [
+        for shadow, character in zip(self._maps, frame.on_table, strict=False):
             shadow.render(character, frame.light, share)
-            for shadow, character in zip(self._maps, characters, strict=False)
-        ]
-        bodies = [character.enclosing for character in characters]
-        self._area = frame.area_of(np.concatenate([*bodies, *corners]))
-        return () if self._area is None else (self._area,)
 
-    def draw(self, frame: FrameResources, region: Region) -> None:
+    def composite(self, frame: FrameResources, cover: PictureCover | None) -> None:
         """Darken the table, except where real cubes or a hand hide it."""
-        if self._area is None or not self._area.intersection(region.area):
-            return
-        region.use()
-        self._darken(frame, region)
+        if self._count:
+            for factors in self._table_factors():
+                darken(frame, cover, factors)
 
     def _key_share(self, light: Light) -> Array:
         """Return the share of the key light in the light on the table, (3,)."""
         return key_share(light)
 
-    def _darken(self, frame: FrameResources, region: Region) -> None:
-        """Multiply what is drawn on by the light that each character leaves."""
-        frame.context.enable_only(moderngl.BLEND)
-        frame.context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
-        table = self._tables[region.hidden is not None]
-        region.set_table_uniforms(table.program)
-        for shadow in self._maps[: self._count]:
-            set_uniforms(table.program, area=shadow.area, extent=shadow.extent, map_share=0.5)
-            shadow.texture.use(0)
-            table.render(moderngl.TRIANGLE_STRIP, vertices=4)
+    def _table_factors(self) -> list[TableFactors]:
+        """Return the light that each character leaves."""
+        return [shadow.read() for shadow in self._maps[: self._count]]
 
     def release(self) -> None:
         """Release the maps too; a second call does nothing."""
@@ -133,12 +110,12 @@ class ShadowMap:
         light: Light,
         share: Array,
         floor_from_table: Array = ON_TABLE,
-    ) -> Array:
-        """Render the map of a character; return the corners (4, 3) that its shadow can reach.
+    ) -> None:
+        """Render the map of a character.
 
         `share` (3,) is the share of the key light in the light on the table. On another floor
         than the table, its frame (4, 4) has +y up and the floor at y = 0; what encloses the
-        character, the light and the corners are in that frame.
+        character and the light are in that frame.
         """
         height = character.height
         # Horizontal offset (x, z) of a point from its shadow, for each metre of the point's height.
@@ -169,8 +146,18 @@ class ShadowMap:
         context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
         context.enable_only(moderngl.NOTHING)
         self._soften(height, share)
-        x, z = self.extent[[0, 2, 2, 0]], self.extent[[1, 1, 3, 3]]
-        return np.stack([x, np.zeros(4), z], axis=1)
+
+    def read(self) -> TableFactors:
+        """Return what is left of the light, with one more texel on each side."""
+        x, z, width, depth = self._used_texels()
+        low = np.maximum([x - 1, z - 1], 0)
+        columns, rows = (np.minimum([x + width + 1, z + depth + 1], MAP_SIDE) - low).tolist()
+        data = self._targets[0].read((*low.tolist(), columns, rows), components=3, alignment=1)
+        texel = float(self.area[2]) / MAP_SIDE
+        left, near = (self.area[:2] + texel * low).tolist()
+        return TableFactors(
+            np.frombuffer(data, np.uint8).reshape(rows, columns, 3), (left, near), texel
+        )
 
     def _soften(self, height: float, key_share: Array) -> None:
         """Blur the part of the map that can have a shadow along x; then along z, to one factor.

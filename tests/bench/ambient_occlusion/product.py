@@ -10,7 +10,7 @@ from characters.model.character import Character
 from characters.rendering import Effect, Quality, Stage
 from characters.rendering.deferred.ambient_occlusion import AmbientOcclusionSettings
 from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.resources import FrameResources, Region
+from characters.rendering.resources import CharacterLayer, FrameResources
 from tests.bench.ambient_occlusion.scenes import floor, posed
 from tests.bench.ambient_occlusion.scoring import Floats, Score, score
 from tests.bench.picture import SIZE, scene
@@ -45,11 +45,8 @@ class ProductQuality:
 class ReadPass(RenderPass):
     """Keeps what the picture shows of its characters."""
 
-    def draw(self, frame: FrameResources, region: Region) -> None:
+    def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Read what is seen in each texel, and how much of the light from all around arrives."""
-        layer = region.characters
-        if layer is None:
-            return
         fineness = layer.target.fineness
         self.size = fineness * layer.area.width, fineness * layer.area.height
         self.matrix = frame.camera_matrix.copy()

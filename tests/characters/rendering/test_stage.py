@@ -20,7 +20,7 @@ from characters.rendering import (
     Stage,
     View,
 )
-from characters.rendering.passes.render_pass import RenderPass
+from characters.rendering.passes.render_pass import RegionPass
 
 GOLDEN = Path(__file__).parent / "golden"
 LOOP = FloorPath(
@@ -283,7 +283,7 @@ def test_five_hundred_pictures_leak_no_memory(ctx, view, pawn, cube):
     stage.release()
 
 
-class TintPass(RenderPass):
+class TintPass(RegionPass):
     """Multiplies the picture with a colour: the example of the room's README."""
 
     def __init__(self, context, bgr):
@@ -293,7 +293,7 @@ class TintPass(RenderPass):
         self.owned = (self._triangle, program)
 
     def prepare(self, frame):
-        return [frame.whole]
+        self.areas = [frame.whole]
 
     def draw(self, frame, region):
         region.use()

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from characters.rendering.deferred.buffers import LightBuffer
 from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.resources import FrameResources, Region
+from characters.rendering.resources import CharacterLayer, FrameResources
 
 Texels = NDArray[np.float64]
 
@@ -20,11 +20,10 @@ class WatchPass(RenderPass):
     is drawn, and before the stage is released.
     """
 
-    def draw(self, frame: FrameResources, region: Region) -> None:
+    def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Keep them."""
         self.frame = frame
-        if region.characters is not None:
-            self._light: LightBuffer = region.characters.target.light
+        self._light: LightBuffer = layer.target.light
 
     @cached_property
     def diffuse(self) -> Texels:

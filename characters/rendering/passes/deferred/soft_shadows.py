@@ -9,9 +9,9 @@ from characters.rendering.deferred.blocker_map import TABLE_RANGE_TEXELS, Blocke
 from characters.rendering.deferred.lamp import Lamp
 from characters.rendering.light import Light
 from characters.rendering.passes.shadows import ShadowPass, key_share, sky_extent
+from characters.rendering.passes.table_factors import TableFactors
 from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.projection import Rectangle
-from characters.rendering.resources import FrameResources, Region
+from characters.rendering.resources import FrameResources
 from characters.skeleton.pose import Array
 
 TABLE_SIDE = 192
@@ -47,16 +47,17 @@ class SoftShadowPass(ShadowPass):
         for texture in textures:
             texture.repeat_x = texture.repeat_y = False
         self._targets = [context.framebuffer([texture]) for texture in textures]
-        arrays = (*self._tables, self._find, self._combine)
+        self._table = context.vertex_array(programs.load("shadow", "shadow"), [])
+        arrays = (self._table, self._find, self._combine)
         self.owned = (*arrays, *self._targets, *textures, blockers)
         self._extent = np.zeros(4)
 
-    def prepare(self, frame: FrameResources) -> Sequence[Rectangle]:
-        """Find the light that is left on the table, and return the area that it changes."""
+    def prepare(self, frame: FrameResources) -> None:
+        """Find the light that is left on the table."""
         super().prepare(frame)
         if not self._count:
             self._block_nothing(frame)
-            return ()
+            return
         casters = np.concatenate([each.enclosing for each in frame.on_table])
         lamp = Lamp.over(casters, frame.light.to_light)
         self._blockers.render(frame.on_table, lamp)
@@ -64,8 +65,6 @@ class SoftShadowPass(ShadowPass):
         self._extent = _united([lamp.shadow(casters), *around])
         self._find_openness()
         self._find_left(key_share(frame.light))
-        self._area = frame.area_of(np.concatenate([casters, _corners(self._extent)]))
-        return () if self._area is None else (self._area,)
 
     def _block_nothing(self, frame: FrameResources) -> None:
         """Empty the map of blockers, if some characters that are not on the table ask for it."""
@@ -77,16 +76,14 @@ class SoftShadowPass(ShadowPass):
         """Return zero: the maps of `ShadowPass` hold the light from all around alone."""
         return np.zeros(3)
 
-    def _darken(self, frame: FrameResources, region: Region) -> None:
-        """Multiply the table by the light that all characters leave."""
-        frame.context.enable_only(moderngl.BLEND)
-        frame.context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
-        table = self._tables[region.hidden is not None]
-        region.set_table_uniforms(table.program)
-        area = (*self.square, 1.0)
-        set_uniforms(table.program, area=area, extent=self._extent, map_share=1.0)
-        self._factors.use(0)
-        table.render(moderngl.TRIANGLE_STRIP, vertices=4)
+    def _table_factors(self) -> list[TableFactors]:
+        """Return the light that all characters leave together."""
+        x, z, side = self.square
+        texel = side / TABLE_SIDE
+        width, depth = np.ceil((self._extent[2:] - [x, z]) / texel).astype(int).tolist()
+        data = self._targets[2].read((0, 0, width, depth), components=3, alignment=1)
+        factors = np.frombuffer(data, np.uint8).reshape(depth, width, 3)
+        return [TableFactors(factors, (x, z), texel)]
 
     @property
     def square(self) -> tuple[float, float, float]:
@@ -105,12 +102,11 @@ class SoftShadowPass(ShadowPass):
         square[0, [0, 3]] = 2.0 / side, -2.0 * x / side - 1.0
         square[1, [2, 3]] = 2.0 / side, -2.0 * z / side - 1.0
         square[3, 3] = 1.0
-        table = self._tables[0]
-        set_uniforms(table.program, clip_from_table=square, map_share=0.5)
+        set_uniforms(self._table.program, clip_from_table=square)
         for shadow in self._maps[: self._count]:
-            set_uniforms(table.program, area=shadow.area, extent=shadow.extent)
+            set_uniforms(self._table.program, area=shadow.area, extent=shadow.extent)
             shadow.texture.use(0)
-            table.render(moderngl.TRIANGLE_STRIP, vertices=4)
+            self._table.render(moderngl.TRIANGLE_STRIP, vertices=4)
 
     def _find_left(self, share: Array) -> None:
         """Find the light that is left in each texel of the square; see `key_share` for `share`."""
@@ -135,9 +131,3 @@ def _united(extents: Sequence[Array]) -> Array:
     """Return lowest x and z, highest x and z of several extents (4,)."""
     rows = np.stack(extents)
     return np.concatenate([rows[:, :2].min(axis=0), rows[:, 2:].max(axis=0)])
-
-
-def _corners(extent: Array) -> Array:
-    """Return the corners (4, 3) of an extent on the table."""
-    x, z = extent[[0, 2, 2, 0]], extent[[1, 1, 3, 3]]
-    return np.stack([x, np.zeros(4), z], axis=1)
