@@ -112,6 +112,19 @@ def test_a_hand_hides_pawn_shadow_and_path(stage, view, pawn):
     assert np.array_equal(hidden[:, outside], free[:, outside])
 
 
+def test_a_hand_may_be_found_while_the_pawn_is_drawn(stage, view, pawn):
+    given = stage.draw(replace(view, cover=band(0.3)), [pawn.posed()], [LOOP])
+    found = stage.draw(view, [pawn.posed()], [LOOP], lambda: band(0.3))
+    assert np.array_equal(found, given)
+
+
+def test_the_hand_is_looked_for_in_every_frame(stage, view, pawn):
+    looked = []
+    for table in (view.camera_from_table, None):
+        stage.draw(replace(view, camera_from_table=table), [], (), lambda: looked.append(1))
+    assert len(looked) == 2
+
+
 def test_half_a_hand_hides_half_of_the_pawn(stage, view, pawn):
     free = stage.draw(view, [pawn.posed()]).astype(int)
     half = stage.draw(replace(view, cover=band(0.3, share=128)), [pawn.posed()]).astype(int)
