@@ -15,6 +15,9 @@ from characters.rendering.projection import Rectangle
 from characters.rendering.resources import FrameResources
 from characters.skeleton.pose import Array
 
+UNSEEN = 254
+"""Least factor, of 255, that is not seen where a shadow ends."""
+
 
 @dataclass(frozen=True)
 class TableFactors:
@@ -28,6 +31,15 @@ class TableFactors:
 
     texel: float
     """Side of a texel [m]."""
+
+    def cropped(self) -> "TableFactors":
+        """Return the part that is seen to be dark, and one texel around it."""
+        dark = np.asarray((self.bgr < UNSEEN).any(axis=2), np.uint8)
+        x, y, width, height = cv2.boundingRect(dark)
+        left, top = max(x - 1, 0), max(y - 1, 0)
+        part = self.bgr[top : y + height + 1, left : x + width + 1] if width else self.bgr[:0]
+        corner = self.corner[0] + left * self.texel, self.corner[1] + top * self.texel
+        return TableFactors(np.ascontiguousarray(part), corner, self.texel)
 
     @property
     def corners(self) -> Array:
@@ -45,7 +57,8 @@ class TableFactors:
 
 def darken(frame: FrameResources, cover: PictureCover | None, factors: TableFactors) -> None:
     """Multiply the table in the picture of a frame, except where real cubes or a hand hide it."""
-    area = frame.area_of(factors.corners)
+    factors = factors.cropped()
+    area = frame.area_of(factors.corners) if factors.bgr.size else None
     if area is None:
         return
     left = _in_picture(frame, factors, area)
