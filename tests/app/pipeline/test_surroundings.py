@@ -55,6 +55,11 @@ def test_only_what_was_chosen_is_measured(source, seen):
     assert np.array_equal(full.image, plain.image)
 
 
+def test_no_hand_is_found_where_none_is_near(source, seen):
+    surroundings = Surroundings(source.cube, source.intrinsics, ("hand",))
+    assert all(surroundings.cover(frame, state) is None for frame, state, _ in seen)
+
+
 def test_the_picture_alone_depends_on_it(source, seen):
     intrinsics = intrinsics_for(source.intrinsics, source.size)
     plain, real = (
