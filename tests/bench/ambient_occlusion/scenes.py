@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 from characters.model.character import Character
+from characters.rendering.geometry.morph_mixer import MorphMixer
 from characters.rendering.geometry.vertices import CharacterVertices
 from characters.skeleton.pose import Pose
 from tools.ray_tracing import Triangles
@@ -171,14 +172,17 @@ def room() -> Triangles:
 
 
 def posed(body: Character, pose: Pose, table_from_character: Array) -> Triangles:
-    """Return the skinned mesh of a character in the table frame; no morph is active."""
+    """Return the morphed and skinned mesh of a character in the table frame."""
     vertices = CharacterVertices.of(body.meshes)
+    shape = vertices.shape_records
+    mixed = MorphMixer(shape, vertices.morphs, body.morphs).mix(pose.morphs)
+    shape = shape if mixed is None else mixed
     palette = vertices.palette(table_from_character @ pose.globals(body.skeleton))
     turns = palette.copy()
     turns[:, :3, 3] = 0.0
-    normals = vertices.skinned(turns, slice(None), vertices.normals)
+    normals = vertices.skinned(turns, slice(None), shape[:, 3:])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
-    positions = vertices.skinned(palette, slice(None))
+    positions = vertices.skinned(palette, slice(None), shape[:, :3])
     return Triangles.of(positions, normals, vertices.indices.reshape(-1, 3))
 
 
