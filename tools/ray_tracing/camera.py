@@ -8,6 +8,12 @@ from numpy.typing import NDArray
 from tools.ray_tracing.mesh import Array, Floats
 from tools.ray_tracing.tracer import RayTracer
 
+NOTHING_M = 1e3
+"""Depth that stands for nothing [m]."""
+
+STEP = 1e-5
+"""How far behind a surface the next is looked for, as a share of the distance."""
+
 
 @dataclass(frozen=True)
 class VisibleSurfaces:
@@ -44,9 +50,7 @@ def trace_camera(tracer: RayTracer, matrix: Array, size: tuple[int, int]) -> Vis
         Width and height [px].
     """
     width, height = size
-    x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
-    rays = np.stack([x, y, np.ones_like(x)], axis=-1).reshape(-1, 3) @ np.linalg.inv(matrix).T
-    rays = (rays / np.linalg.norm(rays, axis=1, keepdims=True)).astype(np.float32)
+    rays = _camera_rays(matrix, size)
     hits = tracer.hits(np.zeros_like(rays), rays)
     seen = hits.triangles >= 0
     triangles = hits.triangles[seen]
@@ -69,3 +73,42 @@ def trace_camera(tracer: RayTracer, matrix: Array, size: tuple[int, int]) -> Vis
     return VisibleSurfaces(
         normal_id.reshape(*shape, 4), position.reshape(*shape, 4), flat.reshape(*shape, 3)
     )
+
+
+def trace_behind(tracer: RayTracer, matrix: Array, size: tuple[int, int]) -> Floats:
+    """Return what is hidden behind what a camera sees, (height, width, 4) [m].
+
+    Three depths: where what is seen ends (the first surface behind it that looks away), and the
+    first surfaces behind that which look to the camera and away. `NOTHING_M` where there is none;
+    the fourth is `NOTHING_M`. Parameters are as of `trace_camera`.
+    """
+    rays = _camera_rays(matrix, size)
+    depths = np.full((len(rays), 4), NOTHING_M, np.float32)
+    ways = np.zeros(len(rays), np.float32)
+    alive, is_first = np.arange(len(rays)), True
+    while len(alive):
+        hits = tracer.hits(ways[alive, None] * rays[alive], rays[alive])
+        found = hits.triangles >= 0
+        alive, triangles = alive[found], hits.triangles[found]
+        ways[alive] += hits.distances[found]
+        depth = ways[alive] * rays[alive, 2]
+        ways[alive] *= 1.0 + STEP
+        normals = tracer.mesh.normals[tracer.mesh.corners[triangles]].sum(axis=1)
+        flat = tracer.flat_normals(triangles)
+        flat *= np.sign(np.einsum("ij,ij->i", flat, normals))[:, None]
+        away = np.einsum("ij,ij->i", flat, rays[alive]) > 0.0
+        if not is_first:
+            has_ended = depths[alive, 0] < NOTHING_M
+            column = np.where(has_ended, np.where(away, 2, 1), np.where(away, 0, 3))
+            depths[alive, column] = np.minimum(depths[alive, column], depth)
+            alive = alive[(depths[alive, :3] == NOTHING_M).any(axis=1)]
+        is_first = False
+    depths[:, 3] = NOTHING_M
+    return depths.reshape(size[1], size[0], 4)
+
+
+def _camera_rays(matrix: Array, size: tuple[int, int]) -> Floats:
+    """Return unit directions through the centres of all pixels, (width × height, 3)."""
+    x, y = np.meshgrid(np.arange(size[0]) + 0.5, np.arange(size[1]) + 0.5)
+    rays = np.stack([x, y, np.ones_like(x)], axis=-1).reshape(-1, 3) @ np.linalg.inv(matrix).T
+    return np.asarray(rays / np.linalg.norm(rays, axis=1, keepdims=True), np.float32)

@@ -17,7 +17,7 @@ class Estimator:
     """What the samples around a pixel say about its occlusion, and the constants that suit it.
 
     The constants are those with the least squared error against ray-traced pictures, for 2 lines of
-    11 samples: `python -m tests.bench.ambient_occlusion.tuning`.
+    11 samples, or 25 for the bitmask: `python -m tests.bench.ambient_occlusion.tuning`.
     """
 
     darkness: float
@@ -35,11 +35,11 @@ class Estimator:
 
     by_area: float = 0.0
     """What a sample's weight is: 0 the same for all, 1 the area of the disc that it stands for.
-    Estimators that look for a horizon have no weights."""
+    Estimators that look for a horizon have no weights, nor has the bitmask."""
 
     fill: float = 0.0
-    """Where between the last sample and this one a rise of the horizon is taken to be: 0 at this, 1
-    at the last. Between them a surface goes on, or an occluder ends that is as thick as it is."""
+    """Where between the last sample and this one what hides the light is taken to begin: 0 at this,
+    1 at the last."""
 
 
 ESTIMATORS = {
@@ -48,8 +48,12 @@ ESTIMATORS = {
     "volumetric": Estimator(darkness=1.11, bias=0.02, crowding=0.0, reach=0.3, by_area=1.0),
     "hbao": Estimator(darkness=1.04, bias=0.1, crowding=0.75, reach=1.0, fill=0.4),
     "gtao": Estimator(darkness=1.21, bias=0.02, crowding=0.75, reach=1.0, fill=0.4),
+    "bitmask": Estimator(darkness=1.0, bias=0.05, crowding=1.0, reach=1.0, fill=0.5),
 }
 """The estimators by name. Each has a shader `ambient_occlusion_NAME.frag` that defines it."""
+
+NOTHING_M = 1e3
+"""Depth that stands for nothing [m]; the shaders have it too."""
 
 EDGE_SHARE = 0.01
 """Distance from a pixel's tangent plane from which on the blur takes a neighbour for another
@@ -60,10 +64,10 @@ surface, as a share of the radius."""
 class AmbientOcclusionSettings:
     """How ambient occlusion is sampled."""
 
-    estimator: str = "gtao"
+    estimator: str = "bitmask"
     """One of `ESTIMATORS`."""
 
-    samples: int = 11
+    samples: int = 25
     """Samples on each line, the pixel itself included: k of Huang 2013, ch. 3.4."""
 
     lines: int | None = 2
@@ -151,6 +155,7 @@ class AmbientOcclusion:
         size: tuple[int, int],
         focal_px: float,
         ground: Array | None = None,
+        behind: moderngl.Texture | None = None,
     ) -> moderngl.Texture:
         """Return the share of the ambient light that reaches each pixel, in the red channel.
 
@@ -169,8 +174,12 @@ class AmbientOcclusion:
         focal_px
             Focal length: pixels that one metre covers at a distance of one metre.
         ground
-            A plane that goes on outside of the textures, for parts of a picture: a point (3,) of
+            A plane that is seen in the background and outside of the textures: a point (3,) of
             the camera frame is on it if its product with this is 1 [1/m]. None for nothing there.
+        behind
+            Depths at which what is seen ends, and at which the next thing behind it begins and ends
+            [m]; `NOTHING_M` for never. The estimator `bitmask` uses it. None: everything that is
+            seen is endless.
         """
         self._fit(size)
         settings = self.settings
@@ -179,11 +188,15 @@ class AmbientOcclusion:
         normal_id.use(0)
         position.use(1)
         self._pattern.use(2)
+        if behind is not None:
+            behind.use(3)
         set_uniforms(
             self._march.program,
             normal_id=0,
             place=1,
             pattern=2,
+            behind=3,
+            has_behind=behind is not None,
             size=size,
             radius=constants.reach * settings.radius_m,
             focal=focal_px,

@@ -14,7 +14,8 @@ BUFFER_UNITS = {
 }
 """Texture units by the names that shaders have for them: the layers of `GeometryBuffer`, those of
 `LightBuffer`, the records of all surfaces (see `surface_records`), ambient occlusion, the sum of
-all light, and the share of it that arrives, with the places of the pixels that it is known for."""
+all light, and the share of the lamp that arrives, with the places of the pixels that it is known
+for."""
 
 MAX_SURFACES = 1024
 """Surfaces of one picture that can be told apart, as 16-bit floats count to 2048: all others are
@@ -96,8 +97,32 @@ class LightBuffer:
             texture.release()
 
 
+class HiddenBuffer:
+    """What is behind what is seen in each texel of a character layer."""
+
+    def __init__(self, context: moderngl.Context, size: tuple[int, int]) -> None:
+        self._context = context
+        self.behind = _texture(context, size, "f4")
+        """Depths at which what is seen ends, and at which the next thing begins and ends [m]."""
+        self.target = context.framebuffer([self.behind])
+        """Draws on it."""
+        self._copied = _texture(context, size, "f4")
+        self._copy = context.framebuffer([self._copied])
+
+    def copy(self) -> moderngl.Texture:
+        """Return a copy of `behind` as it is, which can be read while it is drawn on."""
+        self._context.copy_framebuffer(self._copy, self.target)
+        self.target.use()
+        return self._copied
+
+    def release(self) -> None:
+        """Release the textures; a second call does nothing."""
+        for each in (self.target, self._copy, self.behind, self._copied):
+            each.release()
+
+
 class PixelBuffer:
-    """What is seen in each pixel of a character layer, or the table where no character is seen."""
+    """What is seen in each pixel of a character layer."""
 
     def __init__(self, context: moderngl.Context, size: tuple[int, int]) -> None:
         self.normal_id = _texture(context, size, "f2")
@@ -107,7 +132,7 @@ class PixelBuffer:
         self.framebuffer = context.framebuffer([self.normal_id, self.position])
         """Draws on both."""
         self.visibility = tuple(_texture(context, size, "f1") for _ in range(2))
-        """Share of the lamp by colour, and of the light from all around: as found, and smooth."""
+        """Share of the lamp by colour: as found, and smooth."""
         self._targets = tuple(context.framebuffer([texture]) for texture in self.visibility)
 
     def bind(self) -> None:

@@ -11,7 +11,7 @@ from characters.rendering.geometry.detail_levels import DetailLevel, chosen_leve
 from characters.rendering.geometry.face_split import split_faces
 from characters.rendering.geometry.face_texture import FaceTexture
 from characters.rendering.geometry.morph_mixer import MorphMixer
-from characters.rendering.geometry.surfaces import VERTEX_LIT, Surface, SurfaceBuffers
+from characters.rendering.geometry.surfaces import BEHIND, VERTEX_LIT, Surface, SurfaceBuffers
 from characters.rendering.geometry.vertices import CharacterVertices
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.scene import Drawable
@@ -165,7 +165,7 @@ class SkinnedCharacter:
                 prepared.add(array.program.glo)
                 set_uniforms(array.program, **uniforms)
             set_uniforms(array.program, surface_id=float(number))
-            surface.render(context, array)
+            surface.render(context, array, both_sides=BEHIND in features)
 
     def show_face(
         self, morphs: Array | None, blood: float, table_from_character: Array, pixel: float

@@ -23,9 +23,9 @@ of the wrinkles and the blood of a face."""
 FACE_FEATURE = "FACE"
 """What the shaders test to draw wrinkles and blood."""
 
-GEOMETRY, CASTER = "GEOMETRY", "CASTER"
-"""Features of programs that write what a surface is like, instead of its colour in the light, and
-its distance from the lamp."""
+GEOMETRY, CASTER, BEHIND = "GEOMETRY", "CASTER", "BEHIND"
+"""Features of programs that write, instead of its colour in the light, what a surface is like, its
+distance from the lamp, and the depths of its hidden sides."""
 
 VERTEX_LIT = "VERTEX_LIT"
 """Feature of programs that shade vertices, not fragments, for surfaces that allow it."""
@@ -82,8 +82,13 @@ class Surface:
         plain &= material.roughness >= MIN_VERTEX_ROUGHNESS
         return self.features | (wanted if plain else wanted - {VERTEX_LIT})
 
-    def render(self, context: moderngl.Context, array: moderngl.VertexArray) -> None:
-        """Draw the triangles with the program of an array, which must fit the features."""
+    def render(
+        self, context: moderngl.Context, array: moderngl.VertexArray, both_sides: bool = False
+    ) -> None:
+        """Draw the triangles with the program of an array, which must fit the features.
+
+        `both_sides` draws those of one side from behind too.
+        """
         material = self.material
         set_uniforms(
             array.program,
@@ -112,7 +117,8 @@ class Surface:
             set_uniforms(array.program, **self.face.uniforms)
         for unit, texture in self.textures:
             texture.use(unit)
-        (context.disable if material.double_sided else context.enable)(moderngl.CULL_FACE)
+        culled = not (both_sides or material.double_sided)
+        (context.enable if culled else context.disable)(moderngl.CULL_FACE)
         array.render(vertices=self.count, first=self.first)
 
 
@@ -265,14 +271,14 @@ def surface_program(programs: ShaderPrograms, features: frozenset[str]) -> moder
     Each set of features is a program of its own: software rendering samples a texture even where a
     condition excludes it, and a plain surface must not pay for the features of others.
     """
-    if not features & {GEOMETRY, CASTER}:
+    if not features & {GEOMETRY, CASTER, BEHIND}:
         features -= {BLENDED}
     if GEOMETRY not in features:
         features -= {SKIN_FEATURE}
     if VERTEX_LIT in features:
         return programs.load("vertex_lit", "vertex_lit", *sorted(features & {"GLOW"}))
     mapped = {"MAPPED"} if features & MAPPED_FEATURES else set()
-    placed = {"PLACED"} if features & {"BUMPS", GEOMETRY, CASTER, FACE_FEATURE} else set()
+    placed = {"PLACED"} if features & {"BUMPS", GEOMETRY, CASTER, BEHIND, FACE_FEATURE} else set()
     program = programs.load("character", "character", *sorted(features | mapped | placed))
     set_uniforms(program, **TEXTURE_UNITS)
     return program

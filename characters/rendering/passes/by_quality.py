@@ -2,7 +2,6 @@
 
 import moderngl
 
-from characters.rendering.deferred.ambient_occlusion import AmbientOcclusion
 from characters.rendering.deferred.blocker_map import BlockerMap
 from characters.rendering.passes.characters import CharacterPass
 from characters.rendering.passes.cube_occlusion import CubeOcclusionPass
@@ -11,6 +10,7 @@ from characters.rendering.passes.deferred.composite import DeferredCompositePass
 from characters.rendering.passes.deferred.depth_of_field import DepthOfFieldPass
 from characters.rendering.passes.deferred.geometry import DeferredGeometryPass
 from characters.rendering.passes.deferred.lighting import DeferredLightingPass
+from characters.rendering.passes.deferred.occlusion import DeferredOcclusionPass
 from characters.rendering.passes.deferred.scattering import DeferredScatteringPass
 from characters.rendering.passes.deferred.soft_shadows import SoftShadowPass
 from characters.rendering.passes.deferred.visibility import DeferredVisibilityPass
@@ -54,18 +54,17 @@ def _deferred_shading(
     blockers: BlockerMap | None,
 ) -> list[RenderPass]:
     """Return the passes that light what is seen after all of it is drawn."""
-    occluded = Effect.AMBIENT_OCCLUSION in effects
-    visibility = None
-    if blockers is not None or occluded:
-        occlusion = AmbientOcclusion(context, programs) if occluded else None
-        visibility = DeferredVisibilityPass(context, programs, blockers, occlusion)
+    occlusion = visibility = None
+    if Effect.AMBIENT_OCCLUSION in effects:
+        occlusion = DeferredOcclusionPass(context, programs)
+    if blockers is not None:
+        visibility = DeferredVisibilityPass(context, programs, blockers)
     composite = DeferredCompositePass(context, programs)
-    passes: list[RenderPass] = [DeferredGeometryPass()]
-    if visibility is not None:
-        passes.append(visibility)
-    passes.append(DeferredLightingPass(context, programs, visibility))
+    finding = [each for each in (occlusion, visibility) if each is not None]
+    passes: list[RenderPass] = [DeferredGeometryPass(), *finding]
+    passes.append(DeferredLightingPass(context, programs, visibility, occlusion))
     if Effect.SKIN_SCATTERING in effects:
-        passes.append(DeferredScatteringPass(context, programs, adaptive=occluded))
+        passes.append(DeferredScatteringPass(context, programs, adaptive=occlusion is not None))
     if Effect.DEPTH_OF_FIELD in effects:
         return [*passes, DepthOfFieldPass(context, programs, composite)]
     return [*passes, composite]

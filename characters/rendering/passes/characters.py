@@ -35,10 +35,11 @@ class CharacterPass(RenderPass):
         frame: FrameResources,
         layer: CharacterLayer,
         features: frozenset[str] = frozenset(),
+        tests: int = moderngl.DEPTH_TEST,
         **uniforms: "bool | float | Sequence[float] | Array",
     ) -> None:
-        """Draw all characters with programs of some features, where depth lets them be seen."""
-        frame.context.enable_only(moderngl.DEPTH_TEST)
+        """Draw all characters with programs of some features, where `tests` let them be seen."""
+        frame.context.enable_only(tests)
         first_surface = 1
         for character in frame.characters:
             clip_to(frame.context, character)

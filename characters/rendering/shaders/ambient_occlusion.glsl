@@ -5,12 +5,13 @@
 
 const float PI = 3.14159265;
 const float FAR_BEHIND = 4.0;   // where the background is taken to be [radii]
+const float NOTHING = 1e3;      // depth at which there is nothing [m]
 
 uniform sampler2D normal_id;    // unit normal in the camera frame, and ID in w: below 0.5 is background
 uniform sampler2D place;        // position in the camera frame [m]; z is 0 in the background
 uniform sampler2D pattern;      // of the tile: turn of the lines, shift of their samples, both 0…1
 uniform ivec2 size;             // of the picture [px]
-uniform vec3 ground;            // a point is on the plane that goes on outside if its product with this is 1
+uniform vec3 ground;            // a point is on the plane where nothing else is if its product with this is 1
 uniform float radius;           // occluders farther away do not count [m]
 uniform float focal;            // focal length [px]
 uniform float crowding;         // 0: samples are spread evenly along a line, 1: they crowd at the pixel
@@ -22,7 +23,10 @@ uniform float darkness;         // gain of the occlusion
 out vec2 open_depth;            // share of the ambient light that arrives, and the depth for the blur
 
 vec3 here, normal, to_eye;      // of the pixel
+float shift;                    // of this pixel, another in each of a tile, 0…1
 float last_far;                 // of the last sample on this half of a line [m]
+ivec2 sampled;                  // texel of the sample
+bool is_inside;                 // whether it shows something
 
 // The estimator: a half of a line begins; a sample of it, from the pixel outwards, by its way from the
 // pixel, the length of it, its distance on the picture as a share of the radius, and the area of the
@@ -37,16 +41,20 @@ float falloff(float far) { return wendland(far / radius); }
 // How much a rise of the horizon counts: what hides the view is between the last sample and this one.
 float rise_falloff(float far) { return falloff(mix(far, min(last_far, far), fill)); }
 
-// The way to what is seen in another texel. Outside of the picture it is the ground, if there is one.
-vec3 way_to(ivec2 texel, ivec2 offset) {
-    vec3 there;
-    if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size))) {
+// The way to what is seen in another texel. Outside of the picture, and where it is empty, it is the ground, if any.
+vec3 way_to(ivec2 offset) {
+    vec3 there = vec3(0.0);
+    if (all(greaterThanEqual(sampled, ivec2(0))) && all(lessThan(sampled, size)))
+        there = texelFetch(place, sampled, 0).xyz;
+    is_inside = there.z > 0.0;
+    if (!is_inside) {
         vec3 ray = vec3(here.xy / here.z + vec2(offset) / focal, 1.0);
         float nearness = dot(ground, ray);
-        there = nearness > 0.0 ? ray / nearness : vec3(0.0);
-    } else
-        there = texelFetch(place, texel, 0).xyz;
-    return there.z > 0.0 ? there - here : vec3(0.0, 0.0, FAR_BEHIND * radius);
+        if (nearness <= 0.0)
+            return vec3(0.0, 0.0, FAR_BEHIND * radius);
+        there = ray / nearness;
+    }
+    return there - here;
 }
 
 void main() {
@@ -59,6 +67,7 @@ void main() {
     normal = surface.xyz;
     to_eye = -normalize(here);
     vec2 random = texelFetch(pattern, pixel % textureSize(pattern, 0), 0).xy;
+    shift = fract(random.y + 7.0 * random.x);
     float reach = radius * focal / here.z;
     for (int line = 0; line < LINES; ++line) {
         float angle = PI * (float(line) + random.x) / float(LINES);
@@ -72,7 +81,8 @@ void main() {
                 ivec2 offset = ivec2(round(direction * along * reach));
                 if (offset == ivec2(0))
                     continue;
-                vec3 way = way_to(pixel + offset, offset);
+                sampled = pixel + offset;
+                vec3 way = way_to(offset);
                 float far = length(way);
                 float area = along * mix(1.0, 2.0 * t, crowding);
                 take(way, far, along, mix(1.0, area, by_area));

@@ -2,8 +2,29 @@
 
 // A point of a character, shaded. GEOMETRY: what it is like instead, for the passes that shade it later.
 // CASTER: its distance from the lamp instead, for the colours of light that it blocks.
+// BEHIND: its depth instead, if it is behind what is known in its texel: the least of each number counts.
 
 #include "surface"
+#ifdef BEHIND
+uniform mat4 camera_from_table;
+uniform sampler2D known;    // depth of what is seen in z; or where it ends in x
+uniform bool is_next;       // whether the latter is known
+
+out vec4 behind;            // depths: end of what is seen, start and end of the next thing [m]
+
+void main() {
+    surface_albedo();       // holes
+#ifdef BLENDED
+    if (screen_door() >= surface_alpha) discard;
+#endif
+    const float NOTHING = 1e3, TOUCHING = 1e-5;
+    vec3 limits = texelFetch(known, ivec2(gl_FragCoord.xy), 0).xyz;
+    float depth = (camera_from_table * vec4(place, 1.0)).z;
+    if (depth <= (is_next ? limits.x : limits.z) + TOUCHING) discard;
+    behind = vec4(NOTHING);
+    behind[gl_FrontFacing ? (is_next ? 1 : 3) : (is_next ? 2 : 0)] = depth;
+}
+#else
 #ifdef CASTER
 uniform vec4 lamp_axis;     // of the table frame: distance from the lamp
 
@@ -82,4 +103,5 @@ void main() {
     color = vec4(shown(sum), 1.0);
 #endif
 }
+#endif
 #endif

@@ -8,6 +8,9 @@
 #ifdef VISIBILITY
 #include "visibility"
 #endif
+#ifdef OCCLUDED
+uniform sampler2D occlusion;    // open share, see AmbientOcclusion
+#endif
 
 uniform vec3 up;            // normal of the table
 uniform vec3 table;         // a point of the table
@@ -44,13 +47,17 @@ void main() {
         vec3 around = light_around(rise, above);
         light = reflected(albedo.rgb, shade.w, albedo.w, n.xyz, toward, around);
     }
-    vec4 visible = vec4(1.0);
+    vec3 visible = vec3(1.0);
+    float open = 1.0;
 #ifdef VISIBILITY
     visible = visible_at(here, p.z);
 #endif
-    diffuse = vec4(visible.rgb * light.diffuse, 1.0);
-    specular = vec4(visible.rgb * light.specular + glow_height.rgb, 1.0);
-    ambient = visible.a * vec4(light.ambient, 1.0);
+#ifdef OCCLUDED
+    open = texelFetch(occlusion, here, 0).r;
+#endif
+    diffuse = vec4(visible * light.diffuse, 1.0);
+    specular = vec4(visible * light.specular + glow_height.rgb, 1.0);
+    ambient = open * vec4(light.ambient, 1.0);
     bool skin = toon.x < 0.5 && shade.r > 0.5;
-    falling = skin ? vec4(visible.rgb * key * wrapped(dot(n.xyz, to_light)), 1.0) : vec4(0.0);
+    falling = skin ? vec4(visible * key * wrapped(dot(n.xyz, to_light)), 1.0) : vec4(0.0);
 }

@@ -21,7 +21,7 @@ from tests.bench.ambient_occlusion.scoring import (
 
 PATH = Path(__file__).parents[3] / "docs" / "pictures" / "ambient-occlusion.jpg"
 
-SIZE, RAYS = (640, 480), 256
+SIZE, RAYS, SAMPLES = (640, 480), 256, 11
 
 SHOWN = {"human": (208, 40, 222, 390), "vleo": (196, 70, 258, 370), "boxes": (150, 170, 330, 250)}
 """Scenes, and the part of each picture that is shown: x, y, width, height [px]."""
@@ -57,7 +57,7 @@ def main() -> None:
         columns = [captioned("ray-traced", traced.truth[part])]
         differences = [captioned("Lab difference:", np.ones_like(traced.truth[part]))]
         for estimator in ESTIMATORS:
-            settings = AmbientOcclusionSettings(estimator, radius_m=traced.scene.radius_m)
+            settings = AmbientOcclusionSettings(estimator, SAMPLES, radius_m=traced.scene.radius_m)
             found = drawn(context, programs, buffer, settings)
             error = (found - traced.truth)[traced.surfaces.seen]
             rmse = float(np.sqrt(np.mean(error**2)))

@@ -14,7 +14,13 @@ from characters.rendering.deferred.ambient_occlusion import (
 )
 from characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.scenes import Scene
-from tools.ray_tracing import RayTracer, VisibleSurfaces, ambient_occlusion, trace_camera
+from tools.ray_tracing import (
+    RayTracer,
+    VisibleSurfaces,
+    ambient_occlusion,
+    trace_behind,
+    trace_camera,
+)
 
 Floats = NDArray[np.float32]
 
@@ -91,6 +97,11 @@ class TracedScene:
         return trace_camera(self.tracer, self.scene.matrix(self.size), self.size)
 
     @cached_property
+    def behind(self) -> Floats:
+        """What is hidden behind that, see `trace_behind`."""
+        return trace_behind(self.tracer, self.scene.matrix(self.size), self.size)
+
+    @cached_property
     def truth(self) -> Floats:
         """Ambient occlusion by rays, (height, width)."""
         return self.trace(0)
@@ -103,7 +114,13 @@ class TracedScene:
 class GBuffer:
     """The surfaces of a scene on the graphics card."""
 
-    def __init__(self, context: moderngl.Context, surfaces: VisibleSurfaces, focal_px: float):
+    def __init__(
+        self,
+        context: moderngl.Context,
+        surfaces: VisibleSurfaces,
+        focal_px: float,
+        behind: Floats | None = None,
+    ):
         height, width = surfaces.seen.shape
         self.size = width, height
         """Width and height [px]."""
@@ -111,23 +128,33 @@ class GBuffer:
         """Focal length [px]."""
         self.normal_id = context.texture(self.size, 4, surfaces.normal_id.tobytes(), dtype="f4")
         self.position = context.texture(self.size, 4, surfaces.position.tobytes(), dtype="f4")
+        self.behind: moderngl.Texture | None = None
+        if behind is not None:
+            self.behind = context.texture(self.size, 4, behind.tobytes(), dtype="f4")
 
     @classmethod
     def of(cls, context: moderngl.Context, traced: TracedScene) -> "GBuffer":
         """Upload what the camera sees of a scene."""
         focal = float(traced.scene.matrix(traced.size)[0, 0])
-        return cls(context, traced.surfaces, focal)
+        return cls(context, traced.surfaces, focal, traced.behind)
+
+    def occlusion(self, effect: AmbientOcclusion) -> moderngl.Texture:
+        """Draw the ambient occlusion that an effect finds."""
+        return effect.draw(
+            self.normal_id, self.position, self.size, self.focal_px, behind=self.behind
+        )
 
     def draw(self, effect: AmbientOcclusion) -> Floats:
         """Return the ambient occlusion that an effect finds, (height, width)."""
-        texture = effect.draw(self.normal_id, self.position, self.size, self.focal_px)
+        texture = self.occlusion(effect)
         values = np.frombuffer(texture.read(), np.float32).reshape(*texture.size[::-1], 2)
         return values[: self.size[1], : self.size[0], 0].copy()
 
     def release(self) -> None:
         """Release the textures."""
-        self.normal_id.release()
-        self.position.release()
+        for each in (self.normal_id, self.position, self.behind):
+            if each is not None:
+                each.release()
 
 
 def drawn(

@@ -64,7 +64,7 @@ def measure(
             context.finish()
             wall, cpu = time.perf_counter(), time.process_time()
             with query:
-                effect.draw(buffer.normal_id, buffer.position, buffer.size, buffer.focal_px)
+                buffer.occlusion(effect)
             context.finish()
             cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
             taken = 1e3 * cpu, 1e3 * wall, 1e-6 * query.elapsed

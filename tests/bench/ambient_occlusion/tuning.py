@@ -40,9 +40,9 @@ HORIZON_GRID = {
     "reach": (1.0,),
     "fill": (0.0, 0.2, 0.3, 0.4, 0.5, 0.6),
 }
-"""Values for those that look for a horizon; the falloff limits how far they look."""
+"""Values for those that look for what hides the light; the falloff limits how far they look."""
 
-HORIZONS = ("hbao", "gtao")
+HORIZONS = ("hbao", "gtao", "bitmask")
 
 
 def combinations(name: str) -> Iterator[Estimator]:

@@ -8,12 +8,14 @@ import pytest
 from characters.errors import CharacterError
 from characters.rendering.deferred.ambient_occlusion import (
     ESTIMATORS,
+    NOTHING_M,
     AmbientOcclusion,
     AmbientOcclusionSettings,
     Estimator,
 )
 from characters.rendering.deferred.sample_patterns import PATTERNS, sample_pattern
 from characters.rendering.programs import ShaderPrograms
+from tests.bench.ambient_occlusion.product import product_quality
 from tests.bench.ambient_occlusion.quality import matched_score
 from tests.bench.ambient_occlusion.scenes import load
 from tests.bench.ambient_occlusion.scoring import GBuffer, TracedScene, drawn, score
@@ -208,6 +210,37 @@ def test_the_default_settings_are_close_to_ray_traced_pictures(ctx, programs, na
     assert result.rmse < 0.5 * nothing.rmse
 
 
+def test_what_ends_soon_behind_its_front_hides_less_of_a_wall(ctx, programs):
+    """A bar is before a wall, and the picture shows neither its back nor what is behind it."""
+    focal, wall, bar = 64.0, 1.0, 0.9
+    y, x = np.mgrid[:ROWS, :COLUMNS] + 0.5
+    rays = np.stack([(x - COLUMNS / 2) / focal, (y - ROWS / 2) / focal, np.ones_like(x)], axis=-1)
+    on_bar = np.abs(x - COLUMNS / 2) < 3
+    seen = surfaces(rays * np.where(on_bar, bar, wall)[..., None], (0.0, 0.0, -1.0))
+    settings = AmbientOcclusionSettings(lines=8, radius_m=0.3)
+
+    def beside_bar(thickness: float | None) -> float:
+        behind = None
+        if thickness is not None:
+            behind = np.full((ROWS, COLUMNS, 4), NOTHING_M, np.float32)
+            behind[on_bar, :2] = bar + thickness, wall
+        buffer = GBuffer(ctx, seen, focal, behind)
+        found = drawn(ctx, programs, buffer, settings)
+        buffer.release()
+        return float(found[ROWS // 2, COLUMNS // 2 + 4])
+
+    endless, deep, thin, thinner = (beside_bar(each) for each in (None, 0.09, 0.01, 0.005))
+    assert endless == pytest.approx(deep, abs=0.01)  # it reaches to the wall
+    assert deep + 0.05 < thin < thinner < 0.99, (deep, thin, thinner)
+
+
+def test_the_programs_own_picture_of_a_character_is_close_to_rays(ctx):
+    found = product_quality(ctx, "robot", 16)
+    assert found.misplaced_mm < 1e-3
+    assert found.drawn.rmse <= 0.05
+    assert found.drawn.rmse < 0.4 * found.occluded
+
+
 def test_the_background_is_open(draw, balls):
     focal = float(balls.scene.matrix(SIZE)[0, 0])
     found = draw(balls.surfaces, focal, radius_m=balls.scene.radius_m)
@@ -282,7 +315,7 @@ def test_a_pattern_turns_all_pixels_of_a_tile_differently(name):
         ({"estimator": "magic"}, "unknown estimator of ambient occlusion 'magic'"),
         ({"pattern": "plaid"}, "choose one of random, regular"),
         ({"samples": 1}, "not 1 on 2"),
-        ({"lines": 0}, "not 11 on 0"),
+        ({"lines": 0}, "not 25 on 0"),
         ({"radius_m": float("nan")}, "a radius above 0 m"),
     ],
 )

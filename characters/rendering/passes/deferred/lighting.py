@@ -9,6 +9,7 @@ from characters.rendering.deferred.buffers import (
     buffer_triangle,
     surface_records,
 )
+from characters.rendering.passes.deferred.occlusion import DeferredOcclusionPass
 from characters.rendering.passes.deferred.visibility import DeferredVisibilityPass
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
@@ -18,8 +19,8 @@ from characters.rendering.resources import CharacterLayer, FrameResources
 class DeferredLightingPass(RenderPass):
     """Lights the geometry buffer (pass 2 of deferred shading): diffuse, specular and ambient.
 
-    `visibility` says how much of the light arrives; None: all of it, and near the table less of the
-    light from all around.
+    `visibility` says how much of the lamp's light arrives; None: all of it. `occlusion` says it of
+    the light from all around; None: all of it, but less near the table.
     """
 
     def __init__(
@@ -27,10 +28,10 @@ class DeferredLightingPass(RenderPass):
         context: moderngl.Context,
         programs: ShaderPrograms,
         visibility: DeferredVisibilityPass | None,
+        occlusion: DeferredOcclusionPass | None,
     ) -> None:
-        self._visibility = visibility
-        occluded = visibility is not None and visibility.is_occluded
-        features = [*["VISIBILITY"] * bool(visibility), *["OCCLUDED"] * occluded]
+        self._visibility, self._occlusion = visibility, occlusion
+        features = [*["VISIBILITY"] * bool(visibility), *["OCCLUDED"] * bool(occlusion)]
         self._triangle = buffer_triangle(context, programs, "deferred_lighting", *features)
         self._records = context.texture((3, MAX_SURFACES), 4, dtype="f4")
         self._records.filter = moderngl.NEAREST, moderngl.NEAREST
@@ -52,6 +53,8 @@ class DeferredLightingPass(RenderPass):
         )
         if self._visibility is not None:
             self._visibility.set_uniforms(self._triangle.program, layer)
+        if self._occlusion is not None:
+            self._occlusion.bind()
         layer.use_light().clear()
         layer.target.light.is_scattered = False
         frame.context.enable_only(moderngl.NOTHING)

@@ -1,9 +1,8 @@
-"""How much of the lamp, and of the light from all around, each pixel of the characters sees."""
+"""How much of the lamp each pixel of the characters sees."""
 
 import moderngl
 import numpy as np
 
-from characters.rendering.deferred.ambient_occlusion import AmbientOcclusion
 from characters.rendering.deferred.blocker_map import CHARACTER_RANGE_TEXELS, BlockerMap
 from characters.rendering.deferred.buffers import BUFFER_UNITS, PixelBuffer, buffer_triangle
 from characters.rendering.passes.render_pass import RenderPass
@@ -16,42 +15,23 @@ DEPTH_TOLERANCE_M = 0.01
 
 
 class DeferredVisibilityPass(RenderPass):
-    """Finds the share of the light that reaches each pixel, by colour for the lamp.
+    """Finds the share of the lamp's light that reaches each pixel, by colour.
 
     It is found once for each pixel of the picture, as it changes slowly; the lighting takes it from
-    there for each texel of the character layer. Characters and the table hide light.
-
-    Parameters
-    ----------
-    blockers
-        What hides the lamp, which the pass for the shadows has drawn; None if nothing does.
-    occlusion
-        What hides the light from all around; None if nothing does. The pass releases it.
+    there for each texel of the character layer. `blockers` is what hides the lamp, which the pass
+    for the shadows has drawn.
     """
 
     def __init__(
-        self,
-        context: moderngl.Context,
-        programs: ShaderPrograms,
-        blockers: BlockerMap | None,
-        occlusion: AmbientOcclusion | None,
+        self, context: moderngl.Context, programs: ShaderPrograms, blockers: BlockerMap
     ) -> None:
-        self._context = context
-        self.is_occluded = occlusion is not None
-        """Whether some of the light from all around is hidden."""
-        self._blockers, self._occlusion = blockers, occlusion
-        names = [*["SHADOWED"] * bool(blockers), *["OCCLUDED"] * bool(occlusion)]
-        self._reduce, self._find, self._smooth = (
-            buffer_triangle(context, programs, fragment, *defines)
-            for fragment, defines in (
-                ("pixel_geometry", ()),
-                ("pixel_visibility", names),
-                ("pixel_visibility_mean", ()),
-            )
-        )
+        self._context, self._blockers = context, blockers
+        self._reduce, self._find, self._smooth = arrays = [
+            buffer_triangle(context, programs, fragment)
+            for fragment in ("pixel_geometry", "pixel_visibility", "pixel_visibility_mean")
+        ]
+        self.owned = arrays
         self._pixels: PixelBuffer | None = None
-        arrays = (self._reduce, self._find, self._smooth)
-        self.owned = arrays if occlusion is None else (*arrays, occlusion)
         set_uniforms(self._smooth.program, depth_tolerance=DEPTH_TOLERANCE_M)
 
     def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
@@ -59,19 +39,14 @@ class DeferredVisibilityPass(RenderPass):
         pixels = self._pixels_of(layer)
         size = layer.area.width, layer.area.height
         self._context.enable_only(moderngl.NOTHING)
-        self._reduce_geometry(frame, layer, pixels)
-        if self._occlusion is not None:
-            focal = float(frame.camera_matrix[1, 1])
-            found = self._occlusion.draw(
-                pixels.normal_id, pixels.position, size, focal, frame.table_plane
-            )
-            found.use(BUFFER_UNITS["occlusion"])
+        pixels.framebuffer.use()
+        pixels.framebuffer.viewport = (0, 0, *size)
+        layer.target.geometry.bind()
+        set_uniforms(self._reduce.program, fineness=layer.target.fineness)
+        self._reduce.render(moderngl.TRIANGLES, vertices=3)
         pixels.bind()
-        if self._blockers is not None:
-            table_from_camera = np.asarray(np.linalg.inv(frame.camera_from_table), float)
-            self._blockers.set_uniforms(
-                self._find.program, table_from_camera, CHARACTER_RANGE_TEXELS
-            )
+        table_from_camera = np.asarray(np.linalg.inv(frame.camera_from_table), float)
+        self._blockers.set_uniforms(self._find.program, table_from_camera, CHARACTER_RANGE_TEXELS)
         pixels.use_visibility(0, size)
         self._find.render(moderngl.TRIANGLES, vertices=3)
         pixels.use_visibility(1, size)
@@ -96,23 +71,6 @@ class DeferredVisibilityPass(RenderPass):
         super().release()
         if self._pixels is not None:
             self._pixels.release()
-
-    def _reduce_geometry(
-        self, frame: FrameResources, layer: CharacterLayer, pixels: PixelBuffer
-    ) -> None:
-        """Take one texel for each pixel, and the table where there is no character."""
-        pixels.framebuffer.use()
-        pixels.framebuffer.viewport = (0, 0, layer.area.width, layer.area.height)
-        layer.target.geometry.bind()
-        matrix = frame.camera_matrix.copy()
-        matrix[:2, 2] += 0.5 - np.array([layer.area.x, layer.area.y])
-        set_uniforms(
-            self._reduce.program,
-            fineness=layer.target.fineness,
-            ray_from_pixel=np.asarray(np.linalg.inv(matrix), float).T,
-            plane=frame.table_plane,
-        )
-        self._reduce.render(moderngl.TRIANGLES, vertices=3)
 
     def _pixels_of(self, layer: CharacterLayer) -> PixelBuffer:
         """Return the buffer for the pixels of a layer; it grows, and never shrinks."""
