@@ -3,8 +3,7 @@
 import cv2
 import numpy as np
 
-from tracking.appearance.colour_model import LIGHTNESS_OFFSET
-from tracking.geometry.arrays import Flags, Floats
+from tracking.geometry.arrays import Flags, Floats, Image
 from tracking.geometry.robust_statistics import quantile
 
 MIN_GAIN, MAX_GAIN = 0.45, 2.0
@@ -26,8 +25,8 @@ MAX_NOISE_RATIO = 3.0
 SMALL = np.ones((3, 3), np.uint8)
 """A pixel and its neighbours."""
 
-NOISE_STRIDE = 4
-"""Rows and columns of which one is used to estimate noise."""
+SPARSE = np.s_[::5, ::5]
+"""Pixels by which noise and white balance are estimated."""
 
 SAME_LIGHTNESS = 9.0
 """Change of lightness below which a pixel looks as before [CIELab bytes]."""
@@ -42,12 +41,23 @@ UNCHANGED, CHANGED, SHADED, UNKNOWN = -3.0, 2.5, -1.2, -0.7
 FULL_AGE = 6
 """Frames after which a pixel is known for sure."""
 
-SELDOM_FRAMES = 3
-"""Frames that a pixel counts for outside the window."""
+SELDOM_FRAMES, MAX_AGE = 3, 40
+"""Frames that a pixel counts for outside the window, and how many are counted."""
 
 MIN_KNOWN, LOST_SHARE, TRUSTED_SHARE = 0.2, 0.4, 0.6
 """Share of a window that must be known; and of that, how much must look as before to trust the
 rest: less, and the camera was moved."""
+
+_SHADED, _CHANGED = 254, 255
+_STEPS = np.maximum(1 / (np.arange(256, dtype=np.float32) + 1), np.float32(STEP))
+_STEPS[[_SHADED, _CHANGED]] = SHADED_STEP, CHANGED_STEP
+
+_AGES = np.linspace(0, 1, FULL_AGE + 1, dtype=np.float32)
+_NOT_TRUSTED, _TRUST = np.zeros((2, 256), np.float32)
+_NOT_TRUSTED[: 3 * len(_AGES)] = UNKNOWN * np.tile(1 - _AGES, 3)
+_TRUST[: 3 * len(_AGES)] = np.outer((CHANGED, SHADED, UNCHANGED), _AGES).ravel()
+"""The odds of what changed, is shaded and unchanged, each known for 0 to `FULL_AGE` frames: what
+they are in any case, and what the trust in the background adds. At 255 both are 0."""
 
 Box = tuple[slice, slice]
 """Rows and columns of a window."""
@@ -58,21 +68,21 @@ class Background:
 
     def __init__(self) -> None:
         self._mean: Floats = np.zeros((3, 0, 0), np.float32)
-        self._age: Floats = np.zeros((0, 0), np.float32)
+        self._age: Image = np.zeros((0, 0), np.uint8)
         self._lit_anew: Flags = np.zeros((0, 0), bool)
 
     def match_size(self, width: int, height: int) -> None:
         """Change the resolution: it follows that in which the hand is looked for."""
         if self._age.size == 0:
-            self._mean = np.zeros((3, height, width), np.float32)
-            self._age = np.zeros((height, width), np.float32)
+            self._mean = np.ones((3, height, width), np.float32)
+            self._age = np.zeros((height, width), np.uint8)
         elif self._age.shape != (height, width):
             planes = [cv2.resize(plane, (width, height)) for plane in self._mean]
             self._mean = np.stack(planes).astype(np.float32)
             # A pixel of which a neighbour is unknown is unknown.
             unknown = cv2.resize((self._age == 0).astype(np.float32), (width, height))
-            age = cv2.resize(self._age, (width, height))
-            self._age = np.where(unknown > 0, 0, age).astype(np.float32)
+            age = np.asarray(cv2.resize(self._age, (width, height)), np.uint8)
+            self._age = age * (unknown == 0)
 
     def odds(self, lab: Floats, box: Box, outside: Flags) -> tuple[Floats, Flags, bool]:
         """Return what each pixel speaks for a hand, whether it changed, and whether all is known.
@@ -80,7 +90,7 @@ class Background:
         Parameters
         ----------
         lab
-            CIELab of a window in the range of bytes, (3, h, w).
+            L + 16, a and b of CIELab of a window, in bytes, (3, h, w).
         box
             Rows and columns of the window.
         outside
@@ -88,72 +98,67 @@ class Background:
 
         Returns
         -------
-        The logarithm of odds, (h, w); the pixels that look like something else, (h, w); and False
-        where so little looks as before that the camera must have moved.
+        The logarithm of odds, (h, w), 0 in the cube; the pixels that look like something else,
+        (h, w); and False where so little looks as before that the camera must have moved.
         """
-        mean, age = self._mean[:, box[0], box[1]], self._age[box]
+        light, a, b = lab
+        (mean, mean_a, mean_b), age = self._mean[:, box[0], box[1]], self._age[box]
         # The neighbours take part in what follows.
-        known = cv2.erode(((age > 0) & outside).astype(np.uint8), SMALL) > 0
-        sparse = np.s_[::NOISE_STRIDE, ::NOISE_STRIDE]
-        some = known[sparse]
-        total = np.count_nonzero(known)
+        known = cv2.erode(((age > 0) & outside).view(np.uint8), SMALL).view(bool)
+        some, total = known[SPARSE], np.count_nonzero(known)
         if total < max(MIN_KNOWN * np.count_nonzero(outside), 200) or not some.any():
             self._lit_anew = np.zeros(age.shape, bool)
-            return np.full(age.shape, UNKNOWN, np.float32), np.zeros(age.shape, bool), True
-        gain = (lab[0] + LIGHTNESS_OFFSET) / (mean[0] + LIGHTNESS_OFFSET)
-        off_a = lab[1] - 128 - gain * (mean[1] - 128)
-        off_b = lab[2] - 128 - gain * (mean[2] - 128)
+            return np.float32(UNKNOWN) * outside, np.zeros(age.shape, bool), True
+        gain = light / mean
+        off_a, off_b = a - gain * mean_a, b - gain * mean_b
         # The camera's white balance drifts.
-        off_a -= quantile(off_a[sparse][some], 0.5)
-        off_b -= quantile(off_b[sparse][some], 0.5)
-        off_a, off_b = cv2.blur(off_a, (3, 3)), cv2.blur(off_b, (3, 3))
-        chroma = np.sqrt(off_a * off_a + off_b * off_b)
+        off_a -= quantile(off_a[SPARSE][some], 0.5)
+        off_b -= quantile(off_b[SPARSE][some], 0.5)
+        chroma = cv2.magnitude(cv2.blur(off_a, (3, 3)), cv2.blur(off_b, (3, 3)))
         # A shadow keeps the texture of what it falls on, so the gain is smooth.
         detail = gain - cv2.blur(gain, (3, 3))
-        rough = np.sqrt(cv2.erode(cv2.blur(detail * detail, (3, 3)), SMALL))
+        rough = cv2.sqrt(cv2.erode(cv2.blur(detail * detail, (3, 3)), SMALL))
         shade = np.abs(gain - 1)
-        chroma_noise = _noise(chroma[sparse][some], MIN_CHROMA_NOISE)
-        gain_noise = _noise(rough[sparse][some], MIN_GAIN_NOISE)
-        foreign = np.maximum(
-            chroma / (CHROMA_LIMIT * chroma_noise + SHADE_CHROMA * shade),
-            rough / (GAIN_LIMIT * gain_noise + SHADE_DETAIL * shade),
-        )
-        lit = (gain > MIN_GAIN) & (gain < MAX_GAIN) & (foreign < 1)
-        unchanged = lit & (np.abs(lab[0] - mean[0]) < SAME_LIGHTNESS)
+        chroma_noise = _noise(chroma[SPARSE][some], MIN_CHROMA_NOISE)
+        gain_noise = _noise(rough[SPARSE][some], MIN_GAIN_NOISE)
+        lit = chroma < CHROMA_LIMIT * chroma_noise + SHADE_CHROMA * shade
+        lit &= rough < GAIN_LIMIT * gain_noise + SHADE_DETAIL * shade
+        lit &= (gain > MIN_GAIN) & (gain < MAX_GAIN)
+        unchanged = lit & (np.abs(light - mean) < SAME_LIGHTNESS)
         same = np.count_nonzero(unchanged & known) / total
-        trust = float(np.clip((same - LOST_SHARE) / (TRUSTED_SHARE - LOST_SHARE), 0, 1))
-        looks = lit.view(np.uint8) + unchanged  # an unchanged pixel is lit
-        odds = np.take(
-            np.array([CHANGED, SHADED, UNCHANGED], np.float32) * np.float32(trust), looks
-        )
-        odds = UNKNOWN + (odds - UNKNOWN) * np.minimum(age * np.float32(1 / FULL_AGE), 1)
-        odds[~known] = UNKNOWN
+        trust = min(max((same - LOST_SHARE) / (TRUSTED_SHARE - LOST_SHARE), 0.0), 1.0)
+        looks = (lit.view(np.uint8) + unchanged) * np.uint8(FULL_AGE + 1)
+        looks += np.minimum(age, FULL_AGE) * known
+        looks[~outside] = 255
+        odds = np.asarray(cv2.LUT(looks, _NOT_TRUSTED + np.float32(trust) * _TRUST), np.float32)
         self._lit_anew = lit & ~unchanged
-        return odds, (odds > 0) & known, trust > 0
+        return odds, odds > 0, trust > 0
 
     def learn(self, lab: Floats, box: Box, free: Flags, changed: Flags) -> None:
         """Learn the pixels of a window that are free of cube and hand."""
-        mean, age = self._mean[:, box[0], box[1]], self._age[box]
-        step = np.maximum(1 / (age + 1), STEP)
-        step[self._lit_anew & (age > FULL_AGE)] = SHADED_STEP
-        step[changed] = CHANGED_STEP
-        step *= free
-        mean += (lab - mean) * step.astype(np.float32)
-        age += free
+        age = self._age[box]
+        looks = age.copy()
+        looks[self._lit_anew & (age > FULL_AGE)] = _SHADED
+        looks[changed] = _CHANGED
+        self._learn(lab, box, np.asarray(cv2.LUT(looks, _STEPS), np.float32) * free)
+        age += free & (age < MAX_AGE)
 
     def learn_first(self, lab: Floats, box: Box, free: Flags) -> None:
         """Learn pixels that are seen seldom: each counts as several frames."""
-        mean, age = self._mean[:, box[0], box[1]], self._age[box]
-        mean += (lab - mean) * (free * np.maximum(1 / (age / SELDOM_FRAMES + 1), STEP)).astype(
-            np.float32
-        )
-        age += SELDOM_FRAMES * free
+        age = self._age[box]
+        steps = np.asarray(cv2.LUT(age // np.uint8(SELDOM_FRAMES), _STEPS), np.float32)
+        self._learn(lab, box, steps * free)
+        age += (free & (age < MAX_AGE)) * np.uint8(SELDOM_FRAMES)
 
     def forget(self) -> None:
         """Forget all: the camera was moved."""
         self._age[:] = 0
 
+    def _learn(self, lab: Floats, box: Box, steps: Floats) -> None:
+        for plane, mean in zip(lab, self._mean[:, box[0], box[1]], strict=True):
+            mean += (plane - mean) * steps
+
 
 def _noise(deviations: Floats, least: float) -> float:
     """Return the deviation that noise makes, by the pixels that look most as before."""
-    return float(np.clip(quantile(deviations, 0.4), least, MAX_NOISE_RATIO * least))
+    return min(max(quantile(deviations, 0.4), least), MAX_NOISE_RATIO * least)

@@ -5,13 +5,13 @@ from collections.abc import Sequence
 import cv2
 import numpy as np
 
-from tracking.geometry.arrays import Array, Flags, Floats, Image, Indices
+from tracking.geometry.arrays import Floats, Image
 
-LIGHTNESS_BINS, CHROMA_BINS = 8, 24
-"""Bins along L, and along each of a and b, of CIELab."""
+BINS = (8, 24, 24)
+"""Bins along L, a and b of CIELab: chroma tells skin, lightness varies with the light."""
 
-CHROMA_STEP = 4
-"""Width of a bin along a and b [CIELab]: chroma tells skin, lightness varies with the light."""
+RANGES = (0, 256, 80, 176, 80, 176)
+"""First and last value, exclusive, of the bins along L, a and b [CIELab bytes]."""
 
 LIGHTNESS_OFFSET = 41.0
 """16 of CIELab's L in bytes: light scales L + 16, and the chroma by the same factor."""
@@ -28,72 +28,65 @@ MIN_DENSITY = 1e-4
 MAX_ODDS = 2.0
 """What a colour speaks for or against a hand at most, as the logarithm of odds."""
 
-_LEVELS = np.arange(256)
-_CHROMA = np.clip((_LEVELS - 128) // CHROMA_STEP + CHROMA_BINS // 2, 0, CHROMA_BINS - 1)
-_PARTS = [
-    np.asarray(part, np.intp)
-    for part in (
-        _LEVELS * LIGHTNESS_BINS // 256 * CHROMA_BINS**2,
-        _CHROMA * CHROMA_BINS,
-        _CHROMA,
-    )
+ODDS_OF_BYTE = np.linspace(-MAX_ODDS, MAX_ODDS, 255, dtype=np.float32)[
+    np.clip(np.arange(256) - 1, 0, 254)
 ]
-"""What L, a and b of CIELab, bytes, add to the number of a bin."""
+"""What the bytes of `ColourModel.odds` mean: 128 is 0."""
+
+Colours = tuple[Image, Image, Image]
+"""L, a and b of CIELab, bytes, (h, w) each, none beyond the bins."""
 
 
-def colour_bins(planes: Sequence[Image]) -> Indices:
-    """Return the bin of each pixel of CIELab planes of bytes, (h, w) each → (h, w)."""
-    bins = np.take(_PARTS[0], planes[0])
-    bins += np.take(_PARTS[1], planes[1])
-    bins += np.take(_PARTS[2], planes[2])
-    return np.asarray(bins)
+def colours(planes: Sequence[Image]) -> Colours:
+    """Return planes of CIELab, with what is beyond the bins in the last of them."""
+    least, most = np.uint8(RANGES[2]), np.uint8(RANGES[3] - 1)
+    a, b = (np.minimum(np.maximum(plane, least), most) for plane in planes[1:])
+    return planes[0], a, b
 
 
 class ColourModel:
     """Two histograms that forget slowly: of the hand, and of what is behind it."""
 
     def __init__(self) -> None:
-        bins = LIGHTNESS_BINS * CHROMA_BINS**2
-        self._hand, self._behind = np.zeros(bins), np.zeros(bins)
+        self._hand, self._behind = np.zeros(BINS, np.float32), np.zeros(BINS, np.float32)
         self._hand_density: Floats | None = None
-
-    @property
-    def knows_hand(self) -> bool:
-        """Whether enough of a hand was seen."""
-        return bool(self._hand.sum() > MIN_LEARNED)
 
     @property
     def knows_behind(self) -> bool:
         """Whether anything behind the hand was seen."""
         return bool(self._behind.any())
 
-    def learn_hand(self, bins: Indices, where: Flags) -> None:
-        """Add the marked pixels to the hand's colours."""
-        self._hand = _learned(self._hand, bins[where])
+    def learn_hand(self, seen: Colours, where: Image) -> None:
+        """Add the marked pixels to those of the hand."""
+        self._hand = _learned(self._hand, seen, where)
         self._hand_density = None
 
-    def learn_behind(self, bins: Indices, where: Flags) -> None:
-        """Add the marked pixels to the colours behind the hand."""
-        self._behind = _learned(self._behind, bins[where])
+    def learn_behind(self, seen: Colours, where: Image) -> None:
+        """Add the marked pixels to those behind the hand."""
+        self._behind = _learned(self._behind, seen, where)
 
-    def odds(self) -> Floats:
-        """Return what the colour of each bin speaks for a hand, as the logarithm of odds."""
-        if not self.knows_hand:
-            return np.zeros(len(self._hand), np.float32)
+    def odds(self, seen: Colours) -> Image:
+        """Return what each pixel speaks for a hand, (h, w), as `ODDS_OF_BYTE`."""
+        if self._hand.sum() <= MIN_LEARNED:
+            return np.full(seen[0].shape, 128, np.uint8)
         if self._hand_density is None:
             self._hand_density = _density(self._hand)
         ratio = np.log((self._hand_density + MIN_DENSITY) / (_density(self._behind) + MIN_DENSITY))
-        return np.asarray(np.clip(ratio, -MAX_ODDS, MAX_ODDS), np.float32)
+        table = ratio.clip(-MAX_ODDS, MAX_ODDS) * (127 / MAX_ODDS) + 128
+        histogram = cv2.Mat(table)  # type: ignore[no-untyped-call]  # its last axis: no channels
+        found = cv2.calcBackProject(seen, [0, 1, 2], histogram, RANGES, 1)
+        return np.asarray(found, np.uint8)
 
 
-def _learned(counts: Array, bins: Indices) -> Array:
-    return np.asarray(counts * MEMORY_PER_FRAME + np.bincount(bins, minlength=len(counts)))
+def _learned(counts: Floats, seen: Colours, where: Image) -> Floats:
+    new = cv2.calcHist(seen, [0, 1, 2], where, BINS, RANGES)
+    return np.asarray(cv2.scaleAdd(counts, MEMORY_PER_FRAME, np.asarray(new, np.float32)))
 
 
-def _density(counts: Array) -> Floats:
+def _density(counts: Floats) -> Floats:
     """Return the share of each colour, smoothed over neighbouring bins."""
-    flat = counts.reshape(LIGHTNESS_BINS, CHROMA_BINS**2).astype(np.float32)
-    grid = np.asarray(cv2.blur(flat, (1, 3)), np.float32).reshape(-1, CHROMA_BINS, CHROMA_BINS)
+    flat = counts.reshape(BINS[0], -1)
+    grid = np.asarray(cv2.blur(flat, (1, 3)), np.float32).reshape(BINS)
     soft = cv2.GaussianBlur(np.ascontiguousarray(grid.transpose(1, 2, 0)), (3, 3), 0.8)
-    shares = np.asarray(soft, np.float32).transpose(2, 0, 1).ravel()
-    return np.asarray(shares / max(float(shares.sum()), 1.0), np.float32)
+    shares = np.asarray(soft, np.float32).transpose(2, 0, 1)
+    return np.ascontiguousarray(shares / max(float(shares.sum()), 1.0))

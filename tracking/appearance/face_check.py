@@ -3,23 +3,25 @@
 import cv2
 import numpy as np
 
-from tracking.appearance.colour_model import LIGHTNESS_OFFSET
 from tracking.appearance.face_pattern import SeenPattern
-from tracking.geometry.arrays import Array, Flags, Floats, Image
+from tracking.geometry.arrays import Flags, Floats, Image
 from tracking.geometry.robust_statistics import quantile
 
-MIN_SHADE, MAX_SHADE = 0.55, 1.25
-"""Lightness of a part of a face relative to that of most of it: less is no shadow."""
+MIN_SHADE, MAX_SHADE = 0.62, 1.15
+"""L + 16 of a part of a face relative to that of most of it: less is no shadow."""
 
 CHROMA_TOLERANCE = 7.0
 """How far the chroma of paper and ink may be off that of the paper [CIELab]."""
 
-INK_TOLERANCE, MAX_INK_CHROMA, DARK = 9.0, 18.0, 110.0
-"""The same for ink and its own chroma; the most chroma that ink has [CIELab]; and the lightness
-below which it is learned [CIELab bytes]."""
+INK_TOLERANCE, MAX_INK_CHROMA, DARK = 9.0, 18.0, 151.0
+"""The same for ink and its own chroma; the most chroma that ink has [CIELab]; and L + 16
+below which it is learned, in bytes."""
 
 LIGHTNESS_TOLERANCE = 22.0
 """How far grey may be off what the print allows [CIELab bytes, 0…255]."""
+
+NO_INK, ALL_INK = 26, 229
+"""Share of ink, of 255, below and above which a pixel and its neighbours are paper or ink."""
 
 MIN_EVIDENCE_EDGES2 = 0.004
 """Least area of a face that must disagree with its print [square edges]."""
@@ -27,8 +29,8 @@ MIN_EVIDENCE_EDGES2 = 0.004
 TINT_STEP = 0.1
 """Share of a frame in the learned tint of paper."""
 
-USUAL_BLACK = 0.25
-"""Lightness of ink relative to paper, where no ink is seen."""
+USUAL_BLACK, MAX_BLACK = 0.37, 0.66
+"""L + 16 of ink relative to paper, where no ink is seen, and the most of it."""
 
 MIN_PIXELS = 8
 """Pixels that a level must rest on."""
@@ -41,9 +43,8 @@ class FaceCheck:
     """Compares faces with their print; learns the tint of the light on paper."""
 
     def __init__(self) -> None:
-        self._tint: Array | None = None
-        self._ink = np.zeros(2)
-        self._knows_ink = False
+        self._tint: Floats | None = None
+        self._ink: Floats | None = None
 
     def disagreement(self, lab: Floats, seen: SeenPattern, edge: float) -> Flags:
         """Return which pixels do not look like the print, as far as they are connected, (h, w).
@@ -51,85 +52,92 @@ class FaceCheck:
         Parameters
         ----------
         lab
-            CIELab of the cube's part of the image in the range of bytes, (3, h, w).
+            L + 16, a and b of CIELab of the cube's part of the image, in bytes, (3, h, w).
         seen
             The print there.
         edge
             Apparent edge of the cube [px].
         """
-        most = np.asarray(cv2.dilate(seen.ink, SMALL), np.float32)
-        least = np.asarray(cv2.erode(seen.ink, SMALL), np.float32)
+        light, a, b = lab
+        most, least = cv2.dilate(seen.ink, SMALL), cv2.erode(seen.ink, SMALL)
         cube = np.asarray(seen.face > 0, np.uint8)
-        found, inner = np.zeros(cube.shape, bool), cv2.erode(cube, SMALL) > 0
-        all_paper = inner & (most < 0.1) & ~seen.icon
+        inner, plain = cv2.erode(cube, SMALL) > 0, ~seen.icon
+        no_ink, all_ink = most < NO_INK, inner & (least > ALL_INK)
+        all_paper = inner & no_ink & plain
         if self._tint is None:
             self._tint = _first_tint(lab, all_paper)
         if self._tint is None:
-            return found
-        off_a = lab[1] - 128 - (lab[0] + LIGHTNESS_OFFSET) * self._tint[0]
-        off_b = lab[2] - 128 - (lab[0] + LIGHTNESS_OFFSET) * self._tint[1]
-        coloured = (off_a * off_a + off_b * off_b > CHROMA_TOLERANCE**2) & ~seen.icon
-        dark = inner & (least > 0.9) & (lab[0] < DARK)
-        self._learn_ink(lab, dark)
-        off_a, off_b = lab[1] - 128 - self._ink[0], lab[2] - 128 - self._ink[1]
-        coloured &= (off_a * off_a + off_b * off_b > INK_TOLERANCE**2) | (most < 0.1)
-        for number in np.unique(seen.face[inner]).tolist():
-            face = (seen.face == number) & inner
-            found |= face & (
-                coloured | _off_levels(lab[0], face & all_paper, face, most, least, coloured)
-            )
-        opened = cv2.morphologyEx(found.astype(np.uint8), cv2.MORPH_OPEN, SMALL[:2, :2])
+            return np.zeros(cube.shape, bool)
+        coloured = _off(a - light * self._tint[0], b - light * self._tint[1], CHROMA_TOLERANCE)
+        coloured &= plain
+        self._learn_ink(lab, all_ink & (light < DARK))
+        ink = np.zeros(2, np.float32) if self._ink is None else self._ink
+        coloured &= no_ink | _off(a - ink[0], b - ink[1], INK_TOLERANCE)
+        paper = all_paper & ~coloured
+        white, contrast = _levels(light, seen.face, paper, all_ink & ~coloured)
+        found = light > MAX_SHADE * (white - contrast * least) + LIGHTNESS_TOLERANCE
+        found |= light < MIN_SHADE * (white - contrast * most) - 0.5 * LIGHTNESS_TOLERANCE
+        found = (found | coloured) & inner
+        opened = cv2.morphologyEx(found.view(np.uint8), cv2.MORPH_OPEN, SMALL[:2, :2])
         found = _from_outside(np.asarray(opened, np.uint8), cube, MIN_EVIDENCE_EDGES2 * edge * edge)
-        paper = all_paper & ~coloured & ~found
+        paper &= ~found
         if np.count_nonzero(paper) > 4 * MIN_PIXELS:
-            self._tint = self._tint + TINT_STEP * (_tint(lab, paper) - self._tint)
+            self._tint += np.float32(TINT_STEP) * (_tint(lab, paper) - self._tint)
         return found
 
     def _learn_ink(self, lab: Floats, dark: Flags) -> None:
         """Learn the chroma of ink: on photographs it is often bluish."""
         if np.count_nonzero(dark) < 4 * MIN_PIXELS:
             return
-        now = np.array([quantile(lab[axis][dark] - 128, 0.5) for axis in (1, 2)])
-        now = np.clip(now, -MAX_INK_CHROMA, MAX_INK_CHROMA)
-        self._ink = self._ink + (TINT_STEP if self._knows_ink else 1.0) * (now - self._ink)
-        self._knows_ink = True
+        now = np.array([quantile(plane[dark], 0.5) for plane in lab[1:]], np.float32)
+        now = now.clip(-MAX_INK_CHROMA, MAX_INK_CHROMA)
+        self._ink = now if self._ink is None else self._ink + TINT_STEP * (now - self._ink)
 
 
-def _tint(lab: Floats, where: Flags) -> Array:
+def _off(a: Floats, b: Floats, tolerance: float) -> Flags:
+    """Return where a chroma is larger than a tolerance."""
+    return np.asarray(a * a + b * b > tolerance**2)
+
+
+def _tint(lab: Floats, where: Flags) -> Floats:
     """Chroma per L + 16 of some pixels, (2,)."""
-    light = lab[0][where] + LIGHTNESS_OFFSET
-    return np.array([quantile((lab[axis][where] - 128) / light, 0.5) for axis in (1, 2)])
+    light = lab[0][where]
+    return np.array([quantile(plane[where] / light, 0.5) for plane in lab[1:]], np.float32)
 
 
-def _first_tint(lab: Floats, paper: Flags) -> Array | None:
+def _first_tint(lab: Floats, paper: Flags) -> Floats | None:
     """Tint of the brighter half of what should be paper."""
     if np.count_nonzero(paper) < MIN_PIXELS:
         return None
     return _tint(lab, paper & (lab[0] >= quantile(lab[0][paper], 0.5)))
 
 
-def _off_levels(
-    lightness: Floats, paper: Flags, face: Flags, most: Floats, least: Floats, coloured: Flags
-) -> Flags:
-    """Return the pixels of a face too bright for ink, or too dark for paper in a shadow."""
-    plain, dark = paper & ~coloured, face & (least > 0.9) & ~coloured
-    if np.count_nonzero(plain) < MIN_PIXELS:
-        return np.zeros_like(face)
-    white = quantile(lightness[plain], 0.7)
-    black = USUAL_BLACK * white
-    if np.count_nonzero(dark) >= MIN_PIXELS:
-        black = min(quantile(lightness[dark], 0.3), 0.6 * white)
-    top = MAX_SHADE * (white - least * (white - black)) + LIGHTNESS_TOLERANCE
-    bottom = MIN_SHADE * (white - most * (white - black)) - 0.5 * LIGHTNESS_TOLERANCE
-    return np.asarray((lightness > top) | (lightness < bottom))
+def _levels(light: Floats, face: Image, paper: Flags, ink: Flags) -> tuple[Floats, Floats]:
+    """Return L + 16 of paper on the face of each pixel, and how much darker ink is, a 255th.
+
+    They are not numbers, so that nothing is too bright or too dark, where no paper is seen.
+    """
+    levels = np.full((2, 256), np.nan, np.float32)
+    for number in np.flatnonzero(np.bincount(face.ravel())):
+        this = face == number
+        plain, dark = light[paper & this], light[ink & this]
+        if len(plain) < MIN_PIXELS:
+            continue
+        white = quantile(plain, 0.7)
+        black = USUAL_BLACK * white
+        if len(dark) >= MIN_PIXELS:
+            black = min(quantile(dark, 0.3), MAX_BLACK * white)
+        levels[:, number] = white, (white - black) / 255
+    return levels[0][face], levels[1][face]
 
 
 def _from_outside(flags: Image, cube: Image, min_area: float) -> Flags:
     """Return the components large enough that reach the outline: a hand comes from there."""
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(flags)
-    core = cv2.erode(cube, SMALL, iterations=3)
-    keep = np.zeros(count, bool)
-    keep[labels[(flags > 0) & (core == 0)]] = True
-    keep &= stats[:, cv2.CC_STAT_AREA] >= min_area
+    if not flags.any():
+        return flags > 0
+    count, labels = cv2.connectedComponents(flags)
+    rim = (flags > 0) & (cv2.erode(cube, SMALL, iterations=3) == 0)
+    keep = np.bincount(labels.ravel()) >= min_area
+    keep &= np.bincount(labels[rim], minlength=count) > 0
     keep[0] = False
     return np.asarray(keep[labels])

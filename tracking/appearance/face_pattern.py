@@ -9,7 +9,7 @@ from tracking.cube.faces import FacePlanes
 from tracking.cube.icons import FOLD_GAP_SHARE, ICON_SHARE, icon_mask, icons
 from tracking.cube.marker import black_texels, marker_cells
 from tracking.cube.model import CubeModel, Face
-from tracking.geometry.arrays import Array, Flags, Floats, Image
+from tracking.geometry.arrays import Array, Flags, Image
 from tracking.geometry.projection import Projection
 
 FACE_TEXELS = 96
@@ -18,26 +18,26 @@ FACE_TEXELS = 96
 MIN_COSINE = 0.2
 """Cosine of the viewing angle from which on a face is compared."""
 
-INK, ICON, PAPER = 0, 1, 2
-"""Channels of a print: black, coloured icon, and the whole face."""
+INK, ICON = 0, 1
+"""Channels of a print: black, and coloured icon."""
+
+
+NEAR_ICON = np.ones((5, 5), np.uint8)
+"""Pixels around an icon that may have its colour."""
 
 
 @dataclass(frozen=True)
 class SeenPattern:
-    """The print of all visible faces in a window of the image."""
+    """The print of all visible faces in a part of the image."""
 
     face: Image
     """Number of the face + 1 at each pixel, 0 outside the cube, (h, w)."""
 
-    ink: Floats
-    """Share of black, 0…1, (h, w)."""
+    ink: Image
+    """Share of black, 0…255, (h, w)."""
 
     icon: Flags
     """Where a coloured icon is near, (h, w)."""
-
-    def cropped(self, box: tuple[slice, slice]) -> "SeenPattern":
-        """Return some rows and columns of it."""
-        return SeenPattern(self.face[box], self.ink[box], self.icon[box])
 
 
 class FacePattern:
@@ -47,55 +47,45 @@ class FacePattern:
         self._cube, self._projection = cube, projection
         self._planes = FacePlanes(cube)
         self._prints = [_print(cube, face) for face in cube.faces]
+        texels = (FACE_TEXELS, FACE_TEXELS)
+        self._labels = [np.full(texels, n, np.uint8) for n in range(1, len(cube.faces) + 1)]
         grow = cube.edge / cube.marker_size
-        middles = [face.corners.mean(axis=0) for face in cube.faces]
-        self._quads = [
-            middle + grow * (face.corners - middle)
-            for face, middle in zip(cube.faces, middles, strict=True)
-        ]
+        corners = np.stack([face.corners for face in cube.faces])
+        middles = corners.mean(axis=1, keepdims=True)
+        self.corners = middles + grow * (corners - middles)
+        """Corners of the faces' prints, (faces, 4, 3) [m]."""
 
-    def seen(
-        self, camera_from_cube: Array, origin: Array, scale: float, size: tuple[int, int]
-    ) -> SeenPattern:
-        """Draw the faces at a pose into a window.
+    def seen(self, camera_from_cube: Array, quads: Array, size: tuple[int, int]) -> SeenPattern:
+        """Draw the faces at a pose into a part of the image.
 
         Parameters
         ----------
         camera_from_cube
             Pose, (4, 4).
-        origin
-            Upper left corner of the window in the image [px], (2,): of the pixel, not its centre.
-        scale
-            Pixels of the image per pixel of the window.
+        quads
+            Where `corners` are in the part, (faces, 4, 2) [px of it].
         size
-            Width and height of the window [px of the window].
+            Width and height of the part [px].
         """
-        width, height = size
-        label = np.zeros((height, width), np.uint8)
-        shown = np.zeros((height, width, 3), np.uint8)
+        shown = np.zeros((size[1], size[0], 2), np.uint8)
+        face = np.zeros((size[1], size[0]), np.uint8)
         corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32) * FACE_TEXELS - 0.5
         for number in self._planes.facing(camera_from_cube, MIN_COSINE):
-            points = self._quads[number] @ camera_from_cube[:3, :3].T + camera_from_cube[:3, 3]
-            pixels = (self._projection.project(points) + 0.5 - origin) / scale - 0.5
-            low = np.maximum(np.floor(pixels.min(axis=0)).astype(int) - 1, 0)
-            high = np.minimum(np.ceil(pixels.max(axis=0)).astype(int) + 2, size)
-            if (high <= low).any():
-                continue
-            flat = (pixels - low).astype(np.float32)
-            matrix = cv2.getPerspectiveTransform(corners, flat)
-            box = np.s_[low[1] : high[1], low[0] : high[0]]
-            print_ = cv2.warpPerspective(self._prints[number], matrix, tuple((high - low).tolist()))
-            inside = print_[..., PAPER] > 127
-            shown[box][inside] = print_[inside]
-            label[box][inside] = number + 1
-        near_icon = cv2.dilate(shown[..., ICON], np.ones((5, 5), np.uint8)) > 12
-        return SeenPattern(label, np.asarray(shown[..., INK] / 255, np.float32), near_icon)
+            matrix = cv2.getPerspectiveTransform(corners, quads[number].astype(np.float32))
+            print_, label = self._prints[number], self._labels[number]
+            border = cv2.BORDER_TRANSPARENT
+            cv2.warpPerspective(print_, matrix, size, shown, cv2.INTER_LINEAR, border)
+            cv2.warpPerspective(label, matrix, size, face, cv2.INTER_NEAREST, border)
+        ink, icon = cv2.split(shown)
+        near_icon = np.asarray(cv2.dilate(icon, NEAR_ICON) > 12)
+        return SeenPattern(face, np.asarray(ink, np.uint8), near_icon)
 
     def distance(self, camera_from_cube: Array, face: Image, origin: Array, scale: float) -> float:
         """Return the least distance along the camera's axis of some pixels of faces [m].
 
-        `face` is that of `SeenPattern`, 0 where a pixel does not count, one at least does; the
-        others are as in `seen`. Lens distortion hardly matters and is ignored.
+        `face` is that of `SeenPattern`, 0 where a pixel does not count, one at least does; `origin`
+        is the upper left corner of its part in the image, (2,) [px], of the pixel and not its
+        centre; `scale` is the size of its pixels. Lens distortion hardly matters and is ignored.
         """
         rows, columns = np.nonzero(face)
         pixels = (np.stack([columns, rows], axis=1) + 0.5) * scale + origin - 0.5
@@ -111,9 +101,8 @@ class FacePattern:
 
 
 def _print(cube: CubeModel, face: Face) -> Image:
-    """Draw the print of a face, marker upright, (FACE_TEXELS, FACE_TEXELS, 3)."""
-    sheet = np.zeros((FACE_TEXELS, FACE_TEXELS, 3), np.uint8)
-    sheet[..., PAPER] = 255
+    """Draw the print of a face, marker upright, (FACE_TEXELS, FACE_TEXELS, 2)."""
+    sheet = np.zeros((FACE_TEXELS, FACE_TEXELS, 2), np.uint8)
     fine = black_texels(cube, marker_cells(cube.dictionary, face.marker_id), 8 * FACE_TEXELS)
     shares = cv2.resize(fine.astype(np.float32), (FACE_TEXELS,) * 2, interpolation=cv2.INTER_AREA)
     sheet[..., INK] = np.rint(255 * shares)

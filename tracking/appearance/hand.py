@@ -6,8 +6,14 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.appearance.background import Background
-from tracking.appearance.colour_model import ColourModel, colour_bins
+from tracking.appearance.background import Background, Box
+from tracking.appearance.colour_model import (
+    LIGHTNESS_OFFSET,
+    ODDS_OF_BYTE,
+    ColourModel,
+    Colours,
+    colours,
+)
 from tracking.appearance.face_check import FaceCheck
 from tracking.appearance.face_pattern import FacePattern
 from tracking.cube.model import CubeModel
@@ -43,6 +49,9 @@ MIN_CHANGED_SHARE = 0.6
 
 CLOSED_EDGES = 0.25
 """Width of gaps of the hand over the cube that are filled: about a cell of a marker [edges]."""
+
+MARGIN_PX = 7
+"""Pixels of the window around the cube that take part in filters over it."""
 
 EDGE_LEVELS = 90.0
 """Range of the odds, whose whole range is 255, over which the cover rises from 0 to 255."""
@@ -99,13 +108,25 @@ class _Window:
     edge: float
     """Apparent edge of the cube [px of the window]."""
 
+    quads: Array
+    """Where the faces' prints are, seen or not, (faces, 4, 2) [px of the window]."""
+
     @property
-    def box(self) -> tuple[slice, slice]:
+    def cube_box(self) -> Box:
+        """Rows and columns of the window with the cube, at least one."""
+        size = np.array([self.width, self.height])
+        low = np.clip(self.quads.min(axis=(0, 1)).astype(int) - MARGIN_PX, 0, size - 1).tolist()
+        high = np.ceil(self.quads.max(axis=(0, 1))).astype(int) + MARGIN_PX
+        high = np.clip(high, np.add(low, 1), size).tolist()
+        return np.s_[low[1] : high[1], low[0] : high[0]]
+
+    @property
+    def box(self) -> Box:
         """Rows and columns in an image of the working resolution."""
         return np.s_[self.top : self.top + self.height, self.left : self.left + self.width]
 
     @property
-    def image_box(self) -> tuple[slice, slice]:
+    def image_box(self) -> Box:
         """Rows and columns in the image."""
         rows, columns = self.box
         return (
@@ -126,7 +147,8 @@ class HandFinder:
         self._pattern = FacePattern(cube, self._projection)
         self._edge = cube.edge
         signs = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
-        self._corners = np.array(signs, np.float64) * cube.edge / 2
+        corners = np.array(signs, np.float64) * cube.edge / 2
+        self._points = np.concatenate([corners, self._pattern.corners.reshape(-1, 3)])
         self._faces = FaceCheck()
         self._background = Background()
         self._colours = ColourModel()
@@ -143,122 +165,125 @@ class HandFinder:
         window = None if pose is None or not state.visible else self._window(pose)
         if pose is None or window is None:
             return None
-        part = image[window.image_box]
-        small = cv2.resize(part, (window.width, window.height), interpolation=cv2.INTER_AREA)
-        pixels = np.asarray(cv2.cvtColor(small, cv2.COLOR_BGR2LAB), np.uint8)
-        planes = np.ascontiguousarray(pixels.transpose(2, 0, 1))
-        lab = planes.astype(np.float32)
+        planes = _planes(image[window.image_box], window.scale)
+        lab, seen = _float_planes(planes), colours(planes)
         columns, rows = (side // window.scale for side in self._projection.size)
         self._background.match_size(columns, rows)
 
-        cube, evidence, distance = self._evidence(lab, pose, window)
-        inner, outer = cv2.erode(cube, SMALL) > 0, cv2.dilate(cube, WIDE) > 0
-        bins = colour_bins(list(planes))
+        box = window.cube_box
+        face, evidence, distance = self._evidence(lab, pose, window, box)
+        inner = cv2.erode(face, SMALL) > 0
+        cube = np.zeros(planes[0].shape, np.uint8)
+        cube[box] = face > 0
+        outer = np.asarray(cv2.dilate(cube, WIDE), np.uint8)
+        outside = outer == 0
         if np.count_nonzero(evidence) > 8:
-            self._colours.learn_hand(bins, evidence)
+            finger = np.zeros(cube.shape, np.uint8)
+            finger[box] = evidence
+            self._colours.learn_hand(seen, finger)
 
-        by_place, changed, steady = self._background.odds(lab, window.box, ~outer)
+        by_place, changed, steady = self._background.odds(lab, window.box, outside)
         if not steady:
             self._background.forget()
         if not self._colours.knows_behind:
-            self._colours.learn_behind(bins, ~outer)  # a hand has only a small share in it
-        by_colour = self._colours.odds()[bins]
+            self._colours.learn_behind(seen, outside.view(np.uint8))  # a hand is only little of it
         # Where the place tells, or paper and ink are near, colours tell half.
-        odds = by_colour * np.where(outer | changed, np.float32(0.5), np.float32(1.0))
-        odds += np.where(outer, 0, by_place)
-        odds[inner] = NO_EVIDENCE
-        odds[evidence] = EVIDENCE
+        full = np.float32(1) - np.float32(0.5) * (outer | changed)
+        odds = np.asarray(cv2.LUT(self._colours.odds(seen), ODDS_OF_BYTE), np.float32)
+        odds = odds * full + by_place
+        on_cube = odds[box]
+        on_cube[inner] = NO_EVIDENCE
+        on_cube[evidence] = EVIDENCE
         odds = np.asarray(cv2.GaussianBlur(odds, (5, 5), 1.0), np.float32)
+        on_cube = odds[box]
+        on_cube[_closed_over(on_cube, window.edge) & inner] = 0.5 * EVIDENCE
 
-        odds[inner] = np.where(_closed_over(odds, inner, window.edge), 0.5 * EVIDENCE, odds)[inner]
-
-        hand = self._grown(_cleaned(odds > 0), evidence, changed, cube, window.edge)
-        self._learn(lab, bins, window, outer, hand, changed, odds)
-        if not hand.any():
+        hand = self._grown(_cleaned(odds > 0), box, evidence, changed, cube, window.edge)
+        self._learn(lab, seen, window, outer, hand, changed, odds)
+        if hand is None:
             self._learn_strip(image, window)
             return None
-        down, across = window.image_box
-        size = (across.stop - across.start, down.stop - down.start)
-        return HandMask(across.start, down.start, _soft(hand, odds, size), distance)
+        return _soft(hand, odds, window, distance)
 
-    def region(self, camera_from_cube: Array) -> tuple[slice, slice] | None:
+    def region(self, camera_from_cube: Array) -> Box | None:
         """Rows and columns of the image in which the hand is looked for at a pose of the cube."""
         window = self._window(camera_from_cube)
         return window.image_box if window else None
 
     def _window(self, pose: Array) -> _Window | None:
-        points = self._corners @ pose[:3, :3].T + pose[:3, 3]
+        points = self._points @ pose[:3, :3].T + pose[:3, 3]
         if points[:, 2].min() < MIN_DEPTH:
             return None
         pixels = self._projection.project(points)
         edge = self._edge * float(self._projection.matrix[0, 0]) / float(pose[2, 3])
         if not self._scale or not MIN_EDGE_PX < edge / self._scale < MAX_EDGE_PX:
             self._scale = max(1, round(edge / WORKING_EDGE_PX))
-        scale, reach = self._scale, REACH_EDGES * edge
+        scale = self._scale
         size = np.array(self._projection.size) // scale
-        low = np.clip(np.floor((pixels.min(axis=0) - reach) / scale), 0, size).astype(int)
-        high = np.clip(np.ceil((pixels.max(axis=0) + reach) / scale), 0, size).astype(int)
+        corners, reach = pixels[:8], REACH_EDGES * edge
+        low = np.clip(np.floor((corners.min(axis=0) - reach) / scale), 0, size).astype(int)
+        high = np.clip(np.ceil((corners.max(axis=0) + reach) / scale), 0, size).astype(int)
         if (high - low).min() < 8:
             return None
         (left, top), (width, height) = low.tolist(), (high - low).tolist()
-        return _Window(left, top, width, height, scale, edge / scale)
+        quads = (pixels[8:].reshape(-1, 4, 2) + 0.5) / scale - 0.5 - low
+        return _Window(left, top, width, height, scale, edge / scale, quads)
 
-    def _evidence(self, lab: Floats, pose: Array, window: _Window) -> tuple[Image, Flags, float]:
-        """Return the cube, (h, w), what of its faces is hidden, and the distance of that [m]."""
-        origin = np.array([window.left, window.top], np.float64) * window.scale
-        seen = self._pattern.seen(pose, origin, window.scale, (window.width, window.height))
-        cube = np.asarray(seen.face > 0, np.uint8)
-        evidence = np.zeros(cube.shape, bool)
-        left, top, width, height = cv2.boundingRect(cube)
-        if not width:
-            return cube, evidence, float(pose[2, 3])
-        box = np.s_[max(top - 4, 0) : top + height + 4, max(left - 4, 0) : left + width + 4]
-        part = seen.cropped(box)
-        evidence[box] = self._faces.disagreement(lab[:, box[0], box[1]], part, window.edge)
+    def _evidence(
+        self, lab: Floats, pose: Array, window: _Window, box: Box
+    ) -> tuple[Image, Flags, float]:
+        """Return the faces in the cube's box, what of them is hidden, and the distance [m]."""
+        corner = np.array([box[1].start, box[0].start], np.float64)
+        size = (box[1].stop - box[1].start, box[0].stop - box[0].start)
+        seen = self._pattern.seen(pose, window.quads - corner, size)
+        evidence = self._faces.disagreement(lab[:, box[0], box[1]], seen, window.edge)
         if not evidence.any():
-            return cube, evidence, float(pose[2, 3])
-        hidden = np.where(evidence, seen.face, np.uint8(0))
-        return cube, evidence, self._pattern.distance(pose, hidden, origin, window.scale)
+            return seen.face, evidence, float(pose[2, 3])
+        origin = (corner + (window.left, window.top)) * window.scale
+        distance = self._pattern.distance(pose, seen.face * evidence, origin, window.scale)
+        return seen.face, evidence, distance
 
     def _grown(
-        self, hand: Image, evidence: Flags, changed: Flags, cube: Image, edge: float
-    ) -> Flags:
+        self, hand: Image, box: Box, evidence: Flags, changed: Flags, cube: Image, edge: float
+    ) -> Image | None:
         """Choose the components that hold evidence, or that touch the cube and reach away."""
-        count, labels, stats, _ = cv2.connectedComponentsWithStats(hand)
-        area = stats[:, cv2.CC_STAT_AREA]
-        beside = cv2.dilate(cube, WIDE, iterations=3) > 0
-        keep = np.bincount(labels[beside], minlength=count) > MIN_TOUCH_EDGES2 * edge**2
+        count, labels32 = cv2.connectedComponents(hand)
+        if count == 1:
+            return None
+        labels = np.asarray(cv2.convertScaleAbs(labels32), np.uint8)
+        area = _counts(labels)
+        beside = np.asarray(cv2.dilate(cube, WIDE, iterations=3), np.uint8)
+        keep = _counts(labels, beside) > MIN_TOUCH_EDGES2 * edge**2
         keep &= area > MIN_AREA_EDGES2 * edge**2
-        far = int(np.ceil(MIN_EXTENT_EDGES * edge))
         left, top, width, height = cv2.boundingRect(cube)
-        near = np.s_[
-            max(top - far, 0) : top + height + far, max(left - far, 0) : left + width + far
-        ]
-        away = labels.copy()
-        away[near] = 0
-        keep &= np.bincount(away.ravel(), minlength=count) > 0
-        keep &= np.bincount(labels[changed], minlength=count) > MIN_CHANGED_SHARE * area
-        keep[labels[evidence & (hand > 0)]] = True
-        keep[0] = False
-        return np.asarray(keep[labels])
+        far = int(np.ceil(MIN_EXTENT_EDGES * edge))
+        keep &= area > _counts(
+            labels[max(top - far, 0) : top + height + far, max(left - far, 0) : left + width + far]
+        )
+        keep &= _counts(labels, changed.view(np.uint8)) > MIN_CHANGED_SHARE * area
+        keep[labels[box][evidence]] = True
+        keep[[0, 255]] = False
+        return np.asarray(cv2.LUT(labels, keep.view(np.uint8)), np.uint8) if keep.any() else None
 
     def _learn(
         self,
         lab: Floats,
-        bins: NDArray[np.intp],
+        seen: Colours,
         window: _Window,
-        outer: Flags,
-        hand: Flags,
+        outer: Image,
+        hand: Image | None,
         changed: Flags,
         odds: Floats,
     ) -> None:
         """Learn the colours of the hand, and what is behind it."""
-        sure = hand & changed & (odds > SURE_ODDS)
-        if np.count_nonzero(sure) > 8:
-            self._colours.learn_hand(bins, sure)
-        free = cv2.dilate(outer.astype(np.uint8), WIDE) == 0
-        free &= cv2.dilate(hand.astype(np.uint8), WIDE) == 0
-        self._colours.learn_behind(bins, free & ~changed)
+        hidden = outer
+        if hand is not None:
+            hidden = outer | hand
+            sure = hand * (changed & (odds > SURE_ODDS))
+            if np.count_nonzero(sure) > 8:
+                self._colours.learn_hand(seen, sure)
+        free = cv2.dilate(hidden, WIDE) == 0
+        self._colours.learn_behind(seen, (free & ~changed).view(np.uint8))
         self._background.learn(lab, window.box, free, changed)
 
     def _learn_strip(self, image: Image, window: _Window) -> None:
@@ -268,34 +293,61 @@ class HandFinder:
         self._strip = (self._strip + 1) % IMAGE_STRIPS
         top, bottom = (rows * strip // IMAGE_STRIPS for strip in (self._strip, self._strip + 1))
         part = image[top * scale : bottom * scale, : columns * scale]
-        small = cv2.resize(part, (columns, bottom - top), interpolation=cv2.INTER_AREA)
-        lab = np.stack(cv2.split(cv2.cvtColor(small, cv2.COLOR_BGR2LAB))).astype(np.float32)
         free = np.ones((bottom - top, columns), bool)
         first, last = max(window.top - top, 0), max(window.top + window.height - top, 0)
         free[first:last, window.left : window.left + window.width] = False
+        lab = _float_planes(_planes(part, scale))
         self._background.learn_first(lab, np.s_[top:bottom, :columns], free)
 
 
-def _closed_over(odds: Floats, inner: Flags, edge: float) -> Flags:
+def _planes(image: Image, scale: int) -> list[Image]:
+    """Return CIELab of a part of the image at working resolution, in bytes, (h, w) each."""
+    # The mean of a square, in half the time that INTER_AREA takes.
+    side = (scale - 1) | 1
+    size = (image.shape[1] // scale, image.shape[0] // scale)
+    soft = cv2.blur(image, (side, side)) if side > 1 else image
+    small = cv2.resize(soft, size, interpolation=cv2.INTER_LINEAR)
+    return [np.asarray(plane) for plane in cv2.split(cv2.cvtColor(small, cv2.COLOR_BGR2LAB))]
+
+
+def _float_planes(planes: list[Image]) -> Floats:
+    """Return L + 16, a and b in single precision, (3, h, w)."""
+    lab = np.empty((3, *planes[0].shape), np.float32)
+    for plane, offset, of in zip(planes, (LIGHTNESS_OFFSET, -128.0, -128.0), lab, strict=True):
+        np.add(plane, np.float32(offset), out=of)
+    return lab
+
+
+def _counts(labels: Image, where: Image | None = None) -> Floats:
+    """Return how many pixels each of 256 labels has."""
+    return np.asarray(cv2.calcHist([labels], [0], where, [256], (0, 256)), np.float32).ravel()
+
+
+def _closed_over(odds: Floats, edge: float) -> Flags:
     """Return what lies between parts of the hand a marker's cell apart: a dark finger on ink."""
     side = 2 * round(CLOSED_EDGES * edge / 2) + 1
-    hand = (odds > 0).astype(np.uint8)
-    closed = cv2.morphologyEx(hand, cv2.MORPH_CLOSE, np.ones((side, side), np.uint8))
-    return (closed > 0) & inner
+    hand = (odds > 0).view(np.uint8)
+    return cv2.morphologyEx(hand, cv2.MORPH_CLOSE, np.ones((side, side), np.uint8)) > 0
 
 
 def _cleaned(flags: Flags) -> Image:
     """Drop specks, and fill gaps of a few pixels."""
-    mask = cv2.morphologyEx(flags.astype(np.uint8), cv2.MORPH_OPEN, SMALL)
+    mask = cv2.morphologyEx(flags.view(np.uint8), cv2.MORPH_OPEN, SMALL)
     return np.asarray(cv2.morphologyEx(mask, cv2.MORPH_CLOSE, WIDE), np.uint8)
 
 
-def _soft(hand: Flags, odds: Floats, size: tuple[int, int]) -> Image:
-    """Return the cover of each pixel of the image, 0…255: soft at the edge, by the odds there."""
-    mask = hand.astype(np.uint8)
-    core, rim = cv2.erode(mask, SMALL), cv2.dilate(mask, SMALL)
-    level = np.clip(odds * (127 / -NO_EVIDENCE) + 128, 0, 255).astype(np.uint8)
-    level[core > 0] = 255
-    level[rim == 0] = 0
+def _soft(hand: Image, odds: Floats, window: _Window, distance: float) -> HandMask:
+    """Return the cover of each pixel of the image: soft at the edge, by the odds there."""
+    left, top, width, height = cv2.boundingRect(hand)
+    left, right = max(left - 2, 0), min(left + width + 2, window.width)
+    top, bottom = max(top - 2, 0), min(top + height + 2, window.height)
+    part = np.s_[top:bottom, left:right]
+    mask = hand[part]
+    level = np.clip(odds[part] * (127 / -NO_EVIDENCE) + 128, 0, 255).astype(np.uint8)
+    level[cv2.erode(mask, SMALL) > 0] = 255
+    level[cv2.dilate(mask, SMALL) == 0] = 0
+    size = ((right - left) * window.scale, (bottom - top) * window.scale)
     large = cv2.resize(level, size, interpolation=cv2.INTER_LINEAR)
-    return np.asarray(cv2.LUT(large, COVER), np.uint8)
+    cover = np.asarray(cv2.LUT(large, COVER), np.uint8)
+    x, y = (window.left + left) * window.scale, (window.top + top) * window.scale
+    return HandMask(x, y, cover, distance)
