@@ -16,13 +16,14 @@ MIN_CHROMA_NOISE, MIN_GAIN_NOISE = 0.3, 0.003
 CHROMA_LIMIT, GAIN_LIMIT = 4.0, 2.5
 """Deviations of noise from which on a pixel is something else."""
 
-SHADE_CHROMA, SHADE_DETAIL = 10.0, 0.05
-"""How much chroma [CIELab] and detail of the gain change in a shadow, per change of the gain."""
+SHADE_CHROMA, SHADE_DETAIL, EDGE_DETAIL = 10.0, 0.008, 0.05
+"""How much chroma [CIELab] and detail of the gain change in a shadow, per change of the gain; and
+how much of the latter at its edge."""
 
 MAX_NOISE_RATIO = 3.0
 """Most noise that is believed, relative to the least."""
 
-SMALL = np.ones((3, 3), np.uint8)
+SMALL, WIDE = np.ones((3, 3), np.uint8), np.ones((9, 9), np.uint8)
 """A pixel and its neighbours."""
 
 SPARSE = np.s_[::5, ::5]
@@ -35,8 +36,9 @@ STEP, SHADED_STEP, CHANGED_STEP = 0.1, 0.02, 0.01
 """Share of a frame in the background, where it looks as before and where it does not: what stays
 for a hundred frames belongs to it."""
 
-UNCHANGED, CHANGED, SHADED, UNKNOWN = -3.0, 2.5, -1.2, -0.7
-"""What a pixel speaks for a hand, as the logarithm of odds."""
+UNCHANGED, CHANGED, SHADED, ROUGH, UNKNOWN = -3.0, 2.5, -1.2, 1.6, -0.4
+"""What a pixel speaks for a hand, as the logarithm of odds; rough is what may be the edge of a
+shadow, or skin in the colour of the desk."""
 
 FULL_AGE = 6
 """Frames after which a pixel is known for sure."""
@@ -48,16 +50,19 @@ MIN_KNOWN, LOST_SHARE, TRUSTED_SHARE = 0.2, 0.4, 0.6
 """Share of a window that must be known; and of that, how much must look as before to trust the
 rest: less, and the camera was moved."""
 
+MAX_ARM_SHARE = 0.5
+"""Most of a part of the image that an arm covers: more, and the light or the camera changed."""
+
 _SHADED, _CHANGED = 254, 255
 _STEPS = np.maximum(1 / (np.arange(256, dtype=np.float32) + 1), np.float32(STEP))
 _STEPS[[_SHADED, _CHANGED]] = SHADED_STEP, CHANGED_STEP
 
 _AGES = np.linspace(0, 1, FULL_AGE + 1, dtype=np.float32)
 _NOT_TRUSTED, _TRUST = np.zeros((2, 256), np.float32)
-_NOT_TRUSTED[: 3 * len(_AGES)] = UNKNOWN * np.tile(1 - _AGES, 3)
-_TRUST[: 3 * len(_AGES)] = np.outer((CHANGED, SHADED, UNCHANGED), _AGES).ravel()
-"""The odds of what changed, is shaded and unchanged, each known for 0 to `FULL_AGE` frames: what
-they are in any case, and what the trust in the background adds. At 255 both are 0."""
+_NOT_TRUSTED[: 4 * len(_AGES)] = UNKNOWN * np.tile(1 - _AGES, 4)
+_TRUST[: 4 * len(_AGES)] = np.outer((CHANGED, ROUGH, SHADED, UNCHANGED), _AGES).ravel()
+"""The odds of what changed, is rough, shaded and unchanged, each known for 0 to `FULL_AGE` frames:
+what they are in any case, and what the trust in the background adds. At 255 both are 0."""
 
 Box = tuple[slice, slice]
 """Rows and columns of a window."""
@@ -116,23 +121,24 @@ class Background:
         off_b -= quantile(off_b[SPARSE][some], 0.5)
         chroma = cv2.magnitude(cv2.blur(off_a, (3, 3)), cv2.blur(off_b, (3, 3)))
         # A shadow keeps the texture of what it falls on, so the gain is smooth.
-        detail = gain - cv2.blur(gain, (3, 3))
-        rough = cv2.sqrt(cv2.erode(cv2.blur(detail * detail, (3, 3)), SMALL))
+        rough, wide = _roughness(gain, 3, SMALL), _roughness(gain, 5, WIDE)
         shade = np.abs(gain - 1)
         chroma_noise = _noise(chroma[SPARSE][some], MIN_CHROMA_NOISE)
         gain_noise = _noise(rough[SPARSE][some], MIN_GAIN_NOISE)
+        wide_noise = _noise(wide[SPARSE][some], MIN_GAIN_NOISE)
         lit = chroma < CHROMA_LIMIT * chroma_noise + SHADE_CHROMA * shade
-        lit &= rough < GAIN_LIMIT * gain_noise + SHADE_DETAIL * shade
+        lit &= rough < GAIN_LIMIT * gain_noise + EDGE_DETAIL * shade
         lit &= (gain > MIN_GAIN) & (gain < MAX_GAIN)
-        unchanged = lit & (np.abs(light - mean) < SAME_LIGHTNESS)
+        smooth = lit & (wide < GAIN_LIMIT * wide_noise + SHADE_DETAIL * shade)
+        unchanged = smooth & (np.abs(light - mean) < SAME_LIGHTNESS)
         same = np.count_nonzero(unchanged & known) / total
         trust = min(max((same - LOST_SHARE) / (TRUSTED_SHARE - LOST_SHARE), 0.0), 1.0)
-        looks = (lit.view(np.uint8) + unchanged) * np.uint8(FULL_AGE + 1)
+        looks = (lit.view(np.uint8) + smooth + unchanged) * np.uint8(FULL_AGE + 1)
         looks += np.minimum(age, FULL_AGE) * known
         looks[~outside] = 255
         odds = np.asarray(cv2.LUT(looks, _NOT_TRUSTED + np.float32(trust) * _TRUST), np.float32)
         self._lit_anew = lit & ~unchanged
-        return odds, odds > 0, trust > 0
+        return odds, (odds > 0) & ~lit, trust > 0
 
     def learn(self, lab: Floats, box: Box, free: Flags, changed: Flags) -> None:
         """Learn the pixels of a window that are free of cube and hand."""
@@ -144,10 +150,17 @@ class Background:
         age += free & (age < MAX_AGE)
 
     def learn_first(self, lab: Floats, box: Box, free: Flags) -> None:
-        """Learn pixels that are seen seldom: each counts as several frames."""
+        """Learn pixels that are seen seldom: each counts as several frames.
+
+        An arm may come there before the cube does: what changed in a part of them is learned late.
+        """
         age = self._age[box]
-        steps = np.asarray(cv2.LUT(age // np.uint8(SELDOM_FRAMES), _STEPS), np.float32)
-        self._learn(lab, box, steps * free)
+        looks = age // np.uint8(SELDOM_FRAMES)
+        off = np.abs(lab - self._mean[:, box[0], box[1]]).max(axis=0) > SAME_LIGHTNESS
+        off &= age >= FULL_AGE
+        if np.count_nonzero(off) < MAX_ARM_SHARE * off.size:
+            looks[off] = _CHANGED
+        self._learn(lab, box, np.asarray(cv2.LUT(looks, _STEPS), np.float32) * free)
         age += (free & (age < MAX_AGE)) * np.uint8(SELDOM_FRAMES)
 
     def forget(self) -> None:
@@ -157,6 +170,13 @@ class Background:
     def _learn(self, lab: Floats, box: Box, steps: Floats) -> None:
         for plane, mean in zip(lab, self._mean[:, box[0], box[1]], strict=True):
             mean += (plane - mean) * steps
+
+
+def _roughness(gain: Floats, side: int, around: Image) -> Floats:
+    """Return the least deviation from the mean of a square [px], of all pixels around."""
+    detail = gain - cv2.blur(gain, (side, side))
+    square = cv2.blur(detail * detail, (side, side))
+    return np.asarray(cv2.sqrt(cv2.erode(square, around)), np.float32)
 
 
 def _noise(deviations: Floats, least: float) -> float:
