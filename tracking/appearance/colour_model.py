@@ -28,10 +28,7 @@ MIN_DENSITY = 1e-4
 MAX_ODDS = 2.0
 """What a colour speaks for or against a hand at most, as the logarithm of odds."""
 
-ODDS_OF_BYTE = np.linspace(-MAX_ODDS, MAX_ODDS, 255, dtype=np.float32)[
-    np.clip(np.arange(256) - 1, 0, 254)
-]
-"""What the bytes of `ColourModel.odds` mean: 128 is 0."""
+_ODDS_OF_BYTE = (np.arange(256, dtype=np.float32) - 128) * np.float32(MAX_ODDS / 127)
 
 Colours = tuple[Image, Image, Image]
 """L, a and b of CIELab, bytes, (h, w) each, none beyond the bins."""
@@ -52,6 +49,11 @@ class ColourModel:
         self._hand_density: Floats | None = None
 
     @property
+    def knows_hand(self) -> bool:
+        """Whether enough of a hand was seen."""
+        return bool(self._hand.sum() > MIN_LEARNED)
+
+    @property
     def knows_behind(self) -> bool:
         """Whether anything behind the hand was seen."""
         return bool(self._behind.any())
@@ -65,17 +67,17 @@ class ColourModel:
         """Add the marked pixels to those behind the hand."""
         self._behind = _learned(self._behind, seen, where)
 
-    def odds(self, seen: Colours) -> Image:
-        """Return what each pixel speaks for a hand, (h, w), as `ODDS_OF_BYTE`."""
-        if self._hand.sum() <= MIN_LEARNED:
-            return np.full(seen[0].shape, 128, np.uint8)
+    def odds(self, seen: Colours) -> Floats:
+        """Return what the colour of each pixel speaks for a hand, (h, w): logarithm of odds."""
+        if not self.knows_hand:
+            return np.zeros(seen[0].shape, np.float32)
         if self._hand_density is None:
             self._hand_density = _density(self._hand)
         ratio = np.log((self._hand_density + MIN_DENSITY) / (_density(self._behind) + MIN_DENSITY))
         table = ratio.clip(-MAX_ODDS, MAX_ODDS) * (127 / MAX_ODDS) + 128
         histogram = cv2.Mat(table)  # type: ignore[no-untyped-call]  # its last axis: no channels
-        found = cv2.calcBackProject(seen, [0, 1, 2], histogram, RANGES, 1)
-        return np.asarray(found, np.uint8)
+        bytes_ = cv2.calcBackProject(seen, [0, 1, 2], histogram, RANGES, 1)
+        return np.asarray(cv2.LUT(bytes_, _ODDS_OF_BYTE), np.float32)
 
 
 def _learned(counts: Floats, seen: Colours, where: Image) -> Floats:

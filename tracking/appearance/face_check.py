@@ -23,14 +23,16 @@ LIGHTNESS_TOLERANCE = 22.0
 NO_INK, ALL_INK = 26, 229
 """Share of ink, of 255, below and above which a pixel and its neighbours are paper or ink."""
 
-MIN_EVIDENCE_EDGES2 = 0.004
-"""Least area of a face that must disagree with its print [square edges]."""
+MIN_EVIDENCE_EDGES2, MIN_APART_EDGES2 = 0.004, 0.03
+"""Least area of a face that must disagree with its print, and the same where what looks like print
+is between it and the outline [square edges]."""
 
 TINT_STEP = 0.1
 """Share of a frame in the learned tint of paper."""
 
-USUAL_BLACK, MAX_BLACK = 0.37, 0.66
-"""L + 16 of ink relative to paper, where no ink is seen, and the most of it."""
+USUAL_BLACK, MAX_BLACK, BLACK_RANGE = 0.37, 0.66, 1.3
+"""L + 16 of ink relative to paper, at first, the most of it, and the most on a face that shines
+relative to the face that does least."""
 
 MIN_PIXELS = 8
 """Pixels that a level must rest on."""
@@ -45,8 +47,9 @@ class FaceCheck:
     def __init__(self) -> None:
         self._tint: Floats | None = None
         self._ink: Floats | None = None
+        self._black = USUAL_BLACK
 
-    def disagreement(self, lab: Floats, seen: SeenPattern, edge: float) -> Flags:
+    def disagreement(self, lab: Floats, seen: SeenPattern, like_hand: Flags, edge: float) -> Flags:
         """Return which pixels do not look like the print, as far as they are connected, (h, w).
 
         Parameters
@@ -55,6 +58,8 @@ class FaceCheck:
             L + 16, a and b of CIELab of the cube's part of the image, in bytes, (3, h, w).
         seen
             The print there.
+        like_hand
+            Pixels there in the colours of the hand, as far as they are known.
         edge
             Apparent edge of the cube [px].
         """
@@ -74,12 +79,12 @@ class FaceCheck:
         ink = np.zeros(2, np.float32) if self._ink is None else self._ink
         coloured &= no_ink | _off(a - ink[0], b - ink[1], INK_TOLERANCE)
         paper = all_paper & ~coloured
-        white, contrast = _levels(light, seen.face, paper, all_ink & ~coloured)
+        white, contrast = self._levels(light, seen.face, paper, all_ink & ~coloured)
         found = light > MAX_SHADE * (white - contrast * least) + LIGHTNESS_TOLERANCE
         found |= light < MIN_SHADE * (white - contrast * most) - 0.5 * LIGHTNESS_TOLERANCE
         found = (found | coloured) & inner
         opened = cv2.morphologyEx(found.view(np.uint8), cv2.MORPH_OPEN, SMALL[:2, :2])
-        found = _from_outside(np.asarray(opened, np.uint8), cube, MIN_EVIDENCE_EDGES2 * edge * edge)
+        found = _from_outside(np.asarray(opened), like_hand, cube, edge * edge)
         paper &= ~found
         if np.count_nonzero(paper) > 4 * MIN_PIXELS:
             self._tint += np.float32(TINT_STEP) * (_tint(lab, paper) - self._tint)
@@ -92,6 +97,30 @@ class FaceCheck:
         now = np.array([quantile(plane[dark], 0.5) for plane in lab[1:]], np.float32)
         now = now.clip(-MAX_INK_CHROMA, MAX_INK_CHROMA)
         self._ink = now if self._ink is None else self._ink + TINT_STEP * (now - self._ink)
+
+    def _levels(
+        self, light: Floats, face: Image, paper: Flags, ink: Flags
+    ) -> tuple[Floats, Floats]:
+        """Return L + 16 of paper on the face of each pixel, and how much darker ink is, a 255th.
+
+        They are not numbers, so that nothing is too bright or too dark, where no paper is seen.
+        """
+        whites: dict[int, float] = {}
+        blacks: dict[int, float] = {}
+        for number in np.flatnonzero(np.bincount(face.ravel())).tolist():
+            this = face == number
+            plain, dark = light[paper & this], light[ink & this]
+            if len(plain) >= MIN_PIXELS:
+                whites[number] = quantile(plain, 0.7)
+                if len(dark) >= MIN_PIXELS:
+                    blacks[number] = quantile(dark, 0.3) / whites[number]
+        if blacks:
+            self._black += TINT_STEP * (min(*blacks.values(), MAX_BLACK) - self._black)
+        levels = np.full((2, 256), np.nan, np.float32)
+        for number, white in whites.items():
+            black = min(blacks.get(number, self._black), BLACK_RANGE * self._black)
+            levels[:, number] = white, white * (1 - black) / 255
+        return levels[0][face], levels[1][face]
 
 
 def _off(a: Floats, b: Floats, tolerance: float) -> Flags:
@@ -112,32 +141,20 @@ def _first_tint(lab: Floats, paper: Flags) -> Floats | None:
     return _tint(lab, paper & (lab[0] >= quantile(lab[0][paper], 0.5)))
 
 
-def _levels(light: Floats, face: Image, paper: Flags, ink: Flags) -> tuple[Floats, Floats]:
-    """Return L + 16 of paper on the face of each pixel, and how much darker ink is, a 255th.
+def _from_outside(flags: Image, like_hand: Flags, cube: Image, square: float) -> Flags:
+    """Return the components large enough that reach the outline: a hand comes from there.
 
-    They are not numbers, so that nothing is too bright or too dark, where no paper is seen.
+    What looks like hand and like print may be between; `square` is that of the edge [px²].
     """
-    levels = np.full((2, 256), np.nan, np.float32)
-    for number in np.flatnonzero(np.bincount(face.ravel())):
-        this = face == number
-        plain, dark = light[paper & this], light[ink & this]
-        if len(plain) < MIN_PIXELS:
-            continue
-        white = quantile(plain, 0.7)
-        black = USUAL_BLACK * white
-        if len(dark) >= MIN_PIXELS:
-            black = min(quantile(dark, 0.3), MAX_BLACK * white)
-        levels[:, number] = white, (white - black) / 255
-    return levels[0][face], levels[1][face]
-
-
-def _from_outside(flags: Image, cube: Image, min_area: float) -> Flags:
-    """Return the components large enough that reach the outline: a hand comes from there."""
-    if not flags.any():
-        return flags > 0
-    count, labels = cv2.connectedComponents(flags)
-    rim = (flags > 0) & (cv2.erode(cube, SMALL, iterations=3) == 0)
-    keep = np.bincount(labels.ravel()) >= min_area
-    keep &= np.bincount(labels[rim], minlength=count) > 0
-    keep[0] = False
-    return np.asarray(keep[labels])
+    found = flags > 0
+    if not found.any():
+        return found
+    rim = cv2.erode(cube, SMALL, iterations=3) == 0
+    kept = np.zeros(found.shape, bool)
+    for through, share in ((found, MIN_EVIDENCE_EDGES2), (found | like_hand, MIN_APART_EDGES2)):
+        count, labels = cv2.connectedComponents(through.view(np.uint8))
+        keep = np.bincount(labels[found], minlength=count) >= share * square
+        keep &= np.bincount(labels[through & rim], minlength=count) > 0
+        keep[0] = False
+        kept |= found & keep[labels]
+    return kept

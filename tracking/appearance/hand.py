@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from tracking.appearance.background import Background, Box
 from tracking.appearance.colour_model import (
     LIGHTNESS_OFFSET,
-    ODDS_OF_BYTE,
     ColourModel,
     Colours,
     colours,
@@ -32,6 +31,9 @@ resolution changes [px]."""
 EVIDENCE, NO_EVIDENCE = 4.0, -4.0
 """What a face that disagrees or agrees with its print speaks for a hand, as logarithm of odds."""
 
+SLANTED = -1.0
+"""The same for a face that the camera sees at so small an angle that its print tells nothing."""
+
 SURE_ODDS = 1.5
 """The same for a pixel whose colour is learned as that of the hand."""
 
@@ -40,6 +42,9 @@ MIN_TOUCH_EDGES2, MIN_AREA_EDGES2 = 0.01, 0.15
 
 MIN_EXTENT_EDGES = 0.9
 """How far from the cube's bounds it must reach: there is an arm behind a hand."""
+
+HELD_S = 0.15
+"""Time for which the hand stays where it was after the cube is lost: the hand may hide it [s]."""
 
 IMAGE_STRIPS = 9
 """Parts of the image of which one a frame is learned as background while there is no hand."""
@@ -52,6 +57,9 @@ CLOSED_EDGES = 0.25
 
 MARGIN_PX = 7
 """Pixels of the window around the cube that take part in filters over it."""
+
+DOUBTFUL_ODDS = 1.6
+"""What the colour of print must speak for a hand, so that it may be one: a dark finger on ink."""
 
 EDGE_LEVELS = 90.0
 """Range of the odds, whose whole range is 255, over which the cover rises from 0 to 255."""
@@ -153,17 +161,26 @@ class HandFinder:
         self._background = Background()
         self._colours = ColourModel()
         self._scale = self._strip = 0
+        self._last: HandMask | None = None
+        self._seen = -np.inf
 
     def update(self, image: Image, state: CubeState) -> HandMask | None:
         """Find the hand in the next image, (H, W, 3) BGR, with the cube's state in it.
 
         Returns
         -------
-        None where the cube is not seen, or no hand is in front of it.
+        None where no hand is in front of the cube. A cube that is not seen has the hand before, for
+        `HELD_S`.
         """
         pose = state.camera_from_cube
-        window = None if pose is None or not state.visible else self._window(pose)
-        if pose is None or window is None:
+        if pose is None or not state.visible:
+            return self._last if state.timestamp - self._seen < HELD_S else None
+        self._last, self._seen = self._found(image, pose), state.timestamp
+        return self._last
+
+    def _found(self, image: Image, pose: Array) -> HandMask | None:
+        window = self._window(pose)
+        if window is None:
             return None
         planes = _planes(image[window.image_box], window.scale)
         lab, seen = _float_planes(planes), colours(planes)
@@ -171,11 +188,12 @@ class HandFinder:
         self._background.match_size(columns, rows)
 
         box = window.cube_box
-        face, evidence, distance = self._evidence(lab, pose, window, box)
+        by_colour, hand_was_known = self._colours.odds(seen), self._colours.knows_hand
+        like_hand = by_colour[box] > DOUBTFUL_ODDS
+        face, evidence, distance = self._evidence(lab, pose, window, like_hand)
         inner = cv2.erode(face, SMALL) > 0
-        cube = np.zeros(planes[0].shape, np.uint8)
-        cube[box] = face > 0
-        outer = np.asarray(cv2.dilate(cube, WIDE), np.uint8)
+        cube = _outline(window)
+        outer = np.asarray(cv2.dilate(cube, SMALL), np.uint8)
         outside = outer == 0
         if np.count_nonzero(evidence) > 8:
             finger = np.zeros(cube.shape, np.uint8)
@@ -187,18 +205,21 @@ class HandFinder:
             self._background.forget()
         if not self._colours.knows_behind:
             self._colours.learn_behind(seen, outside.view(np.uint8))  # a hand is only little of it
+        if not hand_was_known:
+            by_colour = self._colours.odds(seen)
         # Where the place tells, or paper and ink are near, colours tell half.
         full = np.float32(1) - np.float32(0.5) * (outer | changed)
-        odds = np.asarray(cv2.LUT(self._colours.odds(seen), ODDS_OF_BYTE), np.float32)
-        odds = odds * full + by_place
+        odds = by_colour * full + by_place
         on_cube = odds[box]
+        on_cube[(face == 0) & (cube[box] > 0)] += SLANTED
         on_cube[inner] = NO_EVIDENCE
         on_cube[evidence] = EVIDENCE
         odds = np.asarray(cv2.GaussianBlur(odds, (5, 5), 1.0), np.float32)
         on_cube = odds[box]
-        on_cube[_closed_over(on_cube, window.edge) & inner] = 0.5 * EVIDENCE
+        doubtful = inner & ~evidence & like_hand
+        on_cube[_filled(on_cube, inner, doubtful, window.edge)] = 0.5 * EVIDENCE
 
-        hand = self._grown(_cleaned(odds > 0), box, evidence, changed, cube, window.edge)
+        hand = self._grown(_cleaned(odds > 0), box, evidence, by_place > 0, cube, window.edge)
         self._learn(lab, seen, window, outer, hand, changed, odds)
         if hand is None:
             self._learn_strip(image, window)
@@ -230,13 +251,14 @@ class HandFinder:
         return _Window(left, top, width, height, scale, edge / scale, quads)
 
     def _evidence(
-        self, lab: Floats, pose: Array, window: _Window, box: Box
+        self, lab: Floats, pose: Array, window: _Window, like_hand: Flags
     ) -> tuple[Image, Flags, float]:
         """Return the faces in the cube's box, what of them is hidden, and the distance [m]."""
+        box = window.cube_box
         corner = np.array([box[1].start, box[0].start], np.float64)
         size = (box[1].stop - box[1].start, box[0].stop - box[0].start)
         seen = self._pattern.seen(pose, window.quads - corner, size)
-        evidence = self._faces.disagreement(lab[:, box[0], box[1]], seen, window.edge)
+        evidence = self._faces.disagreement(lab[:, box[0], box[1]], seen, like_hand, window.edge)
         if not evidence.any():
             return seen.face, evidence, float(pose[2, 3])
         origin = (corner + (window.left, window.top)) * window.scale
@@ -300,6 +322,13 @@ class HandFinder:
         self._background.learn_first(lab, np.s_[top:bottom, :columns], free)
 
 
+def _outline(window: _Window) -> Image:
+    """Return the whole cube in the window, (h, w)."""
+    cube = np.zeros((window.height, window.width), np.uint8)
+    hull = cv2.convexHull(np.rint(window.quads.reshape(-1, 2) * 16).astype(np.int32))
+    return np.asarray(cv2.fillConvexPoly(cube, hull, 1, shift=4), np.uint8)
+
+
 def _planes(image: Image, scale: int) -> list[Image]:
     """Return CIELab of a part of the image at working resolution, in bytes, (h, w) each."""
     # The mean of a square, in half the time that INTER_AREA takes.
@@ -323,11 +352,13 @@ def _counts(labels: Image, where: Image | None = None) -> Floats:
     return np.asarray(cv2.calcHist([labels], [0], where, [256], (0, 256)), np.float32).ravel()
 
 
-def _closed_over(odds: Floats, edge: float) -> Flags:
-    """Return what lies between parts of the hand a marker's cell apart: a dark finger on ink."""
+def _filled(odds: Floats, inner: Flags, doubtful: Flags, edge: float) -> Flags:
+    """Return where the hand covers what looks like its print: as most of what is told around it."""
     side = 2 * round(CLOSED_EDGES * edge / 2) + 1
     hand = (odds > 0).view(np.uint8)
-    return cv2.morphologyEx(hand, cv2.MORPH_CLOSE, np.ones((side, side), np.uint8)) > 0
+    closed = cv2.morphologyEx(hand, cv2.MORPH_CLOSE, np.ones((side, side), np.uint8)) > 0
+    votes = cv2.blur((2.0 * hand - 1).astype(np.float32) * ~doubtful, (side, side))
+    return np.asarray(inner & (closed | (doubtful & (votes > 0))))
 
 
 def _cleaned(flags: Flags) -> Image:
