@@ -48,6 +48,7 @@ class FaceCheck:
         self._tint: Floats | None = None
         self._ink: Floats | None = None
         self._black = USUAL_BLACK
+        self._learns_ink = False  # in every second picture, and the tint in the others
 
     def disagreement(self, lab: Floats, seen: SeenPattern, like_hand: Flags, edge: float) -> Flags:
         """Return which pixels do not look like the print, as far as they are connected, (h, w).
@@ -75,7 +76,9 @@ class FaceCheck:
             return np.zeros(cube.shape, bool)
         coloured = _off(a - light * self._tint[0], b - light * self._tint[1], CHROMA_TOLERANCE)
         coloured &= plain
-        self._learn_ink(lab, all_ink & (light < DARK))
+        self._learns_ink = not self._learns_ink
+        if self._learns_ink:
+            self._learn_ink(lab, all_ink & (light < DARK))
         ink = np.zeros(2, np.float32) if self._ink is None else self._ink
         coloured &= no_ink | _off(a - ink[0], b - ink[1], INK_TOLERANCE)
         paper = all_paper & ~coloured
@@ -86,7 +89,7 @@ class FaceCheck:
         opened = cv2.morphologyEx(found.view(np.uint8), cv2.MORPH_OPEN, SMALL[:2, :2])
         found = _from_outside(np.asarray(opened), like_hand, cube, edge * edge)
         paper &= ~found
-        if np.count_nonzero(paper) > 4 * MIN_PIXELS:
+        if not self._learns_ink and np.count_nonzero(paper) > 4 * MIN_PIXELS:
             self._tint += np.float32(TINT_STEP) * (_tint(lab, paper) - self._tint)
         return found
 

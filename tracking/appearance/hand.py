@@ -46,6 +46,9 @@ MIN_EXTENT_EDGES = 0.9
 HELD_S = 0.15
 """Time for which the hand stays where it was after the cube is lost: the hand may hide it [s]."""
 
+MANY_FRAMES = 20
+"""Frames after which the desk is learned in every second one, and its colours in the others."""
+
 IMAGE_STRIPS = 9
 """Parts of the image of which one a frame is learned as background while there is no hand."""
 
@@ -160,7 +163,7 @@ class HandFinder:
         self._faces = FaceCheck()
         self._background = Background()
         self._colours = ColourModel()
-        self._scale = self._strip = 0
+        self._scale = self._strip = self._frames = 0
         self._last: HandMask | None = None
         self._seen = -np.inf
 
@@ -305,8 +308,11 @@ class HandFinder:
             if np.count_nonzero(sure) > 8:
                 self._colours.learn_hand(seen, sure)
         free = cv2.dilate(hidden, WIDE) == 0
-        self._colours.learn_behind(seen, (free & ~changed).view(np.uint8))
-        self._background.learn(lab, window.box, free, changed)
+        self._frames += 1
+        if self._frames % 2 == 0:
+            self._colours.learn_behind(seen, (free & ~changed).view(np.uint8))
+        if self._frames % 2 or self._frames < MANY_FRAMES:
+            self._background.learn(lab, window.box, free, changed)
 
     def _learn_strip(self, image: Image, window: _Window) -> None:
         """Learn a strip of the whole image, without a hand: the cube may come there."""
