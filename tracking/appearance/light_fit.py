@@ -20,6 +20,14 @@ IRRADIANCE_ERROR = 0.035
 """Standard deviation of a patch's light from the model, as a share of the mean light: light from
 the table and the hand, vignetting, and paper that is not flat."""
 
+GROUND_SHARES = (1.0, 0.7, 0.4)
+"""Light from all around on a surface that faces down, beside one that faces up: which of them holds
+is not known before, and moves the direction that a face's light tells by up to 17°."""
+
+OTHER_LIGHT = 0.15
+"""Error of the direction that other lamps, walls and near light make where the key light is as
+strong as that from all around [rad]."""
+
 INDEPENDENT_PATCHES = 8.0
 """How many independent measurements many patches make at most: neighbours share their errors."""
 
@@ -91,17 +99,27 @@ def fit_patches(normals: Array, irradiance: Array, weights: Array, up: Array) ->
         Unit vector away from the ground, (3,).
     """
     log_prior = _prior(up)
-    light, darker = fit_light(normals, irradiance, weights, log_prior)
+    around = ground_light(normals, up)
+    light, darker = fit_light(normals, irradiance, weights, log_prior, around)
     for _ in range(MAX_REFITS):
         shadowed = darker > SHADOW_SHARE
         if not shadowed.any() or len(shadowed) - shadowed.sum() < MIN_LIT_PATCHES:
             break
-        light, darker = fit_light(normals, irradiance, weights * ~shadowed, log_prior)
+        light, darker = fit_light(normals, irradiance, weights * ~shadowed, log_prior, around)
     return light
 
 
+def ground_light(normals: Array, up: Array) -> Array:
+    """Return the light from all around on patches for each of `GROUND_SHARES`, (shares, N).
+
+    As a share of its mean over all directions.
+    """
+    shares = np.array(GROUND_SHARES)[:, None]
+    return np.asarray(1 + (1 - shares) / (1 + shares) * (normals @ up), np.float64)
+
+
 def fit_light(
-    normals: Array, irradiance: Array, weights: Array, log_prior: Array
+    normals: Array, irradiance: Array, weights: Array, log_prior: Array, around: Array
 ) -> tuple[MeasuredLight, Array]:
     """Fit ambient light and one direction to patches.
 
@@ -114,6 +132,9 @@ def fit_light(
         Of each patch: unit normal, (N, 3); linear RGB, (N, 3); and weight 0…1, (N,).
     log_prior
         Gradient of the log of the prior likelihood by the direction, (3,).
+    around
+        Light from all around on each patch, as a share of its mean, in some ways in which it may
+        differ, (ways, N): the result is the mean over them, too.
 
     Returns
     -------
@@ -126,40 +147,48 @@ def fit_light(
     directions = DIRECTIONS
     for _ in range(2):
         lit = np.maximum(normals @ directions.T, 0)
-        cost, ambients, keys = _least_squares(lit, scaled, weights)
+        fits = [_least_squares(lit, each, scaled, weights) for each in around]
+        cost, ambients, keys = (np.stack(part) for part in zip(*fits, strict=True))
         variance = max(IRRADIANCE_ERROR**2, float(cost.min()) / (3 * max(total - 2, 1.0)))
         log = directions @ log_prior - cost * (independent / (2 * variance))
         likely = np.exp(log - log.max())
         likely /= likely.sum()
-        centre = likely @ directions
+        centre = likely.sum(axis=0) @ directions
         length = float(np.sqrt(centre @ centre))
         to_light = centre / max(length, 1e-9)
-        ambient, key = likely @ ambients, likely @ keys
+        ambient = np.einsum("ag,agc->c", likely, ambients)
+        key = np.einsum("ag,agc->c", likely, keys)
         spread = float(np.sqrt(2 * max(1 - length, 0)))
         radius = max(REFINED_SPREADS * spread, MIN_REFINED)
         if radius > MAX_REFINED:
             break
         directions = _around(to_light, radius)
-    certainty = float(np.clip(1 - spread / _prior_spread(log_prior), 0, 1))
-    model = ambient + lit @ (likely[:, None] * keys)
+    # What else is in a room turns the direction by a share of the rest of the light.
+    other = OTHER_LIGHT * float(ambient.sum()) / max(float(key.sum()), 1e-9)
+    certainty = float(np.clip(1 - np.hypot(spread, other) / _prior_spread(log_prior), 0, 1))
+    model = around.T @ np.einsum("ag,agc->ac", likely, ambients)
+    model += lit @ np.einsum("ag,agc->gc", likely, keys)
     darker = (model - scaled).mean(axis=1)
     return MeasuredLight(to_light, key * mean, ambient * mean, certainty), darker
 
 
-def _least_squares(lit: Array, values: Array, weights: Array) -> tuple[Array, Array, Array]:
+def _least_squares(
+    lit: Array, around: Array, values: Array, weights: Array
+) -> tuple[Array, Array, Array]:
     """Fit ambient and key light, both at least 0, for each direction.
 
-    `lit` are the cosines of patches and directions, at least 0, (N, G), `values` (N, 3), `weights`
-    (N,).
+    `lit` are the cosines of patches and directions, at least 0, (N, G), `around` the light from all
+    around on patches, as a share of its mean, (N,), `values` (N, 3), `weights` (N,).
     Returns the weighted sum of squares (G,), ambient and key light (G, 3).
     """
     weighted = weights[:, None] * values
     # What is expected of the ambient share is one more measurement, of a weight next to nothing.
     share, trust = EXPECTED_AMBIENT_SHARE, (IRRADIANCE_ERROR / (2 * AMBIENT_SHARE_SPREAD)) ** 2
-    aa = float(weights.sum()) + trust * (1 - share) ** 2
-    ak = (weights @ lit)[:, None] - trust * share * (1 - share)
+    weighted_around = weights * around
+    aa = float(weighted_around @ around) + trust * (1 - share) ** 2
+    ak = (weighted_around @ lit)[:, None] - trust * share * (1 - share)
     kk = (weights @ (lit * lit))[:, None] + trust * share**2
-    a, k = weighted.sum(axis=0), lit.T @ weighted
+    a, k = around @ weighted, lit.T @ weighted
     key = (aa * k - ak * a) / (aa * kk - ak * ak)
     key = np.where(ak * key > a, k / kk, np.maximum(key, 0))  # no negative ambient light
     ambient = np.maximum(a - ak * key, 0) / aa

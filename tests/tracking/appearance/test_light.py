@@ -8,7 +8,7 @@ import pytest
 
 from tests.tracking.drawn import WIDE, held
 from tracking.appearance.light import LightMeter
-from tracking.appearance.light_fit import MeasuredLight, fit_light
+from tracking.appearance.light_fit import MeasuredLight, fit_light, fit_patches
 from tracking.appearance.patches import PAPER_ALBEDO, PaperSampler, white_points
 from tracking.cube.faces import FacePlanes
 from tracking.cube.model import FACE_AXES, CubeModel
@@ -19,6 +19,7 @@ from tracking.geometry.state import CubeState
 CUBE = CubeModel.load("locomotion")
 TO_LIGHT = np.array([-0.5, -0.7, -0.6]) / np.linalg.norm([-0.5, -0.7, -0.6])
 KEY, AMBIENT = np.array([0.5, 0.45, 0.35]), np.array([0.3, 0.32, 0.4])
+UP = np.array([0.0, -1.0, 0.0])
 NO_PRIOR = np.array([0.0, -1e-3, 0.0])
 
 Shade = Callable[[Array], Array]
@@ -94,7 +95,7 @@ def directions(count: int, seed: int = 1) -> Array:
 @pytest.mark.parametrize("seed", range(5))
 def test_patches_of_a_known_light_give_it_back(seed):
     normals = directions(12, seed)
-    light, darker = fit_light(normals, lit(normals), np.ones(12), NO_PRIOR)
+    light, darker = fit_light(normals, lit(normals), np.ones(12), NO_PRIOR, np.ones((1, 12)))
     assert degrees(light) < 3
     np.testing.assert_allclose(light.ambient, AMBIENT, atol=0.02)
     np.testing.assert_allclose(light.key, KEY, atol=0.03)
@@ -104,8 +105,29 @@ def test_patches_of_a_known_light_give_it_back(seed):
 
 def test_light_from_all_around_has_no_key():
     normals = directions(20)
-    light, _ = fit_light(normals, np.tile(AMBIENT, (20, 1)), np.ones(20), NO_PRIOR)
+    light, _ = fit_light(
+        normals, np.tile(AMBIENT, (20, 1)), np.ones(20), NO_PRIOR, np.ones((1, 20))
+    )
     assert light.key.max() < 0.05 * AMBIENT.max()
+
+
+@pytest.mark.parametrize("ground", [0.4, 1.0])
+def test_less_light_from_below_does_not_turn_the_light(ground):
+    normals = np.concatenate([directions(40), -directions(40, 2)])
+    around = (1 + ground) / 2 + (1 - ground) / 2 * normals @ UP
+    key = np.maximum(normals @ TO_LIGHT, 0)[:, None] * KEY
+    light = fit_patches(normals, around[:, None] * AMBIENT + key, np.ones(80), UP)
+    assert degrees(light) < 5
+
+
+def test_little_light_from_the_lamp_leaves_its_direction_uncertain():
+    normals = directions(60)
+    key = np.maximum(normals @ TO_LIGHT, 0)[:, None] * KEY
+    strong, weak = (
+        fit_patches(normals, AMBIENT + share * key, np.ones(60), UP) for share in (1.0, 0.15)
+    )
+    assert strong.certainty > 0.8
+    assert weak.certainty < 0.6
 
 
 def test_a_turned_cube_tells_the_light():
