@@ -1,6 +1,7 @@
 """The hand is found where it is, and nowhere else."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -116,3 +117,33 @@ def test_a_spot_inside_a_face_is_no_finger():
     pose, picture = held(), photograph(scene((CUBE, held()), camera=WIDE))
     picture[300:372, 630:656] = (96, 124, 168)  # a hand would come from outside
     assert HandFinder(CUBE, WIDE).update(picture, state_at(pose)) is None
+
+
+def test_skin_in_the_colour_of_the_desk_is_found_by_its_texture():
+    mask, truth, region = shown(HandView("a07e56", azimuth_deg=0, seed=2), 28)
+    assert mask is not None
+    found = covered(mask)[region]
+    assert np.minimum(found, truth[region]).sum() > 0.75 * np.maximum(found, truth[region]).sum()
+
+
+@pytest.mark.parametrize("skin", ["f6ede4", "292420"])
+def test_fingers_in_the_colours_of_print_are_found(skin):
+    view = HandView(skin, azimuth_deg=-165, seed=4, gradient=0.5)
+    mask, truth, region = shown(view, 26)
+    assert mask is not None
+    found = covered(mask)[region]
+    assert np.minimum(found, truth[region]).sum() > 0.86 * np.maximum(found, truth[region]).sum()
+
+
+def test_a_hand_stays_for_a_moment_when_the_cube_is_lost():
+    made = HandScene(HandView("825c43", azimuth_deg=-120, seed=3), CUBE)
+    finder = HandFinder(CUBE, made.intrinsics)
+    for index in range(25):
+        frame, _ = made.frame(index)
+        mask = finder.update(frame.image, replace(state_at(made.truth(index)), timestamp=index / 8))
+    lost = [
+        finder.update(frame.image, replace(state_at(None, visible=False), timestamp=3 + later))
+        for later in (0.1, 0.2)
+    ]
+    assert mask is not None
+    assert lost == [mask, None]
