@@ -8,7 +8,7 @@ from characters.rendering.geometry.surfaces import BEHIND
 from characters.rendering.passes.characters import CharacterPass
 from characters.rendering.programs import ShaderPrograms
 from characters.rendering.projection import grown_size
-from characters.rendering.resources import CharacterLayer, FrameResources, Region
+from characters.rendering.resources import CharacterLayer, FrameResources
 
 KNOWN_UNIT = 5
 """Texture unit of what is in front, after those of materials (see `TEXTURE_UNITS`)."""
@@ -27,11 +27,8 @@ class DeferredOcclusionPass(CharacterPass):
         self._hidden: HiddenBuffer | None = None
         self.owned = (self._occlusion,)
 
-    def draw(self, frame: FrameResources, region: Region) -> None:
+    def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Find the open share of each texel, and bind it for the lighting."""
-        layer = region.characters
-        if layer is None:
-            return
         hidden = self._hidden_of(layer)
         self._draw_hidden(frame, layer, hidden)
         fineness, geometry = layer.target.fineness, layer.target.geometry
