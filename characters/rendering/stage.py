@@ -137,20 +137,21 @@ class Stage:
             return picture
         cover = None if found is None else self._undistorter.cover_in_picture(found)
         uploaded = None if cover is None else self._cover.upload(cover)
-        self._context.front_face = "cw"  # the first row of a target is its top row
+        self._context.front_face = "cw"
         for each in self.passes:
             each.composite(frame, uploaded)
-        self._context.front_face = "ccw"  # as code outside of the stage expects it
+        self._context.front_face = "ccw"
         return picture
 
     def _draw_layer(self, frame: FrameResources) -> None:
         """Prepare all passes and draw the characters; the driver draws while the caller goes on."""
         for each in self.passes:
             each.prepare(frame)
-            if frame.layer is not None:
-                self._context.front_face = "cw"
+        if frame.layer is not None:
+            self._context.front_face = "cw"  # the first row of a target is its top row
+            for each in self.passes:
                 each.draw_layer(frame, frame.layer)
-        self._context.front_face = "ccw"
+            self._context.front_face = "ccw"  # as code outside of the stage expects it
         # A software driver starts to work on a framebuffer when another one is drawn on.
         self._targets.pictures.at_least(1, 1).clear()
 

@@ -47,8 +47,7 @@ class PictureTarget:
 
     def read(self, width: int, height: int) -> Image:
         """Return the first texels, (height, width, 3)."""
-        data = self._framebuffer.read((0, 0, width, height), components=3, alignment=1)
-        return np.frombuffer(data, np.uint8).reshape(height, width, 3)
+        return read_bytes(self._framebuffer, (0, 0, width, height), 3)
 
     def release(self) -> None:
         """Release the buffers; a second call does nothing."""
@@ -78,8 +77,7 @@ class LayerTarget:
     def read(self, width: int, height: int) -> Image:
         """Return the texels of the first width × height pixels, (rows, columns, 4) BGRA."""
         columns, rows = self.fineness * width, self.fineness * height
-        data = self.framebuffer.read((0, 0, columns, rows), components=4)
-        return np.frombuffer(data, np.uint8).reshape(rows, columns, 4)
+        return read_bytes(self.framebuffer, (0, 0, columns, rows), 4)
 
     @cached_property
     def geometry(self) -> GeometryBuffer:
@@ -152,6 +150,14 @@ class RenderTargets:
         """Release all targets; a second call does nothing."""
         self.pictures.release()
         self.layers.release()
+
+
+def read_bytes(
+    framebuffer: moderngl.Framebuffer, box: tuple[int, int, int, int], components: int
+) -> Image:
+    """Return the texels of a box (x, y, width, height), (height, width, components)."""
+    data = framebuffer.read(box, components=components, alignment=1)
+    return np.frombuffer(data, np.uint8).reshape(box[3], box[2], components)
 
 
 def bgra_from_bgr(picture: Image) -> Image:

@@ -1,10 +1,14 @@
 """What deferred passes share: what is seen in each texel of a character layer, and its light."""
 
+from collections.abc import Callable
+from typing import Generic, TypeVar
+
 import moderngl
 import numpy as np
 
 from characters.rendering.geometry.character_cache import CharacterInstance
 from characters.rendering.programs import ShaderPrograms, set_uniforms
+from characters.rendering.projection import grown_size
 from characters.skeleton.pose import Array
 
 BUFFER_UNITS = {
@@ -151,6 +155,41 @@ class PixelBuffer:
             framebuffer.release()
         for texture in (self.normal_id, self.position, *self.visibility):
             texture.release()
+
+
+Kept = TypeVar("Kept", HiddenBuffer, PixelBuffer)
+
+
+class GrowingBuffer(Generic[Kept]):
+    """Keeps one buffer, which a larger one replaces when it must; it never shrinks.
+
+    `make` returns a new one of a size (width, height).
+    """
+
+    def __init__(
+        self, context: moderngl.Context, make: Callable[[moderngl.Context, tuple[int, int]], Kept]
+    ) -> None:
+        self._context = context
+        self._make: Callable[[moderngl.Context, tuple[int, int]], Kept] = make
+        self._size: tuple[int, int] | None = None
+        self._kept: Kept | None = None
+
+    def at_least(self, size: tuple[int, int]) -> Kept:
+        """Return the buffer, at least of a size (width, height)."""
+        grown = grown_size(self._size, size)
+        if grown is not None:
+            if self._kept is not None:
+                # moderngl binds the last framebuffer again when it makes one: it must still exist.
+                self._context.detect_framebuffer(0).use()
+                self._kept.release()
+            self._kept, self._size = self._make(self._context, grown), grown
+        assert self._kept is not None
+        return self._kept
+
+    def release(self) -> None:
+        """Release the buffer; a second call does nothing."""
+        if self._kept is not None:
+            self._kept.release()
 
 
 def buffer_triangle(

@@ -21,10 +21,10 @@ class Releasable(Protocol):
 class RenderPass:
     """One step in drawing a picture.
 
-    Once a frame, the stage calls `prepare` and `draw_layer` of one pass after the other. Then it
-    asks for the hand, and calls `composite` of one after the other. Between passes, only the
-    framebuffers and what `FrameResources` holds are shared: a pass sets the blending, the tests and
-    the uniforms that it needs.
+    Once a frame, the stage calls `prepare` of all passes, then `draw_layer` of one after the other.
+    Then it asks for the hand, and calls `composite` of one after the other. Between passes, only
+    the framebuffers and what `FrameResources` holds are shared: a pass sets the blending, the tests
+    and the uniforms that it needs.
     """
 
     owned: Sequence[Releasable] = ()

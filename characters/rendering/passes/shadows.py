@@ -10,6 +10,7 @@ from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.passes.table_factors import TableFactors, darken
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.resources import FrameResources
+from characters.rendering.target import read_bytes
 from characters.skeleton.pose import Array
 
 MAP_SIDE = 80
@@ -152,12 +153,10 @@ class ShadowMap:
         x, z, width, depth = self._used_texels()
         low = np.maximum([x - 1, z - 1], 0)
         columns, rows = (np.minimum([x + width + 1, z + depth + 1], MAP_SIDE) - low).tolist()
-        data = self._targets[0].read((*low.tolist(), columns, rows), components=3, alignment=1)
+        left_of_light = read_bytes(self._targets[0], (*low.tolist(), columns, rows), 3)
         texel = float(self.area[2]) / MAP_SIDE
         left, near = (self.area[:2] + texel * low).tolist()
-        return TableFactors(
-            np.frombuffer(data, np.uint8).reshape(rows, columns, 3), (left, near), texel
-        )
+        return TableFactors(left_of_light, (left, near), texel)
 
     def _soften(self, height: float, key_share: Array) -> None:
         """Blur the part of the map that can have a shadow along x; then along z, to one factor.

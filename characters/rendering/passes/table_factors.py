@@ -15,7 +15,7 @@ from characters.rendering.projection import Rectangle
 from characters.rendering.resources import FrameResources
 from characters.skeleton.pose import Array
 
-UNSEEN = 254
+UNSEEN_LEVEL = 254
 """Least factor, of 255, that is not seen where a shadow ends."""
 
 
@@ -34,7 +34,7 @@ class TableFactors:
 
     def cropped(self) -> "TableFactors":
         """Return the part that is seen to be dark, and one texel around it."""
-        dark = np.asarray((self.bgr < UNSEEN).any(axis=2), np.uint8)
+        dark = np.asarray((self.bgr < UNSEEN_LEVEL).any(axis=2), np.uint8)
         x, y, width, height = cv2.boundingRect(dark)
         left, top = max(x - 1, 0), max(y - 1, 0)
         part = self.bgr[top : y + height + 1, left : x + width + 1] if width else self.bgr[:0]

@@ -5,6 +5,7 @@
 // its back. What is behind it hides others. A sector counts by the distance of what hides it first.
 
 #include "ambient_occlusion"
+#include "half_line"
 
 const float STEEPEST = 1.5;     // greatest slope between two samples at which they may be of one surface
 
@@ -12,15 +13,11 @@ uniform sampler2D behind;       // where what is seen ends, and the next thing b
 uniform bool has_behind;        // otherwise everything goes on for ever
 
 float sum = 0.0;
-float tilt, share, sine, cosine;    // of the normal, see gtao
 float lowest;                   // of the sectors, from the direction of the eye [rad]
 float whole;                    // light of all sectors
 uint hidden;                    // a bit for each sector, the first at the eye
 float last_along;               // of the last sample on this half of a line
 vec4 last[2];                   // angles and depths of the last sample's first and second thing
-
-// ∫ cos(a − tilt) sin a da from 0 to an angle.
-float light_up_to(float a) { return 0.25 * (cosine - cos(2.0 * a - tilt) + 2.0 * a * sine); }
 
 int bit_count(uint v) {
     v -= (v >> 1) & 0x55555555u;
@@ -34,12 +31,7 @@ float middle(uint sectors) {
 }
 
 void begin_half(vec2 direction) {
-    vec3 along = normalize(vec3(direction, 0.0) - to_eye * dot(vec3(direction, 0.0), to_eye));
-    vec2 flat_normal = vec2(dot(normal, along), max(dot(normal, to_eye), 1e-3));
-    share = length(flat_normal);
-    sine = flat_normal.x / share;
-    cosine = flat_normal.y / share;
-    tilt = asin(clamp(sine, -1.0, 1.0));
+    turn_to(direction);
     lowest = tilt + 0.5 * PI;
     whole = max(light_up_to(lowest), 1e-6);
     hidden = 0u;

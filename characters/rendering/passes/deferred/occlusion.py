@@ -3,11 +3,10 @@
 import moderngl
 
 from characters.rendering.deferred.ambient_occlusion import NOTHING_M, AmbientOcclusion
-from characters.rendering.deferred.buffers import BUFFER_UNITS, HiddenBuffer
+from characters.rendering.deferred.buffers import BUFFER_UNITS, GrowingBuffer, HiddenBuffer
 from characters.rendering.geometry.surfaces import BEHIND
 from characters.rendering.passes.characters import CharacterPass
 from characters.rendering.programs import ShaderPrograms
-from characters.rendering.projection import grown_size
 from characters.rendering.resources import CharacterLayer, FrameResources
 
 KNOWN_UNIT = 5
@@ -24,12 +23,12 @@ class DeferredOcclusionPass(CharacterPass):
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
         self._context = context
         self._occlusion = AmbientOcclusion(context, programs)
-        self._hidden: HiddenBuffer | None = None
-        self.owned = (self._occlusion,)
+        self._hidden = GrowingBuffer(context, HiddenBuffer)
+        self.owned = (self._occlusion, self._hidden)
 
     def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Find the open share of each texel, and bind it for the lighting."""
-        hidden = self._hidden_of(layer)
+        hidden = self._hidden.at_least(layer.target.geometry.position.size)
         self._draw_hidden(frame, layer, hidden)
         fineness, geometry = layer.target.fineness, layer.target.geometry
         self._context.enable_only(moderngl.NOTHING)
@@ -45,12 +44,6 @@ class DeferredOcclusionPass(CharacterPass):
     def bind(self) -> None:
         """Bind what was found to the unit of the lighting."""
         self._open.use(BUFFER_UNITS["occlusion"])
-
-    def release(self) -> None:
-        """Release the buffer too; a second call does nothing."""
-        super().release()
-        if self._hidden is not None:
-            self._hidden.release()
 
     def _draw_hidden(
         self, frame: FrameResources, layer: CharacterLayer, hidden: HiddenBuffer
@@ -77,17 +70,3 @@ class DeferredOcclusionPass(CharacterPass):
                 is_next=is_next,
             )
         context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
-
-    def _hidden_of(self, layer: CharacterLayer) -> HiddenBuffer:
-        """Return the buffer for the texels of a layer; it grows, and never shrinks."""
-        kept = self._hidden
-        size = grown_size(
-            None if kept is None else kept.behind.size, layer.target.geometry.position.size
-        )
-        if size is not None:
-            if kept is not None:
-                self._context.detect_framebuffer(0).use()
-                kept.release()
-            self._hidden = kept = HiddenBuffer(self._context, size)
-        assert kept is not None
-        return kept

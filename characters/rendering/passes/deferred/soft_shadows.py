@@ -12,6 +12,7 @@ from characters.rendering.passes.shadows import ShadowPass, key_share, sky_exten
 from characters.rendering.passes.table_factors import TableFactors
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.resources import FrameResources
+from characters.rendering.target import read_bytes
 from characters.skeleton.pose import Array
 
 TABLE_SIDE = 192
@@ -81,8 +82,7 @@ class SoftShadowPass(ShadowPass):
         x, z, side = self.square
         texel = side / TABLE_SIDE
         width, depth = np.ceil((self._extent[2:] - [x, z]) / texel).astype(int).tolist()
-        data = self._targets[2].read((0, 0, width, depth), components=3, alignment=1)
-        factors = np.frombuffer(data, np.uint8).reshape(depth, width, 3)
+        factors = read_bytes(self._targets[2], (0, 0, width, depth), 3)
         return [TableFactors(factors, (x, z), texel)]
 
     @property

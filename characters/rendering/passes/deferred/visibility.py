@@ -4,10 +4,14 @@ import moderngl
 import numpy as np
 
 from characters.rendering.deferred.blocker_map import CHARACTER_RANGE_TEXELS, BlockerMap
-from characters.rendering.deferred.buffers import BUFFER_UNITS, PixelBuffer, buffer_triangle
+from characters.rendering.deferred.buffers import (
+    BUFFER_UNITS,
+    GrowingBuffer,
+    PixelBuffer,
+    buffer_triangle,
+)
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.projection import grown_size
 from characters.rendering.resources import CharacterLayer, FrameResources
 
 DEPTH_TOLERANCE_M = 0.01
@@ -30,13 +34,13 @@ class DeferredVisibilityPass(RenderPass):
             buffer_triangle(context, programs, fragment)
             for fragment in ("pixel_geometry", "pixel_visibility", "pixel_visibility_mean")
         ]
-        self.owned = arrays
-        self._pixels: PixelBuffer | None = None
+        self._pixels = GrowingBuffer(context, PixelBuffer)
+        self.owned = (*arrays, self._pixels)
         set_uniforms(self._smooth.program, depth_tolerance=DEPTH_TOLERANCE_M)
 
     def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Find the visible light in each pixel of the characters."""
-        pixels = self._pixels_of(layer)
+        pixels = self._pixels.at_least(layer.target.size)
         size = layer.area.width, layer.area.height
         self._context.enable_only(moderngl.NOTHING)
         pixels.framebuffer.use()
@@ -56,7 +60,7 @@ class DeferredVisibilityPass(RenderPass):
 
     def set_uniforms(self, program: moderngl.Program, layer: CharacterLayer) -> None:
         """Bind what was found, and set the uniforms of a program that asks for it in a layer."""
-        pixels = self._pixels_of(layer)
+        pixels = self._pixels.at_least(layer.target.size)
         pixels.visibility[1].use(BUFFER_UNITS["visibility"])
         pixels.position.use(BUFFER_UNITS["pixel_position"])
         set_uniforms(
@@ -65,21 +69,3 @@ class DeferredVisibilityPass(RenderPass):
             last_pixel=(layer.area.width - 1, layer.area.height - 1),
             depth_tolerance=DEPTH_TOLERANCE_M,
         )
-
-    def release(self) -> None:
-        """Release the buffer of pixels too; a second call does nothing."""
-        super().release()
-        if self._pixels is not None:
-            self._pixels.release()
-
-    def _pixels_of(self, layer: CharacterLayer) -> PixelBuffer:
-        """Return the buffer for the pixels of a layer; it grows, and never shrinks."""
-        kept = self._pixels
-        size = grown_size(None if kept is None else kept.position.size, layer.target.size)
-        if size is not None:
-            if kept is not None:
-                self._context.detect_framebuffer(0).use()
-                kept.release()
-            self._pixels = kept = PixelBuffer(self._context, size)
-        assert kept is not None
-        return kept
