@@ -7,10 +7,10 @@ import numpy as np
 
 from tracking.geometry.arrays import Floats, Image
 
-BINS = (8, 24, 24)
+LAB_BINS = (8, 24, 24)
 """Bins along L, a and b of CIELab: chroma tells skin, lightness varies with the light."""
 
-RANGES = (0, 256, 80, 176, 80, 176)
+LAB_RANGES = (0, 256, 80, 176, 80, 176)
 """First and last value, exclusive, of the bins along L, a and b [CIELab bytes]."""
 
 LIGHTNESS_OFFSET = 41.0
@@ -36,7 +36,7 @@ Colours = tuple[Image, Image, Image]
 
 def colours(planes: Sequence[Image]) -> Colours:
     """Return planes of CIELab, with what is beyond the bins in the last of them."""
-    least, most = np.uint8(RANGES[2]), np.uint8(RANGES[3] - 1)
+    least, most = np.uint8(LAB_RANGES[2]), np.uint8(LAB_RANGES[3] - 1)
     a, b = (np.minimum(np.maximum(plane, least), most) for plane in planes[1:])
     return planes[0], a, b
 
@@ -45,7 +45,7 @@ class ColourModel:
     """Two histograms that forget slowly: of the hand, and of what is behind it."""
 
     def __init__(self) -> None:
-        self._hand, self._behind = np.zeros(BINS, np.float32), np.zeros(BINS, np.float32)
+        self._hand, self._behind = np.zeros(LAB_BINS, np.float32), np.zeros(LAB_BINS, np.float32)
         self._hand_density: Floats | None = None
 
     @property
@@ -76,19 +76,19 @@ class ColourModel:
         ratio = np.log((self._hand_density + MIN_DENSITY) / (_density(self._behind) + MIN_DENSITY))
         table = ratio.clip(-MAX_ODDS, MAX_ODDS) * (127 / MAX_ODDS) + 128
         histogram = cv2.Mat(table)  # type: ignore[no-untyped-call]  # its last axis: no channels
-        bytes_ = cv2.calcBackProject(seen, [0, 1, 2], histogram, RANGES, 1)
+        bytes_ = cv2.calcBackProject(seen, [0, 1, 2], histogram, LAB_RANGES, 1)
         return np.asarray(cv2.LUT(bytes_, _ODDS_OF_BYTE), np.float32)
 
 
 def _learned(counts: Floats, seen: Colours, where: Image) -> Floats:
-    new = cv2.calcHist(seen, [0, 1, 2], where, BINS, RANGES)
+    new = cv2.calcHist(seen, [0, 1, 2], where, LAB_BINS, LAB_RANGES)
     return np.asarray(cv2.scaleAdd(counts, MEMORY_PER_FRAME, np.asarray(new, np.float32)))
 
 
 def _density(counts: Floats) -> Floats:
     """Return the share of each colour, smoothed over neighbouring bins."""
-    flat = counts.reshape(BINS[0], -1)
-    grid = np.asarray(cv2.blur(flat, (1, 3)), np.float32).reshape(BINS)
+    flat = counts.reshape(LAB_BINS[0], -1)
+    grid = np.asarray(cv2.blur(flat, (1, 3)), np.float32).reshape(LAB_BINS)
     soft = cv2.GaussianBlur(np.ascontiguousarray(grid.transpose(1, 2, 0)), (3, 3), 0.8)
     shares = np.asarray(soft, np.float32).transpose(2, 0, 1)
     return np.ascontiguousarray(shares / max(float(shares.sum()), 1.0))

@@ -31,7 +31,7 @@ resolution changes [px]."""
 EVIDENCE, NO_EVIDENCE = 4.0, -4.0
 """What a face that disagrees or agrees with its print speaks for a hand, as logarithm of odds."""
 
-SLANTED = -1.0
+SLANTED_EVIDENCE = -1.0
 """The same for a face that the camera sees at so small an angle that its print tells nothing."""
 
 SURE_ODDS = 1.5
@@ -214,7 +214,7 @@ class HandFinder:
         full = np.float32(1) - np.float32(0.5) * (outer | changed)
         odds = by_colour * full + by_place
         on_cube = odds[box]
-        on_cube[(face == 0) & (cube[box] > 0)] += SLANTED
+        on_cube[(face == 0) & (cube[box] > 0)] += SLANTED_EVIDENCE
         on_cube[inner] = NO_EVIDENCE
         on_cube[evidence] = EVIDENCE
         odds = np.asarray(cv2.GaussianBlur(odds, (5, 5), 1.0), np.float32)

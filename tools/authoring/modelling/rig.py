@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from characters.skeleton import rotations
 from characters.skeleton.pose import Pose, Skeleton
+from characters.skeleton.skeleton_part import SkeletonPart
 from tools.authoring.modelling.ik import aim_rotation, hinge_position
 from tools.authoring.modelling.shapes import Array, Vector, mirrored_name
 
@@ -71,12 +72,8 @@ class PosedRig:
     def places(self, name: str) -> Array:
         """Return the positions of a joint, (frames, 3) [m]."""
         joint = self.skeleton.names.index(name)
-        place = self._translations[:, joint]
-        while (joint := self.skeleton.parents[joint]) >= 0:
-            place = self._translations[:, joint] + rotations.rotate(
-                self._rotations[:, joint], place
-            )
-        return np.asarray(place)
+        above = SkeletonPart.of(self.skeleton, [joint])  # in order: the joint is its last
+        return np.asarray(above.globals(self.pose)[:, -1, :3, 3])
 
     def facing(self, name: str) -> Array:
         """Return the rotation of a joint in the character frame, (frames, 4)."""
