@@ -20,6 +20,7 @@ from characters.retargeting.hips_shift import (
     HeldLegs,
     following_feet,
     smooth_bound,
+    with_listing_hips,
     with_moved_hips,
 )
 from characters.retargeting.leg_ik import place_ankle
@@ -131,12 +132,14 @@ def _held(
     held = HeldLegs(rig, legs, own, standing, ground)
     extensions = held.extensions(pose)
     shift = following_feet(paths)
-    moved = with_moved_hips(pose, rig, ground.middle_cycle(shift))
-    held = replace(held, ankles=_held_places(paths, shift, ground) - to_balls)
-    shift[:, 1] = ground.repeat(held.rise_to_extension(moved, extensions))
-    pose = with_moved_hips(pose, rig, ground.middle_cycle(shift))
-    held = replace(held, ankles=_held_places(paths, shift, ground) - to_balls)
+    level = with_moved_hips(pose, rig, ground.middle_cycle(shift))
     for most in _MAX_DROPS:
+        held = replace(held, ankles=_held_places(paths, shift, ground) - to_balls)
+        rise = held.rise_to_extension(level, extensions)
+        shift[:, 1] = ground.repeat(rise)
+        pose = with_moved_hips(level, rig, rise[:, None] * [0.0, 1.0, 0.0])
+        pose = with_listing_hips(pose, rig, legs, held.list_to_extension(pose, extensions))
+        held = replace(held, ankles=_held_places(paths, shift, ground) - to_balls)
         drop = held.drop_to_reach(pose, most)
         pose = with_moved_hips(pose, rig, drop[:, None] * [0.0, -1.0, 0.0])
         for _ in range(_STEPPING_ROUNDS):
@@ -146,6 +149,9 @@ def _held(
                 for path, way in zip(paths, missing, strict=True)
             ]
             held = replace(held, ankles=_held_places(paths, shift, ground) - to_balls)
+    if rig.anatomy.kind == "humanoid":
+        lowest = np.stack([ground.middle_cycle(path.lowest) for path in paths], axis=1)
+        held = held.swinging_as_long(pose, extensions, lowest - to_balls[..., 1])
     ankles = rotations.rotate(rotations.conjugate(rig.common_from_skeleton), held.ankles)
     for number, leg in enumerate(legs):
         pose = place_ankle(pose, rig, leg, ankles[:, number])

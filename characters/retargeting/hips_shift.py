@@ -3,8 +3,9 @@
 A foot that is held in place is a little away from where the motion has it. The hips follow standing
 feet smoothly, as the root does in Kovar, Schreiner and Gleicher, "Footskate cleanup for motion
 capture editing", SCA 2002, section 4: level with the feet, and up or down so far that their legs
-are as long as in the source. A little that is out of reach brings them down; what is farther away,
-in a narrow curve or where a source's own feet leave its legs, steps nearer.
+are as long as in the source. They list to the side where both feet stand. A little that is out of
+reach brings them down; what is farther away, in a narrow curve or where a source's own feet leave
+its legs, steps nearer. Legs that swing are as long as in the source again.
 """
 
 from collections.abc import Sequence
@@ -16,13 +17,21 @@ from numpy.typing import NDArray
 from characters.retargeting.foot_path import FootPath
 from characters.retargeting.ground_motion import GroundMotion
 from characters.retargeting.rig import LegJoints, Rig
-from characters.retargeting.transfer import in_common_axes, set_joint_positions
+from characters.retargeting.transfer import (
+    in_common_axes,
+    set_joint_positions,
+    turns_from_rest,
+    with_turns_from_rest,
+)
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
 from characters.smoothing import gaussian_smoothed
 
 _SMOOTHING_S = 0.05  # standard deviation of the shift with the feet
 _DROP_SMOOTHING_S = 0.04  # and of the drop
+_BOUND_ROUNDS = 20  # until a smooth curve is hardly below its values
+_SWING_S = 0.06  # before and after standing, in which legs come to be as long as in the source
+_MAX_LIST = 0.105  # of the hips, to either side [rad]
 # In leg lengths.
 _MAX_RISE = 0.06  # to bend legs as in the source, about the median of all frames
 _MAX_REACH = 0.999
@@ -63,9 +72,7 @@ class HeldLegs:
 
         Those are in the source, (frames, legs) [m].
         """
-        away = self._away(pose)
-        level = np.square(away[..., [0, 2]]).sum(-1)
-        rise = np.sqrt(np.maximum(extensions**2 - level, 0.0)) - away[..., 1]
+        rise = self._rises(pose, extensions)
         if not self.standing.any():
             return np.zeros(len(rise))
         middle, most = np.median(rise[self.standing]), _MAX_RISE * self.rig.leg_length
@@ -73,6 +80,26 @@ class HeldLegs:
         ground = self.ground
         over_cycles = ground.repeat(rise[..., None]), ground.repeat(self.standing)
         return np.asarray(ground.middle_cycle(_smooth_mean(*over_cycles, ground.rate))[:, 0])
+
+    def list_to_extension(self, pose: Pose, extensions: Array) -> Array:
+        """Return how far the hips list to the right so that two legs have these extensions.
+
+        (frames,) [rad]; 0 where only one leg stands, and for animals.
+        """
+        if self.rig.anatomy.kind == "quadruped" or len(self.legs) != 2:
+            return np.zeros(len(self.standing))
+        rises = self._rises(pose, extensions)
+        left, right = self.rig.rest_positions[[leg.upper for leg in self.legs]]
+        angle = (rises[:, 0] - rises[:, 1]) / max(float(np.linalg.norm(left - right)), 1e-9)
+        angle = np.where(self.standing.all(1), np.clip(angle, -_MAX_LIST, _MAX_LIST), 0.0)
+        smooth = gaussian_smoothed(self.ground.repeat(angle), _SMOOTHING_S * self.ground.rate)
+        return self.ground.middle_cycle(smooth)
+
+    def _rises(self, pose: Pose, extensions: Array) -> Array:
+        """Return how far each hip joint would rise to these extensions, (frames, legs) [m]."""
+        away = self._away(pose)
+        level = np.square(away[..., [0, 2]]).sum(-1)
+        return np.asarray(np.sqrt(np.maximum(extensions**2 - level, 0.0)) - away[..., 1])
 
     def missing_reach(self, pose: Pose) -> Array:
         """Return the level ways from the ankles to where legs reach, (frames, legs, 3) [m]."""
@@ -94,11 +121,22 @@ class HeldLegs:
         missing = np.clip(missing, 0.0, most * self.rig.leg_length)
         return smooth_bound(missing, self.ground)
 
+    def swinging_as_long(self, pose: Pose, extensions: Array, lowest: Array) -> "HeldLegs":
+        """Return the legs with their swinging ankles as far from the hip joints as in the source.
+
+        Where they are `lowest`, (frames, legs) [m], their feet are on the ground.
+        """
+        away = self._away(pose)
+        longer = extensions / np.maximum(np.linalg.norm(away, axis=-1), 1e-9) - 1.0
+        standing, rate = self.ground.repeat(self.standing), self.ground.rate
+        longer *= self.ground.middle_cycle(_swinging(standing, rate))
+        ankles = self.ankles - longer[..., None] * away
+        ankles[..., 1] = np.maximum(ankles[..., 1], np.minimum(self.ankles[..., 1], lowest))
+        return replace(self, ankles=ankles)
+
     def _away(self, pose: Pose) -> Array:
         """Return the ways from the ankles to the hip joints of poses, (frames, legs, 3) [m]."""
-        thighs = [leg.upper for leg in self.legs]
-        hips = self.rig.placements(pose, thighs)[:, thighs][..., :3, 3]
-        return in_common_axes(self.rig, hips) - self.ankles
+        return _positions(pose, self.rig, [leg.upper for leg in self.legs]) - self.ankles
 
     @property
     def _reach(self) -> Array:
@@ -118,15 +156,27 @@ def _smooth_mean(values: Array, standing: NDArray[np.bool_], rate: float) -> Arr
     return gaussian_smoothed(mean, _SMOOTHING_S * rate)
 
 
+def _swinging(standing: NDArray[np.bool_], rate: float) -> Array:
+    """Return how far feet are from standing, (frames, legs): 0 there, 1 some time away."""
+    frames = np.arange(len(standing))
+    near = [
+        np.abs(frames[:, None] - np.flatnonzero(feet)).min(1, initial=len(frames))
+        for feet in standing.T
+    ]
+    part = np.clip(np.stack(near, axis=1) / (_SWING_S * rate), 0.0, 1.0)
+    return np.asarray(part * part * (3 - 2 * part))
+
+
 def smooth_bound(values: Array, ground: GroundMotion) -> Array:
     """Return a smooth curve that is hardly below the values of a clip, (frames,)."""
     if not values.any():
         return values
     deviation = _DROP_SMOOTHING_S * ground.rate
-    margin = round(2 * deviation)
-    padded = np.pad(ground.repeat(values), margin, mode="edge")
-    greatest = np.lib.stride_tricks.sliding_window_view(padded, 2 * margin + 1).max(-1)
-    return ground.middle_cycle(gaussian_smoothed(greatest, deviation))
+    values = ground.repeat(values)
+    bound = np.zeros_like(values)
+    for _ in range(_BOUND_ROUNDS):
+        bound += gaussian_smoothed(np.maximum(values - bound, 0.0), deviation)
+    return ground.middle_cycle(bound)
 
 
 def with_moved_hips(pose: Pose, rig: Rig, shift: Array) -> Pose:
@@ -137,3 +187,29 @@ def with_moved_hips(pose: Pose, rig: Rig, shift: Array) -> Pose:
     own = rotations.rotate(rotations.conjugate(rig.common_from_skeleton), shift)
     set_joint_positions(moved, rig, hips, at + own)
     return moved
+
+
+def with_listing_hips(pose: Pose, rig: Rig, legs: Sequence[LegJoints], angles: Array) -> Pose:
+    """Return poses whose hips list to the right by (frames,) [rad], about their middle.
+
+    What the hips carry keeps its direction: the trunk stays upright.
+    """
+    hips, thighs = rig.anatomy.joints["hips"], [leg.upper for leg in legs]
+    carriers = {j for thigh in thighs for j in rig.chain_to(thigh)[:-1] if hips in rig.chain_to(j)}
+    if not carriers or not angles.any():
+        return pose
+    at = _positions(pose, rig, thighs)
+    ahead = np.cross(at[:, 0] - at[:, 1], [0.0, 1.0, 0.0])
+    ahead /= np.maximum(np.linalg.norm(ahead, axis=-1, keepdims=True), 1e-9)
+    carried = {j for j, parent in enumerate(rig.skeleton.parents) if parent in carriers}
+    joints = sorted(carriers | carried)
+    turns, own = turns_from_rest(pose, rig, joints), np.isin(joints, list(carriers))
+    turn = rotations.from_rotation_vector(ahead * angles[:, None])
+    turns[:, own] = rotations.multiply(turn[:, None], turns[:, own])
+    listing = with_turns_from_rest(pose, rig, joints, turns)
+    return with_moved_hips(listing, rig, (at - _positions(listing, rig, thighs)).mean(1))
+
+
+def _positions(pose: Pose, rig: Rig, joints: Sequence[int]) -> Array:
+    """Return where joints are in poses, (frames, joints, 3) [m] in the common axes."""
+    return in_common_axes(rig, rig.placements(pose, joints)[:, joints][..., :3, 3])

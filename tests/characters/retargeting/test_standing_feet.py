@@ -14,7 +14,7 @@ from characters.retargeting.footskate import (
     hold_feet_in_contact,
 )
 from characters.retargeting.ground_motion import GroundMotion
-from characters.retargeting.hips_shift import HeldLegs
+from characters.retargeting.hips_shift import HeldLegs, with_listing_hips
 from characters.retargeting.measures import knee_quantiles, sole_dip
 from characters.retargeting.rig import Rig
 from characters.skeleton import rotations
@@ -128,6 +128,14 @@ def at_rest(human, frames):
     return Pose(np.tile(rest.translations, (frames, 1, 1)), np.tile(rest.rotations, (frames, 1, 1)))
 
 
+def standing_on(human, places, standing):
+    """The human's legs at rest, its ankles held away from there by (frames, legs, 3) [m]."""
+    rig = Rig(human.skeleton, human.anatomy)
+    at = rig.rest_positions[[leg.foot for leg in rig.legs]] + np.asarray(places)
+    ground = GroundMotion(np.zeros((len(at), 3)), None, 30.0)
+    return HeldLegs(rig, rig.legs, at, np.asarray(standing), ground)
+
+
 @pytest.mark.parametrize("length", [1.0, 1.7])
 def test_skin_that_a_foot_shares_with_its_shin_stays_above_the_ground(human, length):
     body, clip = with_feet(human, length, toes=False), human.clips["Walk"]
@@ -142,29 +150,75 @@ def test_skin_that_a_foot_shares_with_its_shin_stays_above_the_ground(human, len
 
 
 def test_hips_rise_with_feet_that_stand_higher(human):
-    rig, pose = Rig(human.skeleton, human.anatomy), at_rest(human, 30)
-    ankles = np.tile(rig.rest_positions[[leg.foot for leg in rig.legs]], (30, 1, 1))
-    ground = GroundMotion(np.zeros((30, 3)), None, 30.0)
+    pose, away = at_rest(human, 30), np.zeros((30, 2, 3))
     standing = np.ones((30, 2), bool)
     standing[:, 1] = False
-    held = HeldLegs(rig, rig.legs, ankles, standing, ground)
-    raised = ankles + np.array([[0.0, 0.03, 0.0], [0.0, 0.1, 0.0]])  # the second one swings
-    rise = replace(held, ankles=raised).rise_to_extension(pose, held.extensions(pose))
+    extensions = standing_on(human, away, standing).extensions(pose)
+    away[:] = [[0.0, 0.03, 0.0], [0.0, 0.1, 0.0]]  # the second one swings
+    rise = standing_on(human, away, standing).rise_to_extension(pose, extensions)
     assert rise == pytest.approx(0.03, abs=1e-6)
 
 
 def test_a_swinging_foot_out_of_reach_does_not_lower_the_hips(human):
-    rig, pose = Rig(human.skeleton, human.anatomy), at_rest(human, 30)
-    ankles = np.tile(rig.rest_positions[[leg.foot for leg in rig.legs]], (30, 1, 1))
-    ankles[..., 1] += 0.02  # bent a little, as legs are in motion
-    ankles[10:20, 0, 2] += 0.5 * rig.leg_length
-    ground = GroundMotion(np.zeros((30, 3)), None, 30.0)
+    pose, away = at_rest(human, 30), np.zeros((30, 2, 3))
+    away[..., 1] = 0.02  # bent a little, as legs are in motion
+    away[10:20, 0, 2] = 0.35
     standing = np.ones((30, 2), bool)
     standing[10:20, 0] = False
-    held = HeldLegs(rig, rig.legs, ankles, standing, ground)
+    held = standing_on(human, away, standing)
     assert not held.drop_to_reach(pose, 0.1).any()
     standing[:] = True
     assert held.drop_to_reach(pose, 0.1).max() > 0.05
+
+
+def test_hips_list_where_two_feet_stand_at_other_heights(human):
+    pose, level = at_rest(human, 30), np.zeros((30, 2, 3))
+    both = np.ones((30, 2), bool)
+    extensions = standing_on(human, level, both).extensions(pose)
+    level[:, 0, 1], level[:, 1, 1] = 0.008, -0.008
+    held = standing_on(human, level, both)
+    angles = held.list_to_extension(pose, extensions)
+    listing = with_listing_hips(pose, held.rig, held.legs, angles)
+    assert held.extensions(pose)[15] != pytest.approx(extensions[15], abs=0.005)
+    assert held.extensions(listing)[15] == pytest.approx(extensions[15], abs=0.001)
+    head = human.anatomy.joints["head"]
+    turns = [each.globals(human.skeleton)[15, head, :3, :3] for each in (pose, listing)]
+    assert turns[1] == pytest.approx(turns[0], abs=1e-9)
+    one = replace(held, standing=both & [True, False])
+    assert not one.list_to_extension(pose, extensions).any()
+
+
+def test_a_leg_that_swings_is_as_long_as_in_the_source(human):
+    pose, away = at_rest(human, 30), np.zeros((30, 2, 3))
+    away[..., 1] = 0.05  # bent, as legs are in motion
+    standing = np.ones((30, 2), bool)
+    standing[8:22, 0] = False
+    extensions = standing_on(human, away, standing).extensions(pose)
+    nearer = away + [0.0, 0.03, 0.0]
+    held = standing_on(human, nearer, standing)
+    ground = np.full((30, 2), -np.inf)
+    longer = held.swinging_as_long(pose, extensions, ground)
+    assert longer.extensions(pose)[15, 0] == pytest.approx(extensions[15, 0], abs=1e-6)
+    assert longer.ankles[standing] == pytest.approx(held.ankles[standing])
+    ground[:] = held.ankles[..., 1] - 0.01
+    assert held.swinging_as_long(pose, extensions, ground).ankles[..., 1].min() >= ground.min()
+
+
+def test_hips_rise_over_a_step_that_came_nearer(human):
+    """Legs stretched beyond their length step nearer, and are straight there as in the source."""
+    rig, frames = Rig(human.skeleton, human.anatomy), 60
+    pose, reach = at_rest(human, frames), sum(rig.bone_lengths(rig.legs[0]))
+    hips = human.anatomy.joints["hips"]
+    pose.translations[:, hips, 2] += np.linspace(-0.7, 0.7, frames) * reach
+    ball = np.zeros((frames, 2), bool)
+    ball[5:55, 0] = True
+    ends = np.stack([ball_positions(pose, rig, leg) for leg in rig.legs], axis=1)
+    ends[:, 0] = ends[frames // 2, 0]
+    contacts = FootContacts(np.zeros_like(ball), ball)
+    ground = GroundMotion(np.zeros((frames, 3)), None, 30.0)
+    held = hold_feet_in_contact(pose, rig, rig.legs, contacts, ground, ends)
+    bends = knee_quantiles(held[slice(8, 52)], rig, rig.legs[0])
+    assert bends.max() < np.radians(12.0)
 
 
 @pytest.mark.parametrize("clip", ["Walk", "Run"])
