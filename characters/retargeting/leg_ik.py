@@ -12,6 +12,7 @@ from characters.skeleton.pose import Array, Pose
 _MAX_REACH = 0.9995  # leg lengths; beyond, the knee would snap straight
 _MIN_REACH = 0.35  # leg lengths, unless the clip bends the leg more
 _MIN_BEND = 1e-3  # sine of the mean knee angle that shows the bending direction
+_MAX_OVERSTRETCH = 0.26  # of a knee [rad]; one that bends by twice that bends as it does
 _MEAN_BEND_WEIGHT = 0.15  # of the mean bending direction, in sines of the knee angle
 
 
@@ -67,17 +68,17 @@ def _leg_turns(
 
 
 def _kept_away(reach: Array, own: Array, min_distance: Array) -> Array:
-    """Return target positions relative to the hip, (frames, 3), at a minimum distance.
+    """Return target positions relative to the hip, (frames, 3), at a minimum distance or `own`'s.
 
-    Closer targets move toward the ankle of the clip until they have that distance. Close to the
-    hip the direction of the leg is undefined, and the leg would spin.
+    Close to the hip the direction of the leg is undefined, and the leg would spin: the closer a
+    target is, the more it goes to the ankle of the clip.
     """
-    step = own - reach
-    a = np.maximum(np.einsum("ij,ij->i", step, step), 1e-12)
-    b = np.einsum("ij,ij->i", reach, step)
-    c = np.einsum("ij,ij->i", reach, reach) - min_distance**2
-    part = (np.sqrt(np.maximum(b * b - a * c, 0.0)) - b) / a
-    return np.asarray(reach + np.where(c < 0, np.clip(part, 0.0, 1.0), 0.0)[:, None] * step)
+    min_distance = np.minimum(min_distance, np.linalg.norm(own, axis=-1))
+    distance = np.linalg.norm(reach, axis=-1)
+    share = np.clip(1.0 - distance / min_distance, 0.0, 1.0)
+    reach = reach + share[:, None] * (own - reach)
+    distance = np.maximum(np.linalg.norm(reach, axis=-1), 1e-9)
+    return np.asarray(reach * np.maximum(min_distance / distance, 1.0)[:, None])
 
 
 def _bending_direction(up: Array, shin: Array, turns: Array, rig: Rig) -> Array:
@@ -96,8 +97,10 @@ def _bending_direction(up: Array, shin: Array, turns: Array, rig: Rig) -> Array:
         known = np.broadcast_to(
             rotations.rotate(skeleton_from_common, [0.0, 0.0, -1.0]), side.shape
         )
-    agrees = np.einsum("ij,ij->i", side, known)[:, None] >= 0
-    side = np.where(agrees, side, -side) + _MEAN_BEND_WEIGHT * known
+    bend = np.linalg.norm(up + shin, axis=-1, keepdims=True)  # about its angle [rad]
+    overstretched = np.clip(2.0 - bend / _MAX_OVERSTRETCH, 0.0, 1.0)
+    along = np.einsum("ij,ij->i", side, known)[:, None]
+    side = side + (overstretched * (np.abs(along) - along) + _MEAN_BEND_WEIGHT) * known
     side -= np.einsum("ij,ij->i", side, up)[:, None] * up
     return np.asarray(side / np.maximum(np.linalg.norm(side, axis=-1, keepdims=True), 1e-12))
 
