@@ -5,7 +5,6 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import settings
 
 from characters import Character, Clip, Mesh, Pose, Skeleton
 from characters.motion.motion import RootDelta
@@ -13,10 +12,6 @@ from characters.skeleton import rotations
 from tests.bundled_characters import (
     bundled_characters_are_read_once as bundled_characters_are_read_once,
 )
-
-# A suite that runs by the same examples everywhere, however busy the machine is.
-settings.register_profile("suite", derandomize=True, deadline=None)
-settings.load_profile("suite")
 
 STANCE_SHARE = 0.6
 SIDES = (("Left", 0.1, 0.0), ("Right", -0.1, 0.5))

@@ -4,7 +4,6 @@ import time
 from collections.abc import Callable
 
 import pytest
-from hypothesis import settings
 
 from affect import Emotion
 from robot.drivers.cubeling.host import HostLink
@@ -12,10 +11,6 @@ from robot.protocol import messages as m
 from robot.simulators.channel import FaultyChannel
 from robot.simulators.cubeling.simulator import Simulator
 from robot.simulators.faults import Faults
-
-# A property must not fail because the machine is busy.
-settings.register_profile("no deadline", deadline=None)
-settings.load_profile("no deadline")
 
 
 class World:

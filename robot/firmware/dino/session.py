@@ -63,16 +63,17 @@ class HostSession:
 
     def tick(self, now: int) -> None:
         """Do what is due at `now`: the failsafe, STATE and LOG."""
+        # No LOG while others wait: a slow line is for STATE and ACK.
+        idle = not self._send_buffer.end
         if self.number and now - self._last_received >= m.FAILSAFE_AFTER:
             self._close()
         if self.number and now - self._last_state >= m.STATE_EVERY:
             self._send_state(now)
-        if self.number and self._version >= 3 and now - self._last_log >= m.LOG_EVERY:
+        if self.number and self._version >= 3 and idle and now - self._last_log >= m.LOG_EVERY:
             self._send_log(now)
 
     def _send_log(self, now: int) -> None:
-        # Not while others wait: a slow line is for STATE and ACK.
-        line = None if self._send_buffer.end else self._log.pop()
+        line = self._log.pop()
         if line:
             self._last_log = now
             self._send(m.LOG, *line)

@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from affect import Emotion
@@ -160,6 +160,7 @@ def _steps() -> st.SearchStrategy[list[tuple[int, int, object, int]]]:
 
 
 @given(_steps())
+@example([(1, 3, m.Bye(), 0), (1, 3, m.Hello(3, 1), 0), (1, 3, m.Play(1, 2, 6), 105)])
 @settings(max_examples=60)
 def test_it_answers_any_input_like_the_simulated_robot(steps):
     """The same bytes at the same times; only what is their own may differ."""
