@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -13,14 +14,15 @@ from rich.console import Console
 from app.pipeline.surroundings import Surroundings
 from app.ui.contact_sheets import save
 from characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
-from characters.rendering import SceneCharacter, Stage, create_context
+from characters.rendering import SceneCharacter, Softness, Stage, create_context
+from characters.rendering.passes.haze import haze_table
 from tools.captions import framed
 from tracking import CubeControls, CubeGestures, CubeState, CubeTracker, Frame
 from tracking.synthetic import SyntheticSource, open_synthetic
 
 Image = NDArray[np.uint8]
 
-PATH = Path(__file__).parent.parent / "docs" / "pictures" / "realism.jpg"
+FOLDER = Path(__file__).parent.parent / "docs" / "pictures"
 
 SCENE = "companion"
 """The synthetic scene: a hand turns the cube."""
@@ -42,23 +44,45 @@ ROWS: tuple[tuple[str, ...], ...] = (
 CROP = (slice(150, 560), slice(440, 1010))
 """The part of each picture that is shown: rows and columns."""
 
+GLARE = Softness(0.0, 0.0, haze=0.3, paper=0.75)
+"""Haze of the lens that sees the scene of the second picture."""
+
 MAX_BYTES = 300_000
-"""Size of the file."""
+"""Size of a file."""
 
 
 def main() -> None:
-    """Write the picture."""
+    """Write the pictures."""
     source = open_synthetic(SCENE)
     seen = _seen(source)
+    hazed = [(_hazed(frame), state, controls) for frame, state, controls in seen]
     with ExitStack() as closing:
         context = create_context()
         closing.callback(context.release)
-        parts = [_drawn(context, source, seen, chosen)[CROP] for chosen in ROWS]
-    captions = ["off", *(" + ".join(chosen) for chosen in ROWS[1:])]
-    labelled = [framed(part, text) for part, text in zip(parts, captions, strict=True)]
-    picture = np.vstack([np.hstack(labelled[:2]), np.hstack(labelled[2:])])
-    save(picture, PATH, MAX_BYTES)
-    Console().print(f"{PATH.name}: {PATH.stat().st_size / 1e3:.0f} kB")
+        captions = ["off", *(" + ".join(chosen) for chosen in ROWS[1:])]
+        parts = [
+            framed(_drawn(context, source, seen, chosen)[CROP], text)
+            for chosen, text in zip(ROWS, captions, strict=True)
+        ]
+        _save([np.hstack(parts[:2]), np.hstack(parts[2:])], "realism.jpg")
+        parts = [
+            framed(_drawn(context, source, hazed, chosen)[CROP], text)
+            for chosen, text in zip(ROWS[2:], ("through a hazy lens", "softness"), strict=True)
+        ]
+        _save([np.hstack(parts)], "haze.jpg")
+
+
+def _save(rows: Sequence[Image], name: str) -> None:
+    """Write a picture of the documentation."""
+    save(np.vstack(rows), FOLDER / name, MAX_BYTES)
+    Console().print(f"{name}: {(FOLDER / name).stat().st_size / 1e3:.0f} kB")
+
+
+def _hazed(frame: Frame) -> Frame:
+    """Return a frame as a hazy lens shows it."""
+    table = haze_table(GLARE)
+    assert table is not None
+    return replace(frame, image=table[frame.image])
 
 
 def _seen(source: SyntheticSource) -> list[tuple[Frame, CubeState, CubeControls]]:

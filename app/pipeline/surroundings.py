@@ -18,7 +18,7 @@ from tracking.appearance.picture_quality import QualityMeter
 REALISM_CHOICES = {
     "hand": "the hand that holds the cube hides what is behind it",
     "light": "light and shadow fall as on the cube",
-    "softness": "characters are as soft and as noisy as the picture",
+    "softness": "characters are as soft, as noisy and as hazy as the picture",
     "focus": "what is much nearer or further than the cube is out of focus, in the quality rich",
     "wrinkles": "skin wrinkles where a face moves",
     "blush": "a face flushes and pales with its emotion",
@@ -112,7 +112,9 @@ class Surroundings:
 
     def _softness(self, frame: Frame, state: CubeState) -> Softness | None:
         found = None if self._quality is None else self._quality.update(frame.image, state)
-        return None if found is None else Softness(found.blur, found.noise)
+        if found is None:
+            return None
+        return Softness(found.blur, found.noise, found.haze, found.paper)
 
 
 class Autofocus:

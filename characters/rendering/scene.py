@@ -71,13 +71,19 @@ class MeasuredLight:
 
 @dataclass(frozen=True)
 class Softness:
-    """How soft and how noisy the camera's picture is; what is drawn becomes so too."""
+    """How soft, noisy and hazy the camera's picture is; what is drawn becomes so too."""
 
     blur: float
     """Standard deviation of the blur of lens and sensor [px of the frame]."""
 
     noise: float
     """Standard deviation of the noise of a pixel, in values of 0…255."""
+
+    haze: float = 0.0
+    """Share of the light of white paper that glare in lens and air adds to everything."""
+
+    paper: float = 1.0
+    """Light of that paper, linear; it stays as it is, and all that is darker comes nearer."""
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.rendering.cover import PictureCover
+from characters.rendering.passes.haze import haze_table, hazy
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.resources import FrameResources
 
@@ -29,7 +30,7 @@ GRAIN_STEP = np.array([53, 97])
 
 
 class ResolvePass(RenderPass):
-    """Blends the character layer over the picture, as soft and as noisy as the picture is."""
+    """Blends the character layer over the picture, as soft, noisy and hazy as the picture is."""
 
     def __init__(self) -> None:
         side = GRAIN_SIDE
@@ -47,6 +48,9 @@ class ResolvePass(RenderPass):
         if layer.target.fineness > 1:
             size = (area.width, area.height)
             pixels = np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_AREA), np.uint8)
+        table = haze_table(softness)
+        if table is not None:
+            pixels = hazy(pixels, table)
         if softness is not None:
             pixels = blurred(pixels, softness.blur * frame.scale)
         color, share = pixels[..., :3], pixels[..., 3]

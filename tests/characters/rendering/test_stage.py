@@ -195,6 +195,41 @@ def test_a_character_gets_the_noise_of_the_picture(stage, view, pawn):
     assert np.array_equal(first[beside], view.image[beside])
 
 
+def test_a_character_is_in_the_haze_of_the_picture(stage, view, pawn):
+    clear = stage.draw(view, [pawn.posed()]).astype(int)
+    hazy = stage.draw(replace(view, softness=Softness(0.3, 0.0, 0.2, 0.8)), [pawn.posed()])
+    drawn = (clear != view.image).any(-1) & (clear[..., 2] > clear[..., 1] + 60)
+    green = hazy[..., 1][drawn].astype(int)
+    assert (clear[..., 1][drawn] < 80).any()
+    assert green.min() >= 100  # of 0.2 · 0.8 of all light
+    assert (hazy[..., 2][drawn] >= 100).all()
+    edges = cv2.dilate(drawn.astype(np.uint8), np.ones((3, 3))) > 0
+    brighter = hazy.astype(int)[edges & ~drawn] - clear[edges & ~drawn]
+    assert brighter.max() <= 110
+    beside = np.s_[:40]
+    assert np.array_equal(hazy[beside], view.image[beside])
+
+
+def test_a_shadow_leaves_the_haze_over_the_table(stage, view, pawn):
+    dark = replace(view, image=np.full_like(view.image, 120))
+    clear, hazy = (
+        stage.draw(replace(dark, softness=Softness(0.3, 0.0, haze, 0.8)), [pawn.posed()])
+        for haze in (0.0, 0.2)
+    )
+    table = hazy.astype(int).std(-1) < 1  # grey, unlike the pawn
+    assert clear[table].min() < 80
+    assert hazy[table].min() > 100
+    assert hazy[table].max() == 120
+
+
+def test_a_clear_picture_is_drawn_as_without_haze(stage, view, pawn):
+    first, second = (
+        stage.draw(replace(view, softness=Softness(0.3, 0.0, haze, 0.8)), [pawn.posed()])
+        for haze in (0.0, 0.0004)
+    )
+    assert np.array_equal(first, second)
+
+
 def test_the_shadow_is_darkest_at_the_foot_and_falls_to_the_right(stage, view, pawn):
     lit = stage.draw(view, [pawn.posed()]).astype(float).mean(axis=2) / view.image.mean(axis=2)
 

@@ -6,9 +6,10 @@ import cv2
 import numpy as np
 import pytest
 
+from tests.tracking import drawn
 from tests.tracking.drawn import WIDE, digitised, grey_values, held, photograph, scene, window
 from tracking import CubeModel, CubeState
-from tracking.appearance.picture_quality import QualityMeter
+from tracking.appearance.picture_quality import INK_SHARE, QualityMeter
 
 CUBE = CubeModel.load("locomotion")
 POSE = held(0.35, 0.5, 0.1, at=(0.01, 0.0, 0.3))
@@ -59,6 +60,26 @@ def test_grain_of_the_paper_is_no_noise(light):
     grain = 1 + 0.05 * np.random.default_rng(0).standard_normal(light.shape)
     noisy = measure((light * grain).astype(np.float32), noise=2.0).noise
     assert noisy == pytest.approx(2.0, rel=0.12)
+
+
+@pytest.fixture(scope="module")
+def grey_print():
+    """A cube whose ink is as light as that of any print."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(drawn, "BLACK", INK_SHARE * drawn.WHITE)
+        return drawn.scene((CUBE, POSE), camera=WIDE)
+
+
+@pytest.mark.parametrize("blur", [0.0, 1.0])
+@pytest.mark.parametrize("glare", [0.0, 0.03, 0.1, 0.2])
+def test_haze_is_measured_whatever_the_blur(grey_print, glare, blur):
+    found = measure(0.8 * grey_print + glare, blur=blur, noise=2.0)
+    assert found.haze * found.paper == pytest.approx(glare, abs=0.012)
+    assert found.paper == pytest.approx(0.8 * 0.9 * drawn.WHITE + glare, rel=0.12)
+
+
+def test_a_clear_picture_of_dark_ink_has_no_haze(light):
+    assert measure(light, noise=2.0).haze == 0.0
 
 
 def test_a_moving_cube_tells_nothing(light):

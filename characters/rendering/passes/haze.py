@@ -1,0 +1,50 @@
+"""The glare of lens and air that lies over a camera's picture, on what is drawn."""
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.rendering.light import LINEAR_FROM_SRGB
+from characters.rendering.scene import Softness
+
+Image = NDArray[np.uint8]
+
+MIN_HAZE = 0.0005
+"""Less haze than this changes no value of a picture by more than two."""
+
+
+def haze_table(softness: Softness | None) -> Image | None:
+    """Return what each sRGB value becomes in a hazy picture, (256,), or None in a clear one.
+
+    >>> haze_table(Softness(0.5, 0.0, haze=0.1))[[0, 100, 255]].tolist()
+    [89, 128, 255]
+    >>> haze_table(Softness(0.5, 0.0))
+    """
+    if softness is None or softness.haze < MIN_HAZE:
+        return None
+    light = softness.haze * softness.paper + (1.0 - softness.haze) * LINEAR_FROM_SRGB
+    return np.asarray(np.rint(np.interp(light, LINEAR_FROM_SRGB, np.arange(256.0))), np.uint8)
+
+
+def hazy(pixels: Image, table: Image) -> Image:
+    """Return pixels (height, width, 4), their colours times their shares, through a table."""
+    color, share = pixels[..., :3], pixels[..., 3]
+    looked_up = cv2.LUT(color, table)
+    partly = (share > 0) & (share < 255)
+    part = share[partly][:, None] / 255.0
+    own = np.rint(color[partly] / part).clip(0, 255).astype(np.uint8)
+    looked_up[partly] = np.rint(table[own] * part)
+    looked_up[share == 0] = 0
+    return np.dstack([looked_up, share])
+
+
+def darkened(picture: Image, left: Image, table: Image | None) -> Image:
+    """Return a picture (height, width, 3) times the shares that are left of its light, 255 for 1.
+
+    The glare in it is not shaded: nothing becomes darker than that.
+    """
+    shaded = cv2.multiply(picture, left, scale=1 / 255)
+    if table is not None:
+        glare = cv2.multiply(cv2.bitwise_not(left), np.full(4, table[0] / 255.0))
+        shaded = cv2.min(cv2.add(shaded, glare), picture)
+    return np.asarray(shaded, np.uint8)
