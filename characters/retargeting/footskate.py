@@ -43,8 +43,9 @@ _MAX_CORRECTION = 0.5  # a contact that needs a larger one is dropped
 _MAX_DROPS = (0.01, 0.12, 0.25)  # of the hips, before steps fall nearer and after
 _STEPPING_ROUNDS = 2  # a step nearer may be out of reach at its other end
 _MAX_TILT = 1.5  # of a foot on its ball, as a share, if it is short for its ankle's height
-_TILT_SMOOTHING_S = 0.04  # standard deviation
+_TILT_SMOOTHING_S = 0.03  # standard deviation
 _MAX_DEPTH = 0.005  # of soft skin of a foot below the ground
+_RAISING_ROUNDS = 2  # of feet with such skin; a shin that they raise turns and moves it
 _MAX_ROLL_S = 0.25  # from the heel onto the ball
 
 
@@ -108,10 +109,13 @@ def hold_feet_in_contact(
     if rig.floor is not None:
         heights = ankles[..., 1] - rig.floor
         pose = _on_soles(pose, rig, legs, heights, contacts, ground)
-    held = _held(pose, rig, legs, ankles, contacts, ground, np.zeros(ankles.shape[:2]))
-    depths = rig.sole_depths(held, legs)
-    if (depths > _MAX_DEPTH * rig.leg_length).any():
-        clearances = np.stack([smooth_bound(each, ground) for each in depths.T], axis=1)
+    clearances = np.zeros(ankles.shape[:2])
+    held = _held(pose, rig, legs, ankles, contacts, ground, clearances)
+    for _ in range(_RAISING_ROUNDS):
+        depths = rig.sole_depths(held, legs)
+        if (depths <= _MAX_DEPTH * rig.leg_length).all():
+            break
+        clearances += np.stack([smooth_bound(each, ground) for each in depths.T], axis=1)
         held = _held(pose, rig, legs, ankles, contacts, ground, clearances)
     return held if rig.floor is None else _with_toes_above(held, rig, legs, rig.floor)
 
@@ -241,7 +245,8 @@ def _on_soles(
         turns = turns_from_rest(pose, rig, joints)
         useful = np.clip(sole.highest_tilt / np.maximum(tilts(turns[:, 0]), 1e-3), 1.0, _MAX_TILT)
         greatest = 1.0 + (useful - 1.0) * on_ball[:, number]
-        turns[:, 0] = tilted_to_fit(turns[:, 0], heights[:, number], sole.clearance, greatest)
+        fitting = tilted_to_fit(turns[:, 0], heights[:, number], sole.clearance, greatest)
+        turns[:, 0] = _smoothly_turned(turns[:, 0], fitting, ground)
         if leg.toes is not None:
             balls = heights[:, number] + rotations.rotate(turns[:, 0], sole.ball)[:, 1]
             turns[:, 1] = stretched_to_fit(
@@ -249,6 +254,15 @@ def _on_soles(
             )
         pose = with_turns_from_rest(pose, rig, joints, turns)
     return pose
+
+
+def _smoothly_turned(turns: Array, wanted: Array, ground: GroundMotion) -> Array:
+    """Return turns (frames, 4) that go to the wanted ones by a change that is smooth in time."""
+    change = rotations.multiply(wanted, rotations.conjugate(turns))
+    vectors = ground.repeat(rotations.to_rotation_vector(change))
+    vectors = gaussian_smoothed(vectors, _TILT_SMOOTHING_S * ground.rate)
+    smooth = rotations.from_rotation_vector(ground.middle_cycle(vectors))
+    return rotations.multiply(smooth, turns)
 
 
 def _with_toes_above(pose: Pose, rig: Rig, legs: Sequence[LegJoints], floor: float) -> Pose:

@@ -17,6 +17,7 @@ from characters.retargeting.ground_motion import GroundMotion
 from characters.retargeting.hips_shift import HeldLegs, with_listing_hips
 from characters.retargeting.measures import knee_quantiles, sole_dip
 from characters.retargeting.rig import Rig
+from characters.retargeting.transfer import turns_from_rest
 from characters.skeleton import rotations
 
 MAX_KNEES_BEYOND = np.radians(8.0)
@@ -108,6 +109,22 @@ def test_knees_bend_as_in_the_source_whatever_the_feet(human, length, toes):
     made = on(body, human, clip)
     assert knees_beyond(made, body, human, clip) < MAX_KNEES_BEYOND
     assert hips_height(made, body) == pytest.approx(hips_height(clip, human), rel=0.03)
+
+
+def tilt_jerk(poses, character):
+    """How fast the speed changes at which a foot tilts, at the most [rad per frame²]."""
+    rig = Rig(character.skeleton, character.anatomy)
+    turns = turns_from_rest(poses, rig, [leg.foot for leg in rig.legs])
+    tilts = np.arcsin(rotations.rotate(turns, np.array([0.0, 0.0, 1.0]))[..., 1])
+    return np.abs(np.diff(tilts, 2, axis=0)).max()
+
+
+@pytest.mark.parametrize("clip", ["Walk", "Run"])
+@pytest.mark.parametrize(("length", "toes"), BODIES)
+def test_feet_of_any_length_roll_as_steadily_as_in_the_source(human, length, toes, clip):
+    body = with_feet(human, length, toes=toes)
+    made = on(body, human, human.clips[clip])
+    assert tilt_jerk(made.poses, body) < 1.2 * tilt_jerk(human.clips[clip].poses, human)
 
 
 @pytest.mark.parametrize(("length", "toes"), BODIES)
