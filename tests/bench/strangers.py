@@ -10,7 +10,7 @@ load, time
 faces
     Angle between the body's front and +z: of a model at rest, else of the gait and its way.
 size
-    Greatest change of a limb bone in the walk, against the model as it was loaded.
+    Greatest change of a limb bone in all clips made, against the model at rest.
 steps
     Landings of each foot in one cycle of the walk.
 slide, sinks, knees
@@ -185,7 +185,7 @@ def _grade(row: Row, name: str, motion: str) -> None:
     _fill(
         row,
         faces=turn,
-        size=bone_change(walk.poses, rig),
+        size=max(bone_change(walk.poses, rig), *(gait.bone_change for gait in made.clips)),
         slide=size * max(gait.slide for gait in gaits),
         sinks=size * max(gait.sinking for gait in gaits),
         knees=math.degrees(max(gait.knee_excess for gait in gaits)),

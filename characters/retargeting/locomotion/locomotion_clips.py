@@ -35,6 +35,7 @@ from characters.skeleton.pose import Pose
 
 _MAX_STRAIGHT_ANGULAR = 8.0  # degrees; less is straight
 _MIRROR_COST = 1.0  # degrees of Angular by which a gait that needs no mirror is preferred
+_MAX_RIGID_TRAVEL = 1e-4  # leg lengths; so far do joints move in files that round their places
 _IDLE_RATE_HZ, _IDLE_FRAMES = 30.0, 31
 # Speed in a curve relative to straight on, by Angular: people slow down to turn.
 _CURVE_SPEED: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
@@ -149,7 +150,8 @@ def _mirrored(gait: GaitCycle, mirror: Mirror) -> GaitCycle:
     clip = gait.clip
     image = mirror.clip(clip)
     # Bones keep their lengths if a body is not exactly symmetric.
-    rigid = np.flatnonzero(np.ptp(clip.in_place.translations, axis=0).max(-1) < 1e-9)
+    travel = np.ptp(clip.in_place.translations, axis=0).max(-1)
+    rigid = np.flatnonzero(travel < _MAX_RIGID_TRAVEL * gait.rig.leg_length)
     rigid = rigid[rigid > 0]
     image.poses.translations[:, rigid] = clip.poses.translations[:, rigid]
     count = len(image) - 1

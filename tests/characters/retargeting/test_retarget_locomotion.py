@@ -119,6 +119,22 @@ def test_left_and_right_are_mirror_images(taught):
         assert (ours.x, ours.z, ours.yaw) == pytest.approx((-theirs.x, theirs.z, -theirs.yaw))
 
 
+def test_mirrored_bones_keep_their_lengths_on_an_uneven_body_in_a_file_that_rounds(human):
+    skeleton, walk = human.skeleton, human.clips["Walk"]
+    longer = np.zeros((len(skeleton), 3))
+    longer[skeleton.index("LeftLeg"), 1] = -0.01
+    longer[skeleton.index("RightForeArm"), 0] = -0.01
+    rest = replace(skeleton.rest, translations=skeleton.rest.translations + longer)
+    noise = 1e-6 * np.random.default_rng(2).standard_normal(walk.poses.translations.shape)
+    noise[:, :2] = 0.0
+    poses = replace(walk.poses, translations=walk.poses.translations + longer + noise)
+    uneven = replace(human, skeleton=replace(skeleton, rest=rest), clips={})
+    own = Recording("own", replace(walk, poses=poses), uneven.skeleton, uneven.anatomy)
+    made = make_locomotion(uneven, [own])
+    assert any("mirrored" in found.origin for found in made.clips)
+    assert max(found.bone_change for found in made.clips) < 1e-4
+
+
 def test_it_goes_where_it_is_sent(taught):
     animator = Animator(taught.character)
     for frame in range(100):
