@@ -1,0 +1,38 @@
+"""A bundled session's moods, and a short session with a robot that says a little."""
+
+import itertools
+
+import pytest
+
+from app.moods import read_history
+from app.pipeline.playground import Playground
+from app.running.opening import intrinsics_for
+from app.session import Recorder
+from robot.protocol.schema import pack
+from robot.protocol.wire import encode_frame
+from tests.app.moods.talking import SAID
+from tracking import open_source
+
+FRAME = 1 / 30
+
+
+@pytest.fixture(scope="module")
+def history(bundled_session):
+    """The moods of a whole session."""
+    return read_history(bundled_session)
+
+
+@pytest.fixture(scope="module")
+def talking_session(tmp_path_factory, bundled_session):
+    """A dozen frames, a robot that answers some of what it is told, and noise on its line."""
+    path = tmp_path_factory.mktemp("moods") / "talking.mcap"
+    about = {"scenario": "companion", "cube": "companion", "personality": "shy"}
+    with open_source(str(bundled_session)) as source, Recorder(path, about) as recorder:
+        playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
+        for frame in itertools.islice(source, 12):
+            recorder.write(playground.step(frame))
+        for time, direction, content in SAID:
+            data = b"\x07noise" + encode_frame(pack(content, 9))
+            recorder.wire(direction, data[:9], time)
+            recorder.wire(direction, data[9:], time)
+    return path
