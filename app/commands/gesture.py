@@ -12,10 +12,10 @@ from rich.table import Table
 
 from app.commands.output import OverwriteOption, chosen_output
 from app.errors import AppError
-from app.gesture_editor.edits import gesture_name, performers
-from app.gesture_editor.importing import imported
-from app.gesture_editor.store import GestureStore
-from app.gesture_editor.timing import duration, phase_spans
+from app.gesture_editor.editing.edits import gesture_name, performers
+from app.gesture_editor.editing.importing import imported
+from app.gesture_editor.editing.store import GestureStore
+from app.gesture_editor.editing.timing import duration, phase_spans
 from app.ui.display import has_display
 from characters import Character
 from characters.behaviour.gestures.files import SUFFIX, save_gesture

@@ -7,9 +7,9 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from app.gesture_editor.document import GestureDocument, moves
-from app.gesture_editor.space_overlay import ShownSpace
-from app.gesture_editor.timing import duration
+from app.gesture_editor.editing.document import GestureDocument, moves
+from app.gesture_editor.editing.timing import duration
+from app.gesture_editor.panels.space_overlay import ShownSpace
 from characters import Animator, Character, CharacterCommand, PosedCharacter
 from characters.behaviour.gestures.planning import Performer
 from characters.behaviour.gestures.timing import natural_times

@@ -7,13 +7,10 @@ from pathlib import Path
 import moderngl
 
 from app.errors import AppError
-from app.gesture_editor.document import EMPTY, ROWS, GestureDocument, Row, keys_of, moves
-from app.gesture_editor.edits import gesture_name
-from app.gesture_editor.handling import Event, handle, left_field
-from app.gesture_editor.importing import imported
-from app.gesture_editor.layout import Picture, WindowDrawing, preview_size
-from app.gesture_editor.preview import Performance, Preview
-from app.gesture_editor.state import (
+from app.gesture_editor.editing.document import EMPTY, ROWS, GestureDocument, Row, keys_of, moves
+from app.gesture_editor.editing.edits import gesture_name
+from app.gesture_editor.editing.importing import imported
+from app.gesture_editor.editing.state import (
     EditorState,
     Import,
     New,
@@ -25,7 +22,10 @@ from app.gesture_editor.state import (
     told,
     unless_unsaved,
 )
-from app.gesture_editor.store import GestureStore
+from app.gesture_editor.editing.store import GestureStore
+from app.gesture_editor.handling import Event, handle, left_field
+from app.gesture_editor.panels.layout import Picture, WindowDrawing, preview_size
+from app.gesture_editor.preview import Performance, Preview
 from characters import Character
 from characters.behaviour.symbolic_gesture import SymbolicGesture
 from characters.errors import CharacterError

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
+from app.gesture_editor.editing.timing import phase_at, phase_spans, time_of
 from app.gesture_editor.preview import Performance, Preview
-from app.gesture_editor.timing import phase_at, phase_spans, time_of
 from app.ui.contact_sheets import frame_sheet, save
 from characters.behaviour.symbolic_gesture import SymbolicGesture
 from characters.rendering import create_context

@@ -3,14 +3,14 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from app.gesture_editor.fields import Slider
+from app.gesture_editor.editing.timing import phase_spans, time_of
 from app.gesture_editor.handling import KeyPressed, Moved, Pressed, Released, Typed
-from app.gesture_editor.layout import widget_named
+from app.gesture_editor.panels.fields import Slider
+from app.gesture_editor.panels.layout import widget_named
+from app.gesture_editor.panels.space_map import SpaceMap
+from app.gesture_editor.panels.time_line import time_axis
+from app.gesture_editor.panels.widgets import Widget
 from app.gesture_editor.session import EditorSession
-from app.gesture_editor.space_map import SpaceMap
-from app.gesture_editor.time_line import time_axis
-from app.gesture_editor.timing import phase_spans, time_of
-from app.gesture_editor.widgets import Widget
 from app.ui.contact_sheets import save
 from characters.rendering import create_context
 

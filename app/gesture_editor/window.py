@@ -5,8 +5,8 @@ from typing import Any
 
 import glfw
 
-from app.gesture_editor.cards import HEIGHT, WIDTH
 from app.gesture_editor.handling import Dropped, Event, KeyPressed, Moved, Pressed, Released, Typed
+from app.gesture_editor.panels.cards import HEIGHT, WIDTH
 from app.gesture_editor.session import EditorSession
 from app.ui.window.surface import TYPED_KEYS, Surface, key_name
 

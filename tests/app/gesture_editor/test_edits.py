@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.gesture_editor import edits
-from app.gesture_editor.document import EMPTY, ROWS, GestureDocument, moves
-from app.gesture_editor.state import EditorState, committed, edited, redo, undo
-from app.gesture_editor.timing import duration, nearest_moment, phase_spans, stroke_for
+from app.gesture_editor.editing import edits
+from app.gesture_editor.editing.document import EMPTY, ROWS, GestureDocument, moves
+from app.gesture_editor.editing.state import EditorState, committed, edited, redo, undo
+from app.gesture_editor.editing.timing import duration, nearest_moment, phase_spans, stroke_for
 from characters.behaviour.gestures.checking import check_gesture
 from characters.behaviour.gestures.collection import GestureCollection
 from characters.behaviour.symbolic_gesture import SECTORS_X, SECTORS_Y, HandKey, Place

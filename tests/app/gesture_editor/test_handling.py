@@ -5,8 +5,8 @@ from itertools import combinations
 
 import pytest
 
-from app.gesture_editor.document import GestureDocument
-from app.gesture_editor.fields import Slider
+from app.gesture_editor.editing.document import GestureDocument
+from app.gesture_editor.editing.state import EditorState, Import, Quit, Save
 from app.gesture_editor.handling import (
     Dropped,
     KeyPressed,
@@ -16,10 +16,10 @@ from app.gesture_editor.handling import (
     Typed,
     handle,
 )
-from app.gesture_editor.layout import widget_named, widgets_of
-from app.gesture_editor.state import EditorState, Import, Quit, Save
-from app.gesture_editor.time_line_parts import Handle, KeyMark, KeyRow, Phases
-from app.gesture_editor.widgets import Button, Label, fitting
+from app.gesture_editor.panels.fields import Slider
+from app.gesture_editor.panels.layout import widget_named, widgets_of
+from app.gesture_editor.panels.time_line_parts import Handle, KeyMark, KeyRow, Phases
+from app.gesture_editor.panels.widgets import Button, Label, fitting
 from app.ui.canvas import text_width
 from characters.behaviour.gestures.collection import GestureCollection
 

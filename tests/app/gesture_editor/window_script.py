@@ -6,7 +6,7 @@ from pathlib import Path
 import glfw
 import numpy as np
 
-from app.gesture_editor.layout import widget_named
+from app.gesture_editor.panels.layout import widget_named
 from app.gesture_editor.tour import Hand
 from app.gesture_editor.window import EditorWindow
 from characters.behaviour.gestures.files import load_gesture

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.gesture_editor.state import EditorState
-from app.gesture_editor.widgets import ACCENT, CARD, SUBTLE, Look, Widget, rounded
+from app.gesture_editor.editing.state import EditorState
+from app.gesture_editor.panels.widgets import ACCENT, CARD, SUBTLE, Look, Widget, rounded
 from app.ui.canvas import Canvas
 from app.ui.palette import INK, PAPER, RULE, between
 from characters.behaviour.symbolic_gesture import SECTORS_X, SECTORS_Y, Place

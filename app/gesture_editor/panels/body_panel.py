@@ -2,10 +2,10 @@
 
 from dataclasses import replace
 
-from app.gesture_editor.edits import change_expressivity, change_key
-from app.gesture_editor.fields import Slider
-from app.gesture_editor.state import EditorState, edited
-from app.gesture_editor.widgets import NORMAL, SMALL, Button, Label, Rect, Sheet, Widget
+from app.gesture_editor.editing.edits import change_expressivity, change_key
+from app.gesture_editor.editing.state import EditorState, edited
+from app.gesture_editor.panels.fields import Slider
+from app.gesture_editor.panels.widgets import NORMAL, SMALL, Button, Label, Rect, Sheet, Widget
 from app.ui.palette import RULE
 from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
 from characters.behaviour.symbolic_gesture import BodyKey

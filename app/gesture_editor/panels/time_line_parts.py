@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.gesture_editor.document import GestureDocument, Row
-from app.gesture_editor.edits import Phase, move_key
-from app.gesture_editor.state import EditorState, edited
-from app.gesture_editor.timing import duration, moment_at, period, phase_spans, time_of
-from app.gesture_editor.widgets import ACCENT, CARD, SMALL, SUBTLE, Look, Widget, rounded
+from app.gesture_editor.editing.document import GestureDocument, Row
+from app.gesture_editor.editing.edits import Phase, move_key
+from app.gesture_editor.editing.state import EditorState, edited
+from app.gesture_editor.editing.timing import duration, moment_at, period, phase_spans, time_of
+from app.gesture_editor.panels.widgets import ACCENT, CARD, SMALL, SUBTLE, Look, Widget, rounded
 from app.ui.canvas import Canvas, text_width
 from app.ui.palette import HAPPY, INK, NEUTRAL, PAPER, QUIET, RULE, Color, between
 

@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 
 from app.errors import AppError
-from app.gesture_editor.edits import gesture_name
+from app.gesture_editor.editing.edits import gesture_name
 from characters.behaviour.gestures.recording import gesture_from_recording
 from characters.behaviour.symbolic_gesture import SymbolicGesture
 from characters.retargeting.recording import load_recording

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from app.gesture_editor.bars import lower_bar, upper_bar
-from app.gesture_editor.cards import HEIGHT, WIDTH, card
-from app.gesture_editor.inspector import inspector
-from app.gesture_editor.state import EditorState
-from app.gesture_editor.time_line import draw_playhead, time_line
-from app.gesture_editor.time_line_parts import KeyMark
-from app.gesture_editor.widgets import (
+from app.gesture_editor.editing.state import EditorState
+from app.gesture_editor.panels.bars import lower_bar, upper_bar
+from app.gesture_editor.panels.cards import HEIGHT, WIDTH, card
+from app.gesture_editor.panels.inspector import inspector
+from app.gesture_editor.panels.time_line import draw_playhead, time_line
+from app.gesture_editor.panels.time_line_parts import KeyMark
+from app.gesture_editor.panels.widgets import (
     CARD,
     SMALL,
     Label,

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from app.gesture_editor.widgets import ACCENT
+from app.gesture_editor.panels.widgets import ACCENT
 from characters.behaviour.gestures.space import (
     CENTRES_X_CM,
     CENTRES_Y_CM,

@@ -3,8 +3,8 @@
 from dataclasses import replace
 from pathlib import Path
 
-from app.gesture_editor.document import GestureDocument
-from app.gesture_editor.edits import (
+from app.gesture_editor.editing.document import GestureDocument
+from app.gesture_editor.editing.edits import (
     MAX_REPEATS,
     add_key,
     change_gesture,
@@ -13,8 +13,7 @@ from app.gesture_editor.edits import (
     performers,
     remove_key,
 )
-from app.gesture_editor.fields import TextField
-from app.gesture_editor.state import (
+from app.gesture_editor.editing.state import (
     Action,
     EditorState,
     New,
@@ -26,8 +25,9 @@ from app.gesture_editor.state import (
     unless_unsaved,
     with_text,
 )
-from app.gesture_editor.timing import duration, nearest_moment
-from app.gesture_editor.widgets import (
+from app.gesture_editor.editing.timing import duration, nearest_moment
+from app.gesture_editor.panels.fields import TextField
+from app.gesture_editor.panels.widgets import (
     SMALL,
     SUBTLE,
     Button,

@@ -3,7 +3,11 @@
 from dataclasses import replace
 from typing import Any
 
-from app.gesture_editor.body_panel import (
+from app.gesture_editor.editing.document import GestureDocument
+from app.gesture_editor.editing.edits import change_key, change_place, move_key
+from app.gesture_editor.editing.state import EditorState, edited
+from app.gesture_editor.editing.words import DIRECTION_NAMES, PATH_NAMES, combined
+from app.gesture_editor.panels.body_panel import (
     BUTTON_PX,
     COLUMN,
     LEFT,
@@ -12,13 +16,10 @@ from app.gesture_editor.body_panel import (
     body_sliders,
     expressivity_sliders,
 )
-from app.gesture_editor.document import GestureDocument
-from app.gesture_editor.edits import change_key, change_place, move_key
-from app.gesture_editor.fields import Slider
-from app.gesture_editor.space_map import SpaceMap
-from app.gesture_editor.state import EditorState, edited
-from app.gesture_editor.time_line_parts import ROW_NAMES
-from app.gesture_editor.widgets import (
+from app.gesture_editor.panels.fields import Slider
+from app.gesture_editor.panels.space_map import SpaceMap
+from app.gesture_editor.panels.time_line_parts import ROW_NAMES
+from app.gesture_editor.panels.widgets import (
     LARGE,
     NORMAL,
     SMALL,
@@ -29,7 +30,6 @@ from app.gesture_editor.widgets import (
     Widget,
     button_row,
 )
-from app.gesture_editor.words import DIRECTION_NAMES, PATH_NAMES, combined
 from characters.behaviour.symbolic_gesture import SECTORS_Z, HandKey
 from characters.ik.reaching.hand_shapes import HAND_SHAPES
 

@@ -3,9 +3,8 @@
 from collections.abc import Callable
 from dataclasses import replace
 
-from app.gesture_editor.edits import change_place, gesture_name
-from app.gesture_editor.fields import TextField
-from app.gesture_editor.state import (
+from app.gesture_editor.editing.edits import change_place, gesture_name
+from app.gesture_editor.editing.state import (
     Action,
     CardName,
     EditorState,
@@ -19,7 +18,8 @@ from app.gesture_editor.state import (
     unless_unsaved,
     with_text,
 )
-from app.gesture_editor.widgets import (
+from app.gesture_editor.panels.fields import TextField
+from app.gesture_editor.panels.widgets import (
     LARGE,
     NORMAL,
     SMALL,

@@ -1,9 +1,18 @@
 """The time line: phases with borders to drag, and keys of hands, trunk and head."""
 
-from app.gesture_editor.document import ROWS, GestureDocument, keys_of
-from app.gesture_editor.edits import Phase, change_gesture, change_phase
-from app.gesture_editor.state import EditorState, edited
-from app.gesture_editor.time_line_parts import (
+from app.gesture_editor.editing.document import ROWS, GestureDocument, keys_of
+from app.gesture_editor.editing.edits import Phase, change_gesture, change_phase
+from app.gesture_editor.editing.state import EditorState, edited
+from app.gesture_editor.editing.timing import (
+    duration,
+    moment_at,
+    phase_at,
+    phase_spans,
+    stroke_for,
+    time_line_span,
+    time_of,
+)
+from app.gesture_editor.panels.time_line_parts import (
     LEFT,
     PHASE_HEIGHT,
     PHASE_TOP,
@@ -16,16 +25,7 @@ from app.gesture_editor.time_line_parts import (
     Phases,
     TimeAxis,
 )
-from app.gesture_editor.timing import (
-    duration,
-    moment_at,
-    phase_at,
-    phase_spans,
-    stroke_for,
-    time_line_span,
-    time_of,
-)
-from app.gesture_editor.widgets import SMALL, SUBTLE, Label, Rect, Widget
+from app.gesture_editor.panels.widgets import SMALL, SUBTLE, Label, Rect, Widget
 from app.ui.canvas import Canvas
 from app.ui.palette import INK, PAPER
 

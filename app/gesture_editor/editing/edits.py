@@ -4,7 +4,7 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Any, Literal
 
-from app.gesture_editor.document import GestureDocument, Key, Row
+from app.gesture_editor.editing.document import GestureDocument, Key, Row
 from characters.behaviour.symbolic_gesture import (
     SECTORS_X,
     SECTORS_Y,

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.gesture_editor.state import EditorState
-from app.gesture_editor.widgets import (
+from app.gesture_editor.editing.state import EditorState
+from app.gesture_editor.panels.widgets import (
     ACCENT,
     CARD,
     NORMAL,

@@ -4,7 +4,7 @@ from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
-from app.gesture_editor.document import moves
+from app.gesture_editor.editing.document import moves
 from app.output_path import short_path
 from characters.behaviour.gestures.collection import GestureCollection, gestures_in
 from characters.behaviour.gestures.files import load_gesture, save_gesture

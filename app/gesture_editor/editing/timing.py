@@ -1,6 +1,6 @@
 """Where the phases and the keys of a gesture are in time."""
 
-from app.gesture_editor.edits import Phase
+from app.gesture_editor.editing.edits import Phase
 from characters.behaviour.gestures.timing import Repeats, natural_times, stroke_length
 from characters.behaviour.symbolic_gesture import SymbolicGesture
 

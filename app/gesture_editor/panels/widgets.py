@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from app.gesture_editor.state import Action, EditorState
+from app.gesture_editor.editing.state import Action, EditorState
 from app.ui.canvas import UNIT_CIRCLE, Canvas, text_width
 from app.ui.palette import ACTION_COLORS, INK, PAPER, QUIET, RULE, Color, between, bgr
 
