@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from PIL import UnidentifiedImageError
 
 from characters.errors import CharacterWarning
-from characters.formats.gltf import mtoon
 from characters.formats.gltf.buffer import GlbBuilder
 from characters.formats.gltf.document import DamagedFileError, Json, error_context, label
 from characters.formats.gltf.file import GltfFile
+from characters.formats.gltf.vrm import mtoon
 from characters.model.mesh import Material, ToonShading
 from characters.skeleton.pose import Array
 

@@ -6,7 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from characters.errors import CharacterError
-from characters.formats.gltf import vrm
 from characters.formats.gltf.animations import read_clips
 from characters.formats.gltf.document import DamagedFileError
 from characters.formats.gltf.draco import with_unpacked_meshes
@@ -15,9 +14,10 @@ from characters.formats.gltf.followers import EXTRA, with_followers
 from characters.formats.gltf.meshes import read_meshes
 from characters.formats.gltf.morphs import read_morph_table
 from characters.formats.gltf.nodes import NodeTree, read_node_tree
-from characters.formats.gltf.vrm_constraints import read_constraints
-from characters.formats.gltf.vrm_look_at import read_look_at
-from characters.formats.gltf.vrm_springs import read_springs
+from characters.formats.gltf.vrm.constraints import read_constraints
+from characters.formats.gltf.vrm.humanoid import VrmHumanoid, mixed_expressions, read_humanoid
+from characters.formats.gltf.vrm.look_at import read_look_at
+from characters.formats.gltf.vrm.springs import read_springs
 from characters.formats.loading import MotionOptions, Performance
 from characters.model.character import Character
 from characters.model.mesh import Mesh
@@ -77,7 +77,7 @@ def _open(path: Path) -> Iterator[GltfFile]:
     """Open a file; errors while it is read name it in one line."""
     try:
         file = with_unpacked_meshes(open_gltf(path))
-        if path.suffix.lower() == ".vrm" and vrm.read_humanoid(file) is None:
+        if path.suffix.lower() == ".vrm" and read_humanoid(file) is None:
             raise DamagedFileError("contains no VRM; call it .glb if it is glTF")
         yield file
     except DamagedFileError as error:
@@ -89,9 +89,9 @@ def _open(path: Path) -> Iterator[GltfFile]:
 
 def _read_joints(
     file: GltfFile, extra_joints: Collection[int] = ()
-) -> tuple[NodeTree, vrm.VrmHumanoid | None]:
+) -> tuple[NodeTree, VrmHumanoid | None]:
     """Return the skeleton, and its VRM data if there are any."""
-    humanoid = vrm.read_humanoid(file)
+    humanoid = read_humanoid(file)
     joints = set(extra_joints) | set(() if humanoid is None else humanoid.bones.values())
     if not any(skin["joints"] for skin in file.all("skins")):
         # Rigid parts, or motions exported without a model: animated nodes are joints.
@@ -115,14 +115,14 @@ def _with_rest_morphs(skeleton: Skeleton, morphs: Array | None) -> Skeleton:
 
 
 def _as_humanoid(
-    character: Character, humanoid: vrm.VrmHumanoid, parts: list[tuple[int, Mesh]], tree: NodeTree
+    character: Character, humanoid: VrmHumanoid, parts: list[tuple[int, Mesh]], tree: NodeTree
 ) -> Character:
     """Return a character with the body parts and expressions that VRM states."""
     names = character.skeleton.names
     semantics = {bone: names[tree.joint_of_node[node]] for bone, node in humanoid.bones.items()}
     if not humanoid.expressions:
         return replace(character, semantics=semantics)
-    meshes, morphs = vrm.mixed_expressions(parts, humanoid)
+    meshes, morphs = mixed_expressions(parts, humanoid)
     # Animated weights belong to morph targets, which the expressions replace.
     clips = {
         name: replace(clip, poses=replace(clip.poses, morphs=None))

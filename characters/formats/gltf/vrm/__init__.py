@@ -1,0 +1,1 @@
+"""What VRM adds to glTF: the body of a humanoid, its face, eyes, hair and toon shading."""
