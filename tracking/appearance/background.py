@@ -53,7 +53,7 @@ rest: less, and the camera was moved."""
 MAX_ARM_SHARE = 0.5
 """Most of a part of the image that an arm covers: more, and the light or the camera changed."""
 
-_SHADED, _CHANGED = 254, 255
+_SHADED, _CHANGED = np.uint8(254), np.uint8(255)
 _STEPS = np.maximum(1 / (np.arange(256, dtype=np.float32) + 1), np.float32(STEP))
 _STEPS[[_SHADED, _CHANGED]] = SHADED_STEP, CHANGED_STEP
 
@@ -135,7 +135,7 @@ class Background:
         trust = min(max((same - LOST_SHARE) / (TRUSTED_SHARE - LOST_SHARE), 0.0), 1.0)
         looks = (lit.view(np.uint8) + smooth + unchanged) * np.uint8(FULL_AGE + 1)
         looks += np.minimum(age, FULL_AGE) * known
-        looks[~outside] = 255
+        looks |= outside.view(np.uint8) - np.uint8(1)  # 255 in the cube
         odds = np.asarray(cv2.LUT(looks, _NOT_TRUSTED + np.float32(trust) * _TRUST), np.float32)
         self._lit_anew = lit & ~unchanged
         return odds, (odds > 0) & ~lit, trust > 0
@@ -143,9 +143,8 @@ class Background:
     def learn(self, lab: Floats, box: Box, free: Flags, changed: Flags) -> None:
         """Learn the pixels of a window that are free of cube and hand."""
         age = self._age[box]
-        looks = age.copy()
-        looks[self._lit_anew & (age > FULL_AGE)] = _SHADED
-        looks[changed] = _CHANGED
+        shaded = self._lit_anew & (age > FULL_AGE)
+        looks = np.maximum(np.maximum(age, shaded * _SHADED), changed * _CHANGED)
         self._learn(lab, box, np.asarray(cv2.LUT(looks, _STEPS), np.float32) * free)
         age += free & (age < MAX_AGE)
 

@@ -82,7 +82,7 @@ class FaceCheck:
         ink = np.zeros(2, np.float32) if self._ink is None else self._ink
         coloured &= no_ink | _off(a - ink[0], b - ink[1], INK_TOLERANCE)
         paper = all_paper & ~coloured
-        white, contrast = self._levels(light, seen.face, paper, all_ink & ~coloured)
+        white, contrast = self._levels(light, seen, paper, all_ink & ~coloured)
         found = light > MAX_SHADE * (white - contrast * least) + LIGHTNESS_TOLERANCE
         found |= light < MIN_SHADE * (white - contrast * most) - 0.5 * LIGHTNESS_TOLERANCE
         found = (found | coloured) & inner
@@ -102,7 +102,7 @@ class FaceCheck:
         self._ink = now if self._ink is None else self._ink + TINT_STEP * (now - self._ink)
 
     def _levels(
-        self, light: Floats, face: Image, paper: Flags, ink: Flags
+        self, light: Floats, seen: SeenPattern, paper: Flags, ink: Flags
     ) -> tuple[Floats, Floats]:
         """Return L + 16 of paper on the face of each pixel, and how much darker ink is, a 255th.
 
@@ -110,8 +110,8 @@ class FaceCheck:
         """
         whites: dict[int, float] = {}
         blacks: dict[int, float] = {}
-        for number in np.flatnonzero(np.bincount(face.ravel())).tolist():
-            this = face == number
+        for number in seen.numbers:
+            this = seen.face == number
             plain, dark = light[paper & this], light[ink & this]
             if len(plain) >= MIN_PIXELS:
                 whites[number] = quantile(plain, 0.7)
@@ -123,7 +123,7 @@ class FaceCheck:
         for number, white in whites.items():
             black = min(blacks.get(number, self._black), BLACK_RANGE * self._black)
             levels[:, number] = white, white * (1 - black) / 255
-        return levels[0][face], levels[1][face]
+        return levels[0].take(seen.face), levels[1].take(seen.face)
 
 
 def _off(a: Floats, b: Floats, tolerance: float) -> Flags:

@@ -15,6 +15,9 @@ from tracking.geometry.projection import Projection
 FACE_TEXELS = 96
 """Texels along the edge of a face's print."""
 
+PRINT_CORNERS = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32) * FACE_TEXELS - 0.5
+"""Corners of a face's print, (4, 2) [texels]."""
+
 MIN_COSINE = 0.2
 """Cosine of the viewing angle from which on a face is compared."""
 
@@ -29,6 +32,9 @@ NEAR_ICON = np.ones((5, 5), np.uint8)
 @dataclass(frozen=True)
 class SeenPattern:
     """The print of all visible faces in a part of the image."""
+
+    numbers: tuple[int, ...]
+    """Numbers of the faces that the camera sees well enough, + 1."""
 
     face: Image
     """Number of the face + 1 at each pixel, 0 outside the cube, (h, w)."""
@@ -69,16 +75,18 @@ class FacePattern:
         """
         shown = np.zeros((size[1], size[0], 2), np.uint8)
         face = np.zeros((size[1], size[0]), np.uint8)
-        corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32) * FACE_TEXELS - 0.5
-        for number in self._planes.facing(camera_from_cube, MIN_COSINE):
-            matrix = cv2.getPerspectiveTransform(corners, quads[number].astype(np.float32))
+        facing, border = self._planes.facing(camera_from_cube, MIN_COSINE), cv2.BORDER_TRANSPARENT
+        corners = quads.astype(np.float32)
+        for number in facing:
+            matrix = cv2.getPerspectiveTransform(PRINT_CORNERS, corners[number])
             print_, label = self._prints[number], self._labels[number]
-            border = cv2.BORDER_TRANSPARENT
             cv2.warpPerspective(print_, matrix, size, shown, cv2.INTER_LINEAR, border)
             cv2.warpPerspective(label, matrix, size, face, cv2.INTER_NEAREST, border)
         ink, icon = cv2.split(shown)
         near_icon = np.asarray(cv2.dilate(icon, NEAR_ICON) > 12)
-        return SeenPattern(face, np.asarray(ink, np.uint8), near_icon)
+        return SeenPattern(
+            tuple(number + 1 for number in facing), face, np.asarray(ink, np.uint8), near_icon
+        )
 
     def distance(self, camera_from_cube: Array, face: Image, origin: Array, scale: float) -> float:
         """Return the least distance along the camera's axis of some pixels of faces [m].

@@ -14,8 +14,9 @@ def quantile(values: NDArray[np.floating[Any]], share: float) -> float:
     >>> quantile(np.array([3.0, 1.0, 2.0]), 0.5)
     2.0
     """
-    index = int(share * (len(values) - 1))
-    return float(np.partition(values, index)[index])
+    index, ordered = int(share * (len(values) - 1)), values.copy()
+    ordered.partition(index)
+    return float(ordered[index])
 
 
 def tukey_weight(residual: Array, cut: float) -> Array:
