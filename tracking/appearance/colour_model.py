@@ -4,23 +4,24 @@ from collections.abc import Sequence
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
-from tracking.geometry.arrays import Floats, Image
+from tracking.geometry.arrays import Flags, Floats, Image
 
-LAB_BINS = (8, 24, 24)
-"""Bins along L, a and b of CIELab: chroma tells skin, lightness varies with the light."""
+LAB_BINS = (24, 24, 8)
+"""Bins along a, b and L of CIELab: chroma tells skin, lightness varies with the light."""
 
-LAB_RANGES = (0, 256, 80, 176, 80, 176)
-"""First and last value, exclusive, of the bins along L, a and b [CIELab bytes]."""
+MIN_CHROMA, CHROMA_STEP, LIGHTNESS_STEP = 80, 4, 32
+"""Least a and b in the first bin but what is below it, and widths of bins [CIELab bytes]."""
 
 LIGHTNESS_OFFSET = 41.0
 """16 of CIELab's L in bytes: light scales L + 16, and the chroma by the same factor."""
 
-MEMORY_PER_FRAME = 0.96
-"""What remains of a histogram after one more frame: half of it after 17."""
+MEMORY_PER_PICTURE = 0.96
+"""What remains of a histogram after one more picture was learned: half of it after 17."""
 
-MIN_LEARNED = 40
-"""Pixels of a hand from which on its colours are known."""
+MIN_LEARNED, MANY_LEARNED = 40, 6000
+"""Pixels of a hand from which on its colours are known, and known well."""
 
 MIN_DENSITY = 1e-4
 """Density of a colour that was never seen."""
@@ -28,17 +29,21 @@ MIN_DENSITY = 1e-4
 MAX_ODDS = 2.0
 """What a colour speaks for or against a hand at most, as the logarithm of odds."""
 
-_ODDS_OF_BYTE = (np.arange(256, dtype=np.float32) - 128) * np.float32(MAX_ODDS / 127)
+Colours = NDArray[np.uint16]
+"""Number of the bin of each pixel, (h, w)."""
 
-Colours = tuple[Image, Image, Image]
-"""L, a and b of CIELab, bytes, (h, w) each, none beyond the bins."""
+_BYTES = np.arange(256)
+_CHROMA = ((_BYTES - MIN_CHROMA) // CHROMA_STEP).clip(0, LAB_BINS[0] - 1)
+_BINS_OF_A = (_CHROMA * (LAB_BINS[1] * LAB_BINS[2])).astype(np.uint16)
+_BINS_OF_B = (_CHROMA * LAB_BINS[2]).astype(np.uint16)
+_BINS_OF_L = (_BYTES // LIGHTNESS_STEP).astype(np.uint16)
 
 
 def colours(planes: Sequence[Image]) -> Colours:
-    """Return planes of CIELab, with what is beyond the bins in the last of them."""
-    least, most = np.uint8(LAB_RANGES[2]), np.uint8(LAB_RANGES[3] - 1)
-    a, b = (np.minimum(np.maximum(plane, least), most) for plane in planes[1:])
-    return planes[0], a, b
+    """Return the bin of each pixel; `planes` are L, a and b of CIELab in bytes, (h, w) each."""
+    light, a, b = planes
+    bins = cv2.add(cv2.LUT(a, _BINS_OF_A), cv2.LUT(b, _BINS_OF_B))
+    return np.asarray(cv2.add(bins, cv2.LUT(light, _BINS_OF_L)), np.uint16)
 
 
 class ColourModel:
@@ -46,7 +51,8 @@ class ColourModel:
 
     def __init__(self) -> None:
         self._hand, self._behind = np.zeros(LAB_BINS, np.float32), np.zeros(LAB_BINS, np.float32)
-        self._hand_density: Floats | None = None
+        self._odds = np.zeros(self._hand.size, np.float32)
+        self._odds_are_new = True
 
     @property
     def knows_hand(self) -> bool:
@@ -54,41 +60,39 @@ class ColourModel:
         return bool(self._hand.sum() > MIN_LEARNED)
 
     @property
+    def hand_is_new(self) -> bool:
+        """Whether so little of a hand was seen that each picture of it counts."""
+        return bool(self._hand.sum() < MANY_LEARNED)
+
+    @property
     def knows_behind(self) -> bool:
         """Whether anything behind the hand was seen."""
         return bool(self._behind.any())
 
-    def learn_hand(self, seen: Colours, where: Image) -> None:
+    def learn_hand(self, seen: Colours, where: Flags) -> None:
         """Add the marked pixels to those of the hand."""
-        self._hand = _learned(self._hand, seen, where)
-        self._hand_density = None
+        self._hand, self._odds_are_new = _learned(self._hand, seen[where]), False
 
-    def learn_behind(self, seen: Colours, where: Image) -> None:
+    def learn_behind(self, seen: Colours, where: Flags) -> None:
         """Add the marked pixels to those behind the hand."""
-        self._behind = _learned(self._behind, seen, where)
+        self._behind, self._odds_are_new = _learned(self._behind, seen[where]), False
 
     def odds(self, seen: Colours) -> Floats:
         """Return what the colour of each pixel speaks for a hand, (h, w): logarithm of odds."""
-        if not self.knows_hand:
-            return np.zeros(seen[0].shape, np.float32)
-        if self._hand_density is None:
-            self._hand_density = _density(self._hand)
-        ratio = np.log((self._hand_density + MIN_DENSITY) / (_density(self._behind) + MIN_DENSITY))
-        table = ratio.clip(-MAX_ODDS, MAX_ODDS) * (127 / MAX_ODDS) + 128
-        histogram = cv2.Mat(table)  # type: ignore[no-untyped-call]  # its last axis: no channels
-        bytes_ = cv2.calcBackProject(seen, [0, 1, 2], histogram, LAB_RANGES, 1)
-        return np.asarray(cv2.LUT(bytes_, _ODDS_OF_BYTE), np.float32)
+        if not self._odds_are_new and self.knows_hand:
+            ratio = np.log(_density(self._hand) / _density(self._behind)).ravel()
+            self._odds = np.minimum(np.maximum(ratio, -MAX_ODDS), MAX_ODDS)
+            self._odds_are_new = True
+        return np.asarray(self._odds.take(seen), np.float32)
 
 
-def _learned(counts: Floats, seen: Colours, where: Image) -> Floats:
-    new = cv2.calcHist(seen, [0, 1, 2], where, LAB_BINS, LAB_RANGES)
-    return np.asarray(cv2.scaleAdd(counts, MEMORY_PER_FRAME, np.asarray(new, np.float32)))
+def _learned(counts: Floats, seen: Colours) -> Floats:
+    new = np.bincount(seen, minlength=counts.size).astype(np.float32)
+    return np.asarray(cv2.scaleAdd(counts, MEMORY_PER_PICTURE, new.reshape(LAB_BINS)))
 
 
 def _density(counts: Floats) -> Floats:
-    """Return the share of each colour, smoothed over neighbouring bins."""
-    flat = counts.reshape(LAB_BINS[0], -1)
-    grid = np.asarray(cv2.blur(flat, (1, 3)), np.float32).reshape(LAB_BINS)
-    soft = cv2.GaussianBlur(np.ascontiguousarray(grid.transpose(1, 2, 0)), (3, 3), 0.8)
-    shares = np.asarray(soft, np.float32).transpose(2, 0, 1)
-    return np.ascontiguousarray(shares / max(float(shares.sum()), 1.0))
+    """Return the share of each colour, smoothed over neighbouring bins, and not zero."""
+    by_chroma = cv2.GaussianBlur(counts, (3, 3), 0.8)
+    soft = np.asarray(cv2.blur(by_chroma.reshape(-1, LAB_BINS[2]), (3, 1)), np.float32)
+    return soft * np.float32(1 / max(float(soft.sum()), 1.0)) + np.float32(MIN_DENSITY)

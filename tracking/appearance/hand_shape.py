@@ -1,0 +1,115 @@
+"""From what each pixel speaks for a hand to the hand: its parts, its gaps and its soft edge."""
+
+import cv2
+import numpy as np
+
+from tracking.appearance.window import Window
+from tracking.geometry.arrays import Flags, Floats, Image
+
+ODDS_RANGE = 4.0
+"""Logarithm of odds, positive or negative, beyond which nothing is surer."""
+
+CLOSED_EDGES = 0.25
+"""Width of gaps of the hand over the cube that are filled: about a cell of a marker [edges]."""
+
+MIN_TOUCH_EDGES2, MIN_AREA_EDGES2 = 0.01, 0.15
+"""Least area beside the cube, and in all, of a hand that hides no face [square edges]."""
+
+MIN_EXTENT_EDGES = 0.9
+"""How far from the cube's bounds it must reach: there is an arm behind a hand."""
+
+MIN_CHANGED_SHARE = 0.6
+"""Least share of such a hand that does not look like the desk."""
+
+EDGE_LEVELS = 90.0
+"""Range of the odds, whose whole range is 255, over which the cover rises from 0 to 255."""
+
+EDGE_SHIFT = 50.0
+"""Odds, as above, at which half is covered: what differs from the desk is smoothed, so it grows."""
+
+COVER = np.clip((np.arange(256) - 128 - EDGE_SHIFT) * (255 / EDGE_LEVELS) + 128, 0, 255).astype(
+    np.uint8
+)
+"""Cover for the odds at full resolution."""
+
+SMALL, WIDE = np.ones((3, 3), np.uint8), np.ones((5, 5), np.uint8)
+"""A pixel with its neighbours."""
+
+
+def filled(odds: Floats, inner: Flags, doubtful: Flags, edge: float) -> Flags:
+    """Return where the hand covers what looks like its print: as most of what is told around it."""
+    side = 2 * round(CLOSED_EDGES * edge / 2) + 1
+    hand = (odds > 0).view(np.uint8)
+    closed = cv2.morphologyEx(hand, cv2.MORPH_CLOSE, np.ones((side, side), np.uint8)) > 0
+    votes = cv2.blur((np.float32(2) * hand - np.float32(1)) * ~doubtful, (side, side))
+    return np.asarray(inner & (closed | (doubtful & (votes > 0))))
+
+
+def cleaned(flags: Flags) -> Image:
+    """Drop specks, and fill gaps of a few pixels."""
+    mask = cv2.morphologyEx(flags.view(np.uint8), cv2.MORPH_OPEN, SMALL)
+    return np.asarray(cv2.morphologyEx(mask, cv2.MORPH_CLOSE, WIDE), np.uint8)
+
+
+def connected(
+    hand: Image, window: Window, outline: Image, evidence: Flags, changed: Flags
+) -> Image | None:
+    """Choose the components that hold evidence, or that touch the cube and reach away.
+
+    Parameters
+    ----------
+    hand
+        What may be one, (h, w).
+    window
+        Where that is.
+    outline, evidence
+        The whole cube, and what of it is hidden, in the window's `cube_box`.
+    changed
+        Pixels that do not look like the desk, (h, w).
+    """
+    count, labels32 = cv2.connectedComponents(hand)
+    if count == 1:
+        return None
+    labels = np.asarray(cv2.convertScaleAbs(labels32), np.uint8)
+    beside = cv2.dilate(outline, WIDE, iterations=3).view(bool)
+    square, by_cube = window.edge**2, labels[window.cube_box]
+    hides_face = np.zeros(256, bool)
+    hides_face[by_cube[evidence]] = True
+    keep = np.bincount(by_cube[beside], minlength=256) > MIN_TOUCH_EDGES2 * square
+    keep &= ~hides_face
+    keep[0] = False
+    if keep.any():
+        area = _counts(labels)
+        keep &= area > MIN_AREA_EDGES2 * square
+        keep &= area > _counts(np.ascontiguousarray(labels[_within_reach(window)]))
+        keep &= _counts(labels, changed.view(np.uint8)) > MIN_CHANGED_SHARE * area
+    keep |= hides_face
+    keep[[0, 255]] = False
+    return np.asarray(cv2.LUT(labels, keep.view(np.uint8)), np.uint8) if keep.any() else None
+
+
+def soft_cover(hand: Image, odds: Floats, window: Window) -> tuple[int, int, Image]:
+    """Return the cover of the pixels of the image, soft at the edge, and where it begins."""
+    left, top, width, height = cv2.boundingRect(hand)
+    left, right = max(left - 2, 0), min(left + width + 2, window.width)
+    top, bottom = max(top - 2, 0), min(top + height + 2, window.height)
+    part = np.s_[top:bottom, left:right]
+    level = cv2.convertScaleAbs(np.maximum(odds[part] + ODDS_RANGE, 0), None, 128 / ODDS_RANGE)
+    core, near = cv2.erode(hand[part], SMALL), cv2.dilate(hand[part], SMALL)
+    level = np.maximum(level, core * np.uint8(255)) * near
+    size = ((right - left) * window.scale, (bottom - top) * window.scale)
+    large = cv2.resize(level, size, interpolation=cv2.INTER_LINEAR)
+    x, y = (window.left + left) * window.scale, (window.top + top) * window.scale
+    return x, y, np.asarray(cv2.LUT(large, COVER), np.uint8)
+
+
+def _within_reach(window: Window) -> tuple[slice, slice]:
+    low, high = window.quads.min(axis=(0, 1)), window.quads.max(axis=(0, 1))
+    far = MIN_EXTENT_EDGES * window.edge
+    (left, top), (right, bottom) = (low - far).tolist(), (high + far).tolist()
+    return np.s_[max(int(top), 0) : int(bottom) + 1, max(int(left), 0) : int(right) + 1]
+
+
+def _counts(labels: Image, where: Image | None = None) -> Floats:
+    """Return how many pixels each of 256 labels has."""
+    return np.asarray(cv2.calcHist([labels], [0], where, [256], (0, 256)), np.float32).ravel()
