@@ -11,7 +11,7 @@ from tracking.appearance.colour_model import LIGHTNESS_OFFSET, ColourModel, Colo
 from tracking.appearance.face_check import FaceCheck
 from tracking.appearance.face_pattern import FacePattern
 from tracking.appearance.hand_shape import ODDS_RANGE, cleaned, connected, filled, soft_cover
-from tracking.appearance.window import Window, WindowFinder, shrunk
+from tracking.appearance.window import Stillness, Window, WindowFinder, shrunk
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Flags, Floats, Image
 from tracking.geometry.intrinsics import Intrinsics
@@ -35,7 +35,8 @@ HELD_S = 0.15
 """Time for which the hand stays where it was after the cube is lost: the hand may hide it [s]."""
 
 MANY_FRAMES = 20
-"""Frames after which the desk is learned in every second one, and its colours in the others."""
+"""Frames after which the desk is learned in every second one, and its colours in the others, and
+in which a picture that stays the same is looked at again only now and then."""
 
 IMAGE_STRIPS = 9
 """Parts of the image of which one a frame is learned as background while there is no hand."""
@@ -99,6 +100,7 @@ class HandFinder:
         self._faces = FaceCheck()
         self._background = Background()
         self._colours = ColourModel()
+        self._stillness = Stillness()
         self._strip = self._frames = 0
         self._last: HandMask | None = None
         self._seen = -np.inf
@@ -120,7 +122,8 @@ class HandFinder:
             self._last = None
             return None
         small = shrunk(image[window.image_box], window.scale)
-        self._last = self._found(image, pose, window, small)
+        if self._frames < MANY_FRAMES or not self._stillness.is_still(window, small):
+            self._last = self._found(image, pose, window, small)
         return self._last
 
     def region(self, camera_from_cube: Array) -> Box | None:

@@ -25,6 +25,14 @@ MIN_SIDE_PX = 8
 """Least side of a window [px of it]."""
 
 
+STILL_FRAMES = 3
+"""Frames in turn that are not looked at while a window shows the same."""
+
+STILL_PX, STILL_LEVELS, MIN_CHANGE_EDGES2 = 0.1, 8, 0.02
+"""It shows the same if no corner of the cube moves further [px of the window], and a smaller area
+[square edges] changes by more [levels of 255]: a finger's tip is larger."""
+
+
 @dataclass(frozen=True)
 class Window:
     """A part of the image at working resolution."""
@@ -109,6 +117,35 @@ class WindowFinder:
         (left, width, columns), (top, height, rows) = ranges
         quads = quads.reshape(-1, 4, 2)
         return Window(left, top, width, height, scale, edge / scale, quads, (rows, columns))
+
+
+class Stillness:
+    """Tells whether a window shows what it showed when it was last looked at."""
+
+    def __init__(self) -> None:
+        self._window: Window | None = None
+        self._picture: Image = np.zeros((0, 0, 3), np.uint8)
+        self._frames = 0
+
+    def is_still(self, window: Window, picture: Image) -> bool:
+        """Return True for at most `STILL_FRAMES` in turn; False means that it is looked at now.
+
+        `picture` is the window at working resolution, (h, w, 3) BGR.
+        """
+        self._frames += 1
+        if self._frames <= STILL_FRAMES and self._is_same(window, picture):
+            return True
+        self._window, self._picture, self._frames = window, picture, 0
+        return False
+
+    def _is_same(self, window: Window, picture: Image) -> bool:
+        last = self._window
+        if last is None or (last.scale, last.box) != (window.scale, window.box):
+            return False
+        if np.abs(last.quads - window.quads).max() > STILL_PX:
+            return False
+        changed = np.count_nonzero(cv2.absdiff(picture, self._picture) > STILL_LEVELS)
+        return bool(changed < MIN_CHANGE_EDGES2 * window.edge**2)
 
 
 def shrunk(image: Image, scale: int) -> Image:

@@ -8,8 +8,10 @@ import pytest
 
 from tests.bench.hand_scenes import HandScene, HandView
 from tests.tracking.drawn import WIDE, held, photograph, scene
-from tracking.appearance.hand import HandFinder, HandMask
+from tracking.appearance.hand import MANY_FRAMES, HandFinder, HandMask
+from tracking.appearance.window import Stillness, WindowFinder
 from tracking.cube.model import CubeModel
+from tracking.geometry.projection import Projection
 from tracking.geometry.state import CubeState
 
 CUBE = CubeModel.load("locomotion")
@@ -111,6 +113,33 @@ def test_a_finger_on_a_face_is_found_in_the_first_picture():
     assert found[250:294, 632:650].mean() > 0.6
     found[200:312, 614:668] = 0
     assert not found.any()
+
+
+def test_a_finger_that_comes_into_a_still_picture_is_found_at_once():
+    pose, finder = held(), HandFinder(CUBE, WIDE)
+    picture = photograph(scene((CUBE, pose), camera=WIDE))
+    for _ in range(MANY_FRAMES + 5):
+        assert finder.update(picture, state_at(pose)) is None
+    picture = picture.copy()
+    picture[210:276, 626:656] = (96, 124, 168)
+    assert finder.update(picture, state_at(pose)) is not None
+
+
+def test_a_window_that_shows_the_same_is_looked_at_now_and_then():
+    made = HandScene(HandView("000000", hand=False), CUBE)
+    projection = Projection(made.intrinsics)
+    window = WindowFinder(CUBE, projection, np.zeros((6, 4, 3))).window(made.truth(0))
+    assert window is not None
+    picture = np.full((window.height, window.width, 3), 90, np.uint8)
+    stillness = Stillness()
+    looked_at = [not stillness.is_still(window, picture) for _ in range(9)]
+    assert looked_at == [True, False, False, False, True, False, False, False, True]
+    noisy = picture + np.random.default_rng(1).integers(0, 9, picture.shape).astype(np.uint8)
+    assert stillness.is_still(window, noisy)
+    noisy[20:25, 20:25] += 30
+    assert not stillness.is_still(window, noisy)
+    moved = replace(window, quads=window.quads + 0.2)
+    assert not stillness.is_still(moved, noisy)
 
 
 def test_a_spot_inside_a_face_is_no_finger():
