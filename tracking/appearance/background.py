@@ -1,5 +1,8 @@
 """What is behind the hand: a picture of the desk, learned where no hand is."""
 
+import math
+from dataclasses import dataclass
+
 import cv2
 import numpy as np
 
@@ -10,10 +13,11 @@ MIN_GAIN, MAX_GAIN = 0.45, 2.0
 """Least and most light on the background relative to the light before, as L + 16 of CIELab: a
 shadow that comes or goes."""
 
-MIN_CHROMA_NOISE, MIN_GAIN_NOISE = 0.3, 0.003
-"""Least deviation of chroma [CIELab] and of the gain that noise makes at working resolution."""
+MIN_CHROMA_NOISE, MIN_DETAIL_NOISE = 0.3, 0.5
+"""Least deviation of chroma [CIELab], and of lightness [CIELab bytes] at one gain, that noise makes
+at working resolution."""
 
-CHROMA_LIMIT, GAIN_LIMIT = 4.0, 2.5
+CHROMA_LIMIT, DETAIL_LIMIT = 4.0, 2.5
 """Deviations of noise from which on a pixel is something else."""
 
 SHADE_CHROMA, SHADE_DETAIL, EDGE_DETAIL = 10.0, 0.008, 0.05
@@ -68,6 +72,38 @@ Box = tuple[slice, slice]
 """Rows and columns of a window."""
 
 
+@dataclass(frozen=True)
+class Place:
+    """What a window of the picture is, compared with the background there."""
+
+    odds: Floats
+    """What each pixel speaks for a hand, (h, w): logarithm of odds, 0 in the cube."""
+
+    changed: Flags
+    """Pixels that look like something else, (h, w)."""
+
+    steady: bool
+    """False where so little looks as before that the camera must have moved."""
+
+    light: Floats
+    """L + 16 of the picture, (h, w)."""
+
+    behind: Floats
+    """The same of the background, (h, w)."""
+
+    def likeness(self, where: Flags) -> float:
+        """Return how alike the details of picture and background are in some pixels, -1…1.
+
+        It is the correlation, and near 0 for a hand. A textured thing that has moved by less than
+        a pixel looks like something else at most pixels, and yet is much like itself.
+        """
+        now, before = (
+            (plane - cv2.blur(plane, (5, 5)))[where] for plane in (self.light, self.behind)
+        )
+        norm = math.sqrt(float(now @ now) * float(before @ before))
+        return float(now @ before) / max(norm, 1e-6)
+
+
 class Background:
     """A picture of what the camera shows without the hand, at one resolution."""
 
@@ -89,8 +125,8 @@ class Background:
             age = np.asarray(cv2.resize(self._age, (width, height)), np.uint8)
             self._age = age * (unknown == 0)
 
-    def odds(self, lab: Floats, box: Box, outside: Flags) -> tuple[Floats, Flags, bool]:
-        """Return what each pixel speaks for a hand, whether it changed, and whether all is known.
+    def compare(self, lab: Floats, box: Box, outside: Flags) -> Place:
+        """Compare a window of the picture with the background.
 
         Parameters
         ----------
@@ -100,11 +136,6 @@ class Background:
             Rows and columns of the window.
         outside
             Pixels outside the cube.
-
-        Returns
-        -------
-        The logarithm of odds, (h, w), 0 in the cube; the pixels that look like something else,
-        (h, w); and False where so little looks as before that the camera must have moved.
         """
         light, a, b = lab
         (mean, mean_a, mean_b), age = self._mean[:, box[0], box[1]], self._age[box]
@@ -113,7 +144,7 @@ class Background:
         some, total = known[SPARSE], np.count_nonzero(known)
         if total < max(MIN_KNOWN * np.count_nonzero(outside), 200) or not some.any():
             self._lit_anew = np.zeros(age.shape, bool)
-            return np.float32(UNKNOWN) * outside, np.zeros(age.shape, bool), True
+            return Place(np.float32(UNKNOWN) * outside, self._lit_anew, True, light, mean)
         gain = light / mean
         off_a, off_b = a - gain * mean_a, b - gain * mean_b
         # The camera's white balance drifts.
@@ -121,15 +152,17 @@ class Background:
         off_b -= quantile(off_b[SPARSE][some], 0.5)
         chroma = cv2.magnitude(cv2.blur(off_a, (3, 3)), cv2.blur(off_b, (3, 3)))
         # A shadow keeps the texture of what it falls on, so the gain is smooth.
-        rough, wide = _roughness(gain, 3, SMALL), _roughness(gain, 5, WIDE)
+        # Noise of the lightness is the same in bright and in dark places, so that of the gain not.
+        rough, wide = mean * _roughness(gain, 3, SMALL), mean * _roughness(gain, 5, WIDE)
         shade = np.abs(gain - 1)
         chroma_noise = _noise(chroma[SPARSE][some], MIN_CHROMA_NOISE)
-        gain_noise = _noise(rough[SPARSE][some], MIN_GAIN_NOISE)
-        wide_noise = _noise(wide[SPARSE][some], MIN_GAIN_NOISE)
+        rough_noise = _noise(rough[SPARSE][some], MIN_DETAIL_NOISE)
+        wide_noise = _noise(wide[SPARSE][some], MIN_DETAIL_NOISE)
         lit = chroma < CHROMA_LIMIT * chroma_noise + SHADE_CHROMA * shade
-        lit &= rough < GAIN_LIMIT * gain_noise + EDGE_DETAIL * shade
+        detail = shade * mean
+        lit &= rough < DETAIL_LIMIT * rough_noise + EDGE_DETAIL * detail
         lit &= (gain > MIN_GAIN) & (gain < MAX_GAIN)
-        smooth = lit & (wide < GAIN_LIMIT * wide_noise + SHADE_DETAIL * shade)
+        smooth = lit & (wide < DETAIL_LIMIT * wide_noise + SHADE_DETAIL * detail)
         unchanged = smooth & (np.abs(light - mean) < SAME_LIGHTNESS)
         same = np.count_nonzero(unchanged & known) / total
         trust = min(max((same - LOST_SHARE) / (TRUSTED_SHARE - LOST_SHARE), 0.0), 1.0)
@@ -138,7 +171,7 @@ class Background:
         looks |= outside.view(np.uint8) - np.uint8(1)  # 255 in the cube
         odds = np.asarray(cv2.LUT(looks, _NOT_TRUSTED + np.float32(trust) * _TRUST), np.float32)
         self._lit_anew = lit & ~unchanged
-        return odds, (odds > 0) & ~lit, trust > 0
+        return Place(odds, (odds > 0) & ~lit, trust > 0, light, mean)
 
     def learn(self, lab: Floats, box: Box, free: Flags, changed: Flags) -> None:
         """Learn the pixels of a window that are free of cube and hand."""

@@ -142,15 +142,15 @@ class HandFinder:
         outside = np.ones(seen.shape, bool)
         outside[box] = ~outer
 
-        by_place, changed, steady = self._background.odds(lab, window.box, outside)
-        if not steady:
+        place = self._background.compare(lab, window.box, outside)
+        if not place.steady:
             self._background.forget()
         if not (self._colours.knows_hand and self._colours.knows_behind):
             self._learn_first(seen, window, cube, outside)
             by_colour = self._colours.odds(seen)
-        odds = _odds(by_colour, by_place, changed | ~outside, cube, window)
-        hand = connected(cleaned(odds > 0), window, cube.outline, cube.evidence, by_place > 0)
-        self._learn(lab, seen, window, outside, cube.evidence, hand, changed, odds)
+        odds = _odds(by_colour, place.odds, place.changed | ~outside, cube, window)
+        hand = connected(cleaned(odds > 0), window, cube.outline, cube.evidence, place)
+        self._learn(lab, seen, window, outside, cube.evidence, hand, place.changed, odds)
         if hand is None:
             self._learn_strip(image, window)
             return None

@@ -3,6 +3,7 @@
 import cv2
 import numpy as np
 
+from tracking.appearance.background import Place
 from tracking.appearance.window import Window
 from tracking.geometry.arrays import Flags, Floats, Image
 
@@ -18,8 +19,12 @@ MIN_TOUCH_EDGES2, MIN_AREA_EDGES2 = 0.01, 0.15
 MIN_EXTENT_EDGES = 0.9
 """How far from the cube's bounds it must reach: there is an arm behind a hand."""
 
-MIN_CHANGED_SHARE = 0.6
+MIN_CHANGED_SHARE = 0.3
 """Least share of such a hand that does not look like the desk."""
+
+MAX_LIKENESS = 0.5
+"""Most likeness of its details to those of the desk: of hands on photographs it is at most 0.4, of
+a keyboard that the camera's movement has shifted by a fraction of a pixel at least 0.8."""
 
 EDGE_LEVELS = 90.0
 """Range of the odds, whose whole range is 255, over which the cover rises from 0 to 255."""
@@ -52,7 +57,7 @@ def cleaned(flags: Flags) -> Image:
 
 
 def connected(
-    hand: Image, window: Window, outline: Image, evidence: Flags, changed: Flags
+    hand: Image, window: Window, outline: Image, evidence: Flags, place: Place
 ) -> Image | None:
     """Choose the components that hold evidence, or that touch the cube and reach away.
 
@@ -64,8 +69,8 @@ def connected(
         Where that is.
     outline, evidence
         The whole cube, and what of it is hidden, in the window's `cube_box`.
-    changed
-        Pixels that do not look like the desk, (h, w).
+    place
+        How the window looks compared with the desk.
     """
     count, labels32 = cv2.connectedComponents(hand)
     if count == 1:
@@ -82,7 +87,9 @@ def connected(
         area = _counts(labels)
         keep &= area > MIN_AREA_EDGES2 * square
         keep &= area > _counts(np.ascontiguousarray(labels[_within_reach(window)]))
-        keep &= _counts(labels, changed.view(np.uint8)) > MIN_CHANGED_SHARE * area
+        keep &= _counts(labels, (place.odds > 0).view(np.uint8)) > MIN_CHANGED_SHARE * area
+        for label in np.flatnonzero(keep).tolist():
+            keep[label] = place.likeness(labels == label) < MAX_LIKENESS
     keep |= hides_face
     keep[[0, 255]] = False
     return np.asarray(cv2.LUT(labels, keep.view(np.uint8)), np.uint8) if keep.any() else None

@@ -3,6 +3,7 @@
 import itertools
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
@@ -146,6 +147,20 @@ def test_a_spot_inside_a_face_is_no_finger():
     pose, picture = held(), photograph(scene((CUBE, held()), camera=WIDE))
     picture[300:372, 630:656] = (96, 124, 168)  # a hand would come from outside
     assert HandFinder(CUBE, WIDE).update(picture, state_at(pose)) is None
+
+
+@pytest.mark.parametrize("shift_px", [0.3, 1.0])
+def test_a_keyboard_that_moves_by_a_pixel_is_no_hand(shift_px):
+    pose, finder = held(), HandFinder(CUBE, WIDE)
+    keys = np.full((720, 1280), 0.015, np.float32)
+    keys[::14] = keys[1::14] = keys[:, ::14] = keys[:, 1::14] = 0.15
+    moved = cv2.warpAffine(keys, np.array([[1, 0, shift_px], [0, 1, shift_px]]), (1280, 720))
+    desk = scene((CUBE, pose), camera=WIDE)
+    free = cv2.dilate((desk != desk[0, 0]).astype(np.uint8), np.ones((9, 9))) == 0
+    free[:, 640:] = False
+    for index in range(14):
+        light = np.where(free, keys if index < 10 else moved, desk)
+        assert finder.update(photograph(light, seed=index), state_at(pose)) is None
 
 
 def test_skin_in_the_colour_of_the_desk_is_found_by_its_texture():
