@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from tracking.appearance.colour_model import LIGHTNESS_OFFSET
 from tracking.geometry.arrays import Flags, Floats, Image
 from tracking.geometry.robust_statistics import quantile
 
@@ -198,6 +199,18 @@ class Background:
     def forget(self) -> None:
         """Forget all: the camera was moved."""
         self._age[:] = 0
+
+    def planes(self, box: Box, where: Flags) -> list[Image]:
+        """Return L, a and b of CIELab in bytes, of some pixels of a window, (n,) each."""
+        offsets = (-LIGHTNESS_OFFSET, 128.0, 128.0)
+        means = (plane[where] for plane in self._mean[:, box[0], box[1]])
+        return [
+            (mean + offset).astype(np.uint8) for mean, offset in zip(means, offsets, strict=True)
+        ]
+
+    def forget_some(self, box: Box, where: Flags) -> None:
+        """Forget some pixels of a window: what was learned there was no background."""
+        self._age[box][where] = 0
 
     def _learn(self, lab: Floats, box: Box, steps: Floats) -> None:
         for plane, mean in zip(lab, self._mean[:, box[0], box[1]], strict=True):

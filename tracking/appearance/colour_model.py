@@ -29,6 +29,9 @@ MIN_DENSITY = 1e-4
 MAX_ODDS = 2.0
 """What a colour speaks for or against a hand at most, as the logarithm of odds."""
 
+MIN_DIFFERENCE = 1.0
+"""Difference of such odds from which on one of two colours is more likely that of a hand."""
+
 Colours = NDArray[np.uint16]
 """Number of the bin of each pixel, (h, w)."""
 
@@ -42,8 +45,10 @@ _BINS_OF_L = (_BYTES // LIGHTNESS_STEP).astype(np.uint16)
 def colours(planes: Sequence[Image]) -> Colours:
     """Return the bin of each pixel; `planes` are L, a and b of CIELab in bytes, (h, w) each."""
     light, a, b = planes
-    bins = cv2.add(cv2.LUT(a, _BINS_OF_A), cv2.LUT(b, _BINS_OF_B))
-    return np.asarray(cv2.add(bins, cv2.LUT(light, _BINS_OF_L)), np.uint16)
+    bins = np.asarray(cv2.LUT(a, _BINS_OF_A), np.uint16)
+    bins += np.asarray(cv2.LUT(b, _BINS_OF_B), np.uint16)
+    bins += np.asarray(cv2.LUT(light, _BINS_OF_L), np.uint16)
+    return bins
 
 
 class ColourModel:
@@ -84,6 +89,14 @@ class ColourModel:
             self._odds = np.minimum(np.maximum(ratio, -MAX_ODDS), MAX_ODDS)
             self._odds_are_new = True
         return np.asarray(self._odds.take(seen), np.float32)
+
+    def uncovered(self, now: Colours, before: Colours) -> Flags:
+        """Return where what was there before is more likely a hand than what is there now, (n,).
+
+        Before a hand is known, that is what is rarer behind it.
+        """
+        odds = self._odds if self.knows_hand else -np.log(_density(self._behind)).ravel()
+        return np.asarray(odds.take(before) - odds.take(now) > MIN_DIFFERENCE)
 
 
 def _learned(counts: Floats, seen: Colours) -> Floats:

@@ -1,12 +1,12 @@
 """The hand in front of the cube, as a soft mask."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.appearance.background import Background, Box
+from tracking.appearance.background import UNKNOWN, Background, Box, Place
 from tracking.appearance.colour_model import LIGHTNESS_OFFSET, ColourModel, Colours, colours
 from tracking.appearance.face_check import FaceCheck
 from tracking.appearance.face_pattern import FacePattern
@@ -39,7 +39,8 @@ MANY_FRAMES = 20
 in which a picture that stays the same is looked at again only now and then."""
 
 IMAGE_STRIPS = 9
-"""Parts of the image of which one a frame is learned as background while there is no hand."""
+"""Parts of the image of which one a frame is learned as background, at first, and while there is no
+hand."""
 
 SMALL, WIDE = np.ones((3, 3), np.uint8), np.ones((5, 5), np.uint8)
 """A pixel with its neighbours."""
@@ -148,11 +149,13 @@ class HandFinder:
         if not (self._colours.knows_hand and self._colours.knows_behind):
             self._learn_first(seen, window, cube, outside)
             by_colour = self._colours.odds(seen)
+        place = self._without_uncovered(place, seen, window.box)
         odds = _odds(by_colour, place.odds, place.changed | ~outside, cube, window)
-        hand = connected(cleaned(odds > 0), window, cube.outline, cube.evidence, place)
+        hand = connected(cleaned(odds > 0), window, cube.outline, cube.evidence, place, by_colour)
         self._learn(lab, seen, window, outside, cube.evidence, hand, place.changed, odds)
-        if hand is None:
+        if self._frames < MANY_FRAMES or hand is None:
             self._learn_strip(image, window)
+        if hand is None:
             return None
         return HandMask(*soft_cover(hand, odds, window), cube.distance)
 
@@ -174,6 +177,21 @@ class HandFinder:
         inner = cv2.erode(seen.face, SMALL) > 0
         slanted = (seen.face == 0) & outline.view(bool)
         return _CubePart(outline, inner, slanted, evidence, inner & ~evidence & like_hand, distance)
+
+    def _without_uncovered(self, place: Place, seen: Colours, box: Box) -> Place:
+        """Forget the background where it was a hand, which has gone: at a session's beginning."""
+        changed = place.changed
+        if not changed.any():
+            return place
+        before = colours(self._background.planes(box, changed)).ravel()
+        uncovered = np.zeros(changed.shape, bool)
+        uncovered[changed] = self._colours.uncovered(seen[changed], before)
+        if not uncovered.any():
+            return place
+        self._background.forget_some(box, uncovered)
+        odds = place.odds.copy()
+        odds[uncovered] = UNKNOWN
+        return replace(place, odds=odds, changed=changed & ~uncovered)
 
     def _learn_first(self, seen: Colours, window: Window, cube: _CubePart, outside: Flags) -> None:
         """Learn colours before anything of a hand or its surroundings is known."""
@@ -208,7 +226,7 @@ class HandFinder:
             self._background.learn(lab, window.box, free, changed)
 
     def _learn_strip(self, image: Image, window: Window) -> None:
-        """Learn a strip of the whole image, without a hand: the cube may come there."""
+        """Learn a strip of the whole image: the cube may come there."""
         scale = window.scale
         columns, rows = (side // scale for side in self._projection.size)
         self._strip = (self._strip + 1) % IMAGE_STRIPS

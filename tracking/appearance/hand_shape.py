@@ -26,6 +26,10 @@ MAX_LIKENESS = 0.5
 """Most likeness of its details to those of the desk: of hands on photographs it is at most 0.4, of
 a keyboard that the camera's movement has shifted by a fraction of a pixel at least 0.8."""
 
+MIN_COLOUR_ODDS = -1.0
+"""Least of what its colours speak for a hand on average: about 0 for skin in the colour of the
+desk, below -1.5 for a desk that shows where something else was."""
+
 EDGE_LEVELS = 90.0
 """Range of the odds, whose whole range is 255, over which the cover rises from 0 to 255."""
 
@@ -57,7 +61,12 @@ def cleaned(flags: Flags) -> Image:
 
 
 def connected(
-    hand: Image, window: Window, outline: Image, evidence: Flags, place: Place
+    hand: Image,
+    window: Window,
+    outline: Image,
+    evidence: Flags,
+    place: Place,
+    by_colour: Floats,
 ) -> Image | None:
     """Choose the components that hold evidence, or that touch the cube and reach away.
 
@@ -71,6 +80,8 @@ def connected(
         The whole cube, and what of it is hidden, in the window's `cube_box`.
     place
         How the window looks compared with the desk.
+    by_colour
+        What colours speak for a hand, (h, w).
     """
     count, labels32 = cv2.connectedComponents(hand)
     if count == 1:
@@ -89,7 +100,10 @@ def connected(
         keep &= area > _counts(np.ascontiguousarray(labels[_within_reach(window)]))
         keep &= _counts(labels, (place.odds > 0).view(np.uint8)) > MIN_CHANGED_SHARE * area
         for label in np.flatnonzero(keep).tolist():
-            keep[label] = place.likeness(labels == label) < MAX_LIKENESS
+            part = labels == label
+            keep[label] = (
+                by_colour[part].mean() > MIN_COLOUR_ODDS and place.likeness(part) < MAX_LIKENESS
+            )
     keep |= hides_face
     keep[[0, 255]] = False
     return np.asarray(cv2.LUT(labels, keep.view(np.uint8)), np.uint8) if keep.any() else None

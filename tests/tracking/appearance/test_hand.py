@@ -23,12 +23,14 @@ def state_at(pose, visible=True) -> CubeState:
     return CubeState(visible, pose, still, np.zeros((6, 6)), "markers", (), 0.3, 0.0)
 
 
-def shown(view: HandView, frames: int) -> tuple[HandMask | None, np.ndarray, tuple[slice, slice]]:
+def shown(
+    view: HandView, frames: int, begin: int = 0
+) -> tuple[HandMask | None, np.ndarray, tuple[slice, slice]]:
     """The mask of the last of some frames, with the true cover and the region."""
     made = HandScene(view, CUBE)
     finder, mask = HandFinder(CUBE, made.intrinsics), None
     truth = np.zeros((720, 1280), np.float32)
-    for index in range(frames):
+    for index in range(begin, frames):
         frame, truth = made.frame(index)
         mask = finder.update(frame.image, state_at(made.truth(index)))
     region = finder.region(made.truth(frames - 1))
@@ -177,6 +179,15 @@ def test_fingers_in_the_colours_of_print_are_found(skin):
     assert mask is not None
     found = covered(mask)[region]
     assert np.minimum(found, truth[region]).sum() > 0.86 * np.maximum(found, truth[region]).sum()
+
+
+def test_a_hand_that_was_there_from_the_beginning_leaves_no_ghost():
+    view = HandView("eadaba", azimuth_deg=-60, seed=2, gradient=0.3)
+    mask, truth, region = shown(view, frames=45, begin=30)
+    assert mask is not None
+    found = covered(mask)[region]
+    assert np.maximum(found - truth[region], 0).sum() < 0.1 * truth[region].sum()
+    assert np.minimum(found, truth[region]).sum() > 0.8 * np.maximum(found, truth[region]).sum()
 
 
 def test_a_hand_stays_for_a_moment_when_the_cube_is_lost():
