@@ -32,6 +32,9 @@ MAX_ODDS = 2.0
 MIN_DIFFERENCE = 1.0
 """Difference of such odds from which on one of two colours is more likely that of a hand."""
 
+MIN_COMMON = 0.01
+"""Share that a colour must have of what is behind the hand, to be what a hand has uncovered."""
+
 Colours = NDArray[np.uint16]
 """Number of the bin of each pixel, (h, w)."""
 
@@ -95,8 +98,10 @@ class ColourModel:
 
         Before a hand is known, that is what is rarer behind it.
         """
-        odds = self._odds if self.knows_hand else -np.log(_density(self._behind)).ravel()
-        return np.asarray(odds.take(before) - odds.take(now) > MIN_DIFFERENCE)
+        behind = _density(self._behind).ravel()
+        odds = self._odds if self.knows_hand else -np.log(behind)
+        uncovered = odds.take(before) - odds.take(now) > MIN_DIFFERENCE
+        return np.asarray(uncovered & (behind.take(now) > MIN_COMMON))
 
 
 def _learned(counts: Floats, seen: Colours) -> Floats:
