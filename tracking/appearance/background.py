@@ -1,7 +1,7 @@
 """What is behind the hand: a picture of the desk, learned where no hand is."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -86,11 +86,28 @@ class Place:
     steady: bool
     """False where so little looks as before that the camera must have moved."""
 
-    light: Floats
-    """L + 16 of the picture, (h, w)."""
+    picture: Floats
+    """L + 16, a and b of CIELab of the picture, in bytes, (3, h, w)."""
 
-    behind: Floats
-    """The same of the background, (h, w)."""
+    background: Floats
+    """The same of the background, (3, h, w)."""
+
+    known: Flags
+    """Pixels whose background is known, (h, w)."""
+
+    def part(self, box: Box) -> "Place":
+        """Return the same of a part of the window."""
+        picture, background = (
+            planes[:, box[0], box[1]] for planes in (self.picture, self.background)
+        )
+        return replace(
+            self,
+            odds=self.odds[box],
+            changed=self.changed[box],
+            picture=picture,
+            background=background,
+            known=self.known[box],
+        )
 
     def likeness(self, where: Flags) -> float:
         """Return how alike the details of picture and background are in some pixels, -1…1.
@@ -99,7 +116,8 @@ class Place:
         a pixel looks like something else at most pixels, and yet is much like itself.
         """
         now, before = (
-            (plane - cv2.blur(plane, (5, 5)))[where] for plane in (self.light, self.behind)
+            (light - cv2.blur(light, (5, 5)))[where]
+            for light in (self.picture[0], self.background[0])
         )
         norm = math.sqrt(float(now @ now) * float(before @ before))
         return float(now @ before) / max(norm, 1e-6)
@@ -139,23 +157,28 @@ class Background:
             Pixels outside the cube.
         """
         light, a, b = lab
-        (mean, mean_a, mean_b), age = self._mean[:, box[0], box[1]], self._age[box]
-        # The neighbours take part in what follows.
-        known = cv2.erode(((age > 0) & outside).view(np.uint8), SMALL).view(bool)
+        background, age = self._mean[:, box[0], box[1]], self._age[box]
+        mean, mean_a, mean_b = background
+        known = (age > 0) & outside
         some, total = known[SPARSE], np.count_nonzero(known)
         if total < max(MIN_KNOWN * np.count_nonzero(outside), 200) or not some.any():
             self._lit_anew = np.zeros(age.shape, bool)
-            return Place(np.float32(UNKNOWN) * outside, self._lit_anew, True, light, mean)
+            odds = np.float32(UNKNOWN) * outside
+            return Place(odds, self._lit_anew, True, lab, background, self._lit_anew)
         gain = light / mean
         off_a, off_b = a - gain * mean_a, b - gain * mean_b
         # The camera's white balance drifts.
         off_a -= quantile(off_a[SPARSE][some], 0.5)
         off_b -= quantile(off_b[SPARSE][some], 0.5)
+        # What is unknown takes part in filters as if it looked as before.
+        off_a *= known
+        off_b *= known
+        more_light = (gain - 1) * known
         chroma = cv2.magnitude(cv2.blur(off_a, (3, 3)), cv2.blur(off_b, (3, 3)))
         # A shadow keeps the texture of what it falls on, so the gain is smooth.
         # Noise of the lightness is the same in bright and in dark places, so that of the gain not.
-        rough, wide = mean * _roughness(gain, 3, SMALL), mean * _roughness(gain, 5, WIDE)
-        shade = np.abs(gain - 1)
+        rough, wide = (mean * _roughness(more_light, *each) for each in ((3, SMALL), (5, WIDE)))
+        shade = np.abs(more_light)
         chroma_noise = _noise(chroma[SPARSE][some], MIN_CHROMA_NOISE)
         rough_noise = _noise(rough[SPARSE][some], MIN_DETAIL_NOISE)
         wide_noise = _noise(wide[SPARSE][some], MIN_DETAIL_NOISE)
@@ -172,7 +195,7 @@ class Background:
         looks |= outside.view(np.uint8) - np.uint8(1)  # 255 in the cube
         odds = np.asarray(cv2.LUT(looks, _NOT_TRUSTED + np.float32(trust) * _TRUST), np.float32)
         self._lit_anew = lit & ~unchanged
-        return Place(odds, (odds > 0) & ~lit, trust > 0, light, mean)
+        return Place(odds, (odds > 0) & ~lit, trust > 0, lab, background, known)
 
     def learn(self, lab: Floats, box: Box, free: Flags, changed: Flags) -> None:
         """Learn the pixels of a window that are free of cube and hand."""

@@ -10,7 +10,8 @@ from tracking.appearance.background import UNKNOWN, Background, Box, Place
 from tracking.appearance.colour_model import LIGHTNESS_OFFSET, ColourModel, Colours, colours
 from tracking.appearance.face_check import FaceCheck
 from tracking.appearance.face_pattern import FacePattern
-from tracking.appearance.hand_shape import ODDS_RANGE, cleaned, connected, filled, soft_cover
+from tracking.appearance.hand_edge import ODDS_RANGE, soft_cover
+from tracking.appearance.hand_shape import cleaned, connected, filled
 from tracking.appearance.window import Stillness, Window, WindowFinder, shrunk
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Flags, Floats, Image
@@ -157,7 +158,7 @@ class HandFinder:
             self._learn_strip(image, window)
         if hand is None:
             return None
-        return HandMask(*soft_cover(hand, odds, window), cube.distance)
+        return HandMask(*soft_cover(hand, odds, window, place), cube.distance)
 
     def _cube_part(self, lab: Floats, by_colour: Floats, pose: Array, window: Window) -> _CubePart:
         box = window.cube_box
@@ -212,8 +213,7 @@ class HandFinder:
         odds: Floats,
     ) -> None:
         """Learn the colours of the hand, and what is behind it."""
-        free = outside if hand is None else outside & (hand == 0)
-        free = cv2.erode(free.view(np.uint8), WIDE).view(bool)
+        free = outside if hand is None else outside & (cv2.dilate(hand, WIDE) == 0)
         self._frames += 1
         if hand is not None and (self._frames % 2 == 0 or self._colours.hand_is_new):
             sure = hand.view(bool) & changed & (odds > SURE_ODDS)

@@ -1,4 +1,4 @@
-"""From what each pixel speaks for a hand to the hand: its parts, its gaps and its soft edge."""
+"""From what each pixel speaks for a hand to the hand: its parts and its gaps."""
 
 import cv2
 import numpy as np
@@ -6,9 +6,6 @@ import numpy as np
 from tracking.appearance.background import Place
 from tracking.appearance.window import Window
 from tracking.geometry.arrays import Flags, Floats, Image
-
-ODDS_RANGE = 4.0
-"""Logarithm of odds, positive or negative, beyond which nothing is surer."""
 
 CLOSED_EDGES = 0.25
 """Width of gaps of the hand over the cube that are filled: about a cell of a marker [edges]."""
@@ -29,17 +26,6 @@ a keyboard that the camera's movement has shifted by a fraction of a pixel at le
 MIN_COLOUR_ODDS = -1.0
 """Least of what its colours speak for a hand on average: about 0 for skin in the colour of the
 desk, below -1.5 for a desk that shows where something else was."""
-
-EDGE_LEVELS = 90.0
-"""Range of the odds, whose whole range is 255, over which the cover rises from 0 to 255."""
-
-EDGE_SHIFT = 50.0
-"""Odds, as above, at which half is covered: what differs from the desk is smoothed, so it grows."""
-
-COVER = np.clip((np.arange(256) - 128 - EDGE_SHIFT) * (255 / EDGE_LEVELS) + 128, 0, 255).astype(
-    np.uint8
-)
-"""Cover for the odds at full resolution."""
 
 SMALL, WIDE = np.ones((3, 3), np.uint8), np.ones((5, 5), np.uint8)
 """A pixel with its neighbours."""
@@ -107,21 +93,6 @@ def connected(
     keep |= hides_face
     keep[[0, 255]] = False
     return np.asarray(cv2.LUT(labels, keep.view(np.uint8)), np.uint8) if keep.any() else None
-
-
-def soft_cover(hand: Image, odds: Floats, window: Window) -> tuple[int, int, Image]:
-    """Return the cover of the pixels of the image, soft at the edge, and where it begins."""
-    left, top, width, height = cv2.boundingRect(hand)
-    left, right = max(left - 2, 0), min(left + width + 2, window.width)
-    top, bottom = max(top - 2, 0), min(top + height + 2, window.height)
-    part = np.s_[top:bottom, left:right]
-    level = cv2.convertScaleAbs(np.maximum(odds[part] + ODDS_RANGE, 0), None, 128 / ODDS_RANGE)
-    core, near = cv2.erode(hand[part], SMALL), cv2.dilate(hand[part], SMALL)
-    level = np.maximum(level, core * np.uint8(255)) * near
-    size = ((right - left) * window.scale, (bottom - top) * window.scale)
-    large = cv2.resize(level, size, interpolation=cv2.INTER_LINEAR)
-    x, y = (window.left + left) * window.scale, (window.top + top) * window.scale
-    return x, y, np.asarray(cv2.LUT(large, COVER), np.uint8)
 
 
 def _within_reach(window: Window) -> tuple[slice, slice]:
