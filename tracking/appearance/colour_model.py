@@ -60,6 +60,7 @@ class ColourModel:
     def __init__(self) -> None:
         self._hand, self._behind = np.zeros(LAB_BINS, np.float32), np.zeros(LAB_BINS, np.float32)
         self._odds = np.zeros(self._hand.size, np.float32)
+        self._behind_density = np.zeros(self._hand.size, np.float32)
         self._odds_are_new = True
 
     @property
@@ -87,9 +88,11 @@ class ColourModel:
 
     def odds(self, seen: Colours) -> Floats:
         """Return what the colour of each pixel speaks for a hand, (h, w): logarithm of odds."""
-        if not self._odds_are_new and self.knows_hand:
-            ratio = np.log(_density(self._hand) / _density(self._behind)).ravel()
-            self._odds = np.minimum(np.maximum(ratio, -MAX_ODDS), MAX_ODDS)
+        if not self._odds_are_new:
+            self._behind_density = _density(self._behind)
+            if self.knows_hand:
+                ratio = np.log(_density(self._hand) / self._behind_density)
+                self._odds = np.minimum(np.maximum(ratio, -MAX_ODDS), MAX_ODDS)
             self._odds_are_new = True
         return np.asarray(self._odds.take(seen), np.float32)
 
@@ -98,7 +101,7 @@ class ColourModel:
 
         Before a hand is known, that is what is rarer behind it.
         """
-        behind = _density(self._behind).ravel()
+        behind = self._behind_density
         odds = self._odds if self.knows_hand else -np.log(behind)
         uncovered = odds.take(before) - odds.take(now) > MIN_DIFFERENCE
         return np.asarray(uncovered & (behind.take(now) > MIN_COMMON))
@@ -113,4 +116,4 @@ def _density(counts: Floats) -> Floats:
     """Return the share of each colour, smoothed over neighbouring bins, and not zero."""
     by_chroma = cv2.GaussianBlur(counts, (3, 3), 0.8)
     soft = np.asarray(cv2.blur(by_chroma.reshape(-1, LAB_BINS[2]), (3, 1)), np.float32)
-    return soft * np.float32(1 / max(float(soft.sum()), 1.0)) + np.float32(MIN_DENSITY)
+    return soft.ravel() * np.float32(1 / max(float(soft.sum()), 1.0)) + np.float32(MIN_DENSITY)

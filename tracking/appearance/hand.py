@@ -7,7 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking.appearance.background import UNKNOWN, Background, Box, Place
-from tracking.appearance.colour_model import LIGHTNESS_OFFSET, ColourModel, Colours, colours
+from tracking.appearance.colour_model import (
+    LIGHTNESS_OFFSET,
+    MAX_ODDS,
+    MIN_DIFFERENCE,
+    ColourModel,
+    Colours,
+    colours,
+)
 from tracking.appearance.face_check import FaceCheck
 from tracking.appearance.face_pattern import FacePattern
 from tracking.appearance.hand_edge import ODDS_RANGE, soft_cover
@@ -150,7 +157,7 @@ class HandFinder:
         if not (self._colours.knows_hand and self._colours.knows_behind):
             self._learn_first(seen, window, cube, outside)
             by_colour = self._colours.odds(seen)
-        place = self._without_uncovered(place, seen, window.box)
+        place = self._without_uncovered(place, seen, by_colour, window.box)
         odds = _odds(by_colour, place.odds, place.changed | ~outside, cube, window)
         hand = connected(cleaned(odds > 0), window, cube.outline, cube.evidence, place, by_colour)
         self._learn(lab, seen, window, outside, cube.evidence, hand, place.changed, odds)
@@ -179,20 +186,20 @@ class HandFinder:
         slanted = (seen.face == 0) & outline.view(bool)
         return _CubePart(outline, inner, slanted, evidence, inner & ~evidence & like_hand, distance)
 
-    def _without_uncovered(self, place: Place, seen: Colours, box: Box) -> Place:
+    def _without_uncovered(self, place: Place, seen: Colours, by_colour: Floats, box: Box) -> Place:
         """Forget the background where it was a hand, which has gone: at a session's beginning."""
-        changed = place.changed
-        if not changed.any():
+        doubtful = place.changed & (by_colour < MAX_ODDS - MIN_DIFFERENCE)
+        if not doubtful.any():
             return place
-        before = colours(self._background.planes(box, changed)).ravel()
-        uncovered = np.zeros(changed.shape, bool)
-        uncovered[changed] = self._colours.uncovered(seen[changed], before)
+        before = colours(self._background.planes(box, doubtful)).ravel()
+        uncovered = np.zeros(doubtful.shape, bool)
+        uncovered[doubtful] = self._colours.uncovered(seen[doubtful], before)
         if not uncovered.any():
             return place
         self._background.forget_some(box, uncovered)
         odds = place.odds.copy()
         odds[uncovered] = UNKNOWN
-        return replace(place, odds=odds, changed=changed & ~uncovered)
+        return replace(place, odds=odds, changed=place.changed & ~uncovered)
 
     def _learn_first(self, seen: Colours, window: Window, cube: _CubePart, outside: Flags) -> None:
         """Learn colours before anything of a hand or its surroundings is known."""

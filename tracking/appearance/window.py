@@ -150,8 +150,13 @@ class Stillness:
 
 def shrunk(image: Image, scale: int) -> Image:
     """Return a part of the image at working resolution, (h, w, 3) BGR: the mean of each square."""
-    # In half the time that INTER_AREA takes.
+    # In a third of the time that INTER_AREA takes.
     side = (scale - 1) | 1
-    size = (image.shape[1] // scale, image.shape[0] // scale)
     soft = cv2.blur(image, (side, side)) if side > 1 else image
-    return np.asarray(cv2.resize(soft, size, interpolation=cv2.INTER_LINEAR), np.uint8)
+    if side == scale:
+        centres, share = soft[side // 2 :, side // 2 :], 1 / scale
+        small = cv2.resize(centres, None, fx=share, fy=share, interpolation=cv2.INTER_NEAREST)
+    else:
+        size = (image.shape[1] // scale, image.shape[0] // scale)
+        small = cv2.resize(soft, size, interpolation=cv2.INTER_LINEAR)
+    return np.asarray(small, np.uint8)
