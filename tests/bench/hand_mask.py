@@ -60,8 +60,8 @@ def covered(mask: HandMask | None, shape: tuple[int, ...]) -> Floats:
     return found
 
 
-def measure(name: str, skin: str, scenes: int, folder: Path | None) -> Result:
-    """Show all scenes of one hand; "" for none."""
+def measure(name: str, skin: str, scenes: int, folder: Path | None, begin: int) -> Result:
+    """Show all scenes of one hand, from a frame on; "" for none."""
     cube, result = CubeModel.load("locomotion"), Result()
     markers = cv2.aruco.ArucoDetector(cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50))
     for number, (azimuth, gradient, defocus) in enumerate(VIEWS[:scenes]):
@@ -69,7 +69,7 @@ def measure(name: str, skin: str, scenes: int, folder: Path | None) -> Result:
         scene = HandScene(view, cube)
         tracker, finder = CubeTracker(cube, scene.intrinsics), HandFinder(cube, scene.intrinsics)
         result.scores.append([])
-        for index in range(scene.count):
+        for index in range(begin, scene.count):
             frame, truth = scene.frame(index)
             state = tracker.update(frame)
             start = time.perf_counter()
@@ -107,15 +107,18 @@ def main() -> None:
     parser.add_argument("-o", "--output", type=Path, help="folder for pictures")
     parser.add_argument("--only", nargs="*", help="names of the hands to show, or none")
     parser.add_argument("--scenes", type=int, default=len(VIEWS), help="scenes of each hand")
+    parser.add_argument(
+        "--begin", type=int, default=0, help="first frame; from 22 on, the hand is there"
+    )
     arguments = parser.parse_args()
     table = Table("hand", "IoU", "of each scene", "worst frame", "ms", "× markers", "false cover")
     means, times, false = {}, [], 0
     for name, skin in ({"none": ""} | SKINS | GLOVES).items():
         if arguments.only and name not in arguments.only:
             continue
-        found = measure(name, skin, arguments.scenes, arguments.output)
+        found = measure(name, skin, arguments.scenes, arguments.output, arguments.begin)
         times += found.times
-        false = max(false, *found.false_covers)
+        false = max(false, *found.false_covers, 0)
         row = ["", "", ""]
         if skin:
             scenes = [float(np.mean(scores)) for scores in found.scores]
@@ -124,7 +127,9 @@ def main() -> None:
             row = [f"{means[name]:.3f}", " ".join(f"{s:.2f}" for s in scenes), f"{worst:.2f}"]
         cost = float(np.median(found.times))
         row += [f"{cost:.2f}", f"{cost / float(np.median(found.marker_times)):.2f}"]
-        table.add_row(name, *row, f"{max(found.false_covers)} of {len(found.false_covers)} frames")
+        table.add_row(
+            name, *row, f"{max(found.false_covers, default=0)} of {len(found.false_covers)} frames"
+        )
     skins = [mean for name, mean in means.items() if name in SKINS and name != HARD_SKIN]
     spread = max(skins) - min(skins) if skins else 0.0
     low = [name for name, mean in means.items() if mean < MIN_IOU]

@@ -10,13 +10,13 @@ from tracking.geometry.arrays import Flags, Floats, Image
 ODDS_RANGE = 4.0
 """Logarithm of odds, positive or negative, beyond which nothing is surer."""
 
-EDGE_ODDS = 1.2
+EDGE_ODDS = 0.8
 """Odds at which half of a pixel is covered: what differs from the desk is smoothed, so it grows."""
 
 MATTE_WEIGHT, MATTE_SHIFT = 0.75, 0.1
 """Weight of the share by colours, beside that by odds; and what of it is the hand's own shadow."""
 
-MIN_CONTRAST = 15.0
+MIN_CONTRAST = 25.0
 """Least difference of hand and desk by which the share is measured [CIELab bytes]."""
 
 MIN_GAIN, MAX_GAIN = 0.4, 1.5
