@@ -73,6 +73,20 @@ class HandMask:
 
 
 @dataclass(frozen=True)
+class _View:
+    """What a window of the image shows."""
+
+    window: Window
+    """Where it is."""
+
+    lab: Floats
+    """L + 16, a and b of CIELab, in bytes, (3, h, w)."""
+
+    colours: Colours
+    """The same as the bins of a histogram, (h, w)."""
+
+
+@dataclass(frozen=True)
 class _CubePart:
     """What the cube's part of a window shows."""
 
@@ -142,41 +156,44 @@ class HandFinder:
 
     def _found(self, image: Image, pose: Array, window: Window, small: Image) -> HandMask | None:
         planes = _planes(small)
-        lab, seen = _float_planes(planes), colours(planes)
+        view = _View(window, _float_planes(planes), colours(planes))
+        by_colour = self._colours.odds(view.colours)
+        cube = self._cube_part(view, by_colour, pose)
+        outside = np.ones(by_colour.shape, bool)
+        outside[window.cube_box] = cv2.dilate(cube.outline, SMALL) == 0
         columns, rows = (side // window.scale for side in self._projection.size)
         self._background.match_size(columns, rows)
-        by_colour, box = self._colours.odds(seen), window.cube_box
-        cube = self._cube_part(lab, by_colour, pose, window)
-        outer = np.asarray(cv2.dilate(cube.outline, SMALL), np.uint8).view(bool)
-        outside = np.ones(seen.shape, bool)
-        outside[box] = ~outer
-
-        place = self._background.compare(lab, window.box, outside)
+        place = self._background.compare(view.lab, window.box, outside)
         if not place.steady:
             self._background.forget()
         if not (self._colours.knows_hand and self._colours.knows_behind):
-            self._learn_first(seen, window, cube, outside)
-            by_colour = self._colours.odds(seen)
-        place = self._without_uncovered(place, seen, by_colour, window.box)
+            self._learn_first(view, cube, outside)
+            by_colour = self._colours.odds(view.colours)
+        place = self._without_uncovered(place, view, by_colour)
         odds = _odds(by_colour, place.odds, place.changed | ~outside, cube, window)
         hand = connected(cleaned(odds > 0), window, cube.outline, cube.evidence, place, by_colour)
-        self._learn(lab, seen, window, outside, cube.evidence, hand, place.changed, odds)
+        sure = place.changed & (odds > SURE_ODDS)
+        if hand is not None:
+            sure &= hand.view(bool)
+            sure[window.cube_box] |= cube.evidence
+        self._learn(view, hand, sure, outside, place.changed)
         if self._frames < MANY_FRAMES or hand is None:
             self._learn_strip(image, window)
         if hand is None:
             return None
         return HandMask(*soft_cover(hand, odds, window, place), cube.distance)
 
-    def _cube_part(self, lab: Floats, by_colour: Floats, pose: Array, window: Window) -> _CubePart:
-        box = window.cube_box
-        rows, columns = box
+    def _cube_part(self, view: _View, by_colour: Floats, pose: Array) -> _CubePart:
+        window, (rows, columns) = view.window, view.window.cube_box
         quads, size = window.cube_quads(), (columns.stop - columns.start, rows.stop - rows.start)
         outline = np.zeros(size[::-1], np.uint8)
         hull = cv2.convexHull(np.rint(quads.reshape(-1, 2) * 16).astype(np.int32))
         cv2.fillConvexPoly(outline, hull, 1, shift=4)
-        like_hand = by_colour[box] > DOUBTFUL_ODDS
+        like_hand = by_colour[rows, columns] > DOUBTFUL_ODDS
         seen = self._pattern.seen(pose, quads, size)
-        evidence = self._faces.disagreement(lab[:, rows, columns], seen, like_hand, window.edge)
+        evidence = self._faces.disagreement(
+            view.lab[:, rows, columns], seen, like_hand, window.edge
+        )
         distance = float(pose[2, 3])
         if evidence.any():
             corner = np.array([window.left + columns.start, window.top + rows.start], np.float64)
@@ -186,14 +203,15 @@ class HandFinder:
         slanted = (seen.face == 0) & outline.view(bool)
         return _CubePart(outline, inner, slanted, evidence, inner & ~evidence & like_hand, distance)
 
-    def _without_uncovered(self, place: Place, seen: Colours, by_colour: Floats, box: Box) -> Place:
+    def _without_uncovered(self, place: Place, view: _View, by_colour: Floats) -> Place:
         """Forget the background where it was a hand, which has gone: at a session's beginning."""
         doubtful = place.changed & (by_colour < MAX_ODDS - MIN_DIFFERENCE)
         if not doubtful.any():
             return place
+        box = view.window.box
         before = colours(self._background.planes(box, doubtful)).ravel()
         uncovered = np.zeros(doubtful.shape, bool)
-        uncovered[doubtful] = self._colours.uncovered(seen[doubtful], before)
+        uncovered[doubtful] = self._colours.uncovered(view.colours[doubtful], before)
         if not uncovered.any():
             return place
         self._background.forget_some(box, uncovered)
@@ -201,36 +219,26 @@ class HandFinder:
         odds[uncovered] = UNKNOWN
         return replace(place, odds=odds, changed=place.changed & ~uncovered)
 
-    def _learn_first(self, seen: Colours, window: Window, cube: _CubePart, outside: Flags) -> None:
+    def _learn_first(self, view: _View, cube: _CubePart, outside: Flags) -> None:
         """Learn colours before anything of a hand or its surroundings is known."""
         if np.count_nonzero(cube.evidence) > MIN_LEARNED_PX:
-            self._colours.learn_hand(seen[window.cube_box], cube.evidence)
+            self._colours.learn_hand(view.colours[view.window.cube_box], cube.evidence)
         if not self._colours.knows_behind:
-            self._colours.learn_behind(seen, outside)  # a hand is only little of it
+            self._colours.learn_behind(view.colours, outside)  # a hand is only little of it
 
     def _learn(
-        self,
-        lab: Floats,
-        seen: Colours,
-        window: Window,
-        outside: Flags,
-        evidence: Flags,
-        hand: Image | None,
-        changed: Flags,
-        odds: Floats,
+        self, view: _View, hand: Image | None, sure: Flags, outside: Flags, changed: Flags
     ) -> None:
-        """Learn the colours of the hand, and what is behind it."""
+        """Learn the colours of the hand where it is sure, and what is behind it."""
         free = outside if hand is None else outside & (cv2.dilate(hand, WIDE) == 0)
         self._frames += 1
-        if hand is not None and (self._frames % 2 == 0 or self._colours.hand_is_new):
-            sure = hand.view(bool) & changed & (odds > SURE_ODDS)
-            sure[window.cube_box] |= evidence
-            if np.count_nonzero(sure) > MIN_LEARNED_PX:
-                self._colours.learn_hand(seen, sure)
+        its_turn = self._frames % 2 == 0 or self._colours.hand_is_new
+        if its_turn and hand is not None and np.count_nonzero(sure) > MIN_LEARNED_PX:
+            self._colours.learn_hand(view.colours, sure)
         if self._frames % 2 == 0:
-            self._colours.learn_behind(seen, free & ~changed)
+            self._colours.learn_behind(view.colours, free & ~changed)
         if self._frames % 2 or self._frames < MANY_FRAMES:
-            self._background.learn(lab, window.box, free, changed)
+            self._background.learn(view.lab, view.window.box, free, changed)
 
     def _learn_strip(self, image: Image, window: Window) -> None:
         """Learn a strip of the whole image: the cube may come there."""
