@@ -25,7 +25,7 @@ MIN_SIDE_PX = 8
 """Least side of a window [px of it]."""
 
 
-STILL_FRAMES = 3
+STILL_FRAMES = 7
 """Frames in turn that are not looked at while a window shows the same."""
 
 STILL_PX, STILL_LEVELS, MIN_CHANGE_EDGES2 = 0.1, 8, 0.02

@@ -10,7 +10,7 @@ import pytest
 from tests.bench.hand_scenes import HandScene, HandView
 from tests.tracking.drawn import WIDE, held, photograph, scene
 from tracking.appearance.hand import MANY_FRAMES, HandFinder, HandMask
-from tracking.appearance.window import Stillness, WindowFinder
+from tracking.appearance.window import STILL_FRAMES, Stillness, WindowFinder
 from tracking.cube.model import CubeModel
 from tracking.geometry.projection import Projection
 from tracking.geometry.state import CubeState
@@ -135,8 +135,8 @@ def test_a_window_that_shows_the_same_is_looked_at_now_and_then():
     assert window is not None
     picture = np.full((window.height, window.width, 3), 90, np.uint8)
     stillness = Stillness()
-    looked_at = [not stillness.is_still(window, picture) for _ in range(9)]
-    assert looked_at == [True, False, False, False, True, False, False, False, True]
+    looked_at = [not stillness.is_still(window, picture) for _ in range(2 * STILL_FRAMES + 3)]
+    assert np.flatnonzero(looked_at).tolist() == [0, STILL_FRAMES + 1, 2 * STILL_FRAMES + 2]
     noisy = picture + np.random.default_rng(1).integers(0, 9, picture.shape).astype(np.uint8)
     assert stillness.is_still(window, noisy)
     noisy[20:25, 20:25] += 30
