@@ -3,10 +3,17 @@
 import math
 from dataclasses import dataclass, replace
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.projection import NEAR_M, is_invertible, project
+from characters.rendering.projection import (
+    NEAR_M,
+    is_invertible,
+    is_pinhole,
+    project,
+    usable_distortion,
+)
 from characters.rendering.scene import Box, MeasuredLight, View
 from characters.skeleton.pose import Array
 
@@ -129,7 +136,7 @@ class LightEstimator:
         Parameters
         ----------
         picture
-            The undistorted picture, (height, width, 3) BGR.
+            The camera's frame, (height, width, 3) BGR: that it is bent does not matter here.
         paper
             Linear RGB of white paper in the picture, (3,), if some was found.
         measured
@@ -189,29 +196,34 @@ class LightEstimator:
         return _reduce_cast(bright, self.PICTURE_CAST_SHARE) * gain
 
 
-def paper_color(picture: NDArray[np.uint8], matrix: Array, view: View) -> Array | None:
-    """Return the linear RGB (3,) of the paper of the brightest visible cube face, or None.
-
-    `picture` is undistorted, (height, width, 3) BGR; `matrix` its pinhole matrix, (3, 3) [px].
-    """
-    papers = [paper for box in view.occluders for paper in _face_papers(picture, matrix, box)]
+def paper_color(view: View) -> Array | None:
+    """Return the linear RGB (3,) of the paper of the brightest visible cube face, or None."""
+    papers = [paper for box in view.occluders for paper in _face_papers(view, box)]
     return max(papers, key=lambda paper: float(paper @ LUMA_WEIGHTS), default=None)
 
 
-def _face_papers(picture: NDArray[np.uint8], matrix: Array, box: Box) -> list[Array]:
+def _face_papers(view: View, box: Box) -> list[Array]:
     """Return the paper colour of each face that looks at the camera and is completely in view."""
-    if not is_invertible(box.camera_from_box) or not np.isfinite(box.edge):
+    if view.image is None or not is_invertible(box.camera_from_box) or not np.isfinite(box.edge):
         return []
     pose = np.asarray(box.camera_from_box, float)
     points = box.edge * FACE_SAMPLES @ pose[:3, :3].T + pose[:3, 3]
     centers = points.mean(axis=1)
     facing = np.einsum("ij,ij->i", centers - pose[:3, 3], centers) < 0.0
     visible = points[facing & (points[:, :, 2] > NEAR_M).all(axis=1)]
-    pixels = np.rint(project(visible, matrix)).astype(int)
-    inside = ((pixels >= 0) & (pixels < [picture.shape[1], picture.shape[0]])).all(axis=(1, 2))
+    if not len(visible) or not is_pinhole(view.matrix):
+        return []
+    matrix, lens = np.asarray(view.matrix, float), usable_distortion(view.distortion)
+    bent = cv2.projectPoints(visible.reshape(-1, 3), np.zeros(3), np.zeros(3), matrix, lens)[0]
+    pixels = np.rint(bent.reshape(len(visible), -1, 2)).astype(int)
+    # A polynomial of a lens may bend what is far outside of the frame into it.
+    straight = project(visible, matrix)
+    inside = np.ones(len(visible), bool)
+    for each in (pixels, straight):
+        inside &= ((each >= 0) & (each < view.image.shape[1::-1])).all(axis=(1, 2))
     papers = []
     for columns, rows in pixels[inside].transpose(0, 2, 1):
-        colors = LINEAR_FROM_SRGB[picture[rows, columns, ::-1]]
+        colors = LINEAR_FROM_SRGB[view.image[rows, columns, ::-1]]
         luminance = colors @ LUMA_WEIGHTS
         # `numpy.quantile` takes five times as long for so few.
         least = np.sort(luminance)[math.ceil(PAPER_QUANTILE * (len(luminance) - 1))]

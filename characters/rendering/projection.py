@@ -194,3 +194,10 @@ def is_pinhole(matrix: Array) -> bool:
     if np.shape(matrix) != (3, 3) or not np.isfinite(matrix).all():
         return False
     return bool(matrix[0, 0] > 0.0 and matrix[1, 1] > 0.0)
+
+
+def usable_distortion(distortion: Array) -> Array:
+    """Return distortion coefficients, or those of an ideal lens for a count that none has."""
+    flat = np.asarray(distortion, float).ravel()
+    known = flat.size in (4, 5, 8, 12, 14) and np.isfinite(flat).all()
+    return flat if known else np.zeros(5)

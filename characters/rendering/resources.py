@@ -1,5 +1,6 @@
 """What the passes of a picture share: the resources of a frame, and of one region of it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -110,8 +111,11 @@ class FrameResources:
     scene: Scene
     """What the picture shows."""
 
-    picture: Image
-    """The undistorted camera frame, (height, width, 3) BGR, which passes draw on."""
+    undistorted: Callable[[], Image]
+    """Waits for `picture`."""
+
+    size: tuple[int, int]
+    """(width, height) of the picture [px]."""
 
     camera_matrix: Array
     """Pinhole matrix of the picture, (3, 3) [px]."""
@@ -142,7 +146,15 @@ class FrameResources:
     @property
     def whole(self) -> Rectangle:
         """The whole picture."""
-        return Rectangle(0, 0, self.picture.shape[1], self.picture.shape[0])
+        return Rectangle(0, 0, *self.size)
+
+    @cached_property
+    def picture(self) -> Image:
+        """The undistorted camera frame, (height, width, 3) BGR, which passes draw on.
+
+        Another thread may still be at work on it: it is not asked for before `composite`.
+        """
+        return self.undistorted()
 
     @cached_property
     def camera_position(self) -> Array:
@@ -167,8 +179,7 @@ class FrameResources:
 
     def area_of(self, points: Array) -> Rectangle | None:
         """Return the area of the picture around points (n, 3) of the table frame, or None."""
-        size = self.picture.shape[1], self.picture.shape[0]
-        return bounding_rectangle(points, self.camera_matrix, self.camera_from_table, size)
+        return bounding_rectangle(points, self.camera_matrix, self.camera_from_table, self.size)
 
     @property
     def on_table(self) -> tuple[CharacterInstance, ...]:

@@ -1,6 +1,7 @@
 """The picture: characters on the table in the camera's frame."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import moderngl
 import numpy as np
@@ -129,19 +130,19 @@ class Stage:
         CharacterError
             The frame is not an image, or a character has nothing to draw.
         """
-        picture, frame = self._frame(Scene(view, characters, floor))
+        frame = self._frame(Scene(view, characters, floor))
         if frame is not None:
             self._draw_layer(frame)
         found = view.cover if find_cover is None else find_cover()
         if frame is None:
-            return picture
+            return self._undistorter.undistort(view)
         cover = None if found is None else self._undistorter.cover_in_picture(found)
         uploaded = None if cover is None else self._cover.upload(cover)
         self._context.front_face = "cw"
         for each in self.passes:
             each.composite(frame, uploaded)
         self._context.front_face = "ccw"
-        return picture
+        return frame.picture
 
     def _draw_layer(self, frame: FrameResources) -> None:
         """Prepare all passes and draw the characters; the driver draws while the caller goes on."""
@@ -172,23 +173,24 @@ class Stage:
         """Return the blur and noise of what is drawn; a coarse layer is blurred to be smooth."""
         return view.softness if self._quality.matched else COARSE_SOFTNESS
 
-    def _frame(self, scene: Scene) -> tuple[Image, FrameResources | None]:
-        """Return the undistorted picture, and the resources to draw on it if there is a table."""
+    def _frame(self, scene: Scene) -> FrameResources | None:
+        """Return the resources to draw on the picture if there is a table."""
         view = scene.view
-        picture, matrix = self._undistorter.undistort(view)
+        matrix = self._undistorter.matrix_of(view)
         table = view.camera_from_table
         if not is_invertible(table):
             table = None
-        paper = paper_color(picture, matrix, view)
-        light = self._light.update(picture, paper, view.light, table)
+        seen = self._undistorter.undistort(view) if view.image is None else view.image
+        light = self._light.update(seen, paper_color(view), view.light, table)
         if table is None or not is_pinhole(view.matrix):
-            return picture, None
+            return None
         self._targets.pictures.at_least(1, 1).use((0, 0, 1, 1))
-        return picture, FrameResources(
+        return FrameResources(
             context=self._context,
             targets=self._targets,
             scene=scene,
-            picture=picture,
+            undistorted=partial(self._undistorter.undistort, view),
+            size=self.size,
             camera_matrix=matrix,
             camera_from_table=np.asarray(table, float),
             light=light,

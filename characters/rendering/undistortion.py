@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
-from characters.rendering.projection import Rectangle, is_pinhole
+from characters.rendering.projection import Rectangle, is_pinhole, usable_distortion
 from characters.rendering.scene import Cover, View
 from characters.skeleton.pose import Array
 
@@ -39,7 +39,7 @@ class Undistorter:
         self._lens = np.eye(3), np.zeros(5)
         self._backdrop: Image | None = None
         self._worker: ThreadPoolExecutor | None = None
-        self._ahead: tuple[Image, Future[tuple[Image, Array]]] | None = None
+        self._ahead: tuple[View, Future[Image]] | None = None
 
     def start(self, image: Image, matrix: Array, distortion: Array) -> None:
         """Begin to undistort a frame on another thread: its view follows.
@@ -48,10 +48,13 @@ class Undistorter:
         A view of another frame or camera is undistorted as if this had not been called.
         """
         self._finish()
+        if not _is_frame(image):
+            return  # `undistort` says so
         if self._worker is None:
             self._worker = ThreadPoolExecutor(1, "undistortion")
         view = View(image, matrix, distortion, None)
-        self._ahead = image, self._worker.submit(self._undistorted, view)
+        self.matrix_of(view)
+        self._ahead = view, self._worker.submit(self._undistorted, view, self._maps)
 
     def _finish(self) -> None:
         """Wait for the other thread: the buffers are in use until then."""
@@ -66,10 +69,8 @@ class Undistorter:
             self._worker.shutdown()
             self._worker = None
 
-    def undistort(self, view: View) -> tuple[Image, Array]:
-        """Return the undistorted picture, (height, width, 3) BGR, and its pinhole matrix (3, 3).
-
-        The picture is a copy that the caller may draw on.
+    def matrix_of(self, view: View) -> Array:
+        """Return the pinhole matrix of the picture, (3, 3) [px], without waiting for the picture.
 
         Raises
         ------
@@ -77,30 +78,46 @@ class Undistorter:
             The view's image is not (height, width, 3) uint8.
         """
         if view.image is None:
-            return self._plain_backdrop(), np.asarray(view.matrix, float)
-        ahead = self._ahead
-        self._finish()
-        if ahead is not None and ahead[0] is view.image and self._camera_key == _camera_key(view):
-            return ahead[1].result()
-        return self._undistorted(view)
-
-    def _undistorted(self, view: View) -> tuple[Image, Array]:
-        """Return the same, of a view that has an image."""
-        assert view.image is not None
+            return np.asarray(view.matrix, float)
         image = _checked(view.image)
-        frame_size = (image.shape[1], image.shape[0])
         if not is_pinhole(view.matrix):
-            return self._fitted(image, frame_size), np.eye(3)
-        matrix = np.asarray(view.matrix, float)
-        distortion = _usable(np.asarray(view.distortion, float).ravel())
+            return np.eye(3)
         camera_key = _camera_key(view)
         if camera_key != self._camera_key:
+            matrix = np.asarray(view.matrix, float)
+            distortion = usable_distortion(view.distortion)
+            frame_size = (image.shape[1], image.shape[0])
             self._matrix, self._maps = self._make_maps(matrix, distortion, frame_size)
             self._camera_key = camera_key
             self._lens = matrix, distortion
-        if self._maps is None:
-            return image.copy(), self._matrix
-        return self._remapped(image, *self._maps), self._matrix
+        return self._matrix
+
+    def undistort(self, view: View) -> Image:
+        """Return the undistorted picture, (height, width, 3) BGR: a copy to draw on.
+
+        Raises
+        ------
+        CharacterError
+            The view's image is not (height, width, 3) uint8.
+        """
+        if view.image is None:
+            return self._plain_backdrop()
+        ahead = self._ahead
+        self._finish()
+        if ahead is not None and _same_picture(ahead[0], view):
+            return ahead[1].result()
+        self.matrix_of(view)
+        return self._undistorted(view, self._maps)
+
+    def _undistorted(
+        self, view: View, maps: tuple[NDArray[np.float32], NDArray[np.float32]] | None
+    ) -> Image:
+        """Return the same, of a view that has an image, by the maps of its camera."""
+        image = view.image
+        assert image is not None
+        if not is_pinhole(view.matrix):
+            return self._fitted(image, (image.shape[1], image.shape[0]))
+        return image.copy() if maps is None else self._remapped(image, *maps)
 
     def cover_in_picture(self, cover: Cover) -> Cover | None:
         """Return the cover of the last view's frame as it is in the picture, or None outside of it.
@@ -201,18 +218,22 @@ def _camera_key(view: View) -> tuple[bytes, ...]:
     """Return what the maps of a view depend on."""
     matrix = np.asarray(view.matrix, float)
     shape = None if view.image is None else view.image.shape[:2]
-    distortion = _usable(np.asarray(view.distortion, float).ravel())
+    distortion = usable_distortion(view.distortion)
     return matrix.tobytes(), distortion.tobytes(), bytes(repr(shape), "ascii")
 
 
-def _usable(distortion: Array) -> Array:
-    """Return distortion coefficients, or those of an ideal lens for a count that none has."""
-    known = distortion.size in (4, 5, 8, 12, 14) and np.isfinite(distortion).all()
-    return distortion if known else np.zeros(5)
+def _same_picture(view: View, other: View) -> bool:
+    """Return whether two views show the same picture."""
+    return view.image is other.image and _camera_key(view) == _camera_key(other)
+
+
+def _is_frame(image: Image) -> bool:
+    shape = image.shape
+    return len(shape) == 3 and shape[2] == 3 and image.dtype == np.uint8 and 0 not in shape
 
 
 def _checked(image: Image) -> Image:
-    if image.ndim != 3 or image.shape[2] != 3 or image.dtype != np.uint8 or 0 in image.shape:
+    if not _is_frame(image):
         raise CharacterError(
             f"cannot draw on an image of shape {image.shape} and type {image.dtype}: "
             "it must be (height, width, 3) uint8, BGR"

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from characters.errors import CharacterError
 from characters.rendering.context import create_context
-from characters.rendering.light import MIN_RISE, LightEstimator, paper_color
+from characters.rendering.light import LINEAR_FROM_SRGB, MIN_RISE, LightEstimator, paper_color
 from characters.rendering.scene import Cover, MeasuredLight
 from characters.rendering.undistortion import Undistorter
 
@@ -23,23 +23,25 @@ def test_an_undistorted_frame_shows_points_at_their_pinhole_projection(view):
     yy, xx = np.mgrid[:180, :320]
     spot = np.exp(-((xx - bent[0, 0, 0]) ** 2 + (yy - bent[0, 0, 1]) ** 2) / 8)
     frame = np.repeat((250 * spot)[..., None], 3, axis=2).astype(np.uint8)
-    straight, matrix = Undistorter((320, 180)).undistort(
-        replace(view, image=frame, distortion=BENT)
-    )
+    undistorter = Undistorter((320, 180))
+    bent_view = replace(view, image=frame, distortion=BENT)
+    straight, matrix = undistorter.undistort(bent_view), undistorter.matrix_of(bent_view)
     weight = straight[..., 0].astype(float)
     seen = [(weight * xx).sum(), (weight * yy).sum()] / weight.sum()
     assert seen == pytest.approx((matrix @ point / point[2])[:2], abs=0.05)
 
 
 def test_a_frame_without_distortion_is_an_unchanged_copy(view):
-    picture, matrix = Undistorter((320, 180)).undistort(view)
+    undistorter = Undistorter((320, 180))
+    picture, matrix = undistorter.undistort(view), undistorter.matrix_of(view)
     assert np.array_equal(picture, view.image)
     assert not np.shares_memory(picture, view.image)
     assert np.array_equal(matrix, view.matrix)
 
 
 def test_a_frame_of_another_size_is_scaled_with_its_matrix(view):
-    picture, matrix = Undistorter((640, 400)).undistort(view)
+    undistorter = Undistorter((640, 400))
+    picture, matrix = undistorter.undistort(view), undistorter.matrix_of(view)
     assert picture.shape == (400, 640, 3)
     assert matrix[0, 0] == pytest.approx(2 * view.matrix[0, 0])
     middle = matrix @ np.linalg.inv(view.matrix) @ [159.5, 89.5, 1.0]
@@ -62,28 +64,40 @@ def noise(seed):
 
 def test_a_frame_that_was_begun_before_is_the_same(view):
     bent = replace(view, image=noise(1), distortion=BENT)
-    expected, expected_matrix = Undistorter(SIZE).undistort(bent)
+    expected, expected_matrix = Undistorter(SIZE).undistort(bent), Undistorter(SIZE).matrix_of(bent)
     undistorter = Undistorter(SIZE)
     for _ in range(2):  # with maps to compute, and with maps that are known
         undistorter.start(bent.image, bent.matrix, bent.distortion)
-        picture, matrix = undistorter.undistort(bent)
+        matrix, picture = undistorter.matrix_of(bent), undistorter.undistort(bent)
         assert np.array_equal(picture, expected)
         assert np.array_equal(matrix, expected_matrix)
-    again, _ = undistorter.undistort(bent)
+    again = undistorter.undistort(bent)
     assert not np.shares_memory(again, picture)
     undistorter.release()
     undistorter.release()
 
 
+def test_the_matrix_is_known_before_the_picture(view, monkeypatch):
+    undistorter, bent = Undistorter(SIZE), replace(view, image=noise(1), distortion=BENT)
+    expected = undistorter.undistort(bent)
+    undistorter.start(bent.image, bent.matrix, bent.distortion)
+    monkeypatch.setattr(undistorter, "_finish", None)
+    matrix = undistorter.matrix_of(bent)
+    monkeypatch.undo()
+    assert np.array_equal(matrix, view.matrix)
+    assert np.array_equal(undistorter.undistort(bent), expected)
+    undistorter.release()
+
+
 def test_a_frame_that_was_begun_but_is_not_drawn_changes_nothing(view):
     undistorter = Undistorter(SIZE)
-    expected, _ = Undistorter(SIZE).undistort(replace(view, image=noise(2), distortion=BENT))
+    expected = Undistorter(SIZE).undistort(replace(view, image=noise(2), distortion=BENT))
     undistorter.start(noise(1), view.matrix, BENT)
     undistorter.start(noise(3), view.matrix, 2 * BENT)
-    picture, _ = undistorter.undistort(replace(view, image=noise(2), distortion=BENT))
+    picture = undistorter.undistort(replace(view, image=noise(2), distortion=BENT))
     assert np.array_equal(picture, expected)
     undistorter.start(noise(2), view.matrix, 2 * BENT)  # by another lens than the view's
-    picture, _ = undistorter.undistort(replace(view, image=noise(2), distortion=BENT))
+    picture = undistorter.undistort(replace(view, image=noise(2), distortion=BENT))
     assert np.array_equal(picture, expected)
     undistorter.release()
 
@@ -103,7 +117,7 @@ def test_a_cover_lies_on_the_same_pixels_as_the_picture(view, distortion, size):
     cv2.circle(frame, (250, 140), 20, (255, 255, 255), -1, cv2.LINE_AA)
     cover = Cover(220, 110, np.ascontiguousarray(frame[110:175, 220:290, 0]), 0.5)
     undistorter = Undistorter(size)
-    picture, _ = undistorter.undistort(replace(view, image=frame, distortion=distortion))
+    picture = undistorter.undistort(replace(view, image=frame, distortion=distortion))
     found = undistorter.cover_in_picture(cover)
     assert found is not None
     shown: NDArray[np.uint8] = np.zeros_like(picture[..., 0])
@@ -162,20 +176,22 @@ def test_the_light_changes_slowly(view):
     assert ((second - first) < 0.1 * (last - first)).all()
 
 
-def test_the_paper_of_a_cube_is_measured_between_its_markers(view, cube):
+@pytest.mark.parametrize("distortion", [np.zeros(5), BENT])
+def test_the_paper_of_a_cube_is_measured_between_its_markers(view, cube, distortion):
     corners = np.array([(-1, 1, 1), (1, 1, 1), (1, -1, 1), (-1, -1, 1)]) / 2
-    image = np.full_like(view.image, 255)
+    image = np.zeros_like(view.image)
     for scale, value in ((1.0, 180), (0.66, 20)):
         seen = cube.edge * corners * [scale, scale, 1.0]
         seen = seen @ cube.camera_from_box[:3, :3].T + cube.camera_from_box[:3, 3]
-        pixels = np.rint((seen / seen[:, 2:] @ view.matrix.T)[:, :2]).astype(int)
+        bent, _ = cv2.projectPoints(seen, np.zeros(3), np.zeros(3), view.matrix, distortion)
+        pixels = np.rint(bent[:, 0]).astype(int)
         cv2.fillConvexPoly(image, pixels, (value,) * 3)
-    image[:72] = 0
-    paper = paper_color(image, view.matrix, replace(view, occluders=(cube,)))
-    assert paper is not None
-    assert paper_color(image, view.matrix, view) is None
+    view = replace(view, image=image, distortion=distortion)
+    paper = paper_color(replace(view, occluders=(cube,)))
+    assert paper == pytest.approx(LINEAR_FROM_SRGB[[180] * 3])
+    assert paper_color(view) is None
     broken = replace(cube, camera_from_box=np.full((4, 4), np.nan))
-    assert paper_color(image, view.matrix, replace(view, occluders=(broken,))) is None
+    assert paper_color(replace(view, occluders=(broken,))) is None
 
 
 def test_a_missing_library_is_named_with_the_command_that_installs_it(monkeypatch):
