@@ -118,7 +118,7 @@ class CharacterCache:
                 height = skinned.height * float(np.linalg.norm(place[:3, 1]))
                 instances.append(CharacterInstance(skinned, enclosing, height, place, each.inside))
         self._evict(copies.total())
-        self.triangles = sum(len(each.skinned.level.indices) // 3 for each in instances)
+        self.triangles = sum(each.skinned.triangles for each in instances)
         return tuple(instances)
 
     def release(self) -> None:

@@ -51,22 +51,25 @@ class DetailLevel:
     """Three for each triangle, sorted by material."""
 
     materials: tuple[tuple[Material, int], ...]
-    """Each material with the number of its indices, in their order."""
+    """Each material with the number of its indices, in their order; those of dormant triangles
+    again, after all others."""
 
-    moved: int
-    """How many of the first vertices, those that morphs move, cover the ones in use."""
+    awake: int
+    """How many of these runs are of triangles that are not dormant."""
 
-    fixed: int
-    """The same of the vertices after all that morphs move."""
+    parts: tuple[tuple[int, int], ...]
+    """First vertex and number of vertices in use: of those that morphs move, of those that nothing
+    but joints move, and of the dormant ones."""
 
 
 def with_levels(
-    vertices: CharacterVertices,
+    vertices: CharacterVertices, dormant: NDArray[np.bool_] | None = None
 ) -> tuple[CharacterVertices, tuple[DetailLevel, ...]]:
     """Return the vertices in an order that suits all levels, and the levels, the finest first.
 
-    The vertices of a coarser level come before those that only finer ones use, among the vertices
-    that morphs move and among the others, so that only they need to be skinned.
+    The vertices of a coarser level come before those that only finer ones use, in each part of the
+    vertices, so that only they need to be skinned. `dormant` (rows,) are the rows of the palette
+    whose vertices are seldom seen, as effects: those are a part of their own, the last one.
     """
     stands = [np.arange(len(vertices.positions))]
     bones = _moving_joints(vertices)
@@ -79,20 +82,24 @@ def with_levels(
             vertices.indices.reshape(-1, 3).astype(np.intp),
             [side * tolerance for tolerance in LEVEL_TOLERANCES],
         )
-    drawn = [_drawn(vertices, stand, bones) for stand in stands]
-    last = np.zeros(len(vertices.positions), int)
-    for number, (indices, _) in enumerate(drawn):
+    part = np.where(np.arange(len(vertices.positions)) < vertices.moved, 0, 1)
+    if dormant is not None:
+        part[(part == 1) & dormant[vertices.owners]] = 2
+    drawn = [_drawn(vertices, stand, bones, part == 2) for stand in stands]
+    last = np.full(len(part), -1)
+    for number, (indices, _, _) in enumerate(drawn):
         last[indices] = number
-    moved = np.arange(len(last)) < vertices.moved
-    order = np.lexsort((-last, ~moved))
+    order = np.lexsort((-last, part))
     new_index = np.empty(len(order), np.uint32)
     new_index[order] = np.arange(len(order))
+    starts = np.searchsorted(part[order], range(3)).tolist()
     levels = []
-    for number, ((indices, materials), tolerance) in enumerate(
+    for number, ((indices, materials, awake), tolerance) in enumerate(
         zip(drawn, (0.0, *LEVEL_TOLERANCES), strict=False)
     ):
-        counts = [int(np.count_nonzero(each & (last >= number))) for each in (moved, ~moved)]
-        levels.append(DetailLevel(side * tolerance, new_index[indices], materials, *counts))
+        counts = np.bincount(part[last >= number], minlength=3).tolist()
+        parts = tuple(zip(starts, counts, strict=True))
+        levels.append(DetailLevel(side * tolerance, new_index[indices], materials, awake, parts))
     return vertices.reordered(order), tuple(levels)
 
 
@@ -110,20 +117,32 @@ def chosen_level(levels: Sequence[DetailLevel], last: int, max_error: float) -> 
 
 
 def _drawn(
-    vertices: CharacterVertices, stand: NDArray[np.intp], bones: NDArray[np.float64]
-) -> tuple[NDArray[np.uint32], tuple[tuple[Material, int], ...]]:
-    """Return the indices of the triangles that are left, and the number for each material."""
+    vertices: CharacterVertices,
+    stand: NDArray[np.intp],
+    bones: NDArray[np.float64],
+    dormant: NDArray[np.bool_],
+) -> tuple[NDArray[np.uint32], tuple[tuple[Material, int], ...], int]:
+    """Return the indices of the triangles that are left, and those of `DetailLevel` for them.
+
+    A triangle is dormant if all of its vertices are.
+    """
     corners = stand[vertices.indices].reshape(-1, 3)
     kept = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
     if (stand == np.arange(len(stand))).all():
         kept[:] = True  # the finest level is as it was given
     ends = np.cumsum([0, *(count // 3 for _, count in vertices.materials)])
     away = np.linalg.norm(vertices.positions - bones, axis=1)
-    runs = [
-        _outer_first(corners[start:end][kept[start:end]], away) for start, end in pairwise(ends)
-    ]
-    materials = [(each, run.size) for (each, _), run in zip(vertices.materials, runs, strict=True)]
-    return np.concatenate(runs).ravel().astype(np.uint32), tuple(materials)
+    asleep = dormant[corners].all(axis=1)
+    materials, runs = [], []
+    for is_wanted in (~asleep, asleep):
+        for (material, _), (start, end) in zip(vertices.materials, pairwise(ends), strict=True):
+            run = _outer_first(corners[start:end][(kept & is_wanted)[start:end]], away)
+            materials.append((material, run.size))
+            runs.append(run)
+    awake = len(vertices.materials)
+    if not asleep.any():
+        materials = materials[:awake]
+    return np.concatenate(runs).ravel().astype(np.uint32), tuple(materials), awake
 
 
 def _outer_first(triangles: NDArray[Any], away: NDArray[np.float64]) -> NDArray[Any]:

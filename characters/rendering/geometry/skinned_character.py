@@ -5,14 +5,15 @@ from dataclasses import replace
 
 import moderngl
 import numpy as np
+from numpy.typing import NDArray
 
 from characters.face.action_units import ActionUnits
-from characters.rendering.geometry.detail_levels import DetailLevel, chosen_level, with_levels
+from characters.rendering.geometry.detail_levels import chosen_level, with_levels
 from characters.rendering.geometry.face_split import split_faces
 from characters.rendering.geometry.face_texture import FaceTexture
 from characters.rendering.geometry.morph_mixer import MorphMixer
 from characters.rendering.geometry.surfaces import BEHIND, VERTEX_LIT, Surface, SurfaceBuffers
-from characters.rendering.geometry.vertices import CharacterVertices
+from characters.rendering.geometry.vertices import CasterRun, CharacterVertices
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.scene import Drawable
 from characters.skeleton.pose import Array
@@ -20,6 +21,9 @@ from characters.skeleton.pose import Array
 SHADOW_CELLS = 44
 """Grid cells along a character's height to which the mesh for its shadow is simplified; a shadow
 map is not much finer."""
+
+HIDING_SCALE = 0.002
+"""A joint that scales by less hides what it moves, as that of an effect does before it begins."""
 
 RECORD_BYTES = 24
 """Bytes of the position and the normal of a vertex."""
@@ -36,10 +40,13 @@ class SkinnedCharacter:
     def __init__(
         self, context: moderngl.Context, programs: ShaderPrograms, character: Drawable
     ) -> None:
-        vertices, self._levels = with_levels(CharacterVertices.of(character.meshes))
+        given = CharacterVertices.of(character.meshes)
+        rest = given.palette(character.skeleton.rest.globals(character.skeleton))
+        self._dormant = np.flatnonzero(_vanished(rest))
+        vertices, self._levels = with_levels(given, _vanished(rest))
         self._vertices, self._level = vertices, 0
+        self._asleep = False
         self._extreme = vertices.extreme()
-        rest = vertices.palette(character.skeleton.rest.globals(character.skeleton))
         heights = vertices.skinned(rest, slice(None))[:, 1]
         self.height = float(max(heights.max() - min(heights.min(), 0.0), 1e-6))
         """Height of the rest pose above the ground [m in the character frame]."""
@@ -60,7 +67,7 @@ class SkinnedCharacter:
             for each, (_, again) in zip(leveled, splits, strict=True)
         ]
         indices = context.buffer(np.concatenate(drawn))
-        simplified, self.caster_runs = leveled[-1].simplified(SHADOW_CELLS)
+        simplified, self._caster_runs = leveled[-1].simplified(SHADOW_CELLS, self._levels[-1].awake)
         caster_indices = context.buffer(simplified)
         self.skinned = context.buffer(reserve=RECORD_BYTES * len(vertices.positions))
         """Positions and normals in the table frame, 3 + 3 float32 for each vertex."""
@@ -78,7 +85,7 @@ class SkinnedCharacter:
             [(self.skinned, "3f 12x", "position")],
             caster_indices,
         )
-        """Draws its shadow, in runs of indices `caster_runs`: (first, count, double-sided)."""
+        """Draws its shadow, in the runs of indices `caster_runs`."""
         self._surfaces = SurfaceBuffers(context, programs, self.skinned, colors, indices)
         starts = np.cumsum([0, *(len(each) for each in drawn)]).tolist()
         self._plain = [
@@ -90,7 +97,7 @@ class SkinnedCharacter:
         self.face: FaceTexture | None = None
         """Wrinkles and blood, if its sidecar file has them."""
         finest = splits[0][0]
-        maps = vertices.materials[finest[0].run][0].face if finest else None
+        maps = leveled[0].materials[finest[0].run][0].face if finest else None
         if maps is not None:
             self.face = FaceTexture(context, maps, ActionUnits.of(character.morphs))
             self._faced = [
@@ -107,12 +114,19 @@ class SkinnedCharacter:
 
         Those of a face that shows something are apart.
         """
-        return (self._faced if self._shows_face else self._plain)[self._level]
+        surfaces = (self._faced if self._shows_face else self._plain)[self._level]
+        level = self._levels[self._level]
+        return surfaces[: level.awake - len(level.materials) or None] if self._asleep else surfaces
 
     @property
-    def level(self) -> DetailLevel:
-        """The level of detail of the last `skin`."""
-        return self._levels[self._level]
+    def caster_runs(self) -> tuple[CasterRun, ...]:
+        """The triangles that cast its shadow in the pose of the last `skin`."""
+        return tuple(run for run in self._caster_runs if not (self._asleep and run.dormant))
+
+    @property
+    def triangles(self) -> int:
+        """Number of triangles that were drawn last."""
+        return sum(each.count for each in self.surfaces) // 3
 
     def skin(
         self,
@@ -139,6 +153,8 @@ class SkinnedCharacter:
             self._extreme_positions[moved] = mixed[self._extreme[moved], :3]
         self._palette.write(np.ascontiguousarray(palette[:, :3], "f4"))
         self._palette.use(0)
+        scale = float(np.abs(table_from_character[:3, :3]).max())
+        self._asleep = bool(len(self._dormant) and _vanished(palette[self._dormant], scale).all())
         self._level = chosen_level(self._levels, self._level, max_error)
         self._skin_used()
         return self._vertices.skinned(palette, self._extreme, self._extreme_positions)
@@ -177,13 +193,9 @@ class SkinnedCharacter:
         self._shows_face = self.face.update(morphs, blood, scale, pixel)
 
     def _skin_used(self) -> None:
-        """Skin the vertices of the level, which are the first of two parts of the buffer."""
-        level, moved = self.level, self._vertices.moved
-        if level.moved == moved:
-            parts = [(0, moved + level.fixed)]
-        else:
-            parts = [(0, level.moved), (moved, level.fixed)]
-        for first, count in parts:
+        """Skin the vertices of the level, which are the first ones of each part of the buffer."""
+        parts = self._levels[self._level].parts
+        for first, count in parts[: 2 if self._asleep else 3]:
             if count:
                 self._skinning.transform(
                     self.skinned,
@@ -199,3 +211,11 @@ class SkinnedCharacter:
             each.release()
         if self.face is not None:
             self.face.release()
+
+
+def _vanished(palette: Array, scale: float = 1.0) -> NDArray[np.bool_]:
+    """Return which matrices (n, 4, 4) shrink what they move to nothing, (n,).
+
+    `scale` is that of the character on the table.
+    """
+    return np.asarray(np.abs(palette[:, :3, :3]).max(axis=(1, 2)) < HIDING_SCALE * scale)

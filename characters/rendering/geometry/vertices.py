@@ -15,6 +15,23 @@ from characters.skeleton.pose import Array
 
 
 @dataclass(frozen=True)
+class CasterRun:
+    """Triangles that cast a shadow, drawn at once."""
+
+    first: int
+    """Position of their first index."""
+
+    count: int
+    """Number of their indices."""
+
+    double_sided: bool
+    """Whether both sides are seen."""
+
+    dormant: bool
+    """Whether they are dormant, see `DetailLevel`."""
+
+
+@dataclass(frozen=True)
 class CharacterVertices:
     """All vertices of a character, and its triangles by material."""
 
@@ -162,13 +179,13 @@ class CharacterVertices:
         return np.asarray(self.joints[np.arange(len(strongest)), strongest], np.uint32)
 
     def simplified(
-        self, cells: int
-    ) -> tuple[NDArray[np.uint32], tuple[tuple[int, int, bool], ...]]:
+        self, cells: int, awake: int | None = None
+    ) -> tuple[NDArray[np.uint32], tuple[CasterRun, ...]]:
         """Return fewer triangles of the same vertices, by vertex clustering.
 
         Vertices of one joint in one cell become one (Rossignac and Borrel 1993); the character's
         largest side has that many `cells`. The result is the indices, three for each triangle, and
-        the runs (first index, count, double-sided) of single-sided and double-sided triangles.
+        their runs. The first `awake` materials are of triangles that are not dormant.
         """
         used, number = np.unique(self.indices, return_inverse=True)
         positions = self.positions[used]
@@ -184,14 +201,18 @@ class CharacterVertices:
         if not kept.any():  # every triangle lies in one cell
             corners = self.indices.reshape(-1, 3)
             kept = np.ones_like(kept)
-        sides = np.repeat(
-            [material.double_sided for material, _ in self.materials],
-            [count // 3 for _, count in self.materials],
+        kinds = [  # dormant runs last
+            (number >= (awake or len(self.materials)), material.double_sided)
+            for number, (material, _) in enumerate(self.materials)
+        ]
+        kind = np.repeat(kinds, [count // 3 for _, count in self.materials], axis=0) @ [2, 1]
+        parts = [corners[kept & (kind == number)] for number in range(4)]
+        ends = np.cumsum([0, *(part.size for part in parts)]).tolist()
+        runs = (
+            CasterRun(ends[number], part.size, bool(number & 1), number >= 2)
+            for number, part in enumerate(parts)
         )
-        groups = [corners[kept & (sides == double)] for double in (False, True)]
-        closed, double = (group.size for group in groups)
-        runs = ((0, closed, False), (closed, double, True))
-        return np.concatenate(groups).ravel(), tuple(run for run in runs if run[1])
+        return np.concatenate(parts).ravel(), tuple(run for run in runs if run.count)
 
     @property
     def shape_records(self) -> NDArray[np.float32]:

@@ -141,9 +141,9 @@ class ShadowMap:
         context.front_face = "ccw"
         context.blend_equation = moderngl.MAX, moderngl.MAX
         context.blend_func = moderngl.ONE, moderngl.ONE
-        for first, count, double_sided in character.skinned.caster_runs:
-            (context.disable if double_sided else context.enable)(moderngl.CULL_FACE)
-            character.skinned.caster.render(vertices=count, first=first, instances=2)
+        for run in character.skinned.caster_runs:
+            (context.disable if run.double_sided else context.enable)(moderngl.CULL_FACE)
+            character.skinned.caster.render(vertices=run.count, first=run.first, instances=2)
         context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
         context.enable_only(moderngl.NOTHING)
         self._soften(height, share)

@@ -111,13 +111,32 @@ def test_vertices_of_a_coarser_level_come_first(human):
     assert len(levels) > 1
     for level in levels:
         used = np.unique(level.indices)
-        is_moved = used < vertices.moved
-        assert used[is_moved].max() < level.moved
-        assert used[~is_moved].max() < vertices.moved + level.fixed
+        (_, moved), (start, fixed), (_, dormant) = level.parts
+        assert start == vertices.moved
+        assert dormant == 0
+        assert used[used < start].max() < moved
+        assert used[used >= start].max() < start + fixed
         assert sum(count for _, count in level.materials) == len(level.indices)
-    assert levels[-1].fixed < 0.6 * levels[0].fixed
+    assert levels[-1].parts[1][1] < 0.6 * levels[0].parts[1][1]
     for morph in vertices.morphs:
         assert (np.diff(morph.vertices.astype(int)) > 0).all()
+
+
+def test_dormant_vertices_and_triangles_come_last(human):
+    given = CharacterVertices.of(human.meshes)
+    dormant = np.arange(sum(len(binds) for binds in given.binds)) % 2 == 0
+    vertices, levels = with_levels(given, dormant)
+    asleep = dormant[vertices.owners]
+    asleep[: vertices.moved] = False  # a morph may show them
+    for level in levels:
+        awake = sum(count for _, count in level.materials[: level.awake])
+        assert 0 < awake < len(level.indices)
+        assert not asleep[level.indices[:awake].reshape(-1, 3)].all(axis=1).any()
+        assert asleep[level.indices[awake:]].all()
+        start, count = level.parts[2]
+        assert asleep[start:].all()
+        used = np.unique(level.indices)
+        assert used[used >= start].max() < start + count
 
 
 def test_the_finest_level_has_the_triangles_as_they_were_given(human):
@@ -153,7 +172,7 @@ def test_a_small_model_has_one_level(pawn):
 
 def test_the_level_does_not_alternate():
     nothing = np.zeros(0, np.uint32)
-    levels = [DetailLevel(tolerance, nothing, (), 0, 0) for tolerance in (0.0, 1.0, 2.0, 4.0)]
+    levels = [DetailLevel(tolerance, nothing, (), 0, ()) for tolerance in (0.0, 1.0, 2.0, 4.0)]
     assert [chosen_level(levels, 0, error) for error in (0.0, 0.9, 1.2, 2.1, 9.0)] == [
         0, 0, 1, 1, 3,
     ]  # fmt: skip

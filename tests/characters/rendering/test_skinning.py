@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from characters import Character
 from characters.model.mesh import Material
 from characters.rendering.geometry.skinned_character import SkinnedCharacter
-from characters.rendering.geometry.vertices import CharacterVertices
+from characters.rendering.geometry.vertices import CasterRun, CharacterVertices
 from characters.rendering.programs import ShaderPrograms
 
 
@@ -55,6 +56,29 @@ def test_the_card_skins_as_defined(ctx, programs, pawn, seed):
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     assert np.abs(vertices[:, :3] - positions).max() < 1e-4
     assert np.abs(vertices[:, 3:] - normals).max() < 1e-3
+
+
+def test_what_its_joints_hide_is_neither_skinned_nor_drawn(ctx, programs):
+    vleo = Character.load("vleo")  # its hearts and exclamation marks are hidden at rest
+    on_card = SkinnedCharacter(ctx, programs, vleo)
+    any_target = ctx.framebuffer([ctx.renderbuffer((4, 4), 4)])
+    any_target.use()
+    hidden = vleo.skeleton.rest.globals(vleo.skeleton)
+    scales = np.linalg.norm(hidden[:, :3, 0], axis=1)
+    shown = hidden.copy()
+    shown[:, :3, :3] /= scales[:, None, None]
+    drawn, casting = {}, {}
+    for name, joints in (("shown", shown), ("hidden", hidden)):
+        on_card.skin(joints, np.diag([0.5, 0.5, 0.5, 1.0]))
+        drawn[name] = on_card.triangles
+        casting[name] = sum(run.count for run in on_card.caster_runs)
+    on_card.release()
+    ctx.detect_framebuffer(0).use()
+    any_target.release()
+    every = sum(len(mesh.triangles) for mesh in vleo.meshes)
+    assert drawn["shown"] == every
+    assert 0.8 * every < drawn["hidden"] < 0.95 * every
+    assert casting["hidden"] < casting["shown"]
 
 
 def test_two_hundred_joints_are_supported(ctx, programs, pawn):
@@ -144,7 +168,7 @@ def test_the_simplified_mesh_has_fewer_triangles_and_the_same_size(pawn):
     geometry = CharacterVertices.of(pawn.meshes)
     coarse, runs = geometry.simplified(16)
     assert 0 < coarse.size < geometry.indices.size
-    assert runs == ((0, coarse.size, False),)
+    assert runs == (CasterRun(0, coarse.size, False, False),)
     kept = geometry.positions[coarse]
     assert np.abs(np.ptp(kept, axis=0) - np.ptp(geometry.positions, axis=0)).max() < 0.1
 
@@ -164,7 +188,7 @@ def test_tiny_triangles_cast_a_shadow_too(ctx, programs, pawn):
         uvs=None,
     )
     on_card = SkinnedCharacter(ctx, programs, replace(pawn, meshes=(specks,)))
-    assert on_card.caster_runs[0][1] == 3
+    assert on_card.caster_runs[0].count == 3
     on_card.release()
 
 
