@@ -23,6 +23,9 @@ large part of the character. A sphere exceeds its extreme vertices by up to 11 o
 MIN_LARGE_PART = 0.3
 """Share of the character's size from which on a joint's vertices are a large part."""
 
+BLOCK_POINTS = 256
+"""Points that are skinned by one matrix product."""
+
 
 def extreme_vertices(positions: NDArray[np.float32], owner: NDArray[np.uint32]) -> NDArray[np.intp]:
     """Return the indices of the vertices that are the furthest of their owner in some direction.
@@ -41,3 +44,38 @@ def extreme_vertices(positions: NDArray[np.float32], owner: NDArray[np.uint32]) 
         # No matrix product: its threads wait for each other on a busy machine.
         found.append(indices[np.einsum("dk,kv->dv", directions, part).argmax(axis=1)])
     return np.unique(np.concatenate(found))
+
+
+class SkinnedPoints:
+    """Some points of a character, skinned by one matrix product.
+
+    `positions` are (n, 3); `joints` (n, k) are rows of the palette of `rows` matrices that move
+    them, with `weights` (n, k).
+    """
+
+    def __init__(
+        self,
+        positions: NDArray[np.float32],
+        joints: NDArray[np.uint32],
+        weights: NDArray[np.float32],
+        rows: int,
+    ) -> None:
+        self._count = len(positions)
+        blocks = -(-self._count // BLOCK_POINTS)
+        self._weights = np.zeros((blocks * BLOCK_POINTS, rows), np.float32)
+        np.add.at(self._weights, (np.arange(self._count)[:, None], joints), weights)
+        self._factors = np.zeros((blocks * BLOCK_POINTS, rows, 4), np.float32)
+        self.move(np.arange(self._count), positions)
+
+    def move(self, which: NDArray[np.intp], positions: NDArray[np.float32]) -> None:
+        """Give other positions (k, 3) to some of the points, (k,)."""
+        weights = self._weights[which, :, None]
+        self._factors[which, :, :3] = weights * positions[:, None]
+        self._factors[which, :, 3:] = weights
+
+    def skinned(self, palette: NDArray[np.float32]) -> NDArray[np.float64]:
+        """Return the points, (n, 3), moved by a palette (rows, 3, 4) without last rows."""
+        columns = palette.transpose(0, 2, 1).reshape(-1, 3)
+        # The threads of one large product would wait for each other on a busy machine.
+        factors = self._factors.reshape(-1, BLOCK_POINTS, len(columns))
+        return (factors @ columns).reshape(-1, 3)[: self._count].astype(float)

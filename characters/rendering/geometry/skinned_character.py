@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import moderngl
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from characters.face.action_units import ActionUnits
 from characters.rendering.geometry.detail_levels import chosen_level, with_levels
+from characters.rendering.geometry.extreme_vertices import SkinnedPoints
 from characters.rendering.geometry.face_split import split_faces
 from characters.rendering.geometry.face_texture import FaceTexture
 from characters.rendering.geometry.morph_mixer import MorphMixer
@@ -46,14 +48,21 @@ class SkinnedCharacter:
         vertices, self._levels = with_levels(given, _vanished(rest))
         self._vertices, self._level = vertices, 0
         self._asleep = False
-        self._extreme = vertices.extreme()
+        extreme = vertices.extreme()
         heights = vertices.skinned(rest, slice(None))[:, 1]
         self.height = float(max(heights.max() - min(heights.min(), 0.0), 1e-6))
         """Height of the rest pose above the ground [m in the character frame]."""
         self._morphs = MorphMixer(
             vertices.shape_records[: vertices.moved], vertices.morphs, character.morphs
         )
-        self._extreme_positions = vertices.positions[self._extreme]
+        self._enclosing = SkinnedPoints(
+            vertices.positions[extreme],
+            vertices.joints[extreme],
+            vertices.weights[extreme],
+            len(rest),
+        )
+        self._moved_extreme = np.flatnonzero(extreme < vertices.moved)
+        self._moved_vertices = extreme[self._moved_extreme]
         self._shapes = context.buffer(vertices.shape_records)
         joints = context.buffer(np.hstack([vertices.joints.view(np.float32), vertices.weights]))
         colors = context.buffer(np.hstack([vertices.colors, vertices.uvs]))
@@ -141,7 +150,8 @@ class SkinnedCharacter:
         level of detail is the coarsest with an error of at most `max_error` [m in the character
         frame]. The result is None if the pose is not finite; then there is nothing to draw.
         """
-        palette = self._vertices.palette(table_from_character @ character_from_joint)
+        matrices = self._vertices.palette(table_from_character @ character_from_joint)
+        palette = matrices[:, :3].astype(np.float32)
         if not np.isfinite(palette).all():
             return None
         if morphs is not None and not np.isfinite(morphs).all():
@@ -149,15 +159,14 @@ class SkinnedCharacter:
         mixed = self._morphs.mix(morphs)
         if mixed is not None:
             self._shapes.write(mixed)
-            moved = self._extreme < len(mixed)
-            self._extreme_positions[moved] = mixed[self._extreme[moved], :3]
-        self._palette.write(np.ascontiguousarray(palette[:, :3], "f4"))
+            self._enclosing.move(self._moved_extreme, mixed[self._moved_vertices, :3])
+        self._palette.write(palette)
         self._palette.use(0)
         scale = float(np.abs(table_from_character[:3, :3]).max())
         self._asleep = bool(len(self._dormant) and _vanished(palette[self._dormant], scale).all())
         self._level = chosen_level(self._levels, self._level, max_error)
         self._skin_used()
-        return self._vertices.skinned(palette, self._extreme, self._extreme_positions)
+        return self._enclosing.skinned(palette)
 
     def render(
         self,
@@ -213,8 +222,8 @@ class SkinnedCharacter:
             self.face.release()
 
 
-def _vanished(palette: Array, scale: float = 1.0) -> NDArray[np.bool_]:
-    """Return which matrices (n, 4, 4) shrink what they move to nothing, (n,).
+def _vanished(palette: NDArray[np.floating[Any]], scale: float = 1.0) -> NDArray[np.bool_]:
+    """Return which matrices (n, 3 or 4, 4) shrink what they move to nothing, (n,).
 
     `scale` is that of the character on the table.
     """

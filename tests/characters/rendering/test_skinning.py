@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from characters import Character
 from characters.model.mesh import Material
+from characters.rendering.geometry.extreme_vertices import SkinnedPoints
 from characters.rendering.geometry.skinned_character import SkinnedCharacter
 from characters.rendering.geometry.vertices import CasterRun, CharacterVertices
 from characters.rendering.programs import ShaderPrograms
@@ -79,6 +80,20 @@ def test_what_its_joints_hide_is_neither_skinned_nor_drawn(ctx, programs):
     assert drawn["shown"] == every
     assert 0.8 * every < drawn["hidden"] < 0.95 * every
     assert casting["hidden"] < casting["shown"]
+
+
+@pytest.mark.parametrize("count", [1, 256, 300])
+def test_points_are_skinned_by_a_product_as_defined(count):
+    rng = np.random.default_rng(count)
+    positions = rng.standard_normal((count, 3)).astype(np.float32)
+    joints = rng.integers(0, 7, (count, 4)).astype(np.uint32)  # one joint may come twice
+    weights = rng.random((count, 4)).astype(np.float32)
+    palette = matrices(count, 7)[:, :3].astype(np.float32)
+    points = SkinnedPoints(0.0 * positions, joints, weights, 7)
+    points.move(np.arange(count), positions)
+    blended = np.einsum("vk,vkij->vij", weights.astype(float), palette[joints])
+    expected = np.einsum("vij,vj->vi", blended[..., :3], positions) + blended[..., 3]
+    assert np.abs(points.skinned(palette) - expected).max() < 1e-5
 
 
 def test_two_hundred_joints_are_supported(ctx, programs, pawn):
