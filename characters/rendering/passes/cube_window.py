@@ -109,7 +109,7 @@ class CubeWindowPass(RenderPass):
         assert box is not None
         assert shadow is not None
         table_from_cube = np.linalg.inv(frame.camera_from_table) @ camera_from_unit_cube(box)
-        shadow.texture.use(0)
+        shadow.texture().use(0)
         set_uniforms(
             program,
             factors=0,

@@ -1,7 +1,12 @@
 """The characters' shadows on the table: sharp under the feet, softer with height."""
 
+import math
+from collections.abc import Sequence
+
+import cv2
 import moderngl
 import numpy as np
+from numpy.typing import NDArray
 
 from characters.rendering.cover import PictureCover
 from characters.rendering.geometry.character_cache import CharacterInstance
@@ -9,7 +14,7 @@ from characters.rendering.light import Light
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.passes.table_factors import TableFactors, darken
 from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.resources import FrameResources
+from characters.rendering.resources import CharacterLayer, FrameResources
 from characters.rendering.target import read_bytes
 from characters.skeleton.pose import Array
 
@@ -17,7 +22,7 @@ MAP_SIDE = 80
 """Texels along each side of a shadow map; a character covers about half of them."""
 
 BLUR_TAPS = 10
-"""Taps of the blur on each side; `BLUR_TAPS` in `shadow_blur` and `shadow_factor` too."""
+"""Taps of the blur on each side, the middle included."""
 
 SHADOW_LEVELS = (0.0, 0.1, 0.4, 1.0)
 """Heights whose shadows are blurred separately, as shares of the character's height."""
@@ -31,6 +36,12 @@ SKY_BLUR = (0.022, 0.05, 0.11, 0.13)
 
 SKY_OCCLUSION = (0.78, 0.7, 0.48, 0.2)
 """Share of the ambient light that a surface at each level keeps from the table below it."""
+
+MAX_SKY_OCCLUSION = 0.78
+"""Largest share of it that is kept from the table: foot and table reflect some light."""
+
+DISPLAY_GAMMA = 2.2
+"""Exponent of the encoded picture: a power of a factor multiplies it as the factor does light."""
 
 ON_TABLE = np.eye(4)
 """`floor_from_table` of the table itself."""
@@ -58,6 +69,11 @@ class ShadowPass(RenderPass):
         for shadow, character in zip(self._maps, frame.on_table, strict=False):
             shadow.render(character, frame.light, share)
 
+    def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
+        """Copy the maps to memory, before the driver gets the characters."""
+        for shadow in self._maps[: self._count]:
+            shadow.read_back()
+
     def composite(self, frame: FrameResources, cover: PictureCover | None) -> None:
         """Darken the table, except where real cubes or a hand hide it."""
         if self._count:
@@ -70,7 +86,7 @@ class ShadowPass(RenderPass):
 
     def _table_factors(self) -> list[TableFactors]:
         """Return the light that each character leaves."""
-        return [shadow.read() for shadow in self._maps[: self._count]]
+        return [shadow.factors() for shadow in self._maps[: self._count]]
 
     def release(self) -> None:
         """Release the maps too; a second call does nothing."""
@@ -85,21 +101,20 @@ def key_share(light: Light) -> Array:
 
 
 class ShadowMap:
-    """The light that one character takes from the table, by colour channel."""
+    """The light that one character takes from the table, by colour channel.
+
+    The graphics card draws what casts the shadow. It is softened in memory: the map is so small
+    that a software driver takes several times as long for it as OpenCV does.
+    """
 
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
         self._context = context
         self._caster = programs.load("shadow_caster", "shadow_caster")
-        self._blur = programs.load("full_screen", "shadow_blur")
-        self._factor = programs.load("full_screen", "shadow_factor")
-        self._blur_triangle = context.vertex_array(self._blur, [])
-        self._factor_triangle = context.vertex_array(self._factor, [])
-        self._textures = [context.texture((2 * MAP_SIDE, MAP_SIDE), 4) for _ in range(2)]
-        for texture in self._textures:
-            texture.repeat_x = texture.repeat_y = False
-        self._targets = [context.framebuffer([texture]) for texture in self._textures]
-        self.texture = self._textures[0]
-        """What is left of the light, in its left half."""
+        self._covered = context.texture((2 * MAP_SIDE, MAP_SIDE), 4)
+        self._target = context.framebuffer([self._covered])
+        self._texture: moderngl.Texture | None = None
+        self._drawn: NDArray[np.uint8] | None = None
+        self._share = np.zeros(3)
         self.area = np.zeros(4)
         """Origin x, z and side of the square that the map covers, and the character's height."""
         self.extent = np.zeros(4)
@@ -123,6 +138,7 @@ class ShadowMap:
         slope = light.to_light[[0, 2]] / light.to_light[1]
         self.extent = _extent(character.enclosing, height, slope)
         self.area = _map_area(self.extent, height)
+        self._share, self._drawn = share, None
         context = self._context
         set_uniforms(
             self._caster,
@@ -131,10 +147,8 @@ class ShadowMap:
             levels=SHADOW_LEVELS,
             floor_from_table=floor_from_table,
         )
-        target = self._targets[0]
-        target.use()
-        target.viewport = (0, 0, 2 * MAP_SIDE, MAP_SIDE)
-        target.clear()
+        self._target.use()
+        self._target.clear()
         # Faces that look away from the light are drawn: they are nearest to the table, and soles
         # touch it.
         context.enable_only(moderngl.BLEND | moderngl.CULL_FACE)
@@ -145,66 +159,57 @@ class ShadowMap:
             (context.disable if run.double_sided else context.enable)(moderngl.CULL_FACE)
             character.skinned.caster.render(vertices=run.count, first=run.first, instances=2)
         context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
-        context.enable_only(moderngl.NOTHING)
-        self._soften(height, share)
 
-    def read(self) -> TableFactors:
+    def read_back(self) -> None:
+        """Copy the map to memory: before more is drawn, the driver need not end that first."""
+        if self._drawn is None:
+            self._drawn = read_bytes(self._target, (0, 0, 2 * MAP_SIDE, MAP_SIDE), 4)
+
+    def factors(self) -> TableFactors:
         """Return what is left of the light, with one more texel on each side."""
+        self.read_back()
+        assert self._drawn is not None
         x, z, width, depth = self._used_texels()
-        low = np.maximum([x - 1, z - 1], 0)
-        columns, rows = (np.minimum([x + width + 1, z + depth + 1], MAP_SIDE) - low).tolist()
-        left_of_light = read_bytes(self._targets[0], (*low.tolist(), columns, rows), 3)
+        covered = self._drawn[z : z + depth]
+        key, sky = covered[:, x : x + width], covered[:, MAP_SIDE + x : MAP_SIDE + x + width]
+        texels_per_height = float(MAP_SIDE / self.area[2] * self.area[3])
+        bgr = cv2.copyMakeBorder(
+            _left_of_light(key, sky, texels_per_height, self._share),
+            1,
+            1,
+            1,
+            1,
+            cv2.BORDER_REPLICATE,
+        )
         texel = float(self.area[2]) / MAP_SIDE
-        left, near = (self.area[:2] + texel * low).tolist()
-        return TableFactors(left_of_light, (left, near), texel)
+        corner = self.area[:2] + texel * (np.array([x, z]) - 1)
+        return TableFactors(np.asarray(bgr, np.uint8), (float(corner[0]), float(corner[1])), texel)
 
-    def _soften(self, height: float, key_share: Array) -> None:
-        """Blur the part of the map that can have a shadow along x; then along z, to one factor.
-
-        The factor is what is left of both lights: the map has fewer texels than the table.
-        """
-        texels_per_height = MAP_SIDE / self.area[2] * height
-        key, sky = (
-            _gaussian_kernels(texels_per_height * np.array(deviations))
-            for deviations in (KEY_BLUR, SKY_BLUR)
-        )
-        x, z, width, depth = self._used_texels()
-        used = x, z, x + width - 1, z + depth - 1
-        self._targets[1].use()
-        self._textures[0].use(0)
-        for left, weights in ((0, key), (MAP_SIDE, sky)):
-            self._targets[1].viewport = (x + left, z, width, depth)
-            set_uniforms(self._blur, weights=weights, first=x + left, last=x + left + width - 1)
-            self._blur_triangle.render(moderngl.TRIANGLES, vertices=3)
-        self._targets[0].use()
-        # One more texel on each side, for the interpolation between texels.
-        self._targets[0].viewport = (x - 1, z - 1, width + 2, depth + 2)
-        self._textures[1].use(0)
-        set_uniforms(
-            self._factor,
-            key_weights=key,
-            sky_weights=sky,
-            used=used,
-            side=MAP_SIDE,
-            key=key_share,
-            sky_occlusion=SKY_OCCLUSION,
-        )
-        self._factor_triangle.render(moderngl.TRIANGLES, vertices=3)
+    def texture(self) -> moderngl.Texture:
+        """Return what is left of the light for other passes, BGR in the texels of `area`."""
+        if self._texture is None:
+            self._texture = self._context.texture((MAP_SIDE, MAP_SIDE), 3, alignment=1)
+            self._texture.repeat_x = self._texture.repeat_y = False
+        factors = self.factors().bgr
+        x, z, _, _ = self._used_texels()
+        bgr = np.full((MAP_SIDE + 2, MAP_SIDE + 2, 3), 255, np.uint8)
+        bgr[z : z + factors.shape[0], x : x + factors.shape[1]] = factors
+        self._texture.write(np.ascontiguousarray(bgr[1:-1, 1:-1]))
+        return self._texture
 
     def _used_texels(self) -> tuple[int, int, int, int]:
         """Return the texels of a half that can have a shadow: first x and z, width and depth."""
         area = self.area
-        x, z = np.floor((self.extent[:2] - area[:2]) / area[2] * MAP_SIDE).astype(int).tolist()
-        right, far = np.ceil((self.extent[2:] - area[:2]) / area[2] * MAP_SIDE).astype(int).tolist()
+        low, high = (self.extent.reshape(2, 2) - area[:2]) / area[2] * MAP_SIDE
+        x, z = np.maximum(np.floor(low), 0).astype(int).tolist()
+        right, far = np.minimum(np.ceil(high), MAP_SIDE).astype(int).tolist()
         return x, z, right - x, far - z
 
     def release(self) -> None:
         """Release the buffers; a second call does nothing."""
-        self._blur_triangle.release()
-        self._factor_triangle.release()
-        for target, texture in zip(self._targets, self._textures, strict=True):
-            target.release()
-            texture.release()
+        for each in (self._target, self._covered, self._texture):
+            if each is not None:
+                each.release()
 
 
 def sky_extent(enclosing: Array, height: float) -> Array:
@@ -214,16 +219,15 @@ def sky_extent(enclosing: Array, height: float) -> Array:
 
 def _extent(enclosing: Array, height: float, slope: Array) -> Array:
     """Return lowest x and z, highest x and z that a character's shadow can reach [m]."""
-    above = np.maximum(enclosing[:, 1:2], 0.0)
-    below = enclosing[:, [0, 2]]
-    ends = []
-    for points, deviations in ((below, SKY_BLUR), (below - slope * above, KEY_BLUR)):
-        blur = np.interp(above / height, SHADOW_LEVELS, deviations)
+    # One row for each coordinate: numpy takes several times as long over short rows.
+    above, below = np.maximum(enclosing[:, 1], 0.0), enclosing[:, [0, 2]].T
+    share, ends = above / height, []
+    for points, deviations in ((below, SKY_BLUR), (below - slope[:, None] * above, KEY_BLUR)):
+        blur = np.interp(share, SHADOW_LEVELS, deviations)
         margin = height * np.minimum(BLUR_DEVIATIONS * blur, MAX_BLUR_MARGIN)
-        ends.append((points - margin, points + margin))
-    low = np.minimum(*(low.min(axis=0) for low, _ in ends))
-    high = np.maximum(*(high.max(axis=0) for _, high in ends))
-    return np.concatenate([low, high])
+        ends.append(((points - margin).min(axis=1), (points + margin).max(axis=1)))
+    (low, high), (key_low, key_high) = ends
+    return np.concatenate([np.minimum(low, key_low), np.maximum(high, key_high)])
 
 
 def _map_area(extent: Array, height: float) -> Array:
@@ -239,9 +243,43 @@ def _map_area(extent: Array, height: float) -> Array:
     return np.array([*origin, side, height])
 
 
-def _gaussian_kernels(deviations: Array) -> Array:
-    """Return one half of four normalised kernels, (taps, 4)."""
-    taps = np.arange(BLUR_TAPS)[:, None]
-    kernels = np.exp(-0.5 * (taps / np.maximum(deviations, 0.3)) ** 2)
-    kernels /= kernels[0] + 2.0 * kernels[1:].sum(axis=0)
-    return np.asarray(kernels)
+def _left_of_light(
+    key: NDArray[np.uint8], sky: NDArray[np.uint8], texels_per_height: float, share: Array
+) -> NDArray[np.uint8]:
+    """Return what is left of all light, as factors of sRGB values, (rows, columns, 3) BGR.
+
+    `key` and `sky` are what is covered at each level, along the key light and straight down, (rows,
+    columns, levels); `share` (3,) is the share of the key light in the light on the table.
+    """
+    shade = _blurred_sum(key, texels_per_height, KEY_BLUR, (1.0,) * len(SHADOW_LEVELS))
+    closed = _blurred_sum(sky, texels_per_height, SKY_BLUR, SKY_OCCLUSION)
+    shade, closed = np.minimum(shade, 1.0), np.minimum(closed, MAX_SKY_OCCLUSION)
+    left = cv2.merge(
+        [cv2.addWeighted(shade, -each, closed, each - 1.0, 1.0) for each in share[::-1].tolist()]
+    )
+    return np.asarray(
+        cv2.convertScaleAbs(cv2.pow(left, 1.0 / DISPLAY_GAMMA), alpha=255.0), np.uint8
+    )
+
+
+def _blurred_sum(
+    covered: NDArray[np.uint8],
+    texels_per_height: float,
+    deviations: Sequence[float],
+    weights: Sequence[float],
+) -> NDArray[np.float32]:
+    """Return the weighted sum of the levels, each with its own blur, (rows, columns) 0…1."""
+    total: NDArray[np.float32] = np.zeros(covered.shape[:2], np.float32)
+    for level, deviation, weight in zip(cv2.split(covered), deviations, weights, strict=True):
+        kernel = _gaussian_kernel(texels_per_height * deviation)
+        soft = cv2.sepFilter2D(level, cv2.CV_32F, kernel, kernel, borderType=cv2.BORDER_REPLICATE)
+        total += np.float32(weight / 255.0) * soft
+    return total
+
+
+def _gaussian_kernel(deviation: float) -> NDArray[np.float32]:
+    """Return a normalised kernel of at most `BLUR_TAPS` on each side, for a deviation [texels]."""
+    deviation = max(deviation, 0.3)
+    side = min(math.ceil(3.0 * deviation) + 1, BLUR_TAPS)
+    kernel = np.exp(-0.5 * (np.arange(1 - side, side) / deviation) ** 2)
+    return np.asarray(kernel / kernel.sum(), np.float32)

@@ -144,7 +144,7 @@ void main() {
             if (all(greaterThan(place, extent.xy)) && all(lessThan(place, extent.zw))) {
                 float near = 1.0 - smoothstep(0.02, 0.05, abs(on_floor.y) / edge);
                 vec2 where = (place - area.xy) / area.z;
-                vec3 left = textureLod(factors, vec2(0.5 * where.x, where.y), 0.0).bgr;
+                vec3 left = textureLod(factors, where, 0.0).bgr;
                 light *= mix(vec3(1.0), pow(left, vec3(2.2)), near);
             }
 #endif

@@ -1,6 +1,6 @@
 #version 330 core
 
-// Multiplies the table by the light that a character leaves: the left half of its map.
+// Multiplies the table by the light that a character leaves.
 
 uniform sampler2D factors;
 
@@ -9,5 +9,5 @@ in vec2 at;
 out vec4 factor;
 
 void main() {
-    factor = vec4(texture(factors, at * vec2(0.5, 1.0)).rgb, 1.0);
+    factor = vec4(texture(factors, at).rgb, 1.0);
 }

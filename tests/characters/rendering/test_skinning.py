@@ -209,7 +209,7 @@ def test_tiny_triangles_cast_a_shadow_too(ctx, programs, pawn):
 
 def test_every_program_is_released(ctx):
     programs = ShaderPrograms(ctx)
-    programs.load("full_screen", "shadow_blur")
+    programs.load("full_screen", "table_factor")
     programs.load_transform("skin", "skinned_position", "skinned_normal")
     programs.load("character", "character", "GLOW")
     built = programs.built

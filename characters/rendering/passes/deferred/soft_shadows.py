@@ -105,7 +105,7 @@ class SoftShadowPass(ShadowPass):
         set_uniforms(self._table.program, clip_from_table=square)
         for shadow in self._maps[: self._count]:
             set_uniforms(self._table.program, area=shadow.area, extent=shadow.extent)
-            shadow.texture.use(0)
+            shadow.texture().use(0)
             self._table.render(moderngl.TRIANGLE_STRIP, vertices=4)
 
     def _find_left(self, share: Array) -> None:
