@@ -7,16 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.rendering.cover import PictureCover
-from characters.rendering.occlusion import hidden_by_cube
 from characters.rendering.projection import Rectangle
-from characters.rendering.scene import Box
-from characters.skeleton.pose import Array
 
 
 def hidden_table(
-    cubes: Sequence[tuple[Box, Rectangle]],
+    cubes: Sequence[tuple[Rectangle, NDArray[np.uint8]]],
     cover: PictureCover | None,
-    matrix: Array,
     area: Rectangle,
 ) -> NDArray[np.uint8] | None:
     """Return the share of each pixel of a region that is hidden, or None where nothing is.
@@ -27,11 +23,9 @@ def hidden_table(
     Parameters
     ----------
     cubes
-        Real cubes, and where they are in the picture.
+        Where real cubes are in the picture, and what share of each pixel they hide.
     cover
         The hand.
-    matrix
-        Pinhole matrix of the picture, (3, 3) [px].
     area
         The region.
 
@@ -40,10 +34,10 @@ def hidden_table(
     0…255, (height, width).
     """
     hidden: NDArray[np.uint8] | None = None
-    for box, place in cubes:
+    for place, share in cubes:
         shared = place.intersection(area)
         if shared is not None:
-            hidden = _joined(hidden, hidden_by_cube(box, matrix, shared), shared, area)
+            hidden = _joined(hidden, share[shared.within(place).slices], shared, area)
     shared = None if cover is None else cover.area.intersection(area)
     if cover is not None and shared is not None:
         part = cover.share[shared.within(cover.area).slices]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from characters.rendering.cover import ShareTexture
 from characters.rendering.geometry.character_cache import CharacterInstance
 from characters.rendering.light import Light
-from characters.rendering.occlusion import corners_of
+from characters.rendering.occlusion import corners_of, hidden_by_cube
 from characters.rendering.programs import set_uniforms
 from characters.rendering.projection import NEAR_M, Rectangle, bounding_rectangle, clip_from_camera
 from characters.rendering.scene import Box, Scene, Softness
@@ -155,6 +155,13 @@ class FrameResources:
         Another thread may still be at work on it: it is not asked for before `composite`.
         """
         return self.undistorted()
+
+    @cached_property
+    def hidden_by_cubes(self) -> tuple[tuple[Rectangle, Image], ...]:
+        """Where real cubes are in the picture, and what share of each pixel they hide, 0…255."""
+        return tuple(
+            (place, hidden_by_cube(box, self.camera_matrix, place)) for box, place in self.cubes
+        )
 
     @cached_property
     def camera_position(self) -> Array:

@@ -148,12 +148,18 @@ class Stage:
         """Prepare all passes and draw the characters; the driver draws while the caller goes on."""
         for each in self.passes:
             each.prepare(frame)
+        self._begin_to_draw()
+        # Both are found while the driver draws the shadow maps, which are read next.
+        _ = frame.hidden_by_cubes
         if frame.layer is not None:
             self._context.front_face = "cw"  # the first row of a target is its top row
             for each in self.passes:
                 each.draw_layer(frame, frame.layer)
             self._context.front_face = "ccw"  # as code outside of the stage expects it
-        # A software driver starts to work on a framebuffer when another one is drawn on.
+        self._begin_to_draw()
+
+    def _begin_to_draw(self) -> None:
+        """Let a software driver start, as it does when another framebuffer is drawn on."""
         self._targets.pictures.at_least(1, 1).clear()
 
     def release(self) -> None:

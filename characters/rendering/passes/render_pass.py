@@ -65,7 +65,7 @@ class RegionPass(RenderPass, ABC):
         """Draw all regions. Where they overlap, the last one is right."""
         drawn = []
         for area in self.areas:
-            hidden = hidden_table(frame.cubes, cover, frame.camera_matrix, area)
+            hidden = hidden_table(frame.hidden_by_cubes, cover, area)
             region = Region(
                 area,
                 frame.targets.pictures.at_least(area.width, area.height),

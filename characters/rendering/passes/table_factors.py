@@ -63,7 +63,7 @@ def darken(frame: FrameResources, cover: PictureCover | None, factors: TableFact
     if area is None:
         return
     left = _in_picture(frame, factors, area)
-    hidden = hidden_table(frame.cubes, cover, frame.camera_matrix, area)
+    hidden = hidden_table(frame.hidden_by_cubes, cover, area)
     if hidden is not None and hidden.any():
         x, y, width, height = cv2.boundingRect(hidden)
         box = np.s_[y : y + height, x : x + width]

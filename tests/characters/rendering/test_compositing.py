@@ -25,7 +25,7 @@ def frame(pitch):
         picture=np.full((180, 320, 3), 255, np.uint8),
         camera_matrix=MATRIX,
         camera_from_table=table,
-        cubes=(),
+        hidden_by_cubes=(),
         area_of=lambda points: Rectangle(0, 0, 320, 180),
     )
 

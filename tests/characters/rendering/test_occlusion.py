@@ -65,7 +65,8 @@ def test_a_cube_and_a_hand_hide_the_table_independently_of_each_other(ctx):
     place = Rectangle(110, 60, 100, 60)
     texture = ShareTexture(ctx)
     cover = texture.upload(Cover(155, 70, np.full((40, 90), 128, np.uint8), 0.5))
-    hidden = hidden_table([(box, place)], cover, MATRIX, PART)
+    cube = place, hidden_by_cube(box, MATRIX, place)
+    hidden = hidden_table([cube], cover, PART)
     assert hidden is not None
     of_cube = mask(box)
     assert hidden[69, 110] == 255  # on the cube, beside the hand
@@ -74,6 +75,6 @@ def test_a_cube_and_a_hand_hide_the_table_independently_of_each_other(ctx):
     assert (of_cube[only_hand] == 0.0).all()
     assert (hidden[only_hand] == 128).all()
     assert hidden[5, 5] == 0
-    assert hidden_table([], None, MATRIX, PART) is None
-    assert hidden_table([(box, place)], cover, MATRIX, Rectangle(0, 0, 20, 20)) is None
+    assert hidden_table([], None, PART) is None
+    assert hidden_table([cube], cover, Rectangle(0, 0, 20, 20)) is None
     texture.release()
