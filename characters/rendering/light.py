@@ -1,6 +1,7 @@
 """How the scene is lit, estimated from the camera's own picture."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import cv2
@@ -37,6 +38,9 @@ LINEAR_FROM_SRGB = np.where(
 SAMPLES_PER_SIDE = 12
 """Sample points along each side of a cube's face."""
 
+PICTURES_PER_LOOK = 2
+"""Only one picture of so many is looked at."""
+
 PAPER_QUANTILE = 0.9
 """Quantile of a face's brightness that is its paper: most of a face is a black marker."""
 
@@ -48,6 +52,9 @@ FACE_SAMPLES = np.stack(
     [sign * np.roll(_FRONT, axis, axis=1) for axis in range(3) for sign in (1, -1)]
 )
 """Sample points on the six faces of a unit cube, (6, points, 3)."""
+
+FACE_CENTERS = FACE_SAMPLES.mean(axis=1)
+"""Centres of its faces, (6, 3)."""
 
 
 @dataclass(frozen=True)
@@ -121,13 +128,15 @@ class LightEstimator:
     def __init__(self) -> None:
         self._white: Array | None = None
         self._ground: Array | None = None
+        self._seen_white, self._seen_ground = np.ones(3), np.ones(3)
+        self._pictures = 0
         self._measured: Light | None = None
         self._share = 0.0  # of the measured light
 
     def update(
         self,
         picture: NDArray[np.uint8],
-        paper: Array | None = None,
+        find_paper: Callable[[], Array | None] | None = None,
         measured: MeasuredLight | None = None,
         camera_from_table: Array | None = None,
     ) -> Light:
@@ -137,29 +146,21 @@ class LightEstimator:
         ----------
         picture
             The camera's frame, (height, width, 3) BGR: that it is bent does not matter here.
-        paper
-            Linear RGB of white paper in the picture, (3,), if some was found.
+        find_paper
+            Returns the linear RGB of white paper in the picture, (3,), if some is found. Only one
+            picture of `PICTURES_PER_LOOK` is looked at, as the light changes slowly.
         measured
             The light in the room, if it was measured; the light changes to it smoothly.
         camera_from_table
             Pose of the table, (4, 4), which a measured light needs.
         """
-        step = max(1, picture.shape[1] // 64)
-        samples = picture[step // 2 :: step, step // 2 :: step, ::-1].reshape(-1, 3)
-        linear = LINEAR_FROM_SRGB[samples]
-        if paper is None:
-            white = self._white_from_picture(samples)
-        else:
-            white = _reduce_cast(paper / self.PAPER_ALBEDO, self.PAPER_CAST_SHARE)
-        white = np.maximum(white, 1e-3)
-        white = (
-            white * np.clip(white @ LUMA_WEIGHTS, *self.LUMINANCE_RANGE) / (white @ LUMA_WEIGHTS)
-        )
-        ground = np.maximum(linear.mean(axis=0), 0.25 * self.LUMINANCE_RANGE[0])
+        if self._pictures % PICTURES_PER_LOOK == 0:
+            self._look(picture, None if find_paper is None else find_paper())
+        self._pictures += 1
         if self._white is None or self._ground is None:
-            self._white, self._ground = white, ground
-        self._white = self._white + self.SMOOTHING_SHARE * (white - self._white)
-        self._ground = self._ground + self.SMOOTHING_SHARE * (ground - self._ground)
+            self._white, self._ground = self._seen_white, self._seen_ground
+        self._white = self._white + self.SMOOTHING_SHARE * (self._seen_white - self._white)
+        self._ground = self._ground + self.SMOOTHING_SHARE * (self._seen_ground - self._ground)
         light = Light(0.72 * self._white, 0.36 * self._white, 0.6 * self._ground, TO_LIGHT)
         target = 0.0
         if measured is not None and camera_from_table is not None:
@@ -169,6 +170,20 @@ class LightEstimator:
             return light
         self._share += self.SMOOTHING_SHARE * (target - self._share)
         return light.mixed(replace(self._measured, ground=light.ground), self._share)
+
+    def _look(self, picture: NDArray[np.uint8], paper: Array | None) -> None:
+        """Estimate the light in a picture, in which white paper has a colour if some was found."""
+        step = max(1, picture.shape[1] // 64)
+        samples = picture[step // 2 :: step, step // 2 :: step, ::-1].reshape(-1, 3)
+        if paper is None:
+            white = self._white_from_picture(samples)
+        else:
+            white = _reduce_cast(paper / self.PAPER_ALBEDO, self.PAPER_CAST_SHARE)
+        white = np.maximum(white, 1e-3)
+        luminance = white @ LUMA_WEIGHTS
+        self._seen_white = white * np.clip(luminance, *self.LUMINANCE_RANGE) / luminance
+        mean = LINEAR_FROM_SRGB[samples].mean(axis=0)
+        self._seen_ground = np.maximum(mean, 0.25 * self.LUMINANCE_RANGE[0])
 
     def _on_table(self, measured: MeasuredLight, camera_from_table: Array) -> Light:
         """Return a measured light in the table frame, no darker or brighter than can be drawn."""
@@ -202,17 +217,17 @@ def paper_color(view: View) -> Array | None:
     return max(papers, key=lambda paper: float(paper @ LUMA_WEIGHTS), default=None)
 
 
-def _face_papers(view: View, box: Box) -> list[Array]:
-    """Return the paper colour of each face that looks at the camera and is completely in view."""
+def _face_papers(view: View, box: Box) -> Array:
+    """Return the paper colours (n, 3) of the faces that the camera sees completely."""
     if view.image is None or not is_invertible(box.camera_from_box) or not np.isfinite(box.edge):
-        return []
+        return np.zeros((0, 3))
     pose = np.asarray(box.camera_from_box, float)
-    points = box.edge * FACE_SAMPLES @ pose[:3, :3].T + pose[:3, 3]
-    centers = points.mean(axis=1)
-    facing = np.einsum("ij,ij->i", centers - pose[:3, 3], centers) < 0.0
-    visible = points[facing & (points[:, :, 2] > NEAR_M).all(axis=1)]
+    outward = box.edge * FACE_CENTERS @ pose[:3, :3].T
+    facing = np.einsum("ij,ij->i", outward, outward + pose[:3, 3]) < 0.0
+    points = box.edge * FACE_SAMPLES[facing] @ pose[:3, :3].T + pose[:3, 3]
+    visible = points[points[:, :, 2].min(axis=1) > NEAR_M]
     if not len(visible) or not is_pinhole(view.matrix):
-        return []
+        return np.zeros((0, 3))
     matrix, lens = np.asarray(view.matrix, float), usable_distortion(view.distortion)
     bent = cv2.projectPoints(visible.reshape(-1, 3), np.zeros(3), np.zeros(3), matrix, lens)[0]
     pixels = np.rint(bent.reshape(len(visible), -1, 2)).astype(int)
@@ -221,14 +236,13 @@ def _face_papers(view: View, box: Box) -> list[Array]:
     inside = np.ones(len(visible), bool)
     for each in (pixels, straight):
         inside &= ((each >= 0) & (each < view.image.shape[1::-1])).all(axis=(1, 2))
-    papers = []
-    for columns, rows in pixels[inside].transpose(0, 2, 1):
-        colors = LINEAR_FROM_SRGB[view.image[rows, columns, ::-1]]
-        luminance = colors @ LUMA_WEIGHTS
-        # `numpy.quantile` takes five times as long for so few.
-        least = np.sort(luminance)[math.ceil(PAPER_QUANTILE * (len(luminance) - 1))]
-        papers.append(colors[luminance >= least].mean(axis=0))
-    return papers
+    columns, rows = pixels[inside].transpose(2, 0, 1)
+    colors = LINEAR_FROM_SRGB[view.image[rows, columns, ::-1]]
+    luminance = colors @ LUMA_WEIGHTS
+    # `numpy.quantile` takes five times as long for so few.
+    rank = math.ceil(PAPER_QUANTILE * (luminance.shape[1] - 1))
+    bright = luminance >= np.sort(luminance, axis=1)[:, rank, None]
+    return np.asarray(np.einsum("fp,fpc->fc", bright / bright.sum(axis=1, keepdims=True), colors))
 
 
 def _reduce_cast(color: Array, share: float) -> Array:

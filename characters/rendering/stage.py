@@ -187,7 +187,7 @@ class Stage:
         if not is_invertible(table):
             table = None
         seen = self._undistorter.undistort(view) if view.image is None else view.image
-        light = self._light.update(seen, paper_color(view), view.light, table)
+        light = self._light.update(seen, partial(paper_color, view), view.light, table)
         if table is None or not is_pinhole(view.matrix):
             return None
         self._targets.pictures.at_least(1, 1).use((0, 0, 1, 1))

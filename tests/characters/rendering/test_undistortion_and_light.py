@@ -9,7 +9,13 @@ from numpy.typing import NDArray
 
 from characters.errors import CharacterError
 from characters.rendering.context import create_context
-from characters.rendering.light import LINEAR_FROM_SRGB, MIN_RISE, LightEstimator, paper_color
+from characters.rendering.light import (
+    LINEAR_FROM_SRGB,
+    MIN_RISE,
+    PICTURES_PER_LOOK,
+    LightEstimator,
+    paper_color,
+)
 from characters.rendering.scene import Cover, MeasuredLight
 from characters.rendering.undistortion import Undistorter
 
@@ -169,7 +175,8 @@ def test_a_darker_and_redder_picture_gives_a_darker_and_redder_light(view):
 def test_the_light_changes_slowly(view):
     estimate = LightEstimator()
     first = estimate.update(np.full((180, 320, 3), 60, np.uint8)).white
-    second = estimate.update(np.full((180, 320, 3), 240, np.uint8)).white
+    for _ in range(PICTURES_PER_LOOK):  # not all of them are looked at
+        second = estimate.update(np.full((180, 320, 3), 240, np.uint8)).white
     for _ in range(80):
         last = estimate.update(np.full((180, 320, 3), 240, np.uint8)).white
     assert (first < second).all()
