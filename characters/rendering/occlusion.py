@@ -44,10 +44,8 @@ def camera_from_unit_cube(box: Box) -> Array:
     return np.asarray(box.camera_from_box @ np.diag([box.edge, box.edge, box.edge, 1.0]))
 
 
-def unit_cube_from_table(box: Box | None, camera_from_table: Array) -> Array:
-    """Return the table in the frame of a box whose edge is 1 long, (4, 4); zeros for no box."""
-    if box is None:
-        return np.zeros((4, 4))
+def unit_cube_from_table(box: Box, camera_from_table: Array) -> Array:
+    """Return the table in the frame of a box whose edge is 1 long, (4, 4)."""
     return np.asarray(np.linalg.inv(camera_from_unit_cube(box)) @ camera_from_table)
 
 

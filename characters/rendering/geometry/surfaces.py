@@ -30,6 +30,9 @@ distance from the lamp, and the depths of its hidden sides."""
 VERTEX_LIT = "VERTEX_LIT"
 """Feature of programs that shade vertices, not fragments, for surfaces that allow it."""
 
+CLIPPED = "CLIPPED"
+"""Feature of programs that cut off what is outside of the cube that a character stands in."""
+
 MIN_VERTEX_ROUGHNESS = 0.5
 """Least roughness of a surface of which vertices alone are shaded: highlights of a smoother one are
 as small as triangles."""
@@ -276,7 +279,7 @@ def surface_program(programs: ShaderPrograms, features: frozenset[str]) -> moder
     if GEOMETRY not in features:
         features -= {SKIN_FEATURE}
     if VERTEX_LIT in features:
-        return programs.load("vertex_lit", "vertex_lit", *sorted(features & {"GLOW"}))
+        return programs.load("vertex_lit", "vertex_lit", *sorted(features & {"GLOW", CLIPPED}))
     mapped = {"MAPPED"} if features & MAPPED_FEATURES else set()
     placed = {"PLACED"} if features & {"BUMPS", GEOMETRY, CASTER, BEHIND, FACE_FEATURE} else set()
     program = programs.load("character", "character", *sorted(features | mapped | placed))

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import moderngl
 
-from characters.rendering.geometry.surfaces import VERTEX_LIT
+from characters.rendering.geometry.surfaces import CLIPPED, VERTEX_LIT
 from characters.rendering.occlusion import unit_cube_from_table
-from characters.rendering.passes.cube_window import clip_to
+from characters.rendering.passes.cube_window import set_clipping
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.resources import CharacterLayer, FrameResources
 from characters.skeleton.pose import Array
@@ -42,15 +42,18 @@ class CharacterPass(RenderPass):
         frame.context.enable_only(tests)
         first_surface = 1
         for character in frame.characters:
-            clip_to(frame.context, character)
+            wanted, inside = features, character.inside
+            if inside is not None:
+                wanted |= {CLIPPED}
+                uniforms["cube_from_table"] = unit_cube_from_table(inside, frame.camera_from_table)
+            set_clipping(frame.context, inside is not None)
             character.skinned.render(
                 frame.context,
-                features,
+                wanted,
                 first_surface,
                 clip_from_table=layer.clip_from_camera @ frame.camera_from_table,
-                cube_from_table=unit_cube_from_table(character.inside, frame.camera_from_table),
                 height=character.height,
                 **uniforms,
             )
             first_surface += len(character.skinned.surfaces)
-        clip_to(frame.context, None)
+        set_clipping(frame.context, False)

@@ -120,15 +120,10 @@ class CubeWindowPass(RenderPass):
         )
 
 
-def clip_to(context: moderngl.Context, character: CharacterInstance | None) -> None:
-    """Cut off what a character inside a cube has outside of it, or nothing of another one.
-
-    Some drivers cut off wherever a program writes distances, so those of a character on the table
-    are all positive.
-    """
-    inside = character is not None and character.inside is not None
+def set_clipping(context: moderngl.Context, is_on: bool) -> None:
+    """Cut off what a character inside a cube has outside of it, or nothing."""
     for number in range(6):
-        (context.enable_direct if inside else context.disable_direct)(GL_CLIP_DISTANCE0 + number)
+        (context.enable_direct if is_on else context.disable_direct)(GL_CLIP_DISTANCE0 + number)
 
 
 def _seen_from_inside(frame: FrameResources, box: Box) -> dict[str, Array]:

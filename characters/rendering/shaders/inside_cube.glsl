@@ -1,5 +1,6 @@
-// Cuts off what is outside of the cube that a character stands in, where clip distances are enabled.
-uniform mat4 cube_from_table;   // the cube's edge is 1 long; all zero for a character on the table
+// Cuts off what is outside of the cube that a character stands in.
+#ifdef CLIPPED
+uniform mat4 cube_from_table;   // the cube's edge is 1 long
 
 out float gl_ClipDistance[6];
 
@@ -10,3 +11,6 @@ void clip_to_cube(vec3 point) {
         gl_ClipDistance[2 * axis + 1] = 0.5 + place[axis];
     }
 }
+#else
+void clip_to_cube(vec3 point) {}
+#endif
