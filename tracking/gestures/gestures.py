@@ -1,5 +1,6 @@
 """From the pose of the cube to what the hand does with it."""
 
+import math
 from collections import deque
 from dataclasses import dataclass, replace
 
@@ -154,9 +155,9 @@ class CubeGestures:
         table_from_camera = se3.inverse(table.camera_from_table)
         table_from_cube = table_from_camera @ pose
         up = table_from_cube[1, :3]
-        tilts = {name: _angle(float(up @ normal)) for name, normal in SIDE_NORMALS.items()}
-        top = min(tilts, key=lambda name: tilts[name])
-        tilt = tilts[top]
+        cosines = {name: float(up @ normal) for name, normal in SIDE_NORMALS.items()}
+        top = max(cosines, key=lambda name: cosines[name])
+        tilt = _angle(cosines[top])
         if last_top is not None and tilt > MAX_TOP_TILT:
             top = last_top
         position = table_from_cube[[0, 2], 3]
@@ -196,4 +197,4 @@ class CubeGestures:
 
 
 def _angle(cosine: float) -> float:
-    return float(np.arccos(np.clip(cosine, -1, 1)))
+    return math.acos(min(max(cosine, -1.0), 1.0))

@@ -66,5 +66,5 @@ class StillnessDetector:
         first, last = self._samples[0], self._samples[-1]
         if len(self._samples) < 3 or last.timestamp - first.timestamp < WINDOW_S - 1e-9:
             return None
-        start = first.camera_from_cube
-        return np.stack([se3.delta(start, each.camera_from_cube) for each in self._samples])
+        poses = np.stack([each.camera_from_cube for each in self._samples])
+        return se3.deltas(poses[0], poses)
