@@ -28,14 +28,18 @@ def haze_table(softness: Softness | None) -> Image | None:
 
 def hazy(pixels: Image, table: Image) -> Image:
     """Return pixels (height, width, 4), their colours times their shares, through a table."""
-    color, share = pixels[..., :3], pixels[..., 3]
-    looked_up = cv2.LUT(color, table)
-    partly = (share > 0) & (share < 255)
-    part = share[partly][:, None] / 255.0
-    own = np.rint(color[partly] / part).clip(0, 255).astype(np.uint8)
-    looked_up[partly] = np.rint(table[own] * part)
-    looked_up[share == 0] = 0
-    return np.dstack([looked_up, share])
+    # OpenCV takes several times as long for channels that are not all next to each other, and
+    # numpy for masks of all pixels.
+    color, share = cv2.cvtColor(pixels, cv2.COLOR_BGRA2BGR), cv2.extractChannel(pixels, 3)
+    seen = cv2.cvtColor(cv2.inRange(share, 1, 255), cv2.COLOR_GRAY2BGR)
+    looked_up = cv2.min(cv2.LUT(color, table), seen)
+    partly = np.flatnonzero(cv2.inRange(share, 1, 254))
+    part = share.ravel()[partly, None] / 255.0
+    own = np.rint(color.reshape(-1, 3)[partly] / part).clip(0, 255).astype(np.uint8)
+    looked_up.reshape(-1, 3)[partly] = np.rint(table[own] * part)
+    result = cv2.cvtColor(looked_up, cv2.COLOR_BGR2BGRA)
+    cv2.insertChannel(share, result, 3)
+    return np.asarray(result, np.uint8)
 
 
 def darkened(picture: Image, left: Image, table: Image | None) -> Image:
