@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from tests.bench.ambient_occlusion.scenes import floor, rectangle, seen_from, sphere
+from tests.bench.ambient_occlusion.scenes import box, floor, rectangle, seen_from, sphere
 from tools.ray_tracing import (
     AreaLight,
     Pane,
@@ -10,6 +10,7 @@ from tools.ray_tracing import (
     ambient_occlusion,
     light_fraction,
     trace_camera,
+    trace_depth_layers,
     wendland,
 )
 from tools.ray_tracing.mesh import Floats
@@ -72,6 +73,18 @@ def test_a_camera_sees_positions_normals_and_objects_of_a_ball_on_a_floor():
     assert (toward < 0.0).all()
     ray = (np.array([7.5, 22.5, 1.0]) @ np.linalg.inv(MATRIX).T)[:2]
     np.testing.assert_allclose(seen.position[22, 7, :2] / seen.position[22, 7, 2], ray, atol=1e-5)
+
+
+def test_depth_layers_are_both_sides_of_what_is_seen_and_of_the_next_thing_behind_it():
+    near, second, third = (box((0.0, 0.0, z), (0.2, 0.2, 0.1)) for z in (1.0, 2.0, 3.0))
+    sheet = rectangle((-0.2, 0.1, 1.5), (0.4, 0, 0), (0, 0.1, 0))  # looks away, below the middle
+    wall = rectangle((0.4, -2.0, 4.0), (0, 4.0, 0), (2.0, 0, 0))  # looks to the camera, right
+    mesh = Triangles.joined([near, second, third, sheet, wall])
+    found = trace_depth_layers(RayTracer(mesh), MATRIX, (40, 30))
+    np.testing.assert_allclose(found[14, 19], [1.1, 1.9, 2.1, 0.9], rtol=1e-4)
+    np.testing.assert_allclose(found[18, 19], [1.1, 1.9, 1.5, 0.9], rtol=1e-4)
+    np.testing.assert_allclose(found[14, 30], [1e3, 1e3, 1e3, 4.0], rtol=1e-4)
+    np.testing.assert_array_equal(found[14, 5], np.full(4, 1e3))
 
 
 def test_inside_a_ball_everything_is_as_occluded_as_its_radius_says():

@@ -6,7 +6,7 @@ what an effect needs on it: what a camera sees, ambient occlusion, the light of 
 
 from tools.ray_tracing.ambient import ambient_occlusion, wendland
 from tools.ray_tracing.area_light import AreaLight, Pane, light_fraction, pane_transmittance
-from tools.ray_tracing.camera import VisibleSurfaces, trace_behind, trace_camera
+from tools.ray_tracing.camera import VisibleSurfaces, trace_camera, trace_depth_layers
 from tools.ray_tracing.mesh import Triangles
 from tools.ray_tracing.tracer import RayHits, RayTracer
 
@@ -20,7 +20,7 @@ __all__ = [
     "ambient_occlusion",
     "light_fraction",
     "pane_transmittance",
-    "trace_behind",
     "trace_camera",
+    "trace_depth_layers",
     "wendland",
 ]

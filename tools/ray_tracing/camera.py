@@ -75,12 +75,12 @@ def trace_camera(tracer: RayTracer, matrix: Array, size: tuple[int, int]) -> Vis
     )
 
 
-def trace_behind(tracer: RayTracer, matrix: Array, size: tuple[int, int]) -> Floats:
-    """Return what is hidden behind what a camera sees, (height, width, 4) [m].
+def trace_depth_layers(tracer: RayTracer, matrix: Array, size: tuple[int, int]) -> Floats:
+    """Return where what a camera sees begins and ends, and what is behind, (height, width, 4) [m].
 
-    Three depths: where what is seen ends (the first surface behind it that looks away), and the
-    first surfaces behind that which look to the camera and away. `NOTHING_M` where there is none;
-    the fourth is `NOTHING_M`. Parameters are as of `trace_camera`.
+    Four depths: where what is seen ends (the first surface behind it that looks away), the first
+    surfaces behind that which look to the camera and away, and where what is seen begins.
+    `NOTHING_M` where there is none. Parameters are as of `trace_camera`.
     """
     rays = _camera_rays(matrix, size)
     depths = np.full((len(rays), 4), NOTHING_M, np.float32)
@@ -97,13 +97,14 @@ def trace_behind(tracer: RayTracer, matrix: Array, size: tuple[int, int]) -> Flo
         flat = tracer.flat_normals(triangles)
         flat *= np.sign(np.einsum("ij,ij->i", flat, normals))[:, None]
         away = np.einsum("ij,ij->i", flat, rays[alive]) > 0.0
-        if not is_first:
+        if is_first:
+            depths[alive, 3] = depth
+        else:
             has_ended = depths[alive, 0] < NOTHING_M
             column = np.where(has_ended, np.where(away, 2, 1), np.where(away, 0, 3))
             depths[alive, column] = np.minimum(depths[alive, column], depth)
             alive = alive[(depths[alive, :3] == NOTHING_M).any(axis=1)]
         is_first = False
-    depths[:, 3] = NOTHING_M
     return depths.reshape(size[1], size[0], 4)
 
 

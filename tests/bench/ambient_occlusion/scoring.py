@@ -18,8 +18,8 @@ from tools.ray_tracing import (
     RayTracer,
     VisibleSurfaces,
     ambient_occlusion,
-    trace_behind,
     trace_camera,
+    trace_depth_layers,
 )
 
 Floats = NDArray[np.float32]
@@ -98,8 +98,8 @@ class TracedScene:
 
     @cached_property
     def behind(self) -> Floats:
-        """What is hidden behind that, see `trace_behind`."""
-        return trace_behind(self.tracer, self.scene.matrix(self.size), self.size)
+        """What is hidden behind that, see `trace_depth_layers`."""
+        return trace_depth_layers(self.tracer, self.scene.matrix(self.size), self.size)
 
     @cached_property
     def truth(self) -> Floats:
