@@ -101,27 +101,48 @@ class LightBuffer:
             texture.release()
 
 
-class HiddenBuffer:
-    """What is behind what is seen in each texel of a character layer."""
+class OcclusionBuffer:
+    """How much of the light from all around arrives."""
+
+    def __init__(self, context: moderngl.Context, size: tuple[int, int]) -> None:
+        self.texture = _texture(context, size, "f4", 2)
+        """Open share, and depth [m]."""
+        self._framebuffer = context.framebuffer([self.texture])
+
+    def draw(self, triangle: moderngl.VertexArray, size: tuple[int, int]) -> None:
+        """Draw a triangle over the first texels."""
+        self._framebuffer.use()
+        self._framebuffer.viewport = (0, 0, *size)
+        triangle.render(moderngl.TRIANGLES, vertices=3)
+
+    def release(self) -> None:
+        """Release the texture; a second call does nothing."""
+        self._framebuffer.release()
+        self.texture.release()
+
+
+class DepthLayerBuffer:
+    """Where what is seen in each cell of a character layer begins and ends, and what is behind."""
 
     def __init__(self, context: moderngl.Context, size: tuple[int, int]) -> None:
         self._context = context
-        self.behind = _texture(context, size, "f4")
-        """Depths at which what is seen ends, and at which the next thing begins and ends [m]."""
-        self.target = context.framebuffer([self.behind])
+        self.depths = _texture(context, size, "f4")
+        """Depths at which what is seen ends, at which the next thing begins and ends, and at which
+        what is seen begins [m]."""
+        self.target = context.framebuffer([self.depths])
         """Draws on it."""
         self._copied = _texture(context, size, "f4")
         self._copy = context.framebuffer([self._copied])
 
     def copy(self) -> moderngl.Texture:
-        """Return a copy of `behind` as it is, which can be read while it is drawn on."""
+        """Return a copy of `depths` as they are, which can be read while they are drawn on."""
         self._context.copy_framebuffer(self._copy, self.target)
         self.target.use()
         return self._copied
 
     def release(self) -> None:
         """Release the textures; a second call does nothing."""
-        for each in (self.target, self._copy, self.behind, self._copied):
+        for each in (self.target, self._copy, self.depths, self._copied):
             each.release()
 
 
@@ -157,7 +178,7 @@ class PixelBuffer:
             texture.release()
 
 
-Kept = TypeVar("Kept", HiddenBuffer, PixelBuffer)
+Kept = TypeVar("Kept", OcclusionBuffer, DepthLayerBuffer, PixelBuffer)
 
 
 class GrowingBuffer(Generic[Kept]):
@@ -178,10 +199,7 @@ class GrowingBuffer(Generic[Kept]):
         """Return the buffer, at least of a size (width, height)."""
         grown = grown_size(self._size, size)
         if grown is not None:
-            if self._kept is not None:
-                # moderngl binds the last framebuffer again when it makes one: it must still exist.
-                self._context.detect_framebuffer(0).use()
-                self._kept.release()
+            self.release()
             self._kept, self._size = self._make(self._context, grown), grown
         assert self._kept is not None
         return self._kept
@@ -189,7 +207,10 @@ class GrowingBuffer(Generic[Kept]):
     def release(self) -> None:
         """Release the buffer; a second call does nothing."""
         if self._kept is not None:
+            # moderngl binds the last framebuffer again when it makes one: it must still exist.
+            self._context.detect_framebuffer(0).use()
             self._kept.release()
+            self._kept = self._size = None
 
 
 def buffer_triangle(
@@ -220,8 +241,10 @@ def surface_records(characters: tuple[CharacterInstance, ...]) -> Array:
     return np.array(rows, float).reshape(-1, 3, 4)
 
 
-def _texture(context: moderngl.Context, size: tuple[int, int], dtype: str) -> moderngl.Texture:
-    texture = context.texture(size, 4, dtype=dtype)
+def _texture(
+    context: moderngl.Context, size: tuple[int, int], dtype: str, components: int = 4
+) -> moderngl.Texture:
+    texture = context.texture(size, components, dtype=dtype)
     texture.filter = moderngl.NEAREST, moderngl.NEAREST
     texture.repeat_x = texture.repeat_y = False
     return texture

@@ -2,7 +2,7 @@
 
 // The angle between a sample and the surface's normal (Huang 2013, ch. 3.3), as occlusion.
 
-#include "ambient_occlusion"
+#include "seen_samples"
 
 float sum = 0.0, total = 0.0;
 

@@ -9,15 +9,14 @@
 
 const float STEEPEST = 1.5;     // greatest slope between two samples at which they may be of one surface
 
-uniform sampler2D behind;       // where what is seen ends, and the next thing begins and ends: depths [m]
-uniform bool has_behind;        // otherwise everything goes on for ever
+uniform sampler2D depths;       // of each cell: end of what is seen, start and end of the next thing, start of what is seen [m]
 
 float sum = 0.0;
-float lowest;                   // of the sectors, from the direction of the eye [rad]
+float above = 0.0;              // light of all half lines
+float lowest;                   // cosine of the angle between the eye and the last of the sectors
 float whole;                    // light of all sectors
 uint hidden;                    // a bit for each sector, the first at the eye
-float last_along;               // of the last sample on this half of a line
-vec4 last[2];                   // angles and depths of the last sample's first and second thing
+vec4 last;                      // of what is seen in the last sample: cosines of the angles to both ends, and their depths
 
 int bit_count(uint v) {
     v -= (v >> 1) & 0x55555555u;
@@ -25,77 +24,78 @@ int bit_count(uint v) {
     return int((((v + (v >> 4)) & 0x0F0F0F0Fu) * 0x01010101u) >> 24);
 }
 
+int exponent(uint v) { return int(floatBitsToUint(float(v)) >> 23) - 127; }
+
 // The middle between the start of the first sector that is set and the end of the last.
 float middle(uint sectors) {
-    return 0.5 * (log2(float(sectors & (~sectors + 1u))) + floor(log2(float(sectors))) + 1.0);
+    return 0.5 * float(exponent(sectors & (~sectors + 1u)) + exponent(sectors) + 1);
+}
+
+// As light_up_to, by the cosine of the angle: a polynomial stands for asin c + c sqrt(1 − c²), to 2e-3.
+vec2 light_up_to_cosine(vec2 c) {
+    vec2 s = c * c;
+    vec2 arc = c * (2.0 + s * (-0.3791 + s * (0.1149 - 0.1650 * s)));
+    return 0.5 * (cosine * (1.0 - s) + sine * (0.5 * PI - arc));
 }
 
 void begin_half(vec2 direction) {
     turn_to(direction);
-    lowest = tilt + 0.5 * PI;
-    whole = max(light_up_to(lowest), 1e-6);
+    lowest = -sine;
+    whole = max(light_up_to_cosine(vec2(lowest)).x, 1e-6);
+    above += share * whole;
     hidden = 0u;
-    last_along = 0.0;
-    last[0] = last[1] = vec4(0.0);
+    last = vec4(0.0);
 }
 
-// The angle between a way and that to the eye, to 1e-4 (Abramowitz and Stegun 1964, 4.4.45).
-float angle_to(vec3 way, float far) {
-    float x = dot(way, to_eye) / far, y = min(abs(x), 1.0);
-    float angle = sqrt(1.0 - y) * (1.5707288 + y * (-0.2121144 + y * (0.0742610 - 0.0187293 * y)));
-    return x < 0.0 ? PI - angle : angle;
-}
-
-// Hide what is between two depths of a line of sight. `gap` is the distance from the last sample [m], `nearer` how
-// much nearer what is met between them is.
-void hide(int layer, vec3 there, vec2 depths, float gap, float nearer) {
-    vec3 front = there * (depths.x / there.z) - here, back = there * (depths.y / there.z) - here;
-    float far = length(front), further = length(back);
-    float top = angle_to(front, far), bottom = angle_to(back, further);
-    vec4 before = last[layer];
-    last[layer] = vec4(top, bottom, depths);
-    if (dot(normal, front) < bias * far)
-        return;
-    vec2 ends = vec2(top, bottom);
+// Hide what is between two depths of a line of sight; return the cosines of both ends, and the depths. `before` is that
+// of the last sample, or 0; `gap` the distance from there [m], `nearer` how much nearer what is met between them is.
+vec4 hide(vec3 ray, vec2 depths, vec4 before, float gap, float nearer) {
+    // From here to what is at a depth, the way is start + past · ray.
+    vec3 start = here.z * ray - here;
+    vec2 past = depths - here.z;
+    float start_ray = dot(start, ray), ray_ray = dot(ray, ray), start_start = dot(start, start);
+    vec2 per_far = inversesqrt(start_start + past * (2.0 * start_ray + past * ray_ray));
+    vec2 ends = clamp((dot(start, to_eye) + past * dot(ray, to_eye)) * per_far, -1.0, 1.0);
+    vec4 result = vec4(ends, depths);
+    if ((dot(normal, start) + past.x * dot(normal, ray)) * per_far.x < bias)
+        return result;
     if (before.w > 0.0 && depths.x < before.w + STEEPEST * gap && before.z < depths.y + STEEPEST * gap)
-        ends = vec2(min(top, before.x), max(bottom, before.y));     // it goes on from the last sample
-    ends.y = min(ends.y, lowest);
-    if (ends.x >= ends.y)
-        return;
+        ends = vec2(max(ends.x, before.x), min(ends.y, before.y));  // it goes on from the last sample
+    ends.y = max(ends.y, lowest);
+    if (ends.x <= ends.y)
+        return result;
     // The shift makes rounding right in the mean over a tile.
-    ivec2 sectors = ivec2(32.0 / whole * vec2(light_up_to(ends.x), light_up_to(ends.y)) + shift);
-    sectors = clamp(sectors, 0, 32);
+    ivec2 sectors = clamp(ivec2(32.0 / whole * light_up_to_cosine(ends) + shift), 0, 32);
     int count = sectors.y - sectors.x;
     if (count <= 0)
-        return;
+        return result;
     uint fresh = (count == 32 ? ~0u : ((1u << uint(count)) - 1u) << uint(sectors.x)) & ~hidden;
     if (fresh == 0u)
-        return;
+        return result;
     hidden |= fresh;
-    // Where the middle of these sectors meets the line of sight.
-    float angle = mix(ends.x, ends.y, clamp((middle(fresh) - float(sectors.x)) / float(count), 0.0, 1.0));
-    float between = sin(bottom - top);
-    float nearness = between < 1e-4 ? 1.0 / far
-        : (sin(bottom - angle) / far + sin(angle - top) / further) / between;
-    if (nearness > 0.0)
-        sum += share * whole / 32.0 * float(bit_count(fresh)) * falloff(nearer / nearness);
+    // Where the middle of these sectors meets the line of sight: its direction is a mean of those to both ends.
+    float part = clamp((middle(fresh) - float(sectors.x)) / float(count), 0.0, 1.0);
+    float between = (start_start + (past.x + past.y) * start_ray + past.x * past.y * ray_ray) * per_far.x * per_far.y;
+    float far = sqrt(1.0 - 2.0 * part * (1.0 - part) * (1.0 - between)) / mix(per_far.x, per_far.y, part);
+    sum += share * whole / 32.0 * float(bit_count(fresh)) * falloff(nearer * far);
+    return result;
 }
 
-void take(vec3 way, float far, float along, float area) {
+void take(ivec2 offset, float along, float area) {
+    vec3 ray = sight(offset);
+    vec4 found = is_sampled_inside() ? texelFetch(depths, sampled, 0) : vec4(NOTHING);
+    if (found.w == NOTHING) {
+        float nearness = dot(ground, ray);
+        if (nearness * NOTHING <= 1.0) {
+            last = vec4(0.0);
+            return;
+        }
+        found = vec4(vec3(NOTHING), 1.0 / nearness);
+    }
     float gap = (along - last_along) * radius, nearer = mix(1.0, last_along / along, fill);
-    last_along = along;
-    vec3 there = here + way;
-    vec3 ends = has_behind && is_inside ? texelFetch(behind, sampled, 0).xyz : vec3(NOTHING);
-    if (ends.z < ends.y)
-        ends.z = NOTHING;
-    float nearness = dot(ground, there / there.z);
-    if (ends.y == NOTHING && nearness * ends.x > 1.0)
-        ends.y = 1.0 / nearness;    // the ground is behind it
-    hide(0, there, vec2(there.z, ends.x), gap, nearer);
-    if (ends.y < NOTHING)
-        hide(1, there, ends.yz, gap, nearer);
-    else
-        last[1] = vec4(0.0);
+    last = hide(ray, found.wx, last, gap, nearer);
+    if (found.y < NOTHING)
+        hide(ray, vec2(found.y, found.z < found.y ? NOTHING : found.z), vec4(0.0), gap, nearer);
 }
 
-float occlusion() { return sum / float(LINES); }
+float occlusion() { return sum / above; }

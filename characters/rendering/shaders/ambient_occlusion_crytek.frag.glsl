@@ -3,7 +3,7 @@
 // A sample that is nearer to the camera than the pixel hides it (Mittring 2007; Huang 2013, eq. 3.3.1).
 // On a plane one half of the samples is nearer, or none if it faces the camera: only more is occlusion.
 
-#include "ambient_occlusion"
+#include "seen_samples"
 
 float hidden = 0.0, total = 0.0;
 

@@ -3,7 +3,7 @@
 // Horizons with the cosine of the rendering equation (Jiménez, Wu, Pesce and Jarabo 2016, eq. 7 to 10).
 // Each rise of the horizon is weighted by the distance that made it, as in Bavoil et al. 2008.
 
-#include "ambient_occlusion"
+#include "seen_samples"
 #include "half_line"
 
 float sum = 0.0;

@@ -3,7 +3,7 @@
 // Horizon-based ambient occlusion (Bavoil, Sainz and Dimitrov 2008): the sine of the horizon's
 // elevation less that of the tangent, each rise of the horizon weighted by the distance that made it.
 
-#include "ambient_occlusion"
+#include "seen_samples"
 
 float sum = 0.0, top;
 

@@ -3,7 +3,7 @@
 // Volumetric obscurance (Loos and Sloan 2010): the free share of chords through a sphere around the
 // pixel. On any plane it is one half: only less than that is occlusion.
 
-#include "ambient_occlusion"
+#include "seen_samples"
 
 float free = 0.0, whole = 0.0;
 

@@ -7,8 +7,8 @@
 #include "surface"
 #ifdef BEHIND
 uniform mat4 camera_from_table;
-uniform sampler2D known;    // depth of what is seen in z; or where it ends in x
-uniform bool is_next;       // whether the latter is known
+uniform sampler2D known;    // depths: end of what is seen in x, its start in w
+uniform bool is_next;       // whether the former is known
 
 out vec4 behind;            // depths: end of what is seen, start and end of the next thing [m]
 
@@ -18,9 +18,9 @@ void main() {
     if (screen_door() >= surface_alpha) discard;
 #endif
     const float NOTHING = 1e3, TOUCHING = 1e-5;
-    vec3 limits = texelFetch(known, ivec2(gl_FragCoord.xy), 0).xyz;
+    vec4 limits = texelFetch(known, ivec2(gl_FragCoord.xy), 0);
     float depth = (camera_from_table * vec4(place, 1.0)).z;
-    if (depth <= (is_next ? limits.x : limits.z) + TOUCHING) discard;
+    if (depth <= (is_next ? limits.x : limits.w) + TOUCHING) discard;
     behind = vec4(NOTHING);
     behind[gl_FrontFacing ? (is_next ? 1 : 3) : (is_next ? 2 : 0)] = depth;
 }

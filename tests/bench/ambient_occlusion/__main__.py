@@ -19,13 +19,14 @@ all of them.
 
 import argparse
 import sys
+from dataclasses import replace
 
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
 from characters.rendering import create_context, draws_in_software
-from characters.rendering.deferred.ambient_occlusion import ESTIMATORS, AmbientOcclusionSettings
+from characters.rendering.deferred.ambient_occlusion import ESTIMATORS
 from characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.product import ProductQuality, product_quality
 from tests.bench.ambient_occlusion.quality import (
@@ -36,7 +37,7 @@ from tests.bench.ambient_occlusion.quality import (
     variant_qualities,
 )
 from tests.bench.ambient_occlusion.scenes import CHARACTERS, HELD_OUT, TUNED, load
-from tests.bench.ambient_occlusion.scoring import GBuffer, TracedScene
+from tests.bench.ambient_occlusion.scoring import THESIS, GBuffer, TracedScene
 from tests.bench.ambient_occlusion.timing import THESIS_MS, Timing, Variant, fit_line, measure
 
 MAX_RMSE, MAX_DELTA_E = 0.03, 3.0
@@ -255,8 +256,12 @@ def main() -> None:
     timed = next(scene for scene in scenes if scene.scene.name == TIMED)
     buffer = GBuffer.of(context, timed)
     variants = {
-        (name, samples, separable): AmbientOcclusionSettings(
-            name, samples, 2 if separable else None, radius_m=timed.scene.radius_m
+        (name, samples, separable): replace(
+            THESIS,
+            estimator=name,
+            samples=samples,
+            lines=2 if separable else None,
+            radius_m=timed.scene.radius_m,
         )
         for name in ESTIMATORS
         for samples in SAMPLES

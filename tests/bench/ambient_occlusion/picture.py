@@ -1,5 +1,6 @@
 """Draws the picture of docs/rendering.md: `python -m tests.bench.ambient_occlusion.picture`."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -8,10 +9,11 @@ from numpy.typing import NDArray
 from rich.console import Console
 
 from characters.rendering import create_context
-from characters.rendering.deferred.ambient_occlusion import ESTIMATORS, AmbientOcclusionSettings
+from characters.rendering.deferred.ambient_occlusion import ESTIMATORS
 from characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.scenes import load
 from tests.bench.ambient_occlusion.scoring import (
+    THESIS,
     Floats,
     GBuffer,
     TracedScene,
@@ -57,7 +59,12 @@ def main() -> None:
         columns = [captioned("ray-traced", traced.truth[part])]
         differences = [captioned("Lab difference:", np.ones_like(traced.truth[part]))]
         for estimator in ESTIMATORS:
-            settings = AmbientOcclusionSettings(estimator, SAMPLES, radius_m=traced.scene.radius_m)
+            settings = replace(
+                THESIS,
+                estimator=estimator,
+                samples=SAMPLES,
+                radius_m=traced.scene.radius_m,
+            )
             found = drawn(context, programs, buffer, settings)
             error = (found - traced.truth)[traced.surfaces.seen]
             rmse = float(np.sqrt(np.mean(error**2)))

@@ -15,6 +15,7 @@ from characters.rendering.deferred.sample_patterns import PATTERNS
 from characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.scenes import load
 from tests.bench.ambient_occlusion.scoring import (
+    THESIS,
     Floats,
     GBuffer,
     Score,
@@ -124,11 +125,12 @@ def variant_qualities(
                                 context,
                                 programs,
                                 buffer,
-                                AmbientOcclusionSettings(
-                                    estimator,
-                                    samples,
-                                    lines,
-                                    pattern,
+                                replace(
+                                    THESIS,
+                                    estimator=estimator,
+                                    samples=samples,
+                                    lines=lines,
+                                    pattern=pattern,
                                     radius_m=scene.scene.radius_m,
                                 ),
                             )

@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.rendering.deferred.ambient_occlusion import (
+    NOTHING_M,
     AmbientOcclusion,
     AmbientOcclusionSettings,
 )
 from characters.rendering.programs import ShaderPrograms
+from characters.skeleton.pose import Array
 from tests.bench.ambient_occlusion.scenes import Scene
 from tools.ray_tracing import (
     RayTracer,
@@ -23,6 +25,9 @@ from tools.ray_tracing import (
 )
 
 Floats = NDArray[np.float32]
+
+THESIS = AmbientOcclusionSettings(pattern_size=4, blur_size=4)
+"""With the tile and the blur of Huang 2013, for figures beside the thesis'."""
 
 
 @dataclass(frozen=True)
@@ -97,8 +102,8 @@ class TracedScene:
         return trace_camera(self.tracer, self.scene.matrix(self.size), self.size)
 
     @cached_property
-    def behind(self) -> Floats:
-        """What is hidden behind that, see `trace_depth_layers`."""
+    def depths(self) -> Floats:
+        """Where that begins and ends, and what is behind; see `trace_depth_layers`."""
         return trace_depth_layers(self.tracer, self.scene.matrix(self.size), self.size)
 
     @cached_property
@@ -119,42 +124,46 @@ class GBuffer:
         context: moderngl.Context,
         surfaces: VisibleSurfaces,
         focal_px: float,
-        behind: Floats | None = None,
+        depths: Floats | None = None,
     ):
         height, width = surfaces.seen.shape
         self.size = width, height
         """Width and height [px]."""
         self.focal_px = focal_px
         """Focal length [px]."""
-        self.normal_id = context.texture(self.size, 4, surfaces.normal_id.tobytes(), dtype="f4")
-        self.position = context.texture(self.size, 4, surfaces.position.tobytes(), dtype="f4")
-        self.behind: moderngl.Texture | None = None
-        if behind is not None:
-            self.behind = context.texture(self.size, 4, behind.tobytes(), dtype="f4")
+        if depths is None:  # what is seen never ends
+            depths = np.full(surfaces.position.shape, NOTHING_M, np.float32)
+            depths[surfaces.seen, 3] = surfaces.position[surfaces.seen, 2]
+        self.normal_id, self.position, self.depths = (
+            context.texture(self.size, 4, each.tobytes(), dtype="f4")
+            for each in (surfaces.normal_id, surfaces.position, depths)
+        )
 
     @classmethod
     def of(cls, context: moderngl.Context, traced: TracedScene) -> "GBuffer":
         """Upload what the camera sees of a scene."""
         focal = float(traced.scene.matrix(traced.size)[0, 0])
-        return cls(context, traced.surfaces, focal, traced.behind)
+        return cls(context, traced.surfaces, focal, traced.depths)
 
-    def occlusion(self, effect: AmbientOcclusion) -> moderngl.Texture:
-        """Draw the ambient occlusion that an effect finds."""
-        return effect.draw(
-            self.normal_id, self.position, self.size, self.focal_px, behind=self.behind
-        )
+    def occlusion(
+        self, effect: AmbientOcclusion, ground: Array | None = None, stride: int = 1
+    ) -> moderngl.Texture:
+        """Draw the ambient occlusion that an effect finds; see `AmbientOcclusion.draw`."""
+        textures = self.normal_id, self.position, self.depths
+        return effect.draw(*textures, self.size, self.focal_px, ground, stride)
 
-    def draw(self, effect: AmbientOcclusion) -> Floats:
+    def draw(
+        self, effect: AmbientOcclusion, ground: Array | None = None, stride: int = 1
+    ) -> Floats:
         """Return the ambient occlusion that an effect finds, (height, width)."""
-        texture = self.occlusion(effect)
+        texture = self.occlusion(effect, ground, stride)
         values = np.frombuffer(texture.read(), np.float32).reshape(*texture.size[::-1], 2)
         return values[: self.size[1], : self.size[0], 0].copy()
 
     def release(self) -> None:
         """Release the textures."""
-        for each in (self.normal_id, self.position, self.behind):
-            if each is not None:
-                each.release()
+        for each in (self.normal_id, self.position, self.depths):
+            each.release()
 
 
 def drawn(

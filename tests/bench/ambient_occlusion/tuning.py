@@ -18,12 +18,11 @@ from rich.table import Table
 from characters.rendering import create_context
 from characters.rendering.deferred.ambient_occlusion import (
     ESTIMATORS,
-    AmbientOcclusionSettings,
     Estimator,
 )
 from characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.scenes import TUNED, load
-from tests.bench.ambient_occlusion.scoring import GBuffer, TracedScene, drawn
+from tests.bench.ambient_occlusion.scoring import THESIS, GBuffer, TracedScene, drawn
 
 SIZE, RAYS = (320, 240), 128
 GRID = {
@@ -49,7 +48,8 @@ def combinations(name: str) -> Iterator[Estimator]:
     """Yield the grid of an estimator, with a gain of 1."""
     grid = HORIZON_GRID if name in HORIZONS else GRID
     for values in product(*grid.values()):
-        yield Estimator(1.0, **dict(zip(grid, values, strict=True)))
+        changed = dict(zip(grid, values, strict=True))
+        yield replace(ESTIMATORS[name], darkness=1.0, **changed)
 
 
 def main() -> None:
@@ -67,8 +67,12 @@ def main() -> None:
         for constants in combinations(name):
             pairs = []
             for scene, buffer in zip(scenes, buffers, strict=True):
-                settings = AmbientOcclusionSettings(
-                    name, samples, radius_m=scene.scene.radius_m, constants=constants
+                settings = replace(
+                    THESIS,
+                    estimator=name,
+                    samples=samples,
+                    radius_m=scene.scene.radius_m,
+                    constants=constants,
                 )
                 seen = scene.surfaces.seen
                 found = drawn(context, programs, buffer, settings)[seen]

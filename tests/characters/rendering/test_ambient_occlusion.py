@@ -2,6 +2,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
+import moderngl
 import numpy as np
 import pytest
 
@@ -12,13 +13,15 @@ from characters.rendering.deferred.ambient_occlusion import (
     AmbientOcclusion,
     AmbientOcclusionSettings,
     Estimator,
+    cell_count,
 )
 from characters.rendering.deferred.sample_patterns import PATTERNS, sample_pattern
+from characters.rendering.passes.deferred.occlusion import cells_from_texels
 from characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.product import product_quality
 from tests.bench.ambient_occlusion.quality import matched_score
 from tests.bench.ambient_occlusion.scenes import load
-from tests.bench.ambient_occlusion.scoring import GBuffer, TracedScene, drawn, score
+from tests.bench.ambient_occlusion.scoring import THESIS, GBuffer, TracedScene, drawn, score
 from tools.ray_tracing import VisibleSurfaces
 
 SIZE = (192, 144)
@@ -92,7 +95,13 @@ def test_a_plane_is_open(draw, estimator, normal):
 def test_a_corner_is_darkest_where_its_sides_meet_and_open_beyond_the_radius(draw, estimator):
     radius = 10 * PITCH
     found = draw(
-        wall_and_floor(), 2.0 / PITCH, estimator=estimator, samples=21, radius_m=radius, blur_size=4
+        wall_and_floor(),
+        2.0 / PITCH,
+        estimator=estimator,
+        samples=21,
+        radius_m=radius,
+        pattern_size=4,
+        blur_size=4,
     )
     floor = found[24:, 32]
     assert floor[0] < 0.9
@@ -136,6 +145,7 @@ def test_a_tile_leaves_no_noise_along_a_wall_and_random_lines_for_each_pixel_do(
             estimator="angular",  # to the others, the eye's direction matters, which varies
             pattern="random",
             pattern_size=pattern_size,
+            blur_size=4,
             radius_m=10 * PITCH,
         )
         return float(found[16:40, 16:-16].std(axis=1).mean())
@@ -155,7 +165,8 @@ def test_two_lines_miss_less_of_the_full_form_than_one_with_as_many_samples(
 ):
     def error(samples: int, lines: int) -> float:
         """Return the error against the full form with as many samples on each line."""
-        few = AmbientOcclusionSettings(estimator, samples, lines, radius_m=balls.scene.radius_m)
+        radius = balls.scene.radius_m
+        few = replace(THESIS, estimator=estimator, samples=samples, lines=lines, radius_m=radius)
         found, full = (
             drawn(ctx, programs, buffer, each) for each in (few, replace(few, lines=None))
         )
@@ -171,9 +182,8 @@ def test_two_lines_are_closer_to_a_dense_disc_than_one_with_as_many_samples(
     ctx, programs, balls, samples
 ):
     by_area = replace(ESTIMATORS["angular"], crowding=0.0, by_area=1.0)
-    two = AmbientOcclusionSettings(
-        "angular", samples, radius_m=balls.scene.radius_m, constants=by_area
-    )
+    radius = balls.scene.radius_m
+    two = replace(THESIS, estimator="angular", samples=samples, radius_m=radius, constants=by_area)
     buffer = GBuffer.of(ctx, balls)
     variants = two, replace(two, samples=2 * samples, lines=1), replace(two, samples=41, lines=16)
     found, one_line, dense = (drawn(ctx, programs, buffer, each) for each in variants)
@@ -187,7 +197,8 @@ def test_two_lines_are_closer_to_a_dense_disc_than_one_with_as_many_samples(
 @pytest.mark.parametrize("estimator", ESTIMATORS)
 def test_the_separable_form_is_close_to_the_full_form(ctx, programs, balls, estimator, samples):
     buffer = GBuffer.of(ctx, balls)
-    separable = AmbientOcclusionSettings(estimator, samples, radius_m=balls.scene.radius_m)
+    radius = balls.scene.radius_m
+    separable = replace(THESIS, estimator=estimator, samples=samples, radius_m=radius)
     found, full = (
         drawn(ctx, programs, buffer, each) for each in (separable, replace(separable, lines=None))
     )
@@ -220,25 +231,56 @@ def test_what_ends_soon_behind_its_front_hides_less_of_a_wall(ctx, programs):
     settings = AmbientOcclusionSettings(lines=8, radius_m=0.3)
 
     def beside_bar(thickness: float | None) -> float:
-        behind = None
+        depths = None
         if thickness is not None:
-            behind = np.full((ROWS, COLUMNS, 4), NOTHING_M, np.float32)
-            behind[on_bar, :2] = bar + thickness, wall
-        buffer = GBuffer(ctx, seen, focal, behind)
+            depths = np.full((ROWS, COLUMNS, 4), NOTHING_M, np.float32)
+            depths[..., 3] = np.where(on_bar, bar, wall)
+            depths[on_bar, :2] = bar + thickness, wall
+        buffer = GBuffer(ctx, seen, focal, depths)
         found = drawn(ctx, programs, buffer, settings)
         buffer.release()
         return float(found[ROWS // 2, COLUMNS // 2 + 4])
 
-    endless, deep, thin, thinner = (beside_bar(each) for each in (None, 0.09, 0.01, 0.005))
+    endless, deep, thin, thinner = (beside_bar(each) for each in (None, 0.099, 0.01, 0.005))
     assert endless == pytest.approx(deep, abs=0.01)  # it reaches to the wall
     assert deep + 0.05 < thin < thinner < 0.99, (deep, thin, thinner)
 
 
 def test_the_programs_own_picture_of_a_character_is_close_to_rays(ctx):
-    found = product_quality(ctx, "robot", 16)
+    found = product_quality(ctx, "robot", 32)
     assert found.misplaced_mm < 1e-3
     assert found.drawn.rmse <= 0.05
     assert found.drawn.rmse < 0.4 * found.occluded
+
+
+@pytest.mark.parametrize("stride", [2, 3])
+def test_cells_of_several_texels_are_close_to_ray_traced_pictures_too(ctx, programs, stride):
+    traced = TracedScene(load("corner"), (319, 241), 32)
+    depths = np.pad(traced.depths, ((0, 2), (0, 2), (0, 0)), mode="edge")
+    cells = np.ascontiguousarray(depths[stride // 2 :: stride, stride // 2 :: stride])
+    buffer = GBuffer.of(ctx, traced)
+    buffer.depths.release()
+    buffer.depths = ctx.texture(cells.shape[1::-1], 4, cells.tobytes(), dtype="f4")
+    settings = AmbientOcclusionSettings(radius_m=traced.scene.radius_m)
+    effect = AmbientOcclusion(ctx, programs, settings)
+    found = buffer.draw(effect, stride=stride)
+    buffer.release()
+    effect.release()
+    seen = traced.surfaces.seen
+    assert (found[~seen] == 1.0).all()
+    assert score(found, traced.truth, seen).rmse <= 0.03
+
+
+@pytest.mark.parametrize("stride", [1, 2, 3, 6])
+def test_the_middle_of_a_cell_is_that_of_the_texel_in_its_middle(stride):
+    size = 37, 23
+    cells = np.array(cell_count(size, stride))
+    cell = cells - 2
+    texel = stride * cell + stride // 2
+    seen = np.array([*(2.0 * (texel + 0.5) / size - 1.0), 0.3, 1.0])
+    moved = cells_from_texels(size, stride) @ seen
+    np.testing.assert_allclose((moved[:2] + 1.0) / 2.0 * cells, cell + 0.5, atol=1e-9)
+    np.testing.assert_array_equal(moved[2:], seen[2:])
 
 
 def test_the_background_is_open(draw, balls):
@@ -250,8 +292,8 @@ def test_the_background_is_open(draw, balls):
 def test_only_the_first_texels_of_larger_textures_count(ctx, programs, balls):
     small, large = GBuffer.of(ctx, balls), GBuffer.of(ctx, balls)
     rng = np.random.default_rng(0)
-    for name in ("normal_id", "position"):
-        values = getattr(balls.surfaces, name)
+    for name in ("normal_id", "position", "depths"):
+        values = np.frombuffer(getattr(large, name).read(), np.float32).reshape(*SIZE[::-1], 4)
         padded = rng.normal(size=(SIZE[1] + 40, SIZE[0] + 30, 4)).astype(np.float32)
         padded[: SIZE[1], : SIZE[0]] = values
         getattr(large, name).release()
@@ -271,12 +313,9 @@ def test_the_ground_goes_on_outside_of_a_part_of_a_picture(ctx, programs):
     wall = GBuffer(ctx, surfaces(rays, (0.0, 0.0, -1.0)), focal)
     foot = np.array([0.0, 1.0 / (rays[-1, 0, 1] + 0.5 / focal), 0.0])
     effect = AmbientOcclusion(ctx, programs, AmbientOcclusionSettings(samples=21, radius_m=radius))
-    textures = wall.normal_id, wall.position, wall.size, focal
 
     def row_means(ground: np.ndarray | None) -> np.ndarray:
-        texture = effect.draw(*textures, ground)
-        rows = np.frombuffer(texture.read(), np.float32).reshape(*texture.size[::-1], 2)
-        return np.asarray(rows[:ROWS, :COLUMNS, 0].mean(axis=1))
+        return np.asarray(wall.draw(effect, ground).mean(axis=1))
 
     alone, on_floor = row_means(None), row_means(foot)
     assert alone.min() > 0.999
@@ -289,16 +328,20 @@ def test_the_ground_goes_on_outside_of_a_part_of_a_picture(ctx, programs):
 
 def test_a_smaller_picture_draws_in_the_same_texture_and_a_larger_one_in_a_new_one(ctx, programs):
     effect = AmbientOcclusion(ctx, programs)
-    normal_id, position = (ctx.texture((200, 150), 4, dtype="f4") for _ in range(2))
-    first = effect.draw(normal_id, position, (100, 100), 100.0)
-    assert effect.draw(normal_id, position, (64, 30), 100.0) is first
-    larger = effect.draw(normal_id, position, (200, 150), 100.0)
+    textures = [ctx.texture((200, 150), 4, dtype="f4") for _ in range(3)]
+
+    def draw(size: tuple[int, int]) -> moderngl.Texture:
+        return effect.draw(textures[0], textures[1], textures[2], size, 100.0)
+
+    first = draw((100, 100))
+    assert draw((64, 30)) is first
+    larger = draw((200, 150))
     assert larger is not first
     assert larger.size == (256, 192)
     effect.release()
     effect.release()
-    normal_id.release()
-    position.release()
+    for texture in textures:
+        texture.release()
 
 
 @pytest.mark.parametrize("name", PATTERNS)

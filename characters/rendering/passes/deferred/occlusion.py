@@ -1,16 +1,35 @@
 """How much of the light from all around reaches each texel of the characters."""
 
-import moderngl
+import math
+from dataclasses import replace
 
-from characters.rendering.deferred.ambient_occlusion import NOTHING_M, AmbientOcclusion
-from characters.rendering.deferred.buffers import BUFFER_UNITS, GrowingBuffer, HiddenBuffer
+import moderngl
+import numpy as np
+
+from characters.rendering.deferred.ambient_occlusion import (
+    AmbientOcclusion,
+    cell_count,
+    cell_uniforms,
+)
+from characters.rendering.deferred.buffers import (
+    BUFFER_UNITS,
+    DepthLayerBuffer,
+    GrowingBuffer,
+    buffer_triangle,
+)
 from characters.rendering.geometry.surfaces import BEHIND
 from characters.rendering.passes.characters import CharacterPass
-from characters.rendering.programs import ShaderPrograms
+from characters.rendering.programs import ShaderPrograms, set_uniforms
+from characters.rendering.projection import NEAR_M
 from characters.rendering.resources import CharacterLayer, FrameResources
+from characters.skeleton.pose import Array
 
 KNOWN_UNIT = 5
 """Texture unit of what is in front, after those of materials (see `TEXTURE_UNITS`)."""
+
+MAX_RADIUS_CELLS = 400.0
+"""Cells that the radius of the occlusion covers at most. Close up, a cell is several texels: the
+work does not grow, and occlusion that changes within a four-hundredth of the radius is rare."""
 
 
 class DeferredOcclusionPass(CharacterPass):
@@ -23,43 +42,60 @@ class DeferredOcclusionPass(CharacterPass):
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
         self._context = context
         self._occlusion = AmbientOcclusion(context, programs)
-        self._hidden = GrowingBuffer(context, HiddenBuffer)
-        self.owned = (self._occlusion, self._hidden)
+        self._layers = GrowingBuffer(context, DepthLayerBuffer)
+        self._first = buffer_triangle(context, programs, "depth_layers")
+        self.owned = (self._occlusion, self._layers, self._first)
 
     def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Find the open share of each texel, and bind it for the lighting."""
-        hidden = self._hidden.at_least(layer.target.geometry.position.size)
-        self._draw_hidden(frame, layer, hidden)
         fineness, geometry = layer.target.fineness, layer.target.geometry
+        size = fineness * layer.area.width, fineness * layer.area.height
+        focal = fineness * float(frame.camera_matrix[1, 1])
+        stride = self._stride(frame, focal)
         self._context.enable_only(moderngl.NOTHING)
+        layers = self._draw_layers(frame, layer, size, stride)
         self._open = self._occlusion.draw(
             geometry.normal_id,
             geometry.position,
-            (fineness * layer.area.width, fineness * layer.area.height),
-            fineness * float(frame.camera_matrix[1, 1]),
+            layers.depths,
+            size,
+            focal,
             frame.table_plane,
-            hidden.behind,
+            stride,
         )
 
     def bind(self) -> None:
         """Bind what was found to the unit of the lighting."""
         self._open.use(BUFFER_UNITS["occlusion"])
 
-    def _draw_hidden(
-        self, frame: FrameResources, layer: CharacterLayer, hidden: HiddenBuffer
-    ) -> None:
-        """Draw where what is seen ends, then what is behind that."""
-        context, fineness = self._context, layer.target.fineness
-        hidden.target.use()
-        hidden.target.clear(NOTHING_M, NOTHING_M, NOTHING_M, NOTHING_M)
-        size = fineness * layer.area.width, fineness * layer.area.height
-        hidden.target.viewport = (0, 0, *size)
+    def _stride(self, frame: FrameResources, focal: float) -> int:
+        """Return the texels along a side of a cell; `focal` is the focal length [texels]."""
+        middle, row = frame.points_on_layer.mean(axis=0), frame.camera_from_table[2]
+        depth = max(float(middle @ row[:3] + row[3]), NEAR_M)
+        radius = self._occlusion.settings.radius_m * focal / depth
+        return max(math.ceil(radius / MAX_RADIUS_CELLS), 1)
+
+    def _draw_layers(
+        self,
+        frame: FrameResources,
+        layer: CharacterLayer,
+        size: tuple[int, int],
+        stride: int,
+    ) -> DepthLayerBuffer:
+        """Draw where what is seen begins and ends, then what is behind that."""
+        context, cells = self._context, cell_count(size, stride)
+        layers = self._layers.at_least(cells)
+        layers.target.use()
+        layers.target.viewport = (0, 0, *cells)
+        layer.target.geometry.bind()
+        set_uniforms(self._first.program, **cell_uniforms(size, stride))
+        self._first.render(moderngl.TRIANGLES, vertices=3)
+        layer = replace(
+            layer, clip_from_camera=cells_from_texels(size, stride) @ layer.clip_from_camera
+        )
         context.blend_equation = moderngl.MIN, moderngl.MIN
         for is_next in (False, True):
-            known = layer.target.geometry.position
-            if is_next:
-                known = hidden.copy()
-            known.use(KNOWN_UNIT)
+            layers.copy().use(KNOWN_UNIT)
             self._render(
                 frame,
                 layer,
@@ -70,3 +106,17 @@ class DeferredOcclusionPass(CharacterPass):
                 is_next=is_next,
             )
         context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
+        return layers
+
+
+def cells_from_texels(size: tuple[int, int], stride: int) -> Array:
+    """Return what brings a projection to texels to one to cells, (4, 4).
+
+    The middle of a cell is that of the texel in its middle.
+    """
+    scale = np.eye(4)
+    for axis, (texels, cells) in enumerate(zip(size, cell_count(size, stride), strict=True)):
+        middle = (texels / 2 - stride // 2 - 0.5) / stride + 0.5
+        scale[axis, axis] = texels / (stride * cells)
+        scale[axis, 3] = 2.0 * middle / cells - 1.0
+    return scale
