@@ -58,7 +58,7 @@ ESTIMATORS = {
     "hbao": Estimator(darkness=1.04, bias=0.1, crowding=0.75, reach=1.0, fill=0.4),
     "gtao": Estimator(darkness=1.21, bias=0.02, crowding=0.75, reach=1.0, fill=0.4),
     "bitmask": Estimator(
-        darkness=1.0, bias=0.05, crowding=2.0, reach=1.0, fill=0.5, span=0.7, apart=1.0
+        darkness=1.0, bias=0.02, crowding=2.0, reach=1.0, fill=0.5, span=0.7, apart=1.0
     ),
 }
 """The estimators by name. Each has a shader `ambient_occlusion_NAME.frag` that defines it."""

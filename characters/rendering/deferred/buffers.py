@@ -39,7 +39,7 @@ class GeometryBuffer:
         self.normal_id = _texture(context, size, "f2")
         """Unit normal in the camera frame, and the number of the surface, from 1 on."""
         self.position = _texture(context, size, "f4")
-        """Position in the camera frame [m], and 1."""
+        """Position in the camera frame [m], and the triangle's normal, see `flat_normal.glsl`."""
         self.albedo_rough = _texture(context, size, "f2")
         """Linear RGB of the surface, and its roughness."""
         self.shade_metal = _texture(context, size, "f2")

@@ -3,12 +3,13 @@
 
 #include "wendland"
 #include "cells"
+#include "flat_normal"
 
 const float PI = 3.14159265;
 const float NOTHING = 1e3;      // depth at which there is nothing [m]
 
 uniform sampler2D normal_id;    // unit normal in the camera frame, and ID in w: below 0.5 is background
-uniform sampler2D place;        // position in the camera frame [m]; z is 0 in the background
+uniform sampler2D place;        // position in the camera frame [m]; z is 0 in the background; and the flat normal
 uniform sampler2D pattern;      // of the tile: turn of the lines, shift of their samples, both 0…1
 uniform vec3 ground;            // a point is on the plane where nothing else is if its product with this is 1
 uniform float radius;           // occluders farther away do not count [m]
@@ -24,6 +25,7 @@ uniform float darkness;         // gain of the occlusion
 out vec2 open_depth;            // share of the ambient light that arrives, and the depth for the blur
 
 vec3 here, normal, to_eye;      // of the cell
+vec3 flat_normal;               // of its triangle
 float shift;                    // of this cell, another in each of a tile, 0…1
 float last_along, last_far;     // of the last sample on this half of a line; the second if the estimator keeps it [m]
 ivec2 sampled;                  // cell of the sample
@@ -51,7 +53,9 @@ void main() {
     open_depth = vec2(1.0, 0.0);
     if (surface.w < 0.5)
         return;
-    here = texelFetch(place, texel_of(cell), 0).xyz;
+    vec4 found = texelFetch(place, texel_of(cell), 0);
+    here = found.xyz;
+    flat_normal = normal_of_number(found.w);
     normal = surface.xyz;
     to_eye = -normalize(here);
     vec2 random = texelFetch(pattern, cell % textureSize(pattern, 0), 0).xy;

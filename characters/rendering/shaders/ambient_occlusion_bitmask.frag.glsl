@@ -2,7 +2,8 @@
 
 // Visibility bitmask (Therrien, Levesque and Gilet 2023): a half line sees 32 sectors of equal light, by the
 // cosine of the rendering equation (Jiménez et al. 2016), and what is seen there hides those between its front and
-// its back. What is behind it hides others. A sector counts by the distance of what hides it first.
+// its back. What is behind it hides others. A sector counts by the distance of what hides it first. No light comes
+// from below the triangle, whatever its normals for shading say.
 
 #include "ambient_occlusion"
 #include "half_line"
@@ -40,7 +41,8 @@ vec2 light_up_to_cosine(vec2 c) {
 
 void begin_half(vec2 direction) {
     turn_to(direction);
-    lowest = -sine;
+    vec2 flat_tilt = vec2(dot(flat_normal, along_line), max(dot(flat_normal, to_eye), 1e-3));
+    lowest = max(-sine, -flat_tilt.x / length(flat_tilt));
     whole = max(light_up_to_cosine(vec2(lowest)).x, 1e-6);
     above += share * whole;
     hidden = 0u;
@@ -57,7 +59,7 @@ vec4 hide(vec3 ray, vec2 depths, vec4 before, float gap, float nearer) {
     vec2 per_far = inversesqrt(start_start + past * (2.0 * start_ray + past * ray_ray));
     vec2 ends = clamp((dot(start, to_eye) + past * dot(ray, to_eye)) * per_far, -1.0, 1.0);
     vec4 result = vec4(ends, depths);
-    if ((dot(normal, start) + past.x * dot(normal, ray)) * per_far.x < bias)
+    if ((dot(flat_normal, start) + past.x * dot(flat_normal, ray)) * per_far.x < bias)
         return result;
     if (before.w > 0.0 && depths.x < before.w + STEEPEST * gap && before.z < depths.y + STEEPEST * gap)
         ends = vec2(max(ends.x, before.x), min(ends.y, before.y));  // it goes on from the last sample

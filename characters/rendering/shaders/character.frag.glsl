@@ -43,11 +43,12 @@ void main() {
 }
 #else
 #ifdef GEOMETRY
+#include "flat_normal"
 uniform mat4 camera_from_table;
 uniform float surface_id;   // 1 for the first surface of the picture
 
 layout(location = 0) out vec4 normal_id;    // unit normal in the camera frame, and the surface
-layout(location = 1) out vec4 position;     // in the camera frame [m]
+layout(location = 1) out vec4 position;     // in the camera frame [m], and the packed normal of the triangle
 layout(location = 2) out vec4 albedo_rough; // linear RGB, and roughness
 layout(location = 3) out vec4 shade_metal;  // colour of the toon shade, or whether this is skin, and metalness
 #else
@@ -78,6 +79,8 @@ void main() {
 #ifdef GEOMETRY
     normal_id = vec4(mat3(camera_from_table) * n, surface_id);
     position = camera_from_table * vec4(place, 1.0);
+    vec3 flat_normal = cross(dFdy(position.xyz), dFdx(position.xyz));
+    position.w = number_of_normal(flat_normal * inversesqrt(max(dot(flat_normal, flat_normal), 1e-30)));
     albedo_rough = vec4(albedo, finish.x);
 #ifdef TOON
     shade_metal = vec4(surface_shade(), 0.0);

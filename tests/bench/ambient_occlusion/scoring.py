@@ -131,12 +131,14 @@ class GBuffer:
         """Width and height [px]."""
         self.focal_px = focal_px
         """Focal length [px]."""
+        position = surfaces.position.copy()
+        position[..., 3] = numbers_of_normals(surfaces.flat_normal)
         if depths is None:  # what is seen never ends
-            depths = np.full(surfaces.position.shape, NOTHING_M, np.float32)
-            depths[surfaces.seen, 3] = surfaces.position[surfaces.seen, 2]
+            depths = np.full(position.shape, NOTHING_M, np.float32)
+            depths[surfaces.seen, 3] = position[surfaces.seen, 2]
         self.normal_id, self.position, self.depths = (
             context.texture(self.size, 4, each.tobytes(), dtype="f4")
-            for each in (surfaces.normal_id, surfaces.position, depths)
+            for each in (surfaces.normal_id, position, depths)
         )
 
     @classmethod
@@ -164,6 +166,13 @@ class GBuffer:
         """Release the textures."""
         for each in (self.normal_id, self.position, self.depths):
             each.release()
+
+
+def numbers_of_normals(normals: Floats) -> Floats:
+    """Return unit normals (…, 3), each packed in a number as `flat_normal.glsl` does it, (…)."""
+    plane = normals[..., :2] / (1.0 - normals[..., 2:])
+    cells = np.floor(1024.0 * np.clip(plane, -1.999, 1.999) + 2048.5)
+    return np.asarray(4096.0 * cells[..., 0] + cells[..., 1], np.float32)
 
 
 def drawn(
