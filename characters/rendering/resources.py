@@ -43,6 +43,11 @@ class CharacterLayer:
     cubes: tuple[Box, ...]
     """Real cubes in this area."""
 
+    @property
+    def texels(self) -> tuple[int, int]:
+        """Columns and rows of the target that are used."""
+        return self.target.fineness * self.area.width, self.target.fineness * self.area.height
+
     def use(self) -> moderngl.Framebuffer:
         """Draw on this layer from now on."""
         return self._use(self.target.framebuffer)
@@ -65,8 +70,7 @@ class CharacterLayer:
 
     def _use(self, framebuffer: moderngl.Framebuffer) -> moderngl.Framebuffer:
         framebuffer.use()
-        fineness = self.target.fineness
-        framebuffer.viewport = (0, 0, fineness * self.area.width, fineness * self.area.height)
+        framebuffer.viewport = (0, 0, *self.texels)
         return framebuffer
 
 
@@ -203,6 +207,12 @@ class FrameResources:
         """The area around all characters and open cubes, without shadows; None for neither."""
         points = self.points_on_layer
         return self.area_of(points) if len(points) else None
+
+    @property
+    def pixel_m(self) -> float:
+        """Size of a pixel in the middle of all characters and open cubes [m]."""
+        middle, row = self.points_on_layer.mean(axis=0), self.camera_from_table[2]
+        return max(float(middle @ row[:3] + row[3]), NEAR_M) / float(self.camera_matrix[1, 1])
 
     @property
     def points_on_layer(self) -> Array:

@@ -1,13 +1,13 @@
 """Ambient occlusion from what the camera sees: how much light from all around reaches a surface."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import moderngl
 import numpy as np
 
 from characters.errors import CharacterError
 from characters.rendering.deferred.buffers import GrowingBuffer, OcclusionBuffer
+from characters.rendering.deferred.cells import cell_count, cell_uniforms
 from characters.rendering.deferred.sample_patterns import PATTERNS, sample_pattern
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.skeleton.pose import Array
@@ -248,22 +248,3 @@ class AmbientOcclusion:
             buffer.release()
         for each in (self._march, self._blur, self._spread, self._pattern):
             each.release()
-
-
-def cell_count(size: tuple[int, int], stride: int) -> tuple[int, int]:
-    """Return how many cells of stride × stride texels cover a part of a picture, (width, height).
-
-    >>> cell_count((8, 7), 3)
-    (3, 3)
-    """
-    return -(-size[0] // stride), -(-size[1] // stride)
-
-
-def cell_uniforms(size: tuple[int, int], stride: int) -> dict[str, Any]:
-    """Return the uniforms of `cells.glsl`; parameters as of `cell_count`."""
-    (width, height), (columns, rows) = size, cell_count(size, stride)
-    return {
-        "last_texel": (width - 1, height - 1),
-        "last_cell": (columns - 1, rows - 1),
-        "stride": stride,
-    }

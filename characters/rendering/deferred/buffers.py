@@ -147,7 +147,7 @@ class DepthLayerBuffer:
 
 
 class PixelBuffer:
-    """What is seen in each pixel of a character layer."""
+    """What is seen in each cell of a character layer, a pixel or larger."""
 
     def __init__(self, context: moderngl.Context, size: tuple[int, int]) -> None:
         self.normal_id = _texture(context, size, "f2")

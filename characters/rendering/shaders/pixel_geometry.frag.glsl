@@ -1,16 +1,15 @@
 #version 330 core
 
-// One texel of the geometry buffer for each pixel, which passes take that look far around.
+// One texel of the geometry buffer for each cell, which passes take that look far around.
 
 #include "geometry_buffer"
-
-uniform int fineness;           // texels for each pixel, along each side
+#include "cells"
 
 layout(location = 0) out vec4 pixel_normal_id;
 layout(location = 1) out vec4 pixel_position;
 
 void main() {
-    ivec2 texel = fineness * ivec2(gl_FragCoord.xy);
+    ivec2 texel = texel_of(ivec2(gl_FragCoord.xy));
     pixel_normal_id = texelFetch(normal_id, texel, 0);
     pixel_position = texelFetch(position, texel, 0);
 }

@@ -1,6 +1,6 @@
 #version 330 core
 
-// The share of the lamp's light that reaches each pixel, by colour.
+// The share of the lamp's light that reaches each cell, by colour.
 
 #include "geometry_buffer"
 #include "soft_shadow"

@@ -1,20 +1,20 @@
-// The share of the lamp's light that reaches a texel, from one value for each pixel; those of another depth do not count.
+// The share of the lamp's light that reaches a texel, from one value for each cell; those of another depth do not count.
+
+#include "cells"
 
 uniform sampler2D visibility;   // of the lamp by colour
 uniform sampler2D pixel_position;
-uniform int fineness;           // texels for each pixel, along each side
-uniform ivec2 last_pixel;
 uniform float depth_tolerance;  // [m]
 
 vec3 visible_at(ivec2 texel, float depth) {
-    vec2 at = (vec2(texel) + 0.5) / float(fineness) - 0.5;
+    vec2 at = vec2(texel - stride / 2) / float(stride);
     ivec2 corner = ivec2(floor(at));
     vec2 part = at - vec2(corner);
     vec3 sum = vec3(0.0);
     float total = 0.0;
     for (int i = 0; i < 4; ++i) {
         ivec2 step = ivec2(i & 1, i >> 1);
-        ivec2 pixel = clamp(corner + step, ivec2(0), last_pixel);
+        ivec2 pixel = clamp(corner + step, ivec2(0), last_cell);
         vec2 share = mix(1.0 - part, part, vec2(step));
         float off = abs(texelFetch(pixel_position, pixel, 0).z - depth) / depth_tolerance;
         float weight = max(share.x * share.y, 1e-3) * max(1.0 - off, 1e-4);

@@ -13,8 +13,8 @@ from characters.rendering.deferred.ambient_occlusion import (
     AmbientOcclusion,
     AmbientOcclusionSettings,
     Estimator,
-    cell_count,
 )
+from characters.rendering.deferred.cells import cell_count
 from characters.rendering.deferred.sample_patterns import PATTERNS, sample_pattern
 from characters.rendering.passes.deferred.occlusion import cells_from_texels
 from characters.rendering.programs import ShaderPrograms

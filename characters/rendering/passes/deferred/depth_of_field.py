@@ -55,10 +55,7 @@ class DepthOfFieldPass(RenderPass):
             focus=(focus.nearest, focus.furthest),
             widest=min(widest, MAX_RADIUS_TEXELS),
             clip_depth=layer.clip_from_camera[2, 2:],
-            last_texel=(
-                layer.target.fineness * layer.area.width - 1,
-                layer.target.fineness * layer.area.height - 1,
-            ),
+            last_texel=(layer.texels[0] - 1, layer.texels[1] - 1),
         )
         self._triangle.render(moderngl.TRIANGLES, vertices=3)
         framebuffer.depth_mask = True

@@ -52,7 +52,7 @@ class DeferredLightingPass(RenderPass):
             table=frame.camera_from_table[:3, 3],
         )
         if self._visibility is not None:
-            self._visibility.set_uniforms(self._triangle.program, layer)
+            self._visibility.set_uniforms(self._triangle.program)
         if self._occlusion is not None:
             self._occlusion.bind()
         layer.use_light().clear()

@@ -6,21 +6,17 @@ from dataclasses import replace
 import moderngl
 import numpy as np
 
-from characters.rendering.deferred.ambient_occlusion import (
-    AmbientOcclusion,
-    cell_count,
-    cell_uniforms,
-)
+from characters.rendering.deferred.ambient_occlusion import AmbientOcclusion
 from characters.rendering.deferred.buffers import (
     BUFFER_UNITS,
     DepthLayerBuffer,
     GrowingBuffer,
     buffer_triangle,
 )
+from characters.rendering.deferred.cells import cell_count, cell_uniforms
 from characters.rendering.geometry.surfaces import BEHIND
 from characters.rendering.passes.characters import CharacterPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.projection import NEAR_M
 from characters.rendering.resources import CharacterLayer, FrameResources
 from characters.skeleton.pose import Array
 
@@ -49,17 +45,16 @@ class DeferredOcclusionPass(CharacterPass):
     def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Find the open share of each texel, and bind it for the lighting."""
         fineness, geometry = layer.target.fineness, layer.target.geometry
-        size = fineness * layer.area.width, fineness * layer.area.height
-        focal = fineness * float(frame.camera_matrix[1, 1])
-        stride = self._stride(frame, focal)
+        radius_texels = self._occlusion.settings.radius_m * fineness / frame.pixel_m
+        stride = math.ceil(radius_texels / MAX_RADIUS_CELLS)
         self._context.enable_only(moderngl.NOTHING)
-        layers = self._draw_layers(frame, layer, size, stride)
+        layers = self._draw_layers(frame, layer, stride)
         self._open = self._occlusion.draw(
             geometry.normal_id,
             geometry.position,
             layers.depths,
-            size,
-            focal,
+            layer.texels,
+            fineness * float(frame.camera_matrix[1, 1]),
             frame.table_plane,
             stride,
         )
@@ -68,31 +63,19 @@ class DeferredOcclusionPass(CharacterPass):
         """Bind what was found to the unit of the lighting."""
         self._open.use(BUFFER_UNITS["occlusion"])
 
-    def _stride(self, frame: FrameResources, focal: float) -> int:
-        """Return the texels along a side of a cell; `focal` is the focal length [texels]."""
-        middle, row = frame.points_on_layer.mean(axis=0), frame.camera_from_table[2]
-        depth = max(float(middle @ row[:3] + row[3]), NEAR_M)
-        radius = self._occlusion.settings.radius_m * focal / depth
-        return max(math.ceil(radius / MAX_RADIUS_CELLS), 1)
-
     def _draw_layers(
-        self,
-        frame: FrameResources,
-        layer: CharacterLayer,
-        size: tuple[int, int],
-        stride: int,
+        self, frame: FrameResources, layer: CharacterLayer, stride: int
     ) -> DepthLayerBuffer:
         """Draw where what is seen begins and ends, then what is behind that."""
-        context, cells = self._context, cell_count(size, stride)
+        context, cells = self._context, cell_count(layer.texels, stride)
         layers = self._layers.at_least(cells)
         layers.target.use()
         layers.target.viewport = (0, 0, *cells)
         layer.target.geometry.bind()
-        set_uniforms(self._first.program, **cell_uniforms(size, stride))
+        set_uniforms(self._first.program, **cell_uniforms(layer.texels, stride))
         self._first.render(moderngl.TRIANGLES, vertices=3)
-        layer = replace(
-            layer, clip_from_camera=cells_from_texels(size, stride) @ layer.clip_from_camera
-        )
+        to_cells = cells_from_texels(layer.texels, stride)
+        layer = replace(layer, clip_from_camera=to_cells @ layer.clip_from_camera)
         context.blend_equation = moderngl.MIN, moderngl.MIN
         for is_next in (False, True):
             layers.copy().use(KNOWN_UNIT)

@@ -1,4 +1,4 @@
-"""How much of the lamp each pixel of the characters sees."""
+"""How much of the lamp what is seen of the characters sees."""
 
 import moderngl
 import numpy as np
@@ -10,20 +10,25 @@ from characters.rendering.deferred.buffers import (
     PixelBuffer,
     buffer_triangle,
 )
+from characters.rendering.deferred.cells import cell_count, cell_uniforms
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.resources import CharacterLayer, FrameResources
 
 DEPTH_TOLERANCE_M = 0.01
-"""Difference in depth at which a pixel's value does not count for another [m]."""
+"""Difference in depth at which a cell's value does not count for another [m]."""
+
+MIN_CELL_M = 0.5e-3
+"""Size of a cell on characters, at least, unless a pixel is larger [m]: the map of the blockers has
+texels of about a millimetre, and rounds over several of them."""
 
 
 class DeferredVisibilityPass(RenderPass):
-    """Finds the share of the lamp's light that reaches each pixel, by colour.
+    """Finds the share of the lamp's light that reaches each cell, by colour.
 
-    It is found once for each pixel of the picture, as it changes slowly; the lighting takes it from
-    there for each texel of the character layer. `blockers` is what hides the lamp, which the pass
-    for the shadows has drawn.
+    It is found once for each pixel of the picture, or for larger cells close up, as it changes
+    slowly; the lighting takes it from there for each texel of the character layer. `blockers` is
+    what hides the lamp, which the pass for the shadows has drawn.
     """
 
     def __init__(
@@ -39,14 +44,16 @@ class DeferredVisibilityPass(RenderPass):
         set_uniforms(self._smooth.program, depth_tolerance=DEPTH_TOLERANCE_M)
 
     def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
-        """Find the visible light in each pixel of the characters."""
-        pixels = self._pixels.at_least(layer.target.size)
-        size = layer.area.width, layer.area.height
+        """Find the visible light in each cell of the characters."""
+        stride = max(layer.target.fineness, int(MIN_CELL_M * layer.target.fineness / frame.pixel_m))
+        size = cell_count(layer.texels, stride)
+        self._cells = cell_uniforms(layer.texels, stride)
+        self._found = pixels = self._pixels.at_least(size)
         self._context.enable_only(moderngl.NOTHING)
         pixels.framebuffer.use()
         pixels.framebuffer.viewport = (0, 0, *size)
         layer.target.geometry.bind()
-        set_uniforms(self._reduce.program, fineness=layer.target.fineness)
+        set_uniforms(self._reduce.program, **self._cells)
         self._reduce.render(moderngl.TRIANGLES, vertices=3)
         pixels.bind()
         table_from_camera = np.asarray(np.linalg.inv(frame.camera_from_table), float)
@@ -55,17 +62,11 @@ class DeferredVisibilityPass(RenderPass):
         self._find.render(moderngl.TRIANGLES, vertices=3)
         pixels.use_visibility(1, size)
         pixels.visibility[0].use(BUFFER_UNITS["visibility"])
-        set_uniforms(self._smooth.program, last_pixel=(size[0] - 1, size[1] - 1))
+        set_uniforms(self._smooth.program, **self._cells)
         self._smooth.render(moderngl.TRIANGLES, vertices=3)
 
-    def set_uniforms(self, program: moderngl.Program, layer: CharacterLayer) -> None:
-        """Bind what was found, and set the uniforms of a program that asks for it in a layer."""
-        pixels = self._pixels.at_least(layer.target.size)
-        pixels.visibility[1].use(BUFFER_UNITS["visibility"])
-        pixels.position.use(BUFFER_UNITS["pixel_position"])
-        set_uniforms(
-            program,
-            fineness=layer.target.fineness,
-            last_pixel=(layer.area.width - 1, layer.area.height - 1),
-            depth_tolerance=DEPTH_TOLERANCE_M,
-        )
+    def set_uniforms(self, program: moderngl.Program) -> None:
+        """Bind what was found, and set the uniforms of a program that asks for it."""
+        self._found.visibility[1].use(BUFFER_UNITS["visibility"])
+        self._found.position.use(BUFFER_UNITS["pixel_position"])
+        set_uniforms(program, depth_tolerance=DEPTH_TOLERANCE_M, **self._cells)
