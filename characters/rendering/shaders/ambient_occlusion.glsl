@@ -59,7 +59,7 @@ void main() {
     normal = surface.xyz;
     to_eye = -normalize(here);
     vec2 random = texelFetch(pattern, cell % textureSize(pattern, 0), 0).xy;
-    shift = fract(random.y + 7.0 * random.x);
+    shift = random.y;
     float reach = radius * focal / (here.z * float(stride));
     float spread = max(span * reach - apart * float(SAMPLES / 2), 0.0);
     for (int line = 0; line < LINES; ++line) {
@@ -69,9 +69,9 @@ void main() {
             begin_half(direction);
             last_along = last_far = 0.0;
             for (int i = 0; i < SAMPLES / 2; ++i) {
-                float t = (float(i) + random.y) / float(SAMPLES / 2);
+                float t = (float(i) + shift) / float(SAMPLES / 2);
                 float crowded = t * mix(1.0, t, min(crowding, 1.0)) * mix(1.0, t, max(crowding - 1.0, 0.0));
-                float away = spread * crowded + apart * (float(i) + random.y + 0.5);
+                float away = spread * crowded + apart * (float(i) + shift + 0.5);
                 ivec2 offset = ivec2(round(direction * away));
                 if (offset == ivec2(0))
                     continue;

@@ -1,10 +1,11 @@
-// How much a texel counts for another, in a mean that does not cross edges: not if its depth is not that of the other's
-// tangent plane there, and less if it faces elsewhere, or folds would be blurred with what is around them.
+// How much a texel counts for another, in a mean that does not cross edges: not if it is as far from the other's tangent
+// plane as a cell is wide, or further than tolerated, and less if it faces elsewhere, or folds would be blurred with
+// what is around them. After "cells".
 
 uniform sampler2D normal_id;
 uniform sampler2D place;
 uniform float focal;            // [texels]
-uniform float tolerance;        // distance from the tangent plane at which a tap stops to count [m]
+uniform float tolerance;        // [m]
 
 float surface_weight(vec3 normal, vec3 here, vec2 offset, ivec2 texel, float depth) {
     float plane = dot(normal, here);
@@ -12,5 +13,6 @@ float surface_weight(vec3 normal, vec3 here, vec2 offset, ivec2 texel, float dep
     float facing = max(dot(texelFetch(normal_id, texel, 0).xyz, normal), 0.0);
     facing *= facing;
     facing *= facing;
-    return clamp(2.0 - 2.0 * abs(from_plane) / tolerance, 0.0, 1.0) * facing * facing;
+    float limit = min(here.z * float(stride) / focal, tolerance);
+    return clamp(2.0 - 2.0 * abs(from_plane) / limit, 0.0, 1.0) * facing * facing;
 }

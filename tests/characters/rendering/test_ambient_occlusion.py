@@ -365,7 +365,7 @@ def test_a_pattern_turns_all_pixels_of_a_tile_differently(name):
         ({"estimator": "magic"}, "unknown estimator of ambient occlusion 'magic'"),
         ({"pattern": "plaid"}, "choose one of random, regular"),
         ({"samples": 1}, "not 1 on 2"),
-        ({"lines": 0}, "not 25 on 0"),
+        ({"lines": 0}, "not 29 on 0"),
         ({"radius_m": float("nan")}, "a radius above 0 m"),
     ],
 )
