@@ -187,7 +187,8 @@ class AmbientOcclusion:
             Unit normals in the camera frame (x right, y down, z forward), and in w the number of
             the object; below 0.5 is background.
         position
-            Positions in the camera frame [m]; z is 0 in the background.
+            Positions in the camera frame [m]; z is 0 in the background. In w is the normal of the
+            triangle, see `flat_normal.glsl`.
         depths
             Of each cell: where what is seen ends, where the next thing behind it begins and ends,
             and where what is seen begins [m]; `NOTHING_M` for never. The estimator `bitmask` looks

@@ -6,12 +6,17 @@ import cv2
 import numpy as np
 import pytest
 
+from characters.model.character import Character
 from characters.model.mesh import Material
-from characters.rendering import QUALITIES, MeasuredLight, Stage
+from characters.rendering import QUALITIES, Effect, MeasuredLight, Quality, Stage
 from characters.rendering.deferred.lamp import LAMP_DISTANCE_M, LAMP_WIDTH_M
+from characters.rendering.passes.deferred import visibility
 from characters.rendering.passes.deferred.soft_shadows import TABLE_SIDE, SoftShadowPass
+from tests.bench.effects import close_up
+from tests.bench.picture import SIZE, scene
 from tests.characters.rendering.shapes import Still, plate
 
+SOFT = Effect.SOFT_SHADOWS
 RED = (1.0, 0.0, 0.0)
 
 
@@ -111,3 +116,22 @@ def test_who_is_inside_a_cube_does_not_coarsen_the_shadow_on_the_table(ctx, view
     stage.draw(view, [pawn.posed(), inside])
     assert shadows.square == alone
     stage.release()
+
+
+def test_close_up_the_light_of_the_lamp_is_found_for_cells_nearly_as_for_each_pixel(
+    ctx, monkeypatch
+):
+    view, actor_at = scene(Character.load("human"))
+    near = close_up(view, actor_at(0))
+    pictures = []
+    for cell_m, effects in ((0.0, {SOFT}), (visibility.MIN_CELL_M, {SOFT}), (0.0, set())):
+        monkeypatch.setattr(visibility, "MIN_CELL_M", cell_m)
+        stage = Stage(ctx, SIZE)
+        stage.quality = Quality("tested", 1, False, deferred=True, effects=frozenset(effects))
+        pictures.append(stage.draw(near, [actor_at(0)]).astype(float))
+        stage.release()
+    by_pixel, by_cell, without = pictures
+    shadow = np.abs(by_pixel - without).max(axis=2)
+    error = np.abs(by_cell - by_pixel).max(axis=2)
+    assert (shadow > 10).sum() > 2000
+    assert 0.0 < error[shadow > 10].mean() < 0.1 * shadow[shadow > 10].mean()
