@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from characters.rendering.cover import ShareTexture
 from characters.rendering.geometry.character_cache import CharacterInstance
+from characters.rendering.haze import haze_table
 from characters.rendering.light import Light
 from characters.rendering.occlusion import corners_of, hidden_by_cube
 from characters.rendering.programs import set_uniforms
@@ -159,6 +160,11 @@ class FrameResources:
         Another thread may still be at work on it: it is not asked for before `composite`.
         """
         return self.undistorted()
+
+    @cached_property
+    def haze(self) -> Image | None:
+        """What each sRGB value becomes in this picture, (256,); None if it is clear."""
+        return haze_table(self.softness)
 
     @cached_property
     def hidden_by_cubes(self) -> tuple[tuple[Rectangle, Image], ...]:

@@ -149,7 +149,7 @@ class Stage:
         for each in self.passes:
             each.prepare(frame)
         self._begin_to_draw()
-        # Both are found while the driver draws the shadow maps, which are read next.
+        # Found while the driver draws the shadow maps, which are read next.
         _ = frame.hidden_by_cubes
         if frame.layer is not None:
             self._context.front_face = "cw"  # the first row of a target is its top row

@@ -137,8 +137,8 @@ def _held(
     extensions = held.extensions(pose)
     shift = following_feet(paths)
     level = with_moved_hips(pose, rig, ground.middle_cycle(shift))
+    held = replace(held, ankles=_held_places(paths, shift, ground) - to_balls)
     for most in _MAX_DROPS:
-        held = replace(held, ankles=_held_places(paths, shift, ground) - to_balls)
         rise = held.rise_to_extension(level, extensions)
         shift[:, 1] = ground.repeat(rise)
         pose = with_moved_hips(level, rig, rise[:, None] * [0.0, 1.0, 0.0])

@@ -44,8 +44,9 @@ class SkinnedCharacter:
     ) -> None:
         given = CharacterVertices.of(character.meshes)
         rest = given.palette(character.skeleton.rest.globals(character.skeleton))
-        self._dormant = np.flatnonzero(_vanished(rest))
-        vertices, self._levels = with_levels(given, _vanished(rest))
+        dormant = _vanished(rest)
+        self._dormant = np.flatnonzero(dormant)
+        vertices, self._levels = with_levels(given, dormant)
         self._vertices, self._level = vertices, 0
         self._asleep = False
         extreme = vertices.extreme()

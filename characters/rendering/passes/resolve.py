@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.rendering.cover import PictureCover
-from characters.rendering.passes.haze import haze_table, hazy
+from characters.rendering.haze import hazy
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.resources import FrameResources
 
@@ -48,9 +48,8 @@ class ResolvePass(RenderPass):
         if layer.target.fineness > 1:
             size = (area.width, area.height)
             pixels = np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_AREA), np.uint8)
-        table = haze_table(softness)
-        if table is not None:
-            pixels = hazy(pixels, table)
+        if frame.haze is not None:
+            pixels = hazy(pixels, frame.haze)
         if softness is not None:
             pixels = blurred(pixels, softness.blur * frame.scale)
         behind = frame.picture[area.slices]

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.rendering.cover import PictureCover
+from characters.rendering.haze import darkened
 from characters.rendering.hidden_table import hidden_table
-from characters.rendering.passes.haze import darkened, haze_table
 from characters.rendering.projection import Rectangle
 from characters.rendering.resources import FrameResources
 from characters.skeleton.pose import Array
@@ -71,7 +71,7 @@ def darken(frame: FrameResources, cover: PictureCover | None, factors: TableFact
         taken = cv2.multiply(cv2.bitwise_not(left[box]), seen, scale=1 / 255)
         left[box] = cv2.bitwise_not(taken)
     part = frame.picture[area.slices]
-    part[:] = darkened(part, left, haze_table(frame.softness))
+    part[:] = darkened(part, left, frame.haze)
 
 
 def _in_picture(frame: FrameResources, factors: TableFactors, area: Rectangle) -> NDArray[np.uint8]:

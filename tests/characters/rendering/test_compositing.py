@@ -21,7 +21,7 @@ def frame(pitch):
     table[2, 1:3] = -np.sin(pitch), -np.cos(pitch)
     table[:3, 3] = table[:3, :3] @ [0.0, -HEIGHT_M, 0.0]
     return SimpleNamespace(
-        softness=None,
+        haze=None,
         picture=np.full((180, 320, 3), 255, np.uint8),
         camera_matrix=MATRIX,
         camera_from_table=table,
