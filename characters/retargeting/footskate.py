@@ -1,7 +1,8 @@
 """Footskate cleanup: the target's foot stays in place while that of the source stands.
 
 The foot turns onto its sole, and each contact gets one foot position; see `soles` and `foot_path`.
-The hips follow the feet; see `hips_shift`. Hips and knees bend for what is left.
+The hips follow the feet, and heels rise from the ground; see `hips_shift` and `heel_rise`. Hips and
+knees bend for what is left.
 
 Source: Kovar, Schreiner and Gleicher, "Footskate cleanup for motion capture editing", SCA 2002.
 """
@@ -16,6 +17,7 @@ from characters.motion.clip import Clip
 from characters.motion.contacts import find_contacts, spans
 from characters.retargeting.foot_path import FootPath
 from characters.retargeting.ground_motion import GroundMotion
+from characters.retargeting.heel_rise import Heels
 from characters.retargeting.hips_shift import (
     HeldLegs,
     following_feet,
@@ -40,7 +42,7 @@ from characters.smoothing import gaussian_smoothed
 # Lengths in leg lengths.
 _MAX_BALL_RISE = 0.02  # of the ball of a standing foot above its lowest position
 _MAX_CORRECTION = 0.5  # a contact that needs a larger one is dropped
-_MAX_DROPS = (0.01, 0.12, 0.25)  # of the hips, before steps fall nearer and after
+_MAX_DROPS = (0.01, 0.25)  # of the hips, before steps fall nearer and after
 _STEPPING_ROUNDS = 2  # a step nearer may be out of reach at its other end
 _MAX_TILT = 1.5  # of a foot on its ball, as a share, if it is short for its ankle's height
 _TILT_SMOOTHING_S = 0.03  # standard deviation
@@ -134,6 +136,7 @@ def _held(
     standing = np.stack([ground.middle_cycle(path.standing) for path in paths], axis=1)
     own = _ankle_goals(pose, rig, legs, None) if rig.anatomy.kind == "humanoid" else ankles
     held = HeldLegs(rig, legs, own, standing, ground)
+    heels = Heels(rig, legs, pose, to_balls, contacts.ball & standing)
     extensions = held.extensions(pose)
     shift = following_feet(paths)
     level = with_moved_hips(pose, rig, ground.middle_cycle(shift))
@@ -144,10 +147,11 @@ def _held(
         pose = with_moved_hips(level, rig, rise[:, None] * [0.0, 1.0, 0.0])
         pose = with_listing_hips(pose, rig, legs, held.list_to_extension(pose, extensions))
         held = replace(held, ankles=_held_places(paths, shift, ground) - to_balls)
-        drop = held.drop_to_reach(pose, most)
+        drop = heels.raised(held, heels.tilts(held, pose)).drop_to_reach(pose, most)
         pose = with_moved_hips(pose, rig, drop[:, None] * [0.0, -1.0, 0.0])
         for _ in range(_STEPPING_ROUNDS):
-            missing = np.moveaxis(held.missing_reach(pose), 1, 0)
+            raised = heels.raised(held, heels.tilts(held, pose))
+            missing = np.moveaxis(raised.missing_reach(pose), 1, 0)
             paths = [
                 path.stepping(ground.directions_to_ground(way))
                 for path, way in zip(paths, missing, strict=True)
@@ -156,6 +160,8 @@ def _held(
     if rig.anatomy.kind == "humanoid":
         lowest = np.stack([ground.middle_cycle(path.lowest) for path in paths], axis=1)
         held = held.swinging_as_long(pose, extensions, lowest - to_balls[..., 1])
+    heel_tilts = heels.tilts(held, pose)
+    pose, held = heels.turned(pose, heel_tilts), heels.raised(held, heel_tilts)
     ankles = rotations.rotate(rotations.conjugate(rig.common_from_skeleton), held.ankles)
     for number, leg in enumerate(legs):
         pose = place_ankle(pose, rig, leg, ankles[:, number])

@@ -3,9 +3,10 @@
 A foot that is held in place is a little away from where the motion has it. The hips follow standing
 feet smoothly, as the root does in Kovar, Schreiner and Gleicher, "Footskate cleanup for motion
 capture editing", SCA 2002, section 4: level with the feet, and up or down so far that their legs
-are as long as in the source. They list to the side where both feet stand. A little that is out of
-reach brings them down; what is farther away, in a narrow curve or where a source's own feet leave
-its legs, steps nearer. Legs that swing are as long as in the source again.
+are as long as in the source. They list to the side where both feet stand. Where a foot on its ball
+is out of reach, its heel rises (see `heel_rise`); more brings the hips down a little, and what is
+farther away, as in a narrow curve, steps nearer. Legs that swing are as long as in the source
+again.
 """
 
 from collections.abc import Sequence
@@ -29,6 +30,11 @@ from characters.smoothing import gaussian_smoothed
 
 _SMOOTHING_S = 0.05  # standard deviation of the shift with the feet
 _DROP_SMOOTHING_S = 0.04  # and of the drop
+_RISE_SMOOTHING_S = 0.06  # and of the rise, in rounds
+_RISE_ROUNDS = 3
+_STRAIGHT_KNEE = 0.1  # added to the squared sine of half a knee's bend, so that none counts alone
+_TOO_LOW_WEIGHT = 20.0  # of legs that are bent too much, against those that are too straight
+_KEPT_RISE_WEIGHT = 0.3  # of staying where no foot stands
 _BOUND_ROUNDS = 20  # until a smooth curve is hardly below its values
 _SWING_S = 0.06  # before and after standing, in which legs come to be as long as in the source
 _MAX_LIST = 0.105  # of the hips, to either side [rad]
@@ -63,6 +69,10 @@ class HeldLegs:
     ground: GroundMotion
     """The ground under the clip."""
 
+    def at(self, frames: NDArray[np.intp]) -> "HeldLegs":
+        """Return the legs in some frames, which need not follow each other."""
+        return replace(self, ankles=self.ankles[frames], standing=self.standing[frames])
+
     def extensions(self, pose: Pose) -> Array:
         """Return the distances of the ankles from the hip joints of poses, (frames, legs) [m]."""
         return np.asarray(np.linalg.norm(self._away(pose), axis=-1), np.float64)
@@ -70,16 +80,25 @@ class HeldLegs:
     def rise_to_extension(self, pose: Pose, extensions: Array) -> Array:
         """Return how far the hips rise so that standing legs have these extensions, (frames,) [m].
 
-        Those are in the source, (frames, legs) [m].
+        Those are in the source, (frames, legs) [m]. Straighter legs count more, as their knees bend
+        more for the same way; and too low hips more than too high ones, from which a heel rises.
         """
-        rise = self._rises(pose, extensions)
         if not self.standing.any():
-            return np.zeros(len(rise))
-        middle, most = np.median(rise[self.standing]), _MAX_RISE * self.rig.leg_length
-        rise = np.clip(rise, middle - most, middle + most)
-        ground = self.ground
-        over_cycles = ground.repeat(rise[..., None]), ground.repeat(self.standing)
-        return np.asarray(ground.middle_cycle(_smooth_mean(*over_cycles, ground.rate))[:, 0])
+            return np.zeros(len(self.standing))
+        rises = self._rises(pose, extensions)
+        middle, most = np.median(rises[self.standing]), _MAX_RISE * self.rig.leg_length
+        rises = np.clip(rises, middle - most, middle + most)
+        bent = 1.0 - np.square(np.minimum(extensions / self.reach, 1.0))
+        weights = np.where(self.standing, 1.0 / (bent + _STRAIGHT_KNEE), 0.0)
+        wanted, weights = self.ground.repeat(rises), self.ground.repeat(weights)
+        deviation = _RISE_SMOOTHING_S * self.ground.rate
+        rise = np.full(len(wanted), middle)
+        for _ in range(_RISE_ROUNDS):
+            missing = wanted - rise[:, None]
+            pull = weights * np.where(missing > 0.0, _TOO_LOW_WEIGHT, 1.0)
+            change = gaussian_smoothed((pull * missing).sum(1), deviation)
+            rise += change / gaussian_smoothed(pull.sum(1) + _KEPT_RISE_WEIGHT, deviation)
+        return self.ground.middle_cycle(rise)
 
     def list_to_extension(self, pose: Pose, extensions: Array) -> Array:
         """Return how far the hips list to the right so that two legs have these extensions.
@@ -106,7 +125,7 @@ class HeldLegs:
         away = self._away(pose)
         level = away * [1.0, 0.0, 1.0]
         length = np.linalg.norm(level, axis=-1)
-        possible = np.sqrt(np.maximum(self._reach**2 - away[..., 1] ** 2, 0.0))
+        possible = np.sqrt(np.maximum(self.reach**2 - away[..., 1] ** 2, 0.0))
         share = np.clip(1.0 - possible / np.maximum(length, 1e-9), 0.0, 1.0)
         return np.asarray(level * share[..., None])
 
@@ -116,7 +135,7 @@ class HeldLegs:
         Swinging feet need not reach. `most` is the farthest that they come down, in leg lengths.
         """
         away = self._away(pose)
-        height = np.sqrt(np.maximum(self._reach**2 - np.square(away[..., [0, 2]]).sum(-1), 0.0))
+        height = np.sqrt(np.maximum(self.reach**2 - np.square(away[..., [0, 2]]).sum(-1), 0.0))
         missing: Array = np.where(self.standing, away[..., 1] - height, 0.0).max(1)
         missing = np.clip(missing, 0.0, most * self.rig.leg_length)
         return smooth_bound(missing, self.ground)
@@ -134,12 +153,16 @@ class HeldLegs:
         ankles[..., 1] = np.maximum(ankles[..., 1], np.minimum(self.ankles[..., 1], lowest))
         return replace(self, ankles=ankles)
 
+    def hip_joints(self, pose: Pose) -> Array:
+        """Return where the hip joints of the legs are in poses, (frames, legs, 3) [m]."""
+        return _positions(pose, self.rig, [leg.upper for leg in self.legs])
+
     def _away(self, pose: Pose) -> Array:
         """Return the ways from the ankles to the hip joints of poses, (frames, legs, 3) [m]."""
-        return _positions(pose, self.rig, [leg.upper for leg in self.legs]) - self.ankles
+        return self.hip_joints(pose) - self.ankles
 
     @property
-    def _reach(self) -> Array:
+    def reach(self) -> Array:
         """How far legs reach, (legs,) [m]."""
         return _MAX_REACH * np.array([sum(self.rig.bone_lengths(leg)) for leg in self.legs])
 

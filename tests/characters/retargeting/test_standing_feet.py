@@ -14,6 +14,7 @@ from characters.retargeting.footskate import (
     hold_feet_in_contact,
 )
 from characters.retargeting.ground_motion import GroundMotion
+from characters.retargeting.heel_rise import Heels
 from characters.retargeting.hips_shift import HeldLegs, with_listing_hips
 from characters.retargeting.measures import knee_quantiles, sole_dip
 from characters.retargeting.rig import Rig
@@ -174,6 +175,55 @@ def test_hips_rise_with_feet_that_stand_higher(human):
     away[:] = [[0.0, 0.03, 0.0], [0.0, 0.1, 0.0]]  # the second one swings
     rise = standing_on(human, away, standing).rise_to_extension(pose, extensions)
     assert rise == pytest.approx(0.03, abs=1e-6)
+
+
+def test_hips_are_rather_too_high_than_too_low_for_standing_legs(human):
+    """A heel rises from too high hips, but a knee that bends too much stays bent."""
+    pose, away = at_rest(human, 60), np.zeros((60, 2, 3))
+    extensions = standing_on(human, away, np.ones((60, 2), bool)).extensions(pose)
+    away[::2, :, 1] = 0.03  # faster than hips follow
+    rise = standing_on(human, away, np.ones((60, 2), bool)).rise_to_extension(pose, extensions)
+    assert rise[10:50].min() > 0.02
+
+
+def heels_of(human, held, on_ball):
+    """The heels of the human at rest, and how far they turn about balls out of reach."""
+    frames = len(held.ankles)
+    pose, rig = at_rest(human, frames), held.rig
+    to_balls = np.tile([rig.sole(leg).ball for leg in rig.legs], (frames, 1, 1))
+    heels = Heels(rig, rig.legs, pose, to_balls, on_ball)
+    return heels, heels.tilts(held, pose)
+
+
+def test_a_heel_rises_where_the_foot_is_out_of_reach_of_its_leg(human):
+    away, standing = np.zeros((30, 2, 3)), np.ones((30, 2), bool)
+    away[:, 0, 1] = -0.02
+    held = standing_on(human, away, standing)
+    heels, tilts = heels_of(human, held, standing)
+    raised, pose = heels.raised(held, tilts), at_rest(human, 30)
+    assert held.extensions(pose)[:, 0].min() > held.reach[0]
+    assert raised.extensions(pose)[:, 0] == pytest.approx(held.reach[0], abs=1e-3)
+    turned = heels.turned(pose, tilts)
+    foot = turns_from_rest(turned, held.rig, [held.legs[0].foot])[:, 0]
+    balls = raised.ankles[:, 0] + rotations.rotate(foot, held.rig.sole(held.legs[0]).ball)
+    assert balls == pytest.approx(held.ankles[:, 0] + heels.to_balls[:, 0], abs=1e-9)
+    toes = [turns_from_rest(each, held.rig, [held.legs[0].toes]) for each in (pose, turned)]
+    assert toes[1] == pytest.approx(toes[0], abs=1e-9)
+
+
+def test_a_foot_within_reach_keeps_its_heel_down(human):
+    away, standing = np.full((30, 2, 3), [0.0, 0.02, 0.0]), np.ones((30, 2), bool)
+    _, tilts = heels_of(human, standing_on(human, away, standing), standing)
+    assert not tilts.any()
+
+
+def test_a_risen_heel_settles_steadily_in_the_air(human):
+    away, standing = np.zeros((60, 2, 3)), np.ones((60, 2), bool)
+    away[20:40, :, 1], standing[:20], standing[40:] = -0.02, False, False
+    _, tilts = heels_of(human, standing_on(human, away, standing), standing)
+    assert tilts[20:40].min() > np.radians(5.0)
+    assert not tilts[[16, 43]].any()
+    assert np.abs(np.diff(tilts, axis=0)).max() < 0.8 * tilts.max()
 
 
 def test_a_swinging_foot_out_of_reach_does_not_lower_the_hips(human):
