@@ -3,7 +3,6 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 
 import moderngl
 import numpy as np
@@ -16,7 +15,6 @@ from app.pipeline.cube_window import CubeWindow, Interior
 from app.pipeline.frame_times import Lap
 from app.pipeline.other_cube import OtherCube, advice
 from app.pipeline.registry import make_scenario
-from app.pipeline.resident import MIN_SIZE
 from app.pipeline.scenario import (
     AdjustableScenario,
     Inputs,
@@ -26,15 +24,16 @@ from app.pipeline.scenario import (
 )
 from app.pipeline.scenario_errors import checked, scenario_errors
 from app.pipeline.spoken_line import SpokenLine
-from app.pipeline.step import Rect, ReplayInputs, Step
-from app.pipeline.subjects import character_region, cube_region
-from app.pipeline.surroundings import REALISM_CHOICES, Surroundings
+from app.pipeline.step import ReplayInputs, Step
+from app.pipeline.step_renderer import StepRenderer
+from app.pipeline.subjects import subjects
+from app.pipeline.surroundings import REALISM_CHOICES
 from app.pipeline.things import Body, BodyParts
 from characters import Animator, Character, CharacterCommand, PosedCharacter, RootDelta
 from characters.control.command import SpeechIntent
 from characters.control.controllers import ControllerFactory, first_suitable
 from characters.face.complexion import Complexion
-from characters.rendering import FULL, Quality, SceneCharacter, Stage, draws_in_software
+from characters.rendering import Quality
 from tracking import (
     CubeControls,
     CubeGestures,
@@ -131,12 +130,11 @@ class Playground:
             scenario = make_scenario(scenario, cube)
         self.intrinsics = intrinsics
         self.known_cubes = tuple(known_cubes)
-        self._look, self._context, self._lap = look, context, lap
-        self._controller, self._realism, self._inside = controller, tuple(realism), inside
+        self._look, self._lap = look, lap
+        self._controller, self._inside = controller, inside
         self.fixed = fixed
         """Whether the scenario cannot be changed now, so that the player is not told how."""
-        self._stage = None if context is None else Stage(context, intrinsics.size)
-        self._quality = FULL
+        self._renderer = StepRenderer(context, intrinsics, realism)
         self.play(scenario, cube, character)
 
     def play(
@@ -155,7 +153,7 @@ class Playground:
         self.scenario, self.cube, self.character = scenario, cube, character
         self._tracker = CubeTracker(cube, self.intrinsics)
         self._gestures = CubeGestures(cube)
-        self._surroundings = Surroundings(cube, self.intrinsics, self._realism)
+        self._renderer.play(cube)
         self._animator, self._parts = animator, BodyParts.of(character, animator.scale)
         self._posed: PosedCharacter | None = None
         self._body: Body | None = None
@@ -194,27 +192,22 @@ class Playground:
 
     def look_through(self, intrinsics: Intrinsics) -> None:
         """Take another camera; `play` must follow, as the table is another one in its picture."""
-        if self._context is not None and intrinsics.size != self.intrinsics.size:
-            self.close()
-            self._stage = Stage(self._context, intrinsics.size)
-            self._stage.quality = self._quality
+        self._renderer.look_through(intrinsics)
         self.intrinsics = intrinsics
 
     @property
     def draws_in_software(self) -> bool:
         """Whether pictures are drawn on the processor, not on a graphics card."""
-        return self._context is not None and draws_in_software(self._context)
+        return self._renderer.in_software
 
     @property
     def quality(self) -> Quality:
         """How finely characters are drawn."""
-        return self._quality
+        return self._renderer.quality
 
     @quality.setter
     def quality(self, quality: Quality) -> None:
-        self._quality = quality
-        if self._stage is not None:
-            self._stage.quality = quality
+        self._renderer.quality = quality
 
     def checkpoint(self) -> Checkpoint:
         """Return a copy of the state after the last frame, for `restore`; see its errors."""
@@ -290,11 +283,12 @@ class Playground:
             outcome = replace(outcome, hint=LOOK_INSIDE)
         self._lap("animation")
         picture = self.draw(frame, state, controls, outcome, posed, interior) if drawn else None
-        subjects = self._subjects(state, controls, posed, interior)
+        matrix = self.intrinsics.matrix
+        seen = subjects(state, controls, self.cube, self.character, posed, interior, matrix)
         self._lap("drawing")
         name = self.scenario.name
         line = self._line if outcome.command.speech is not None else None
-        return Step(frame, state, controls, outcome, posed, picture, subjects, name, line, interior)
+        return Step(frame, state, controls, outcome, posed, picture, seen, name, line, interior)
 
     @property
     def lens(self) -> LensEstimate:
@@ -303,8 +297,7 @@ class Playground:
 
     def expect(self, frame: Frame) -> None:
         """Begin to draw a frame, as far as nothing of what is in it is known."""
-        if self._stage is not None:
-            self._stage.expect(frame.image, self.intrinsics.matrix, self.intrinsics.distortion)
+        self._renderer.expect(frame)
 
     def track(self, frame: Frame) -> CubeState:
         """Find the cube."""
@@ -365,37 +358,8 @@ class Playground:
         interior: Interior | None = None,
     ) -> NDArray[np.uint8] | None:
         """Draw the picture; return None without a graphics context."""
-        if self._stage is None:
-            return None
-        view = self._surroundings.view(frame, state, controls)
-        seen = posed.visible and controls.camera_from_table is not None
-        characters = self._cast_of(posed, outcome, interior) if seen else []
-        if interior is not None and interior.box is not None:
-            view = replace(view, occluders=(interior.box,))
-        find_cover = partial(self._surroundings.cover, frame, state)
-        return self._stage.draw(view, characters, outcome.floor if seen else (), find_cover)
-
-    def _cast_of(
-        self, posed: PosedCharacter, outcome: Outcome, interior: Interior | None
-    ) -> list[SceneCharacter]:
-        """Return all that is drawn: the character on the table or in the cube, and its things."""
-        body = Body(self.character, self._parts, posed)
-        if interior is None:
-            things = [body.placed(thing) for thing in outcome.things]
-            return [self._shown(posed), *things]
-        characters = [body.placed(thing) for thing in outcome.things if thing.hand is None]
-        if interior.left_on_table > MIN_SIZE:
-            shrunk = np.diag([*[interior.left_on_table] * 3, 1.0])
-            leaving = replace(posed, table_from_character=posed.table_from_character @ shrunk)
-            characters.append(self._shown(leaving))
-        if interior.resident is not None:
-            characters.append(replace(self._shown(interior.resident), inside=interior.box))
-        return characters
-
-    def _shown(self, posed: PosedCharacter) -> SceneCharacter:
-        """Return the character in a pose, with the skin of its face."""
-        blood = self._complexion.blood if "blush" in self._realism else 0.0
-        return SceneCharacter(self.character, posed, "wrinkles" in self._realism, blood)
+        body, blood = Body(self.character, self._parts, posed), self._complexion.blood
+        return self._renderer.draw(frame, state, controls, outcome, body, interior, blood)
 
     def drawn(self, step: Step) -> Step:
         """Return a step with its picture, which `step` left out."""
@@ -412,28 +376,9 @@ class Playground:
         padded = np.concatenate([morphs, np.zeros(count - len(morphs))])
         return replace(posed, pose=replace(posed.pose, morphs=padded))
 
-    def _subjects(
-        self,
-        state: CubeState,
-        controls: CubeControls,
-        posed: PosedCharacter,
-        interior: Interior | None,
-    ) -> tuple[Rect, ...]:
-        """Return where the cube and the character are seen."""
-        matrix, table = self.intrinsics.matrix, controls.camera_from_table
-        regions: list[Rect | None] = []
-        if state.camera_from_cube is not None:
-            regions.append(cube_region(state.camera_from_cube, self.cube.edge, matrix))
-        on_table = interior is None or interior.left_on_table > 0.0
-        if posed.visible and table is not None and on_table:
-            regions.append(character_region(table, self.character, posed, matrix))
-        return tuple(region for region in regions if region is not None)
-
     def close(self) -> None:
-        """Release the stage; a second call does nothing."""
-        if self._stage is not None:
-            self._stage.release()
-            self._stage = None
+        """Release the graphics; a second call does nothing."""
+        self._renderer.close()
 
 
 def _table_from_cube(state: CubeState, controls: CubeControls) -> NDArray[np.float64] | None:

@@ -3,8 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from app.pipeline.cube_window import Interior
 from app.pipeline.step import Rect
 from characters import Character, PosedCharacter
+from tracking import CubeControls, CubeModel, CubeState
 
 HAND_EDGES = 0.6
 """How far a hand reaches around the cube, in edges of it."""
@@ -15,13 +17,37 @@ MIN_DEPTH_M = 0.05
 Array = NDArray[np.float64]
 
 
-def cube_region(camera_from_cube: Array, edge: float, matrix: Array) -> Rect | None:
+def subjects(
+    state: CubeState,
+    controls: CubeControls,
+    cube: CubeModel,
+    character: Character,
+    posed: PosedCharacter,
+    interior: Interior | None,
+    matrix: Array,
+) -> tuple[Rect, ...]:
+    """Return where the cube and the character on the table are seen [px], as far as they are.
+
+    `matrix` is the camera's, (3, 3) [px], and `interior` what is seen in the cube, None for a
+    closed one.
+    """
+    table = controls.camera_from_table
+    regions: list[Rect | None] = []
+    if state.camera_from_cube is not None:
+        regions.append(_cube_region(state.camera_from_cube, cube.edge, matrix))
+    on_table = interior is None or interior.left_on_table > 0.0
+    if posed.visible and table is not None and on_table:
+        regions.append(_character_region(table, character, posed, matrix))
+    return tuple(region for region in regions if region is not None)
+
+
+def _cube_region(camera_from_cube: Array, edge: float, matrix: Array) -> Rect | None:
     """Return where a cube and the hand that holds it are seen [px]; None behind the camera."""
     reach = edge * (0.5 + HAND_EDGES)
     return _region(camera_from_cube, np.array([[-reach] * 3, [reach] * 3]), matrix)
 
 
-def character_region(
+def _character_region(
     camera_from_table: Array, character: Character, posed: PosedCharacter, matrix: Array
 ) -> Rect | None:
     """Return where a character is seen [px], by the box of its rest pose; None if it is not."""
