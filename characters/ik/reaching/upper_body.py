@@ -6,7 +6,7 @@ bend; elbows swivel by openness; hands turn as they are asked to.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from typing import NamedTuple
 
@@ -23,9 +23,7 @@ from characters.ik.reaching.arms import (
     find_arm,
     scaled,
     swivel_of,
-    to_quaternion,
     to_vector,
-    turns_of,
 )
 from characters.ik.reaching.bending import (
     NEUTRAL_SWIVEL,
@@ -38,6 +36,7 @@ from characters.ik.reaching.bending import (
     twisted,
 )
 from characters.ik.reaching.hand_shapes import HandShapes
+from characters.ik.reaching.kinematics import Frames, UpperBodyKinematics
 from characters.ik.reaching.targets import (
     NEUTRAL_REACH,
     SHAPE_OF_KIND,
@@ -46,7 +45,6 @@ from characters.ik.reaching.targets import (
     ReachStyle,
 )
 from characters.ik.reaching.torso import (
-    FOUR_LEGS,
     PlacedTorso,
     Reaching,
     follow_torso,
@@ -54,7 +52,6 @@ from characters.ik.reaching.torso import (
 )
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.joint_chains import chains_to_root
 from characters.skeleton.pose import Array, Pose, Skeleton
 from characters.skeleton.scalar_quaternions import (
     IDENTITY,
@@ -73,16 +70,6 @@ PRONATION_RAD = math.radians(35.0)
 
 _FAR = 100.0  # arm lengths
 _FINGER_OF_KIND = {"touch": ("Middle", "Index"), "point": ("Index", "Middle")}
-
-
-class Frames(NamedTuple):
-    """Global frames of the joints of an upper body and their ancestors, in one pose."""
-
-    turns: list[Quaternion]
-    """`character_from_joint` rotations."""
-
-    places: list[Vector]
-    """[m]."""
 
 
 class ReachedPose(NamedTuple):
@@ -118,33 +105,16 @@ class UpperBody:
             for kind in SHAPE_OF_KIND
         }
         self._wrists = {side: effector_of(arm, arm.wrist) for side, arm in self.arms.items()}
-        trunk = _trunk(skeleton, anatomy, self.arms)
-        roots = skeleton.with_ancestors([*trunk, *(arm.joints[1] for arm in self.arms.values())])
-        ends = skeleton.with_ancestors(arm.joints[3] for arm in self.arms.values())
-        order = [*roots, *(joint for joint in ends if joint not in roots)]
-        self._order = np.array(order, np.intp)
-        number = {joint: place for place, joint in enumerate(order)} | {-1: -1}
-        self._number = number
-        self._parents = [number[skeleton.parents[joint]] for joint in order]
-        self._roots = len(roots)
-        rest = skeleton.rest.globals(skeleton)
-        self._rest = [to_quaternion(turn) for turn in turns_of(rest[order, :3, :3])]
-        self._sizes = _scales_above(rest, self._order, skeleton)
-        self._trunk = [number[joint] for joint in trunk]
-        self._trunk_joints = np.array(trunk, np.intp)
-        self._pelvis = self._parents[self._trunk[0]] if self._trunk else -1
+        self._kinematics = UpperBodyKinematics(skeleton, anatomy, self.arms)
         self._written = {
             side: np.array([*arm.joints[1:], *(j for j in arm.joints[:1] if j >= 0)], np.intp)
             for side, arm in self.arms.items()
         }
-        self._first = [number[arm.joints[arm.joints[0] < 0]] for arm in self.arms.values()]
-        carriers = [number[arm.carrier] for arm in self.arms.values()]
-        self._chest = self._trunk[-1] if self._trunk else (carriers[0] if carriers else -1)
 
     @cached_property
     def joints(self) -> NDArray[np.intp]:
         """All joints that it turns: torso, arms and fingers."""
-        moved = [*self._trunk_joints]
+        moved = [*self._kinematics.trunk_joints]
         for arm in self.arms.values():
             moved += [joint for joint in arm.joints if joint >= 0]
             moved += [joint for finger in arm.hand.fingers.values() for joint in finger]
@@ -182,8 +152,8 @@ class UpperBody:
         if not wanted:
             return ReachedPose(pose, 0.0)
         holds = self._four_legs and len(wanted) < len(self.arms)
-        frames = self._frames(pose, whole_arms=holds)
-        torso = self._placed(frames)
+        frames = self._kinematics.frames(pose, whole_arms=holds)
+        torso = self._kinematics.torso(frames)
         hands = [self._started(frames, arm, target, style) for arm, target in wanted]
         swivelled = style.openness != NEUTRAL_REACH.openness
         neutral = ReachStyle(power=style.power) if swivelled else style
@@ -196,7 +166,7 @@ class UpperBody:
                 wrist, after = self._wrists[hand.arm.hand.side], _bearer(torso, hand, turned)
                 bent[place] = opened(hand.arm, wrist, arm, before, after, style.openness)
         local, whole = pose.rotations.copy(), from_rotation_vector(turned)
-        self._turn_trunk(local, frames, torso.step(turned))
+        self._kinematics.turn_trunk(local, frames, torso.step(turned))
         for hand, arm in zip(hands, bent, strict=True):
             self._write(local, frames, hand, arm, whole)
         if holds:
@@ -210,8 +180,8 @@ class UpperBody:
         """
         if not self.arms:
             return math.inf
-        frames = self._frames(pose)
-        torso = self._placed(frames)
+        frames = self._kinematics.frames(pose)
+        torso = self._kinematics.torso(frames)
         target = HandTarget(place)
         return min(
             self._torso_turn(
@@ -225,40 +195,11 @@ class UpperBody:
         arm = self.arms.get(side)
         if arm is None:
             return None
-        frames = self._frames(pose, whole_arms=True)
-        hand = self._number[arm.joints[3]]
+        frames = self._kinematics.frames(pose, whole_arms=True)
+        hand = self._kinematics.number[arm.joints[3]]
         moved = multiply(frames.turns[hand], conjugate(arm.rest_turns[1]))
         offset = self._effectors[side, "reach"].offset
         return np.array(add(frames.places[hand], rotate(moved, offset)))
-
-    def _frames(self, pose: Pose, *, whole_arms: bool = False) -> Frames:
-        """Return the frames of trunk and upper arms, or of the whole arms."""
-        order = self._order if whole_arms else self._order[: self._roots]
-        turns: list[Quaternion] = pose.rotations[order].tolist()
-        places: list[Vector] = (pose.translations[order] * self._sizes[: len(order)]).tolist()
-        for joint, parent in enumerate(self._parents[: len(order)]):
-            if parent >= 0:
-                above, (x, y, z) = turns[parent], places[parent]
-                turns[joint] = multiply(above, turns[joint])
-                dx, dy, dz = rotate(above, places[joint])
-                places[joint] = (x + dx, y + dy, z + dz)
-        return Frames(turns, places)
-
-    def _placed(self, frames: Frames) -> PlacedTorso:
-        x, y, z = frames.places[self._first[0]]
-        ox, oy, oz = frames.places[self._first[-1]]
-        return PlacedTorso(
-            [frames.places[joint] for joint in self._trunk],
-            self._from_rest(frames, self._pelvis),
-            self._from_rest(frames, self._chest),
-            (0.5 * (x + ox), 0.5 * (y + oy), 0.5 * (z + oz)),
-            FOUR_LEGS if self._four_legs else 1.0,
-        )
-
-    def _from_rest(self, frames: Frames, joint: int) -> Quaternion:
-        return (
-            multiply(frames.turns[joint], conjugate(self._rest[joint])) if joint >= 0 else IDENTITY
-        )
 
     def _started(
         self, frames: Frames, arm: Arm, target: HandTarget, style: ReachStyle
@@ -267,14 +208,14 @@ class UpperBody:
         x, y, z = to_vector(target.place)
         effector = self._effectors[arm.hand.side, target.kind]
         full = arm.upper + effector.fore
-        shoulder = frames.places[self._number[arm.joints[1]]]
+        shoulder = frames.places[self._kinematics.number[arm.joints[1]]]
         aim = subtract((x, y, z), shoulder)
         if max(map(abs, aim)) > _FAR * full:  # squares of what is very far are infinite
             scale = _FAR * full / max(map(abs, aim))
             x, y, z = add(shoulder, scaled(aim, scale))
         swung = IDENTITY
         if arm.joints[0] >= 0:
-            base = frames.places[self._number[arm.joints[0]]]
+            base = frames.places[self._kinematics.number[arm.joints[0]]]
             swung = passive_shoulder(base, shoulder, (x, y, z), full, style.power)
             shoulder = add(base, rotate(swung, subtract(shoulder, base)))
         return HandOnItsWay(arm, target, effector, (x, y, z), shoulder, swung)
@@ -294,16 +235,6 @@ class UpperBody:
         turns = (single[0][0], single[1][0], both)
         first, second, third = (scaled(*each) for each in zip(turns, shares, strict=True))
         return add(first, add(second, third)), max(effort, together)
-
-    def _turn_trunk(self, local: Array, frames: Frames, step: Quaternion) -> None:
-        if not self._trunk:
-            return
-        rows = []
-        for joint in self._trunk:
-            parent = self._parents[joint]
-            above = frames.turns[parent] if parent >= 0 else IDENTITY
-            rows.append(multiply(conjugate(above), multiply(step, frames.turns[joint])))
-        local[self._trunk_joints] = rows
 
     def _bent(self, hand: HandOnItsWay, bearer: Bearer) -> BentArm:
         """Return the arm of a hand with a neutral elbow."""
@@ -326,15 +257,15 @@ class UpperBody:
     ) -> None:
         """Write the local rotations of an arm and its fingers."""
         arm, weight = hand.arm, hand.target.weight
-        collar, upper = (self._number.get(joint, -1) for joint in arm.joints[:2])
-        above = multiply(hand.swung, frames.turns[self._parents[upper]])
+        collar, upper = (self._kinematics.number.get(joint, -1) for joint in arm.joints[:2])
+        above = multiply(hand.swung, frames.turns[self._kinematics.parents[upper]])
         rows = [
             multiply(conjugate(multiply(whole, above)), bent.upper),
             multiply(conjugate(multiply(bent.upper, arm.between_bones)), bent.lower),
             multiply(conjugate(multiply(bent.lower, arm.between_fore)), bent.hand),
         ]
         if collar >= 0:
-            above = frames.turns[self._parents[collar]]
+            above = frames.turns[self._kinematics.parents[collar]]
             rows.append(multiply(conjugate(above), multiply(hand.swung, frames.turns[collar])))
         _blend(local, self._written[arm.hand.side], rows, weight)
         if arm.hand.fingers:
@@ -353,7 +284,7 @@ class UpperBody:
         """Keep the other front paw where it is while the torso moves."""
         (arm,) = (arm for arm in self.arms.values() if arm is not reaching.arm)
         turns, places = frames
-        _, upper, lower, paw = (self._number.get(joint, -1) for joint in arm.joints)
+        _, upper, lower, paw = (self._kinematics.number.get(joint, -1) for joint in arm.joints)
         shoulder = torso.carried(torso.step(turned), places[upper])
         wrist = self._wrists[arm.hand.side]
         now = BentArm(turns[upper], turns[lower], turns[paw], places[paw], places[lower])
@@ -400,27 +331,6 @@ def _bearer(torso: PlacedTorso, hand: HandOnItsWay, turned: Vector) -> Bearer:
     """Return what bears the arm of a hand after a turn of the torso."""
     shoulder = torso.carried(torso.step(turned), hand.shoulder)
     return Bearer(shoulder, torso.chest_after(turned))
-
-
-def _trunk(skeleton: Skeleton, anatomy: Anatomy, arms: Mapping[str, Arm]) -> list[int]:
-    """Return the joints from the spine to what carries the arms; [] if they move no arm."""
-    chains = chains_to_root(skeleton.parents)
-    lines = [chains[arm.carrier] for arm in arms.values() if arm.carrier >= 0]
-    if len(lines) < len(arms) or not lines:
-        return []
-    common = [joint for joint in lines[0] if all(joint in line for line in lines)]
-    spine, hips = anatomy.joint("spine"), anatomy.joint("hips")
-    if spine in common:
-        return common[common.index(spine) :]
-    return common[common.index(hips) + 1 :] if hips in common else []
-
-
-def _scales_above(rest: Array, order: NDArray[np.intp], skeleton: Skeleton) -> Array:
-    """Return the scales at rest of the joints' parents, (n, 1)."""
-    sizes = np.append(np.linalg.norm(rest[:, :3, :3], axis=1).max(1), 1.0)
-    above = np.array(skeleton.parents)[order]
-    scales: Array = sizes[above][:, None]
-    return scales
 
 
 def _blend(
