@@ -68,6 +68,15 @@ def hermite(a: _Value, slope_a: _Value, b: _Value, slope_b: _Value, u: float) ->
     return a + u * (slope_a + u * (bend + u * (slope_a + slope_b - 2 * (b - a))))
 
 
+def smoothstep(u: _Value) -> _Value:
+    """Return the cubic that goes from 0 at u = 0 to 1 at u = 1, level at both; u is not limited.
+
+    >>> [smoothstep(u) for u in (0.0, 0.25, 0.5, 1.0)]
+    [0.0, 0.15625, 0.5, 1.0]
+    """
+    return u * u * (3.0 - 2.0 * u)
+
+
 def gaussian_smoothed(values: NDArray[np.float64], deviation: float) -> NDArray[np.float64]:
     """Return values (frames, …) under a Gaussian of a standard deviation [frames].
 

@@ -15,6 +15,7 @@ from characters import (
     RootDelta,
 )
 from characters.rendering import WALL_SHARE
+from characters.smoothing import smoothstep
 from tracking.geometry import se3
 from tracking.gestures.table import SIDE_NORMALS
 
@@ -125,4 +126,4 @@ class Resident:
         if share >= 1.0:
             self._turned = None
             return self._room
-        return np.asarray(se3.rotation(share * share * (3.0 - 2.0 * share) * by) @ before)
+        return np.asarray(se3.rotation(smoothstep(share) * by) @ before)

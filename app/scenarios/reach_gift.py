@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.pipeline.things import GRIP, Side, Thing
+from characters.smoothing import smoothstep
 
 Point = NDArray[np.float64]
 
@@ -26,8 +27,7 @@ class _Move:
 
     def at(self, end: Point, now: float) -> Point:
         """Return where it is, on its way to its end."""
-        share = min(max((now - self.since) / self.seconds, 0.0), 1.0)
-        share = share * share * (3.0 - 2.0 * share)
+        share = smoothstep(min(max((now - self.since) / self.seconds, 0.0), 1.0))
         place = self.start + share * (end - self.start)
         place[1] += 4.0 * self.height * share * (1.0 - share)
         return place

@@ -11,6 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from characters.smoothing import smoothstep
+
 SAMPLE_RATE = 48_000
 """Samples a second."""
 
@@ -48,8 +50,7 @@ def curve(points: Curve, time: Array) -> Array:
     first = np.minimum(place.astype(int), max(len(at) - 2, 0))
     part = place - first
     after = np.minimum(first + 1, len(at) - 1)
-    share: Array = part * part * (3.0 - 2.0 * part)
-    return np.asarray(values[first] + (values[after] - values[first]) * share)
+    return np.asarray(values[first] + (values[after] - values[first]) * smoothstep(part))
 
 
 def glide(points: Curve, time: Array) -> Array:

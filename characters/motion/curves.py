@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Literal, Protocol, TypeAlias, get_args
 
 from characters.errors import CharacterError
+from characters.smoothing import smoothstep
 
 Ease = Literal["linear", "cubic", "gonio"]
 """Shape of a fade: linear, 3u² − 2u³, or half a cosine."""
@@ -46,7 +47,7 @@ def ease(u: float, shape: Ease) -> float:
     if shape == "linear":
         return u
     if shape == "cubic":
-        return u * u * (3.0 - 2.0 * u)
+        return smoothstep(u)
     return (1.0 - math.cos(math.pi * u)) / 2.0
 
 

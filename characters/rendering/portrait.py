@@ -17,6 +17,7 @@ from characters.rendering.stage import Stage
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Pose
+from characters.smoothing import smoothstep
 
 Image = NDArray[np.uint8]
 Focus = str | tuple[Array, float] | None
@@ -275,4 +276,4 @@ def _fade_mask(size: tuple[int, int]) -> NDArray[np.float32]:
     from_side = np.minimum(columns, columns[::-1]) / (FADE_SHARE * size[0])
     from_bottom = rows[::-1] / (FADE_SHARE * size[1])
     share = np.clip(np.minimum(from_side[None], from_bottom[:, None]), 0.0, 1.0)
-    return np.asarray(share**2 * (3.0 - 2.0 * share), np.float32)
+    return np.asarray(smoothstep(share), np.float32)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from characters.motion.contacts import spans
 from characters.skeleton.pose import Array
+from characters.smoothing import smoothstep
 
 _SETTLING_S = 0.12  # to leave or reach the speed of the correction during a contact
 
@@ -106,10 +107,8 @@ class FootPath:
             leaving = _slope(correction, start - 1, -1) if length > 1 else zero
             arriving = _slope(correction, after, 1) if after + 1 < len(correction) else zero
             u: Array = np.arange(1.0, gap + 1)[:, None]
-            part = u / (gap + 1)
-            ease = part * part * (3 - 2 * part)
             width = min(_SETTLING_S * self.rate, (gap + 1) / 2)
-            correction[start:after] = here + (there - here) * ease
+            correction[start:after] = here + (there - here) * smoothstep(u / (gap + 1))
             correction[start:after] += leaving * _decay(u, width)
             correction[start:after] -= arriving * _decay(gap + 1 - u, width)
 

@@ -26,7 +26,7 @@ from characters.retargeting.transfer import (
 )
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
-from characters.smoothing import gaussian_smoothed
+from characters.smoothing import gaussian_smoothed, smoothstep
 
 _SMOOTHING_S = 0.05  # standard deviation of the shift with the feet
 _DROP_SMOOTHING_S = 0.04  # and of the drop
@@ -187,7 +187,7 @@ def _swinging(standing: NDArray[np.bool_], rate: float) -> Array:
         for feet in standing.T
     ]
     part = np.clip(np.stack(near, axis=1) / (_SWING_S * rate), 0.0, 1.0)
-    return np.asarray(part * part * (3 - 2 * part))
+    return smoothstep(part)
 
 
 def smooth_bound(values: Array, ground: GroundMotion) -> Array:

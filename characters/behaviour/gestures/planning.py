@@ -26,7 +26,6 @@ from characters.behaviour.gestures.tracks import (
     hand_track,
     one_period,
     sided,
-    smooth,
 )
 from characters.behaviour.gestures.trunk import body_track
 from characters.behaviour.intents import Hand
@@ -36,6 +35,7 @@ from characters.ik.reaching import ReachStyle
 from characters.model.character import Character
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array
+from characters.smoothing import smoothstep
 
 NEGLIGIBLE = 1e-6
 """Sine of half an angle below which a joint of the trunk is not turned."""
@@ -223,7 +223,7 @@ class GesturePlanning:
         for start, end in pairwise(keys.tolist()):
             share = (times[start : end + 1] - times[start]) / (times[end] - times[start])
             poses[start : end + 1, flipping] = rotations.slerp(
-                poses[start, flipping], poses[end, flipping], smooth(share)[:, None]
+                poses[start, flipping], poses[end, flipping], smoothstep(share)[:, None]
             )
 
     def _overshoot(self, poses: Array, times: Array, side: str, track: HandTrack) -> None:

@@ -20,6 +20,7 @@ from characters.behaviour.symbolic_gesture import BodyKey, HandKey, SymbolicGest
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array
 from characters.skeleton.scalar_quaternions import cross
+from characters.smoothing import smoothstep
 
 Key = TypeVar("Key", HandKey, BodyKey)
 
@@ -109,7 +110,7 @@ def hand_track(
         round_trip = key.path in ("circle", "wave")
         way_there = line.segment(number, reached)
         way_there += formula.offsets(ramped(reached) if round_trip else reached)
-        share = smooth(reached)
+        share = smoothstep(reached)
         turned = rotations.slerp(frames[number], frames[number + 1], share)
         shaped = weights[number] + (weights[number + 1] - weights[number]) * share[:, None]
         parts.append(np.concatenate([way_there, turned, shaped], axis=1))
@@ -122,12 +123,6 @@ def hand_track(
     rows = np.concatenate(parts)
     rows[:, ORIENTATION] = rotations.continuous(rows[:, ORIENTATION])
     return HandTrack(PartKeys(np.concatenate(dense), rows), shapes, tuple(overshoots))
-
-
-def smooth(u: Array) -> Array:
-    """Return the cubic that starts and ends at rest, 0…1."""
-    share: Array = u * u * (3.0 - 2.0 * u)
-    return share
 
 
 def orientation(key: HandKey, left: bool) -> Array:

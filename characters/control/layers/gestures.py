@@ -19,7 +19,7 @@ from characters.control.layers.layer import FrameContext
 from characters.control.layers.sitting_up import STANDING_REST
 from characters.model.character import Character
 from characters.skeleton.pose import Pose
-from characters.smoothing import low_pass
+from characters.smoothing import low_pass, smoothstep
 
 FADE_S = 0.3
 """How long a gesture takes to go that is left out before its end, or to join in late [s]."""
@@ -139,11 +139,11 @@ class PerformedGesture:
         weight, prepares = 1.0, phase < PREPARED
         if prepares:
             self._planning.advance(POSTURES_PER_FRAME)
-            weight = eased(_smooth(phase), self._style)
+            weight = eased(smoothstep(phase), self._style)
             weight = min(weight, 1.0) if self._touches else weight
         elif phase > STROKE_END:
-            weight = _smooth(GONE - phase)
-        weight *= share * _smooth(self.present)
+            weight = smoothstep(GONE - phase)
+        weight *= share * smoothstep(self.present)
         motion = self._planning.opening if prepares else self._planning.motion
         return motion.over(pose, min(max(phase - PREPARED, 0.0), 1.0), weight)
 
@@ -208,7 +208,3 @@ def _free_hand(others: Sequence[PerformedGesture], asked: BehaviourIntent) -> Ha
     """Return the right hand, unless it is taken and the left one is not."""
     taken = {each.hand for each in others} | {each.hand for each in asked.reaches}
     return "left" if "right" in taken and not taken & {"left", "both"} else "right"
-
-
-def _smooth(u: float) -> float:
-    return u * u * (3.0 - 2.0 * u)

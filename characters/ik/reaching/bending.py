@@ -34,6 +34,7 @@ from characters.skeleton.scalar_quaternions import (
     subtract,
     to_rotation_vector,
 )
+from characters.smoothing import smoothstep
 
 POINT_EXTENSION = 0.97
 """Extension of an arm that points to what is far ÷ its length."""
@@ -104,8 +105,8 @@ def passive_shoulder(
     size = length(axis)
     if size < 1e-12:
         return IDENTITY
-    strain = min(max((length(subtract(place, shoulder)) / full - 0.6) / 0.6, 0.0), 1.0)
-    strain = strain * strain * (3.0 - 2.0 * strain)
+    strain = (length(subtract(place, shoulder)) / full - 0.6) / 0.6
+    strain = smoothstep(min(max(strain, 0.0), 1.0))
     share = SHOULDER_STRAIN * strain + SHOULDER_POWER * power * (0.25 + 0.75 * strain)
     angle = share * math.atan2(size, dot(bone, aim))
     scale = MAX_SHOULDER_RAD * math.tanh(angle / MAX_SHOULDER_RAD) / size

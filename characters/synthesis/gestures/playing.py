@@ -12,6 +12,7 @@ from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
 from characters.skeleton.masks import Mask
 from characters.skeleton.pose import Array, Pose
+from characters.smoothing import smoothstep
 from characters.synthesis.gestures.library import GestureLibrary
 
 RAMP_S = 0.3
@@ -90,8 +91,7 @@ def bridge(start: float, length: float, leaving: Ends, arriving: Ends, rate: flo
     gone = rotations.multiply(leaving.turns, rotations.from_rotation_vector(leaving.spins * on))
     arrived = rotations.align(arriving.turns, leaving.turns)  # once: both move while they fade
     coming = rotations.multiply(arrived, rotations.from_rotation_vector(-arriving.spins * back))
-    u = times / length
-    mixed = gone + (coming - gone) * (u * u * (3.0 - 2.0 * u))
+    mixed = gone + (coming - gone) * smoothstep(times / length)
     return Segment(start, rotations.normalize(mixed), 0.0, steps / length)
 
 

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from characters.skeleton.pose import Array
+from characters.smoothing import smoothstep
 from characters.synthesis.idle.database import BalanceShift, IdleDatabase, RestingPosture
 from characters.synthesis.idle.fitting import fit, nearest_clip
 from characters.synthesis.idle.variations import COMPONENTS
@@ -73,7 +74,7 @@ def bridge(
     way = [] if near else shortest_way(database, start.balance, balance, rng)
     if not way:
         u = np.linspace(0.0, 1.0, round(EASED_S * database.rate) + 1)[:, None]
-        eased: Array = start.vector + u * u * (3.0 - 2.0 * u) * (end - start.vector)
+        eased: Array = start.vector + smoothstep(u) * (end - start.vector)
         return eased
     between = [_drawn(database, name, rng) for name in way[:-1]]
     parts = []

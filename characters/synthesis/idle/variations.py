@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from characters.skeleton.pose import Array
+from characters.smoothing import smoothstep
 from characters.synthesis.idle.posture_space import PostureSpace
 from characters.synthesis.library import Frames
 
@@ -151,8 +152,7 @@ class VariationStream:
         for number in np.flatnonzero(self._after[:, 0] <= time).tolist():
             self._advance(number, time)
         u = (time - self._before[:, 0]) / np.maximum(self._after[:, 0] - self._before[:, 0], 1e-9)
-        eased = u * u * (3.0 - 2.0 * u)
-        values = self._before[:, 1] + (self._after[:, 1] - self._before[:, 1]) * eased
+        values = self._before[:, 1] + (self._after[:, 1] - self._before[:, 1]) * smoothstep(u)
         offset: Array = self._axes @ values
         return offset
 

@@ -12,7 +12,7 @@ from characters.motion.clip import Clip
 from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
-from characters.smoothing import gaussian_smoothed
+from characters.smoothing import gaussian_smoothed, smoothstep
 from characters.synthesis.distances import thesis_distance
 from characters.synthesis.graphs.edges import Nodes
 from characters.synthesis.graphs.parts import PartGraphs
@@ -44,7 +44,7 @@ class LowPass:
         times = np.arange(count)
         outside = np.maximum(np.maximum(start - times, times - end), 0)
         share = np.clip(1.0 - outside / self.ramp_frames, 0.0, 1.0)
-        return np.round(share * share * (3.0 - 2.0 * share), 12)
+        return np.round(smoothstep(share), 12)
 
 
 DEFAULT_LOW_PASS = LowPass()

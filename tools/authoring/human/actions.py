@@ -9,6 +9,7 @@ import numpy as np
 
 from characters.motion.clip import Clip
 from characters.skeleton.pose import Skeleton
+from characters.smoothing import smoothstep
 from tools.authoring.human.acting import FRAME_RATE_HZ, ActingCurves, clip_from_acting
 from tools.authoring.human.idle import idle_weight
 from tools.authoring.human.limbs import HandTarget
@@ -286,6 +287,5 @@ def _with_slopes(time: Array, points: list[tuple[float, float, float]]) -> Array
     i = np.clip(np.searchsorted(at, time, side="right") - 1, 0, len(at) - 2)
     span = np.maximum(at[i + 1] - at[i], 1e-9)
     u = np.clip((time - at[i]) / span, 0.0, 1.0)
-    ease = u * u * (3 - 2 * u)
     bows = slope[i] * u * (1 - u) ** 2 - slope[i + 1] * u * u * (1 - u)
-    return np.asarray(value[i] + (value[i + 1] - value[i]) * ease + span * bows)
+    return np.asarray(value[i] + (value[i + 1] - value[i]) * smoothstep(u) + span * bows)

@@ -6,13 +6,15 @@ All curves are sampled at ``frames`` even steps of a phase in 0…1.
 import numpy as np
 from numpy.typing import NDArray
 
+from characters import smoothing
+
 Array = NDArray[np.float64]
 
 
 def smoothstep(u: Array | float) -> Array:
-    """Return the smooth step of u from 0 to 1."""
-    u = np.clip(np.asarray(u, float), 0.0, 1.0)
-    return np.asarray(u * u * (3 - 2 * u))
+    """Return the smooth step from 0 to 1 of u, which is limited to that."""
+    limited: Array = np.clip(np.asarray(u, float), 0.0, 1.0)
+    return smoothing.smoothstep(limited)
 
 
 def soft_limited(values: Array, limit: float) -> Array:
@@ -48,7 +50,7 @@ def keys(frames: int, *poses: tuple[float, float]) -> Array:
     i = np.searchsorted(times, phase, side="right") - 1
     h = gap[i]
     u = (phase - times[i]) / h
-    ease = u * u * (3 - 2 * u)
+    ease = smoothing.smoothstep(u)
     curve: Array = (
         values[i] * (1 - ease)
         + values[i + 1] * ease
