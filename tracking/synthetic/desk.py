@@ -91,9 +91,11 @@ def _planks(random: np.random.Generator) -> Floats:
     for number, top in enumerate(range(0, DESK_TEXELS, width)):
         rows = slice(top, min(top + width, DESK_TEXELS))
         shift = int(random.integers(DESK_TEXELS))
-        figure = np.roll(grain, shift, axis=1)[rows]
+        figure = (0.075 * np.roll(grain[rows], shift, axis=1)).astype(float)
         colour = WOOD_BGR[int(random.integers(len(WOOD_BGR)))] * random.uniform(0.95, 1.04)
-        texture[rows] = colour * (1.0 + 0.075 * figure[..., None] * (1.15, 1.0, 0.9))
+        # One channel at a time: loops over three values take thrice as long.
+        for channel, contrast in enumerate((1.15, 1.0, 0.9)):
+            texture[rows, :, channel] = colour[channel] * (1.0 + figure * contrast)
         if number:
             texture[top - 1 : top + 1] *= 0.62  # the gap between two planks
             texture[top + 1] *= 1.05
