@@ -18,6 +18,11 @@ for name in ("FORCE_COLOR", "GITHUB_ACTIONS", "PY_COLORS"):
 # threads wait for each other take twice as long for the frames of a session.
 os.environ.setdefault("OPENCV_FOR_THREADS_NUM", "1")
 
+# The C library of Linux reads them when a process starts, so they are for the workers of xdist. It
+# keeps the memory of pictures instead of returning it and asking for it again a frame later.
+os.environ.setdefault("MALLOC_MMAP_THRESHOLD_", str(2**25))
+os.environ.setdefault("MALLOC_TRIM_THRESHOLD_", str(2**30))
+
 import app as app  # noqa: E402  before numpy, whose rounding it sets
 
 
