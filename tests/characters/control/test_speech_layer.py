@@ -14,13 +14,15 @@ from characters.skeleton import rotations
 from characters.speech.speech import Accent, GestureSpan, Phone, Utterance
 
 RATE = 30
+SEED = 3
+"""That of the character and of its animators, which then share its gaits."""
 ACCENTS = (Accent(1.0, 0.9), Accent(2.2, 0.6), Accent(3.4, 1.0))
 SAID = Utterance("One two three", "en", 4.0, (), (Phone("a", 0.0, 4.0),), ACCENTS)
 
 
 @pytest.fixture(scope="module")
 def human():
-    return Character.load("human")
+    return replace(Character.load("human"), seed=SEED)
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +32,7 @@ def vleo():
 
 def played(character, speech_at, seconds=7.0, action=None, layers=None):
     """Return the poses of a character; `speech_at` gives what it says at a time."""
-    animator = Animator(character, place=RootDelta(), seed=3, layers=layers)
+    animator = Animator(character, place=RootDelta(), seed=SEED, layers=layers)
     poses = []
     for number in range(round(seconds * RATE)):
         now = number / RATE

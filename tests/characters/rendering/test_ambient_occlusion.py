@@ -260,22 +260,28 @@ def test_normals_for_shading_bring_no_darkness_from_below_the_triangle(draw):
     assert draw(seen, 64.0, radius_m=0.15)[16:-16, 16:-16].min() > 0.999
 
 
+@pytest.fixture(scope="module")
+def corner():
+    return TracedScene(load("corner"), (319, 241), 32)
+
+
 @pytest.mark.parametrize("stride", [2, 3])
-def test_cells_of_several_texels_are_close_to_ray_traced_pictures_too(ctx, programs, stride):
-    traced = TracedScene(load("corner"), (319, 241), 32)
-    depths = np.pad(traced.depths, ((0, 2), (0, 2), (0, 0)), mode="edge")
+def test_cells_of_several_texels_are_close_to_ray_traced_pictures_too(
+    ctx, programs, corner, stride
+):
+    depths = np.pad(corner.depths, ((0, 2), (0, 2), (0, 0)), mode="edge")
     cells = np.ascontiguousarray(depths[stride // 2 :: stride, stride // 2 :: stride])
-    buffer = GBuffer.of(ctx, traced)
+    buffer = GBuffer.of(ctx, corner)
     buffer.depths.release()
     buffer.depths = ctx.texture(cells.shape[1::-1], 4, cells.tobytes(), dtype="f4")
-    settings = AmbientOcclusionSettings(radius_m=traced.scene.radius_m)
+    settings = AmbientOcclusionSettings(radius_m=corner.scene.radius_m)
     effect = AmbientOcclusion(ctx, programs, settings)
     found = buffer.draw(effect, stride=stride)
     buffer.release()
     effect.release()
-    seen = traced.surfaces.seen
+    seen = corner.surfaces.seen
     assert (found[~seen] == 1.0).all()
-    assert score(found, traced.truth, seen).rmse <= 0.03
+    assert score(found, corner.truth, seen).rmse <= 0.03
 
 
 @pytest.mark.parametrize("stride", [1, 2, 3, 6])

@@ -12,6 +12,7 @@ from tests.tracking.drawn import WIDE, held, photograph, scene
 from tracking.appearance.hand import MANY_FRAMES, HandFinder, HandMask
 from tracking.appearance.window import STILL_FRAMES, Stillness, WindowFinder
 from tracking.cube.model import CubeModel
+from tracking.geometry.intrinsics import Intrinsics
 from tracking.geometry.projection import Projection
 from tracking.geometry.state import CubeState
 
@@ -45,6 +46,13 @@ def covered(mask: HandMask) -> np.ndarray:
     return found
 
 
+@pytest.fixture(scope="module")
+def film() -> tuple[Intrinsics, list[tuple[np.ndarray, np.ndarray]]]:
+    """A camera and its pictures of a hand that takes the cube, with the cube's pose in each."""
+    made = HandScene(HandView("825c43", azimuth_deg=-120, seed=3), CUBE)
+    return made.intrinsics, [(made.frame(i)[0].image, made.truth(i)) for i in range(25)]
+
+
 @pytest.mark.parametrize("skin", ["f3e7db", "604134", "3f6fc4"])
 def test_hands_of_any_colour_are_found(skin):
     mask, truth, region = shown(HandView(skin, azimuth_deg=-120, seed=3), 25)
@@ -53,11 +61,13 @@ def test_hands_of_any_colour_are_found(skin):
     assert np.minimum(found, truth[region]).sum() > 0.8 * np.maximum(found, truth[region]).sum()
 
 
-def test_the_hand_is_nearer_than_what_it_hides():
-    made = HandScene(HandView("825c43", azimuth_deg=-120, seed=3), CUBE)
-    mask, _, _ = shown(HandView("825c43", azimuth_deg=-120, seed=3), 25)
+def test_the_hand_is_nearer_than_what_it_hides(film):
+    intrinsics, pictures = film
+    finder = HandFinder(CUBE, intrinsics)
+    for picture, pose in pictures:
+        mask = finder.update(picture, state_at(pose))
     assert mask is not None
-    centre = made.truth(24)[2, 3]
+    centre = pose[2, 3]
     assert centre - CUBE.edge < mask.distance <= centre
 
 
@@ -190,14 +200,13 @@ def test_a_hand_that_was_there_from_the_beginning_leaves_no_ghost():
     assert np.minimum(found, truth[region]).sum() > 0.8 * np.maximum(found, truth[region]).sum()
 
 
-def test_a_hand_stays_for_a_moment_when_the_cube_is_lost():
-    made = HandScene(HandView("825c43", azimuth_deg=-120, seed=3), CUBE)
-    finder = HandFinder(CUBE, made.intrinsics)
-    for index in range(25):
-        frame, _ = made.frame(index)
-        mask = finder.update(frame.image, replace(state_at(made.truth(index)), timestamp=index / 8))
+def test_a_hand_stays_for_a_moment_when_the_cube_is_lost(film):
+    intrinsics, pictures = film
+    finder = HandFinder(CUBE, intrinsics)
+    for index, (picture, pose) in enumerate(pictures):
+        mask = finder.update(picture, replace(state_at(pose), timestamp=index / 8))
     lost = [
-        finder.update(frame.image, replace(state_at(None, visible=False), timestamp=3 + later))
+        finder.update(picture, replace(state_at(None, visible=False), timestamp=3 + later))
         for later in (0.1, 0.2)
     ]
     assert mask is not None

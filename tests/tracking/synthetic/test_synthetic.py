@@ -47,10 +47,11 @@ def test_pixel_centres_are_at_integers(shift: float) -> None:
     pose = np.diag([1.0, -1.0, -1.0, 1.0])  # the front face looks at the camera, upright
     pose[:3, 3] = 0.01 + shift * 0.2 / 900, -0.02 + shift * 0.2 / 900, 0.2 + cube.edge / 2
     paper = PaperCube(cube, camera, 1)
-    region = camera.whole()
+    corners = camera.pixels(cube.face("front").corners @ pose[:3, :3].T + pose[:3, 3])
+    region = camera.region_around(corners, 12)
     picture, _ = paper.draw(region, [pose], np.array([0.0, -0.6, -0.8]), 4)
     grey = picture.mean(axis=-1).astype(float)
-    corners = camera.pixels(cube.face("front").corners @ pose[:3, :3].T + pose[:3, 3])
+    corners -= (region.x, region.y)
     for first, second, across in ((0, 1, 1), (1, 2, 0), (2, 3, 1), (3, 0, 0)):
         truth = float(corners[[first, second], across].mean())
         middle = round(truth)
