@@ -30,13 +30,13 @@ from app.session.bundled import bundled
 from app.ui.calibration.coach import ANIMATION_PERIOD_S, CoachView
 from app.ui.calibration.coach_lines import write_coverage
 from app.ui.calibration.session import Advice, CalibrationSession, Picture
-from app.ui.card_layout import CardLayout
+from app.ui.cards.layout import CardLayout
+from app.ui.cards.overlay import overlay, virtual_robot_side
+from app.ui.cards.virtual_robot import VirtualRobot
 from app.ui.gesture_sheets import draw_library, draw_settings
-from app.ui.overlay import overlay, virtual_robot_side
 from app.ui.panels import PANELS
 from app.ui.playback.layer import PlaybackLayer
 from app.ui.playback.status import Mark, Position, SessionStatus
-from app.ui.virtual_robot import VirtualRobot
 from app.ui.window import Window
 from characters import Character
 from characters.rendering import create_context

@@ -24,14 +24,14 @@ from app.session import SessionOptions, check_codec, opening_times, start_over_t
 from app.session.replay_inputs import read_replay_inputs
 from app.sound import Mixer, SessionSound, SoundBank
 from app.speaking.opening import open_speaker
+from app.ui.cards.overlay import virtual_robot_side
+from app.ui.cards.virtual_robot import VirtualRobot
 from app.ui.output_file import OUTPUT_SUFFIXES, OutputFile
-from app.ui.overlay import virtual_robot_side
 from app.ui.panels import SessionMonitor
 from app.ui.playback.status import EndCard
 from app.ui.playback.timeline import STRIP_HEIGHT
 from app.ui.screen import NullScreen, Screen
 from app.ui.video_file import has_sound
-from app.ui.virtual_robot import VirtualRobot
 from characters import Character, choose_controller
 from characters.control.controllers.actions import clips_of_actions
 from characters.control.controllers.idle import standing_as

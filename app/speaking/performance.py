@@ -13,7 +13,7 @@ from app.pipeline.spoken_line import SpokenLine
 from app.sound import SAMPLE_RATE
 from app.sound.session_sound import at_sample_rate
 from app.ui.canvas import PICTURE_HEIGHT
-from app.ui.subtitles import draw_subtitle, subtitle
+from app.ui.cards.subtitles import draw_subtitle, subtitle
 from app.ui.video_file import VideoFile
 from characters import Animator, Character, CharacterCommand, Clip, Pose, RootDelta
 from characters.control.command import SpeechIntent

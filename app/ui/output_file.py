@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 from app.pipeline.scenario import Inputs
 from app.pipeline.step import RobotView, Step
 from app.ui.canvas import PICTURE_HEIGHT
-from app.ui.card_layout import CardLayout
+from app.ui.cards.layout import CardLayout
+from app.ui.cards.overlay import overlay
+from app.ui.cards.virtual_robot import VirtualRobot
 from app.ui.frame_sheet import FrameSheet
-from app.ui.overlay import overlay
 from app.ui.playback.cards import draw_ending
 from app.ui.playback.status import SessionStatus
 from app.ui.screen import NullScreen
 from app.ui.video_file import VIDEO_FORMATS, AudioSource, VideoFile
-from app.ui.virtual_robot import VirtualRobot
 
 SHEET_SUFFIX = ".png"
 """Suffix of a contact sheet of frames."""

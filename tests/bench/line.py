@@ -27,9 +27,9 @@ from app.running.opening import intrinsics_for
 from app.scenarios import SCENARIOS
 from app.session.bundled import bundled
 from app.sound import Mixer, SessionSound, SoundBank
-from app.ui.overlay import overlay, virtual_robot_side
+from app.ui.cards.overlay import overlay, virtual_robot_side
+from app.ui.cards.virtual_robot import VirtualRobot
 from app.ui.video_file import AudioTrack
-from app.ui.virtual_robot import VirtualRobot
 from characters.rendering import FULL, QUALITIES, Quality, create_context
 from tracking import open_source
 

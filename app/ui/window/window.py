@@ -13,15 +13,15 @@ from app.pipeline.scenario import Inputs
 from app.pipeline.step import Rect, RobotView, Step
 from app.preferences import PreferenceStore
 from app.ui.canvas import PICTURE_HEIGHT
-from app.ui.card_layout import CardLayout
+from app.ui.cards.layout import CardLayout
+from app.ui.cards.overlay import interrupted, overlay, virtual_robot_side
+from app.ui.cards.virtual_robot import VirtualRobot
 from app.ui.notice import Notice
-from app.ui.overlay import interrupted, overlay, virtual_robot_side
 from app.ui.panels import SessionMonitor
 from app.ui.panels.drawing.layer import PanelLayer
 from app.ui.playback.layer import PlaybackLayer
 from app.ui.playback.requests import SessionRequest, WindowRequest
 from app.ui.playback.status import SessionStatus
-from app.ui.virtual_robot import VirtualRobot
 from app.ui.window.surface import Surface
 
 Picture = NDArray[np.uint8]

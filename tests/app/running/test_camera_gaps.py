@@ -11,8 +11,8 @@ from app.running.opening import open_session
 from app.running.runner import run
 from app.running.summary import Summary
 from app.session import SessionOptions, events, messages, session_info
+from app.ui.cards.overlay import interrupted
 from app.ui.notice import Notice, notice
-from app.ui.overlay import interrupted
 from app.ui.screen import NullScreen
 from tests.app.running.recorded_camera import RecordedCamera
 from tracking import TrackingError

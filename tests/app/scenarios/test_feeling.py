@@ -16,7 +16,7 @@ from app.running.robots import RobotLine
 from app.scenarios import SCENARIOS, make_scenario
 from app.scenarios.mood import MoodController
 from app.session import session_info
-from app.ui.virtual_robot import VirtualRobot
+from app.ui.cards.virtual_robot import VirtualRobot
 from characters import Animator, Character, CharacterError
 from characters.rendering import create_context
 from robot import Catalogue, Telemetry

@@ -15,9 +15,9 @@ from app.pipeline.playground import Playground
 from app.pipeline.step import RobotView
 from app.running.summary import Summary
 from app.ui.canvas import Canvas, rounded_rectangle
+from app.ui.cards.overlay import overlay
 from app.ui.frame_sheet import MAX_FRAMES, FrameSheet
 from app.ui.output_file import ENDING_RATE, ENDING_S
-from app.ui.overlay import overlay
 from app.ui.video_file import VIDEO_FORMATS, VideoFile
 from tracking import LensEstimate
 

@@ -8,7 +8,7 @@ from app.pipeline.playground import Playground
 from app.running.opening import intrinsics_for
 from app.session.bundled import bundled
 from app.session.replay_inputs import read_replay_inputs
-from app.ui.card_layout import MIN_STAY_S, CardLayout, Corner, card_place
+from app.ui.cards.layout import MIN_STAY_S, CardLayout, Corner, card_place
 from tracking import open_source
 
 CARDS: dict[Corner, tuple[float, float]] = {

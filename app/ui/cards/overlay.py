@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from app.pipeline.step import RobotView, Step
 from app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
-from app.ui.card_layout import CardLayout, Corner, card_place
+from app.ui.cards.layout import CardLayout, Corner, card_place
+from app.ui.cards.robot_face import draw_face
+from app.ui.cards.subtitles import draw_subtitle, subtitle
+from app.ui.cards.virtual_robot import VirtualRobot
 from app.ui.notice import Notice
 from app.ui.palette import ACTION_COLORS, ANGRY, INK, PAPER, QUIET, RULE, Color, between, mood_color
-from app.ui.robot_face import draw_face
-from app.ui.subtitles import draw_subtitle, subtitle
-from app.ui.virtual_robot import VirtualRobot
 from tracking.cube.icons import ICON_COLOURS
 
 CARD_HEIGHT = 108.0

@@ -12,10 +12,10 @@ from affect import Emotion
 from app.pipeline.scenario import EmotionTarget
 from app.pipeline.step import RobotView
 from app.running.robots import RobotLine
+from app.ui.cards.overlay import overlay, virtual_robot_side
+from app.ui.cards.virtual_robot import VirtualRobot, backdrop, intensity
 from app.ui.display import is_software_renderer
-from app.ui.overlay import overlay, virtual_robot_side
 from app.ui.palette import ANGRY, HAPPY
-from app.ui.virtual_robot import VirtualRobot, backdrop, intensity
 from characters import CharacterError
 from characters.rendering import create_context
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from app.ui.canvas import text_mask, text_width
-from app.ui.subtitles import MAX_LETTERS, SIZE, parts, subtitle, wrapped
+from app.ui.cards.subtitles import MAX_LETTERS, SIZE, parts, subtitle, wrapped
 from characters.control.command import SpeechIntent
 from characters.speech.speech import Utterance, Word
 

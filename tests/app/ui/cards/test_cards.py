@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from app.pipeline.step import RobotView
-from app.ui.card_layout import CARD_MARGIN
-from app.ui.overlay import CARD_HEIGHT, overlay
+from app.ui.cards.layout import CARD_MARGIN
+from app.ui.cards.overlay import CARD_HEIGHT, overlay
 from characters import ActionIntent, LocomotionIntent
 
 

@@ -1,0 +1,1 @@
+"""The cards over the picture: what is on them, and where they lie."""
