@@ -16,6 +16,7 @@ from characters.retargeting.rig import LegJoints, Rig
 from characters.retargeting.transfer import turns_from_rest, with_turns_from_rest
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
+from characters.smoothing import smoothstep
 
 _MAX_TILT = 0.35  # of a foot beyond its motion's [rad]
 _HALVINGS = 10  # of the range of tilts
@@ -124,8 +125,7 @@ def _settling(tilts: Array, on_ball: NDArray[np.bool_], ground: GroundMotion) ->
     frames = max(round(_SETTLING_S * ground.rate), 1)
     fading = over.copy()
     for away in range(1, min(frames, len(over))):
-        share = 1.0 - away / frames
-        share *= share * (3.0 - 2.0 * share)
+        share = smoothstep(1.0 - away / frames)
         fading[away:] = np.maximum(fading[away:], share * over[:-away])
         fading[:-away] = np.maximum(fading[:-away], share * over[away:])
     return ground.middle_cycle(np.where(standing, over, fading))
