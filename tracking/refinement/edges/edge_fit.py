@@ -91,45 +91,39 @@ def fit_edges(
     (N,) [px], `blur` the width of an edge at rest [px]. None where too few edges are visible.
     """
     measured = measure_profiles(patch, profiles, 0.0 if shifts is None else shifts, blur)
-    good = _is_printed(profiles.face, measured)
+    good = _is_printed(profiles, measured)
     good &= np.abs(measured.offset) < profiles.reach
     strong = np.flatnonzero(good)
     if len(strong) < MIN_EDGE_POINTS:
         return None
     offset = (measured.offset if shifts is None else measured.offset + shifts)[strong]
-    count = len(strong)
-    unknowns = 8 if profiles.bends is None else 9
-    rows = np.empty((count, unknowns))
-    rows[:, :6] = profiles.slopes[strong]
-    rows[:, 6] = 1
-    rows[:, 7] = profiles.blur[strong]
+    columns = profiles.equations[:, strong]
+    unknowns = len(columns)
     prior, pull = PRIOR_INFORMATION[:unknowns, :unknowns], np.zeros(unknowns)
     if profiles.bends is not None:
-        rows[:, 8] = profiles.bends[strong]
         pull[8] = -prior[8, 8] * profiles.k1
     information = measured.information[strong]
-    weights, robust = information, np.ones(count)
+    weights, robust = information, np.ones(len(strong))
     for _ in range(2 if shifts is None else 3):
-        weighted = rows * weights[:, None]
-        normal = np.asarray(weighted.T @ rows + prior, np.float64)
-        solution = np.asarray(np.linalg.solve(normal, weighted.T @ offset + pull), np.float64)
-        residual = np.asarray(offset - rows @ solution, np.float64)
+        weighted = columns * weights
+        normal = np.asarray(weighted @ columns.T + prior, np.float64)
+        solution = np.asarray(np.linalg.solve(normal, weighted @ offset + pull), np.float64)
+        residual = np.asarray(offset - solution @ columns, np.float64)
         scale = 1.4826 * quantile(np.abs(residual), 0.5)
         robust = tukey_weight(residual, max(4.685 * scale, 0.1))
         weights = information * robust
-    return EdgeFit(measured, solution, strong, rows, weights, robust, residual, normal)
+    return EdgeFit(measured, solution, strong, columns.T, weights, robust, residual, normal)
 
 
-def _is_printed(face: Indices, measured: EdgeMeasurements) -> Flags:
+def _is_printed(profiles: EdgeProfiles, measured: EdgeMeasurements) -> Flags:
     """Whether each edge has as much contrast as the other edges of its face, (N,).
 
     In a shadow, ink keeps its Weber contrast, relative to the local light; skin has little of it.
     """
     weber = measured.contrast / np.maximum(measured.level, 1.0)
-    least = np.empty(len(face))
-    starts = np.flatnonzero(np.diff(face, prepend=-1))
-    for start, end in zip(starts, [*starts[1:], len(face)], strict=True):
-        least[start:end] = MIN_CONTRAST_SHARE * quantile(weber[start:end], 0.7)
+    least = np.empty(len(weber))
+    for run in profiles.face_runs:
+        least[run] = MIN_CONTRAST_SHARE * quantile(weber[run], 0.7)
     overall = MIN_CONTRAST + DEEPEST_SHADOW * quantile(measured.contrast, 0.7)
     return np.asarray((weber > least) & (measured.contrast > overall), np.bool_)
 

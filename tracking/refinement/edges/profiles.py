@@ -1,6 +1,8 @@
 """Grey profiles across the edges of the cube: where to measure, and the measurement."""
 
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -28,12 +30,16 @@ TAPS_PER_PROFILE = 9
 MODEL_ERROR_PX = 0.04
 """Error of a single edge position that is not noise: neighbouring cells, sampling."""
 
-UNIT_TAPS = np.linspace(-1, 1, TAPS_PER_PROFILE, dtype=np.float32)[None]
+UNIT_TAPS = np.linspace(-1, 1, TAPS_PER_PROFILE, dtype=np.float32)[:, None]
+"""Where those are, as shares of the reach, (taps, 1)."""
 
 
 @dataclass(frozen=True)
 class EdgeProfiles:
-    """Edge points in view, and the line segments across the edges to measure along."""
+    """Edge points in view, and the line segments across the edges to measure along.
+
+    The columns of its arrays are contiguous: numpy takes several times as long over short rows.
+    """
 
     model: EdgeModel
     """The edges of the faces in view."""
@@ -62,10 +68,23 @@ class EdgeProfiles:
     blur: Array
     """How far each edge moved along its normal during the exposure, (N,) [px]."""
 
-    @property
+    @cached_property
     def face(self) -> Indices:
         """Number of each point's face, (N,)."""
         return self.model.face[self.numbers]
+
+    @cached_property
+    def face_runs(self) -> list[slice]:
+        """The points of each face, which follow each other."""
+        ends = np.flatnonzero(self.face[1:] != self.face[:-1]) + 1
+        bounds = [0, *ends.tolist(), len(self.face)]
+        return [slice(start, end) for start, end in pairwise(bounds)]
+
+    @cached_property
+    def equations(self) -> Array:
+        """Jacobian of each edge position by the unknowns of `EdgeFit.solution`, (K, N) [px]."""
+        rows = [self.slopes.T, np.ones((1, len(self.blur))), self.blur[None]]
+        return np.concatenate(rows if self.bends is None else [*rows, self.bends[None]])
 
     def shifts(self, solution: Array) -> Array:
         """How far `EdgeFit.solution` moves each edge along its normal, (N,) [px]."""
@@ -110,26 +129,27 @@ def place_profiles(
     `blur_motion` and `wide` are as in `EdgeRefiner.refine`, `k1` is as in `EdgeProfiles`. None
     where the cube is too close.
     """
-    rotation = camera_from_cube[:3, :3]
-    rotated = model.points @ rotation.T
-    points = rotated + camera_from_cube[:3, 3]
-    if not len(points) or points[:, 2].min() < MIN_DEPTH:
+    rotation, origin = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
+    rotated = rotation @ model.points.T
+    points = rotated + origin[:, None]
+    if not points.size or points[2].min() < MIN_DEPTH:
         return None
-    pixels, jacobian = projection.project_with_jacobian(points)
+    pixels, by_point = projection.project_with_jacobian(points.T)
+    jacobian = by_point.transpose(1, 2, 0)
     bends = None
     if projection.claims_no_distortion:
-        bends = projection.bends(points, camera_from_cube[:3, 3])
+        bends = projection.bends(points.T, origin)
         pixels += k1 * bends
-    along = _projected(jacobian, model.along @ rotation.T)
-    across = _projected(jacobian, model.across @ rotation.T)
-    length = np.sqrt((along * along).sum(axis=1))
-    normals = np.stack([-along[:, 1], along[:, 0]], axis=1) / length[:, None]
-    cell = (normals * across).sum(axis=1)
-    normals *= np.sign(cell)[:, None]
+    along = (jacobian * (rotation @ model.along.T)).sum(axis=1)
+    across = (jacobian * (rotation @ model.across.T)).sum(axis=1)
+    length = np.sqrt((along * along).sum(axis=0))
+    normals = np.stack([-along[1], along[0]]) / length
+    cell = (normals * across).sum(axis=0)
+    normals *= np.sign(cell)
     cell = np.abs(cell)
-    by_point = normals[:, 0, None] * jacobian[:, 0] + normals[:, 1, None] * jacobian[:, 1]
-    slopes = np.concatenate([by_point, se3.cross(rotated, by_point)], axis=1)
-    blur = np.zeros(len(cell)) if blur_motion is None else np.abs(slopes @ blur_motion)
+    by_point = normals[0] * jacobian[0] + normals[1] * jacobian[1]
+    slopes = np.concatenate([by_point, se3.cross(rotated.T, by_point.T).T])
+    blur = np.zeros(len(cell)) if blur_motion is None else np.abs(blur_motion @ slopes)
     if wide:
         reach = np.minimum(WIDE_REACH_PX, cell * WIDE_REACH_CELLS)
     else:
@@ -139,13 +159,14 @@ def place_profiles(
     if wide:
         good &= model.outline
     found = np.flatnonzero(good)
+    normals = normals[:, found]
     return EdgeProfiles(
         model,
         found,
-        pixels[found],
-        normals[found],
-        slopes[found],
-        None if bends is None else (normals[found] * bends[found]).sum(axis=1),
+        pixels.T[:, found].T,
+        normals.T,
+        slopes[:, found].T,
+        None if bends is None else (normals * bends.T[:, found]).sum(axis=0),
         k1,
         reach[found],
         blur[found],
@@ -162,19 +183,20 @@ def measure_profiles(
     Offsets count from profiles moved by `shifts` along their normals, (N,) [px]. `blur` is the
     width of an edge at rest [px].
     """
-    reach, normals = profiles.reach.astype(np.float32), profiles.normals.astype(np.float32)
-    places = profiles.pixels + np.reshape(shifts, (-1, 1)) * profiles.normals
-    inner = (places - (patch.left, patch.top)).astype(np.float32)
-    taps = UNIT_TAPS * reach[:, None]
-    x = inner[:, 0, None] + taps * normals[:, 0, None]
-    y = inner[:, 1, None] + taps * normals[:, 1, None]
+    taps = UNIT_TAPS * profiles.reach.astype(np.float32)
+    x, y = (
+        (pixels + shifts * normals - first).astype(np.float32) + taps * normals.astype(np.float32)
+        for pixels, normals, first in zip(
+            profiles.pixels.T, profiles.normals.T, (patch.left, patch.top), strict=True
+        )
+    )
     values = patch.sample_local(x, y)
     # A motion-blurred edge is a ramp; a smooth step of 0.35 of its length is closest to it.
     wide = np.sqrt(blur**2 + (0.35 * profiles.blur) ** 2)
-    width = np.minimum(wide, profiles.reach * 0.45).astype(np.float32)[:, None]
+    width = np.minimum(wide, profiles.reach * 0.45).astype(np.float32)
     step = np.tanh(taps / width) / 2
     slope = (0.25 - step * step) * (2 / width)
-    slope -= slope.mean(axis=1, keepdims=True)
+    slope -= slope.mean(axis=0)
     contrast = _dot(step, values) / _dot(step, step)
     energy = _dot(slope, slope)
     shifted = -_dot(slope, values) / energy
@@ -182,17 +204,12 @@ def measure_profiles(
     # Two grey levels of noise; its true size follows from the residuals.
     variance = 4 / (safe * safe * energy) + MODEL_ERROR_PX**2
     half = TAPS_PER_PROFILE // 2
-    rise = (values[:, half + 1] - values[:, half - 1]).astype(np.float64)
-    fitted = contrast * (step[:, half + 1] - step[:, half - 1])
-    level = values.mean(axis=1).astype(np.float64)
+    rise = (values[half + 1] - values[half - 1]).astype(np.float64)
+    fitted = contrast * (step[half + 1] - step[half - 1])
+    level = values.mean(axis=0).astype(np.float64)
     return EdgeMeasurements(shifted / safe, contrast, level, 1 / variance, rise, fitted)
 
 
 def _dot(a: Floats, b: Floats) -> Array:
-    """Sum the products of rows, (N, M) and (N, M) → (N,)."""
-    return np.asarray(np.einsum("ij,ij->i", a, b), np.float64)
-
-
-def _projected(jacobian: Array, vectors: Array) -> Array:
-    """Project vectors, (N, 3), by the Jacobian at their points, (N, 2, 3) → (N, 2)."""
-    return np.asarray(np.matmul(jacobian, vectors[:, :, None])[:, :, 0], np.float64)
+    """Sum the products of columns, (M, N) and (M, N) → (N,)."""
+    return np.asarray(np.einsum("ij,ij->j", a, b), np.float64)
