@@ -6,6 +6,8 @@ layers. Huang, *3D emotional rendering and animation models*, 2013, section 4.3,
 shader.
 """
 
+from functools import reduce
+
 import cv2
 import moderngl
 import numpy as np
@@ -14,6 +16,7 @@ from numpy.typing import NDArray
 from characters.face.action_units import ActionUnits, layer_intensities
 from characters.face.complexion import added_density
 from characters.model.mesh import FaceMaps
+from characters.rendering.projection import Rectangle
 from characters.skeleton.pose import Array
 
 MIN_INTENSITY = 1e-3
@@ -26,45 +29,39 @@ smaller ones are narrower than a pixel, and would flicker."""
 SMOOTHING_TEXELS = 0.8
 """Standard deviation of the blur that takes the steps of 8 bits out of a height [texels]."""
 
-Box = tuple[slice, slice]
-
 
 class WrinkleMixer:
     """Composes the wrinkle layers of a face: the sum of intensity × height, as its slopes."""
 
     def __init__(self, maps: FaceMaps) -> None:
         height, width = maps.blood.shape
-        self._layers: list[tuple[int, Box, NDArray[np.float32]]] = []
+        self._layers: list[tuple[int, Rectangle, NDArray[np.float32]]] = []
         for number, layer in enumerate(maps.heights):
-            box = painted_box(layer)
-            if box is not None:
-                self._layers.append((number, box, _slopes(layer, box)))
-        self.box: Box = _enclosing([box for _, box, _ in self._layers])
-        """The texels that layers may change."""
+            area = painted_area(layer)
+            if area is not None:
+                self._layers.append((number, area, _slopes(layer, area)))
         self.texels = np.zeros((height, width, 4), np.float32)
         """Slope along u and v [heights of 1 per unit of u, v], blood 0…1, 0: (height, width, 4)."""
         self.texels[..., 2] = maps.blood
-        self._sum = np.zeros_like(
-            self.texels[self.box][..., :2]
-        )  # contiguous: it is added to often
         self._shown = np.zeros(len(maps.heights))
 
-    def compose(self, intensities: Array) -> bool:
-        """Set the slopes for intensities of all layers, (12,); return whether they changed."""
+    def compose(self, intensities: Array) -> Rectangle | None:
+        """Set the slopes for intensities of all layers, (12,); return which texels may change."""
         wanted = np.where(intensities < MIN_INTENSITY, 0.0, intensities)
-        if np.array_equal(wanted, self._shown):
-            return False
+        changed = wanted != self._shown
+        areas = [area for number, area, _ in self._layers if changed[number]]
         self._shown = wanted
-        self._sum[:] = 0.0
-        top, left = self.box[0].start, self.box[1].start
-        for number, (rows, columns), slopes in self._layers:
-            if wanted[number] > 0.0:
-                part = self._sum[
-                    rows.start - top : rows.stop - top, columns.start - left : columns.stop - left
-                ]
-                part += np.float32(wanted[number]) * slopes
-        self.texels[self.box][..., :2] = self._sum
-        return True
+        if not areas:
+            return None
+        all_changed = reduce(Rectangle.union, areas)
+        sums = np.zeros((all_changed.height, all_changed.width, 2), np.float32)
+        for number, area, slopes in self._layers:
+            shared = area.intersection(all_changed) if wanted[number] > 0.0 else None
+            if shared is not None:
+                part = sums[shared.within(all_changed).slices]
+                part += np.float32(wanted[number]) * slopes[shared.within(area).slices]
+        self.texels[all_changed.slices][..., :2] = sums
+        return all_changed
 
     @property
     def active(self) -> bool:
@@ -92,17 +89,13 @@ class FaceTexture:
         of the picture [m in the character frame]: where it is large, the skin stays smooth.
         """
         share = float(np.interp(self._depth, np.multiply(WRINKLE_DEPTHS_PX, pixel), (0.0, 1.0)))
-        units = self._units.intensities(morphs if share > 0.0 else None)
         self._blood, self._depth_on_table = blood, scale * share * self._depth
-        if self._mixer.compose(layer_intensities(units)):
-            rows, columns = self._mixer.box
-            viewport = (
-                columns.start,
-                rows.start,
-                columns.stop - columns.start,
-                rows.stop - rows.start,
-            )
-            self.texture.write(np.ascontiguousarray(self._mixer.texels[rows, columns]), viewport)
+        if share > 0.0 or self._mixer.active:
+            units = self._units.intensities(morphs if share > 0.0 else None)
+            area = self._mixer.compose(layer_intensities(units))
+            if area is not None:
+                texels = np.ascontiguousarray(self._mixer.texels[area.slices])
+                self.texture.write(texels, (area.x, area.y, area.width, area.height))
         return self._mixer.active or blood != 0.0
 
     @property
@@ -118,30 +111,18 @@ class FaceTexture:
         self.texture.release()
 
 
-def painted_box(values: NDArray[np.float32], margin: int = 3) -> Box | None:
-    """Return the rows and columns in which an image (height, width) is not zero, with a margin."""
-    spans = []
-    for axis, size in zip((1, 0), values.shape, strict=True):
-        painted = np.flatnonzero(values.any(axis=axis))
-        if not painted.size:
-            return None
-        low, high = int(painted[0]) - margin, int(painted[-1]) + margin + 1
-        spans.append(slice(max(low, 0), min(high, size)))
-    return spans[0], spans[1]
+def painted_area(values: NDArray[np.float32], margin: int = 3) -> Rectangle | None:
+    """Return the area in which an image (height, width) is not zero, with a margin."""
+    x, y, width, height = cv2.boundingRect((values != 0.0).view(np.uint8))
+    whole = Rectangle(0, 0, values.shape[1], values.shape[0])
+    wide = Rectangle(x - margin, y - margin, width + 2 * margin, height + 2 * margin)
+    return wide.intersection(whole) if width else None
 
 
-def _enclosing(boxes: list[Box]) -> Box:
-    if not boxes:
-        return slice(0, 0), slice(0, 0)
-    return (
-        slice(min(box[0].start for box in boxes), max(box[0].stop for box in boxes)),
-        slice(min(box[1].start for box in boxes), max(box[1].stop for box in boxes)),
-    )
-
-
-def _slopes(layer: NDArray[np.float32], box: Box) -> NDArray[np.float32]:
-    """Return the slopes of a height along u and v in a box of it, (rows, columns, 2)."""
+def _slopes(layer: NDArray[np.float32], area: Rectangle) -> NDArray[np.float32]:
+    """Return the slopes of a height along u and v in an area of it, (rows, columns, 2)."""
     height, width = layer.shape
     smooth = cv2.GaussianBlur(layer, (0, 0), SMOOTHING_TEXELS)
     down, along = np.gradient(smooth)
-    return np.stack([along[box] * width, down[box] * height], axis=-1).astype(np.float32)
+    slopes = along[area.slices] * width, down[area.slices] * height
+    return np.stack(slopes, axis=-1).astype(np.float32)

@@ -36,6 +36,7 @@ class ResolvePass(RenderPass):
         side = GRAIN_SIDE
         grain = np.random.default_rng(GRAIN_SEED).standard_normal((side, side, 3))
         self._grain = grain.astype(np.float32)
+        self._tiled = self._grain  # again and again, as far as a layer was large
         self._pictures = 0
 
     def composite(self, frame: FrameResources, cover: PictureCover | None) -> None:
@@ -72,10 +73,13 @@ class ResolvePass(RenderPass):
 
     def _noise(self, height: int, width: int) -> NDArray[np.float32]:
         """Return noise of a standard deviation of 1, (height, width, 3)."""
-        x, y = (self._pictures * GRAIN_STEP) % GRAIN_SIDE
-        rows, columns = -(-(y + height) // GRAIN_SIDE), -(-(x + width) // GRAIN_SIDE)
-        tiled = cv2.repeat(self._grain, int(rows), int(columns))
-        return np.ascontiguousarray(tiled[y : y + height, x : x + width], np.float32)
+        x, y = ((self._pictures * GRAIN_STEP) % GRAIN_SIDE).tolist()
+        kept = self._tiled.shape
+        if kept[0] < height + GRAIN_SIDE or kept[1] < width + GRAIN_SIDE:
+            rows, columns = max(kept[0], height), max(kept[1], width)
+            copies = rows // GRAIN_SIDE + 2, columns // GRAIN_SIDE + 2
+            self._tiled = np.asarray(cv2.repeat(self._grain, *copies), np.float32)
+        return self._tiled[y : y + height, x : x + width]
 
 
 def blurred(pixels: Image, blur_px: float) -> Image:
