@@ -71,10 +71,10 @@ class EdgeSearch:
         self._footprint = Footprint(cube, projection)
 
     def match(
-        self, patch: Patch, start: Array, blur_motion: Array | None = None, wide: bool = False
+        self, patch: Patch, start: Array, blur_motion: Array | None = None
     ) -> EdgeMatch | None:
         """Refine a pose as `EdgeRefiner.refine` does, and tell whether it is the cube's."""
-        found = self._refiner.refine(patch, start, blur_motion, wide)
+        found = self._refiner.refine(patch, start, blur_motion)
         if found is None:
             return None
         reading = CellReading({})

@@ -54,15 +54,6 @@ def test_a_rough_start_converges_to_the_truth(
     assert result.support > 0.8
 
 
-def test_a_wide_search_converges_from_a_whole_cell_away(
-    scene: tuple[EdgeRefiner, Patch, Array],
-) -> None:
-    refiner, patch, truth = scene
-    result = refiner.refine(patch, se3.moved(truth, np.array([5e-3, 0, 0, 0, 0, 0.03])), wide=True)
-    assert result is not None
-    assert np.linalg.norm(se3.delta(result.camera_from_cube, truth)[:3]) < 1e-4
-
-
 def test_other_markers_are_not_taken_for_the_cube(
     scene: tuple[EdgeRefiner, Patch, Array],
 ) -> None:

@@ -29,18 +29,14 @@ from tracking.refinement.edges.profiles import EdgeMeasurements, EdgeProfiles, p
 MIN_FACING_COSINE = 0.15
 """Cosine of the viewing angle below which the edges of a face are too foreshortened to help."""
 
-WIDE_STEP_PX = 5.0
-PRECISE_STEPS_PX: tuple[float, ...] = (2.0, 1.0)
-"""Widths of the fitted step: in the wide search, and first and last otherwise."""
+STEPS_PX: tuple[float, ...] = (2.0, 1.0)
+"""Widths of the fitted step: first and last."""
 
 MAX_SHIFT_PX, MAX_PLACEMENTS = 0.7, 3
 """The profiles are placed again where an edge moves by more than this, but only so often."""
 
 CONVERGED_PX = 0.04
 """The profiles are measured again while edges move by more than this."""
-
-WIDE_STEPS = 2
-"""Steps of the wide search."""
 
 
 @dataclass(frozen=True)
@@ -89,28 +85,21 @@ class EdgeRefiner:
         self._parts: dict[tuple[int, ...], EdgeModel] = {}
 
     def refine(
-        self, patch: Patch, start: Array, blur_motion: Array | None = None, wide: bool = False
+        self, patch: Patch, start: Array, blur_motion: Array | None = None
     ) -> EdgeRefinement | None:
         """Refine a pose, (4, 4), that is right to about half a cell in the image.
 
         `blur_motion` is the pose delta of the cube during the exposure, (6,), or None for a cube at
-        rest. `wide` begins with the outlines only, which can be found from a whole cell away. None
-        where too few edges are in view or found, or where they do not agree.
+        rest. None where too few edges are in view or found, or where they do not agree.
         """
         current = start
-        for _ in range(WIDE_STEPS if wide else 0):
-            rough = self._profiles(patch, current, blur_motion, True)
-            step = fit_edges(patch, rough, None, WIDE_STEP_PX) if rough else None
-            if step is None:
-                return None
-            current = se3.moved(current, step.solution[:6])
-        found, widths, k1 = None, PRECISE_STEPS_PX, 0.0
+        found, widths, k1 = None, STEPS_PX, 0.0
         for _ in range(MAX_PLACEMENTS):
-            profiles = self._profiles(patch, current, blur_motion, False, k1)
+            profiles = self._profiles(patch, current, blur_motion, k1)
             step = _fit_repeatedly(patch, profiles, widths) if profiles else None
             if profiles is None or step is None:
                 return None
-            found, widths = (current, profiles, step), PRECISE_STEPS_PX[1:]
+            found, widths = (current, profiles, step), STEPS_PX[1:]
             if np.abs(profiles.shifts(step.solution)).max() < MAX_SHIFT_PX:
                 break
             current = se3.moved(current, step.solution[:6])
@@ -118,13 +107,13 @@ class EdgeRefiner:
         return self._summary(*found) if found else None
 
     def _profiles(
-        self, patch: Patch, pose: Array, blur_motion: Array | None, wide: bool, k1: float = 0.0
+        self, patch: Patch, pose: Array, blur_motion: Array | None, k1: float
     ) -> EdgeProfiles | None:
         facing = self._faces.facing(pose, MIN_FACING_COSINE)
         if facing not in self._parts:
             self._parts[facing] = self._model.of_faces(facing)
         profiles = place_profiles(
-            self._parts[facing], self._projection, pose, patch, blur_motion, wide, k1
+            self._parts[facing], self._projection, pose, patch, blur_motion, k1
         )
         return profiles if profiles and len(profiles.numbers) >= MIN_EDGE_POINTS else None
 
@@ -173,7 +162,7 @@ def _fit_repeatedly(
     """Fit until the edges stay in place: the profiles follow them, the geometry stays."""
     shifts: Array | None = None
     step: EdgeFit | None = None
-    for width in (*widths, *PRECISE_STEPS_PX[1:] * 2):
+    for width in (*widths, *STEPS_PX[1:] * 2):
         step = fit_edges(patch, profiles, shifts, width)
         if step is None:
             return None

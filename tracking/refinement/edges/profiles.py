@@ -21,9 +21,6 @@ END_CLEARANCE_PX = 1.5
 REACH_PX = 3.5
 """Half the length of a profile, which is never more than half a cell."""
 
-WIDE_REACH_PX, WIDE_REACH_CELLS = 14.0, 0.9
-"""The same in the wide search, the smaller of the two: outlines have a cell of paper around."""
-
 TAPS_PER_PROFILE = 9
 """Samples in a profile."""
 
@@ -121,13 +118,12 @@ def place_profiles(
     camera_from_cube: Array,
     patch: Patch,
     blur_motion: Array | None,
-    wide: bool,
     k1: float = 0.0,
 ) -> EdgeProfiles | None:
     """Place profiles across the edges in view of a cube at a pose, as far as a patch shows them.
 
-    `blur_motion` and `wide` are as in `EdgeRefiner.refine`, `k1` is as in `EdgeProfiles`. None
-    where the cube is too close.
+    `blur_motion` is as in `EdgeRefiner.refine`, `k1` as in `EdgeProfiles`. None where the cube is
+    too close.
     """
     rotation, origin = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
     rotated = rotation @ model.points.T
@@ -150,14 +146,9 @@ def place_profiles(
     by_point = normals[0] * jacobian[0] + normals[1] * jacobian[1]
     slopes = np.concatenate([by_point, se3.cross(rotated.T, by_point.T).T])
     blur = np.zeros(len(cell)) if blur_motion is None else np.abs(blur_motion @ slopes)
-    if wide:
-        reach = np.minimum(WIDE_REACH_PX, cell * WIDE_REACH_CELLS)
-    else:
-        reach = np.minimum(np.maximum(REACH_PX, 0.75 * blur + 2), cell / 2)
+    reach = np.minimum(np.maximum(REACH_PX, 0.75 * blur + 2), cell / 2)
     good = (cell > MIN_CELL_PX) & (patch.border_distance(pixels) > reach + 1) & (blur < cell)
     good &= model.to_end * length > END_CLEARANCE_PX
-    if wide:
-        good &= model.outline
     found = np.flatnonzero(good)
     normals = normals[:, found]
     return EdgeProfiles(
