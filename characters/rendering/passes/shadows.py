@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 
 import cv2
 import moderngl
@@ -277,8 +278,12 @@ def _blurred_sum(
     return total
 
 
+@lru_cache(maxsize=64)
 def _gaussian_kernel(deviation: float) -> NDArray[np.float32]:
-    """Return a normalised kernel of at most `BLUR_TAPS` on each side, for a deviation [texels]."""
+    """Return a normalised kernel of at most `BLUR_TAPS` on each side, for a deviation [texels].
+
+    Maps grow in steps, so that few deviations are asked for.
+    """
     deviation = max(deviation, 0.3)
     side = min(math.ceil(3.0 * deviation) + 1, BLUR_TAPS)
     kernel = np.exp(-0.5 * (np.arange(1 - side, side) / deviation) ** 2)
