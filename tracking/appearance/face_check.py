@@ -23,12 +23,11 @@ LIGHTNESS_TOLERANCE = 22.0
 NO_INK, ALL_INK = 26, 229
 """Share of ink, of 255, below and above which a pixel and its neighbours are paper or ink."""
 
-MIN_EVIDENCE_EDGES2, MIN_APART_EDGES2 = 0.004, 0.03
-"""Least area of a face that must disagree with its print, and the same where what looks like print
-is between it and the outline [square edges]."""
+MIN_EVIDENCE_EDGES2 = 0.007
+"""Least area of a face that must disagree with its print [square edges]."""
 
-TINT_STEP = 0.1
-"""Share of a frame in the learned tint of paper."""
+LEARNING_FRAMES, TINT_STEP = 4, 0.2
+"""Frames of which one tells the tint of paper and ink, and its share in what is learned."""
 
 USUAL_BLACK, MAX_BLACK, BLACK_RANGE = 0.37, 0.66, 1.3
 """L + 16 of ink relative to paper, at first, the most of it, and the most on a face that shines
@@ -48,7 +47,7 @@ class FaceCheck:
         self._tint: Floats | None = None
         self._ink: Floats | None = None
         self._black = USUAL_BLACK
-        self._learns_ink = False  # in every second picture, and the tint in the others
+        self._frames = 0
 
     def disagreement(self, lab: Floats, seen: SeenPattern, like_hand: Flags, edge: float) -> Flags:
         """Return which pixels do not look like the print, as far as they are connected, (h, w).
@@ -76,8 +75,9 @@ class FaceCheck:
             return np.zeros(cube.shape, bool)
         coloured = _off(a - light * self._tint[0], b - light * self._tint[1], CHROMA_TOLERANCE)
         coloured &= plain
-        self._learns_ink = not self._learns_ink
-        if self._learns_ink:
+        learns = self._frames % LEARNING_FRAMES == 0
+        self._frames += 1
+        if learns:
             self._learn_ink(lab, all_ink & (light < DARK))
         ink = np.zeros(2, np.float32) if self._ink is None else self._ink
         coloured &= no_ink | _off(a - ink[0], b - ink[1], INK_TOLERANCE)
@@ -89,7 +89,7 @@ class FaceCheck:
         opened = cv2.morphologyEx(found.view(np.uint8), cv2.MORPH_OPEN, SMALL[:2, :2])
         found = _from_outside(np.asarray(opened), like_hand, cube, edge * edge)
         paper &= ~found
-        if not self._learns_ink and np.count_nonzero(paper) > 4 * MIN_PIXELS:
+        if learns and np.count_nonzero(paper) > 4 * MIN_PIXELS:
             self._tint += np.float32(TINT_STEP) * (_tint(lab, paper) - self._tint)
         return found
 
@@ -153,11 +153,9 @@ def _from_outside(flags: Image, like_hand: Flags, cube: Image, square: float) ->
     if not found.any():
         return found
     rim = cv2.erode(cube, SMALL, iterations=3) == 0
-    kept = np.zeros(found.shape, bool)
-    for through, share in ((found, MIN_EVIDENCE_EDGES2), (found | like_hand, MIN_APART_EDGES2)):
-        count, labels = cv2.connectedComponents(through.view(np.uint8))
-        keep = np.bincount(labels[found], minlength=count) >= share * square
-        keep &= np.bincount(labels[through & rim], minlength=count) > 0
-        keep[0] = False
-        kept |= found & keep[labels]
-    return kept
+    through = found | like_hand
+    count, labels = cv2.connectedComponents(through.view(np.uint8))
+    keep = np.bincount(labels[found], minlength=count) >= MIN_EVIDENCE_EDGES2 * square
+    keep &= np.bincount(labels[through & rim], minlength=count) > 0
+    keep[0] = False
+    return np.asarray(found & keep[labels])

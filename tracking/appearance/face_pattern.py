@@ -21,17 +21,17 @@ PRINT_CORNERS = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32) * FACE_TE
 MIN_COSINE = 0.2
 """Cosine of the viewing angle from which on a face is compared."""
 
-INK, ICON = 0, 1
-"""Channels of a print: black, and coloured icon."""
+INK, ICON, NUMBER = 0, 1, 2
+"""Channels of a print: black, near a coloured icon, and the number of the face + 1."""
 
 
-NEAR_ICON = np.ones((5, 5), np.uint8)
-"""Pixels around an icon that may have its colour."""
+NEAR_ICON = np.ones((9, 9), np.uint8)
+"""Texels around an icon that may have its colour."""
 
 
 @dataclass(frozen=True)
 class SeenPattern:
-    """The print of all visible faces in a part of the image."""
+    """The print of all faces that the camera sees well enough, in a part of the image."""
 
     numbers: tuple[int, ...]
     """Numbers of the faces that the camera sees well enough, + 1."""
@@ -52,9 +52,7 @@ class FacePattern:
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
         self._cube, self._projection = cube, projection
         self._planes = FacePlanes(cube)
-        self._prints = [_print(cube, face) for face in cube.faces]
-        texels = (FACE_TEXELS, FACE_TEXELS)
-        self._labels = [np.full(texels, n, np.uint8) for n in range(1, len(cube.faces) + 1)]
+        self._prints = [_print(cube, face, n) for n, face in enumerate(cube.faces, 1)]
         grow = cube.edge / cube.marker_size
         corners = np.stack([face.corners for face in cube.faces])
         middles = corners.mean(axis=1, keepdims=True)
@@ -73,20 +71,15 @@ class FacePattern:
         size
             Width and height of the part [px].
         """
-        shown = np.zeros((size[1], size[0], 2), np.uint8)
-        face = np.zeros((size[1], size[0]), np.uint8)
-        facing, border = self._planes.facing(camera_from_cube, MIN_COSINE), cv2.BORDER_TRANSPARENT
+        shown = np.zeros((size[1], size[0], 3), np.uint8)
+        facing = self._planes.facing(camera_from_cube, MIN_COSINE)
         corners = quads.astype(np.float32)
         for number in facing:
             matrix = cv2.getPerspectiveTransform(PRINT_CORNERS, corners[number])
-            print_, label = self._prints[number], self._labels[number]
-            cv2.warpPerspective(print_, matrix, size, shown, cv2.INTER_LINEAR, border)
-            cv2.warpPerspective(label, matrix, size, face, cv2.INTER_NEAREST, border)
-        ink, icon = cv2.split(shown)
-        near_icon = np.asarray(cv2.dilate(icon, NEAR_ICON) > 12)
-        return SeenPattern(
-            tuple(number + 1 for number in facing), face, np.asarray(ink, np.uint8), near_icon
-        )
+            border = cv2.BORDER_TRANSPARENT
+            cv2.warpPerspective(self._prints[number], matrix, size, shown, borderMode=border)
+        ink, icon, face = (np.asarray(channel, np.uint8) for channel in cv2.split(shown))
+        return SeenPattern(tuple(number + 1 for number in facing), face, ink, icon > 0)
 
     def distance(self, camera_from_cube: Array, face: Image, origin: Array, scale: float) -> float:
         """Return the least distance along the camera's axis of some pixels of faces [m].
@@ -95,22 +88,24 @@ class FacePattern:
         is the upper left corner of its part in the image, (2,) [px], of the pixel and not its
         centre; `scale` is the size of its pixels. Lens distortion hardly matters and is ignored.
         """
-        rows, columns = np.nonzero(face)
-        pixels = (np.stack([columns, rows], axis=1) + 0.5) * scale + origin - 0.5
-        matrix = self._projection.matrix
-        rays = np.ones((len(pixels), 3))
-        rays[:, :2] = (pixels - matrix[:2, 2]) / matrix[[0, 1], [0, 1]]
-        number = face[rows, columns].astype(np.intp) - 1
         rotation, shift = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
         normals = self._planes.normals @ rotation.T
         offsets = (normals * (self._planes.centres @ rotation.T + shift)).sum(axis=1)
-        slopes = (rays * normals[number]).sum(axis=1)
-        return float((offsets[number] / slopes).min())
+        matrix = self._projection.matrix
+        focal, first = matrix[[0, 1], [0, 1]], origin + (scale - 1) / 2 - matrix[:2, 2]
+        # One over the distance is linear in row and column on each face.
+        slopes = normals / offsets[:, None]
+        slopes[:, 2] += slopes[:, :2] @ (first / focal)
+        slopes[:, :2] *= scale / focal
+        rows, columns = np.nonzero(face)
+        along, down, at_first = slopes[face[rows, columns] - 1].T
+        return float(1 / (along * columns + down * rows + at_first).max())
 
 
-def _print(cube: CubeModel, face: Face) -> Image:
-    """Draw the print of a face, marker upright, (FACE_TEXELS, FACE_TEXELS, 2)."""
-    sheet = np.zeros((FACE_TEXELS, FACE_TEXELS, 2), np.uint8)
+def _print(cube: CubeModel, face: Face, number: int) -> Image:
+    """Draw the print of a face, marker upright, (FACE_TEXELS, FACE_TEXELS, 3)."""
+    sheet = np.zeros((FACE_TEXELS, FACE_TEXELS, 3), np.uint8)
+    sheet[..., NUMBER] = number
     fine = black_texels(cube, marker_cells(cube.dictionary, face.marker_id), 8 * FACE_TEXELS)
     shares = cv2.resize(fine.astype(np.float32), (FACE_TEXELS,) * 2, interpolation=cv2.INTER_AREA)
     sheet[..., INK] = np.rint(255 * shares)
@@ -123,4 +118,5 @@ def _print(cube: CubeModel, face: Face) -> Image:
         for quarter_turns in range(4):
             part = np.rot90(sheet, quarter_turns)
             part[top : top + size, left : left + size, ICON] = mask
+    sheet[..., ICON] = cv2.dilate(sheet[..., ICON], NEAR_ICON)
     return sheet
