@@ -1,7 +1,7 @@
 """What is behind the hand: a picture of the desk, learned where no hand is."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -14,25 +14,38 @@ MIN_GAIN, MAX_GAIN = 0.45, 2.0
 """Least and most light on the background relative to the light before, as L + 16 of CIELab: a
 shadow that comes or goes."""
 
-MIN_CHROMA_NOISE, MIN_DETAIL_NOISE = 0.3, 0.5
+MIN_CHROMA_NOISE, MIN_DETAIL_NOISE = 0.25, 0.5
 """Least deviation of chroma [CIELab], and of lightness [CIELab bytes] at one gain, that noise makes
 at working resolution."""
 
-CHROMA_LIMIT, DETAIL_LIMIT = 4.0, 2.5
+CHROMA_LIMIT, DETAIL_LIMIT = 4.0, 1.4
 """Deviations of noise from which on a pixel is something else."""
 
 SHADE_CHROMA, SHADE_DETAIL, EDGE_DETAIL = 10.0, 0.008, 0.05
 """How much chroma [CIELab] and detail of the gain change in a shadow, per change of the gain; and
 how much of the latter at its edge."""
 
+TEXTURE_DETAIL = 0.1
+"""How much detail changes where the camera sways by a fraction of a pixel, per deviation of the
+background's texture: that of a keyboard is large, and that of skin or wood is small."""
+
 MAX_NOISE_RATIO = 3.0
 """Most noise that is believed, relative to the least."""
 
-SMALL, WIDE = np.ones((3, 3), np.uint8), np.ones((9, 9), np.uint8)
-"""A pixel and its neighbours."""
+SQUARE, SMALL, WIDE = (5, 5), np.ones((3, 3), np.uint8), np.ones((9, 9), np.uint8)
+"""A square in which light on the same thing changes little [px]; a pixel and its neighbours."""
 
 SPARSE = np.s_[::5, ::5]
 """Pixels by which noise and white balance are estimated."""
+
+GRID_PX = 3
+"""Distance of the pixels by which the part of a window is found that differs [px]."""
+
+DIFFERENT = 5.0
+"""Change of lightness or chroma from which on a pixel of that grid differs [CIELab bytes]."""
+
+MARGIN_PX = 10
+"""What is added around that part: filters reach so far [px]."""
 
 SAME_LIGHTNESS = 9.0
 """Change of lightness below which a pixel looks as before [CIELab bytes]."""
@@ -83,31 +96,11 @@ class Place:
     changed: Flags
     """Pixels that look like something else, (h, w)."""
 
-    steady: bool
-    """False where so little looks as before that the camera must have moved."""
+    difference: Floats
+    """How much it differs, in lightness and chroma, (h, w) [CIELab bytes], 0 where unknown."""
 
-    picture: Floats
-    """L + 16, a and b of CIELab of the picture, in bytes, (3, h, w)."""
-
-    background: Floats
-    """The same of the background, (3, h, w)."""
-
-    known: Flags
-    """Pixels whose background is known, (h, w)."""
-
-    def part(self, box: Box) -> "Place":
-        """Return the same of a part of the window."""
-        picture, background = (
-            planes[:, box[0], box[1]] for planes in (self.picture, self.background)
-        )
-        return replace(
-            self,
-            odds=self.odds[box],
-            changed=self.changed[box],
-            picture=picture,
-            background=background,
-            known=self.known[box],
-        )
+    lights: tuple[Floats, Floats]
+    """L + 16 of CIELab of picture and background, in bytes, (h, w)."""
 
     def likeness(self, where: Flags) -> float:
         """Return how alike the details of picture and background are in some pixels, -1…1.
@@ -115,10 +108,7 @@ class Place:
         It is the correlation, and near 0 for a hand. A textured thing that has moved by less than
         a pixel looks like something else at most pixels, and yet is much like itself.
         """
-        now, before = (
-            (light - cv2.blur(light, (5, 5)))[where]
-            for light in (self.picture[0], self.background[0])
-        )
+        now, before = ((light - cv2.blur(light, (5, 5)))[where] for light in self.lights)
         norm = math.sqrt(float(now @ now) * float(before @ before))
         return float(now @ before) / max(norm, 1e-6)
 
@@ -129,22 +119,32 @@ class Background:
     def __init__(self) -> None:
         self._mean: Floats = np.zeros((3, 0, 0), np.float32)
         self._age: Image = np.zeros((0, 0), np.uint8)
+        self._texture: Floats = np.zeros((0, 0), np.float32)
         self._lit_anew: Flags = np.zeros((0, 0), bool)
+        self._noise = MIN_CHROMA_NOISE, MIN_DETAIL_NOISE
+        self._trust = 1.0
+
+    @property
+    def steady(self) -> bool:
+        """False where so little looked as before that the camera must have moved."""
+        return self._trust > 0
 
     def match_size(self, width: int, height: int) -> None:
         """Change the resolution: it follows that in which the hand is looked for."""
         if self._age.size == 0:
             self._mean = np.ones((3, height, width), np.float32)
             self._age = np.zeros((height, width), np.uint8)
+            self._texture = np.zeros((height, width), np.float32)
         elif self._age.shape != (height, width):
             planes = [cv2.resize(plane, (width, height)) for plane in self._mean]
             self._mean = np.stack(planes).astype(np.float32)
+            self._texture = np.asarray(cv2.resize(self._texture, (width, height)), np.float32)
             # A pixel of which a neighbour is unknown is unknown.
             unknown = cv2.resize((self._age == 0).astype(np.float32), (width, height))
             age = np.asarray(cv2.resize(self._age, (width, height)), np.uint8)
             self._age = age * (unknown == 0)
 
-    def compare(self, lab: Floats, box: Box, outside: Flags) -> Place:
+    def compare(self, lab: Floats, box: Box, outside: Flags, whole: bool) -> Place:
         """Compare a window of the picture with the background.
 
         Parameters
@@ -155,47 +155,80 @@ class Background:
             Rows and columns of the window.
         outside
             Pixels outside the cube.
+        whole
+            Whether that is enough to measure noise, white balance, texture and trust, which keep
+            until it is again.
         """
         light, a, b = lab
-        background, age = self._mean[:, box[0], box[1]], self._age[box]
-        mean, mean_a, mean_b = background
+        (mean, mean_a, mean_b), age = self._mean[:, box[0], box[1]], self._age[box]
         known = (age > 0) & outside
-        some, total = known[SPARSE], np.count_nonzero(known)
-        if total < max(MIN_KNOWN * np.count_nonzero(outside), 200) or not some.any():
-            self._lit_anew = np.zeros(age.shape, bool)
+        some, total = known[SPARSE], np.count_nonzero(known) if whole else 0
+        if whole and (total < max(MIN_KNOWN * known.size, 200) or not some.any()):
+            self._lit_anew, self._trust = np.zeros(age.shape, bool), 1.0
             odds = np.float32(UNKNOWN) * outside
-            return Place(odds, self._lit_anew, True, lab, background, self._lit_anew)
+            return Place(odds, self._lit_anew, np.zeros_like(light), (light, mean))
         gain = light / mean
         off_a, off_b = a - gain * mean_a, b - gain * mean_b
-        # The camera's white balance drifts.
-        off_a -= quantile(off_a[SPARSE][some], 0.5)
-        off_b -= quantile(off_b[SPARSE][some], 0.5)
-        # What is unknown takes part in filters as if it looked as before.
-        off_a *= known
-        off_b *= known
-        more_light = (gain - 1) * known
-        chroma = cv2.magnitude(cv2.blur(off_a, (3, 3)), cv2.blur(off_b, (3, 3)))
-        # A shadow keeps the texture of what it falls on, so the gain is smooth.
-        # Noise of the lightness is the same in bright and in dark places, so that of the gain not.
-        rough, wide = (mean * _roughness(more_light, *each) for each in ((3, SMALL), (5, WIDE)))
-        shade = np.abs(more_light)
-        chroma_noise = _noise(chroma[SPARSE][some], MIN_CHROMA_NOISE)
-        rough_noise = _noise(rough[SPARSE][some], MIN_DETAIL_NOISE)
-        wide_noise = _noise(wide[SPARSE][some], MIN_DETAIL_NOISE)
+        if whole:  # the camera's white balance drifts
+            for off, drifted in zip((off_a, off_b), self._mean[1:], strict=True):
+                drift = quantile(off[SPARSE][some], 0.5)
+                off -= drift
+                drifted += drift
+        # What is large at a pixel and around it is neither noise nor the blur of its neighbour.
+        off = cv2.magnitude(off_a, off_b)
+        chroma = cv2.min(off, cv2.magnitude(cv2.blur(off_a, (3, 3)), cv2.blur(off_b, (3, 3))))
+        gain -= 1
+        shade = np.abs(gain)
+        chroma_noise, detail_noise = self._noise
         lit = chroma < CHROMA_LIMIT * chroma_noise + SHADE_CHROMA * shade
-        detail = shade * mean
-        lit &= rough < DETAIL_LIMIT * rough_noise + EDGE_DETAIL * detail
-        lit &= (gain > MIN_GAIN) & (gain < MAX_GAIN)
-        smooth = lit & (wide < DETAIL_LIMIT * wide_noise + SHADE_DETAIL * detail)
-        unchanged = smooth & (np.abs(light - mean) < SAME_LIGHTNESS)
-        same = np.count_nonzero(unchanged & known) / total
-        trust = min(max((same - LOST_SHARE) / (TRUSTED_SHARE - LOST_SHARE), 0.0), 1.0)
+        lit &= (gain > MIN_GAIN - 1) & (gain < MAX_GAIN - 1)
+        # Noise of the lightness is the same in bright and in dark places, so that of the gain not.
+        rough = mean * _roughness(gain, known, lit)
+        if whole:
+            noises = (chroma, MIN_CHROMA_NOISE), (rough, MIN_DETAIL_NOISE)
+            chroma_noise, detail_noise = (
+                _noise(values[SPARSE][some], least) for values, least in noises
+            )
+            self._noise = chroma_noise, detail_noise
+            self._texture[box] = TEXTURE_DETAIL * _texture(mean)
+        shade *= mean  # in lightness from here on
+        rough -= self._texture[box]
+        lit &= rough < DETAIL_LIMIT * detail_noise + EDGE_DETAIL * shade
+        smooth = lit & (rough < DETAIL_LIMIT * detail_noise + SHADE_DETAIL * shade)
+        unchanged = smooth & (shade < SAME_LIGHTNESS)
+        if whole:
+            same = np.count_nonzero(unchanged & known) / total
+            self._trust = min(max((same - LOST_SHARE) / (TRUSTED_SHARE - LOST_SHARE), 0.0), 1.0)
         looks = (lit.view(np.uint8) + smooth + unchanged) * np.uint8(FULL_AGE + 1)
         looks += np.minimum(age, FULL_AGE) * known
         looks |= outside.view(np.uint8) - np.uint8(1)  # 255 in the cube
-        odds = np.asarray(cv2.LUT(looks, _NOT_TRUSTED + np.float32(trust) * _TRUST), np.float32)
+        table = _NOT_TRUSTED + np.float32(self._trust) * _TRUST
+        odds = np.asarray(cv2.LUT(looks, table), np.float32)
         self._lit_anew = lit & ~unchanged
-        return Place(odds, (odds > 0) & ~lit, trust > 0, lab, background, known)
+        difference = (shade + np.float32(2) * off) * known
+        return Place(odds, (odds > 0) & ~lit, difference, (light, mean))
+
+    def differing(self, lab: Floats, box: Box, start: Box) -> Box:
+        """Return the rows and columns with all that differs from the background around a part.
+
+        Parameters
+        ----------
+        lab
+            Every `GRID_PX`th row and column of what `compare` takes.
+        box
+            Rows and columns of the window.
+        start
+            Rows and columns in the window of that part: the cube.
+        """
+        means = self._mean[:, box[0], box[1]][:, ::GRID_PX, ::GRID_PX]
+        flags = np.abs(lab - means).max(axis=0) > DIFFERENT
+        flags |= self._age[box][::GRID_PX, ::GRID_PX] == 0
+        rows, columns = (slice(side.start // GRID_PX, side.stop // GRID_PX + 1) for side in start)
+        flags[rows, columns] = True
+        near = cv2.dilate(flags.view(np.uint8), SMALL)
+        _, labels, stats, _ = cv2.connectedComponentsWithStats(near)
+        left, top, width, height, _ = stats[labels[rows.start, columns.start]].tolist()
+        return _grown(top, height), _grown(left, width)
 
     def learn(self, lab: Floats, box: Box, free: Flags, changed: Flags) -> None:
         """Learn the pixels of a window that are free of cube and hand."""
@@ -221,7 +254,7 @@ class Background:
 
     def forget(self) -> None:
         """Forget all: the camera was moved."""
-        self._age[:] = 0
+        self._age[:], self._trust = 0, 1.0
 
     def planes(self, box: Box, where: Flags) -> list[Image]:
         """Return L, a and b of CIELab in bytes, of some pixels of a window, (n,) each."""
@@ -240,11 +273,33 @@ class Background:
             mean += (plane - mean) * steps
 
 
-def _roughness(gain: Floats, side: int, around: Image) -> Floats:
-    """Return the least deviation from the mean of a square [px], of all pixels around."""
-    detail = gain - cv2.blur(gain, (side, side))
-    square = cv2.blur(detail * detail, (side, side))
-    return np.asarray(cv2.sqrt(cv2.erode(square, around)), np.float32)
+def _grown(first: int, count: int) -> slice:
+    """Return the pixels of some rows or columns of the grid, and those around."""
+    low, high = first * GRID_PX - MARGIN_PX, (first + count) * GRID_PX + MARGIN_PX
+    return slice(max(low, 0), high)
+
+
+def _roughness(gain: Floats, known: Flags, lit: Flags) -> Floats:
+    """Return the least deviation from the mean of a square, of all around a pixel, (h, w).
+
+    A shadow keeps the texture of what it falls on, so there the gain is smooth. What is not known,
+    or not lit, is in no mean; and what is not lit is not around a pixel.
+    """
+    counts = known & lit
+    weight = counts.astype(np.float32)
+    share = cv2.blur(weight, SQUARE) + np.float32(1e-3)
+    gain = gain * weight
+    detail = gain - cv2.blur(gain, SQUARE) / share
+    detail *= weight
+    deviation = cv2.blur(detail * detail, SQUARE) / share
+    deviation += known ^ counts
+    return np.asarray(cv2.sqrt(cv2.erode(deviation, WIDE)), np.float32)
+
+
+def _texture(light: Floats) -> Floats:
+    """Return the deviation from the mean of a square, (h, w)."""
+    detail = light - cv2.blur(light, SQUARE)
+    return np.asarray(cv2.sqrt(cv2.blur(detail * detail, SQUARE)), np.float32)
 
 
 def _noise(deviations: Floats, least: float) -> float:

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.appearance.background import UNKNOWN, Background, Box, Place
+from tracking.appearance.background import GRID_PX, UNKNOWN, Background, Box, Place
 from tracking.appearance.colour_model import (
     LIGHTNESS_OFFSET,
     MAX_ODDS,
@@ -18,7 +18,7 @@ from tracking.appearance.colour_model import (
 from tracking.appearance.face_check import FaceCheck
 from tracking.appearance.face_pattern import FacePattern
 from tracking.appearance.hand_edge import ODDS_RANGE, soft_cover
-from tracking.appearance.hand_shape import cleaned, connected, filled
+from tracking.appearance.hand_shape import connected, filled
 from tracking.appearance.window import Stillness, Window, WindowFinder, shrunk
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Flags, Floats, Image
@@ -30,7 +30,7 @@ SLANTED_EVIDENCE = -1.0
 """What a face speaks for a hand that the camera sees at so small an angle that its print tells
 nothing, as logarithm of odds."""
 
-SURE_ODDS = 1.5
+SURE_ODDS = 1.2
 """The same for a pixel whose colour is learned as that of the hand."""
 
 DOUBTFUL_ODDS = 1.6
@@ -43,8 +43,12 @@ HELD_S = 0.15
 """Time for which the hand stays where it was after the cube is lost: the hand may hide it [s]."""
 
 MANY_FRAMES = 20
-"""Frames after which the desk is learned in every second one, and its colours in the others, and
-in which a picture that stays the same is looked at again only now and then."""
+"""Frames of a session's beginning, in which all is looked at and learned each time."""
+
+WHOLE_FRAMES, LEARNING_FRAMES = 8, 4
+"""Later, one of so many frames looks at the whole window and at what changes slowly: noise, the
+colours behind the hand, what it has uncovered; the others look where something differs, and one of
+so many of them learns from that."""
 
 IMAGE_STRIPS = 9
 """Parts of the image of which one a frame is learned as background, at first, and while there is no
@@ -146,7 +150,14 @@ class HandFinder:
             return None
         small = shrunk(image[window.image_box], window.scale)
         if self._frames < MANY_FRAMES or not self._stillness.is_still(window, small):
-            self._last = self._found(image, pose, window, small)
+            columns, rows = (side // window.scale for side in self._projection.size)
+            self._background.match_size(columns, rows)
+            whole = self._frames < MANY_FRAMES or self._frames % WHOLE_FRAMES == 0
+            if not whole:
+                sparse = _float_planes(_planes(np.ascontiguousarray(small[::GRID_PX, ::GRID_PX])))
+                part = self._background.differing(sparse, window.box, window.cube_box)
+                window, small = window.part(part), small[part]
+            self._last = self._found(image, pose, window, small, whole)
         return self._last
 
     def region(self, camera_from_cube: Array) -> Box | None:
@@ -154,34 +165,37 @@ class HandFinder:
         window = self._windows.window(camera_from_cube)
         return window.image_box if window else None
 
-    def _found(self, image: Image, pose: Array, window: Window, small: Image) -> HandMask | None:
+    def _found(
+        self, image: Image, pose: Array, window: Window, small: Image, whole: bool
+    ) -> HandMask | None:
+        """Find the hand in the window, or in the part of it where something differs."""
         planes = _planes(small)
         view = _View(window, _float_planes(planes), colours(planes))
         by_colour = self._colours.odds(view.colours)
         cube = self._cube_part(view, by_colour, pose)
         outside = np.ones(by_colour.shape, bool)
         outside[window.cube_box] = cv2.dilate(cube.outline, SMALL) == 0
-        columns, rows = (side // window.scale for side in self._projection.size)
-        self._background.match_size(columns, rows)
-        place = self._background.compare(view.lab, window.box, outside)
-        if not place.steady:
+        place = self._background.compare(view.lab, window.box, outside, whole)
+        if not self._background.steady:
             self._background.forget()
+            self._frames = 0
         if not (self._colours.knows_hand and self._colours.knows_behind):
             self._learn_first(view, cube, outside)
             by_colour = self._colours.odds(view.colours)
-        place = self._without_uncovered(place, view, by_colour)
+        if whole:
+            place = self._without_uncovered(place, view, by_colour)
         odds = _odds(by_colour, place.odds, place.changed | ~outside, cube, window)
-        hand = connected(cleaned(odds > 0), window, cube.outline, cube.evidence, place, by_colour)
+        hand = connected(odds > 0, window, cube.outline, cube.evidence, place, by_colour)
         sure = place.changed & (odds > SURE_ODDS)
         if hand is not None:
             sure &= hand.view(bool)
             sure[window.cube_box] |= cube.evidence
-        self._learn(view, hand, sure, outside, place.changed)
+        self._learn(view, hand, sure, outside, place.changed, whole)
         if self._frames < MANY_FRAMES or hand is None:
             self._learn_strip(image, window)
         if hand is None:
             return None
-        return HandMask(*soft_cover(hand, odds, window, place), cube.distance)
+        return HandMask(*soft_cover(hand, odds, place.difference, window), cube.distance)
 
     def _cube_part(self, view: _View, by_colour: Floats, pose: Array) -> _CubePart:
         window, (rows, columns) = view.window, view.window.cube_box
@@ -227,18 +241,24 @@ class HandFinder:
             self._colours.learn_behind(view.colours, outside)  # a hand is only little of it
 
     def _learn(
-        self, view: _View, hand: Image | None, sure: Flags, outside: Flags, changed: Flags
+        self,
+        view: _View,
+        hand: Image | None,
+        sure: Flags,
+        outside: Flags,
+        changed: Flags,
+        whole: bool,
     ) -> None:
         """Learn the colours of the hand where it is sure, and what is behind it."""
-        free = outside if hand is None else outside & (cv2.dilate(hand, WIDE) == 0)
         self._frames += 1
-        its_turn = self._frames % 2 == 0 or self._colours.hand_is_new
+        its_turn = whole or self._frames % LEARNING_FRAMES == 0 or self._colours.hand_is_new
         if its_turn and hand is not None and np.count_nonzero(sure) > MIN_LEARNED_PX:
             self._colours.learn_hand(view.colours, sure)
-        if self._frames % 2 == 0:
-            self._colours.learn_behind(view.colours, free & ~changed)
-        if self._frames % 2 or self._frames < MANY_FRAMES:
+        if whole or self._frames % LEARNING_FRAMES == LEARNING_FRAMES // 2:
+            free = outside if hand is None else outside & (cv2.dilate(hand, WIDE) == 0)
             self._background.learn(view.lab, view.window.box, free, changed)
+            if whole:
+                self._colours.learn_behind(view.colours, free & ~changed)
 
     def _learn_strip(self, image: Image, window: Window) -> None:
         """Learn a strip of the whole image: the cube may come there."""
@@ -266,6 +286,7 @@ def _odds(
     part[cube.slanted] += SLANTED_EVIDENCE
     part[cube.inner] = -ODDS_RANGE
     part[cube.evidence] = ODDS_RANGE
+    odds = np.minimum(np.maximum(odds, -ODDS_RANGE), ODDS_RANGE)
     smooth = np.asarray(cv2.GaussianBlur(odds, (5, 5), 1.0), np.float32)
     part = smooth[window.cube_box]
     part[filled(part, cube.inner, cube.doubtful, window.edge)] = 0.5 * ODDS_RANGE

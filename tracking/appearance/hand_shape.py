@@ -40,14 +40,8 @@ def filled(odds: Floats, inner: Flags, doubtful: Flags, edge: float) -> Flags:
     return np.asarray(inner & (closed | (doubtful & (votes > 0))))
 
 
-def cleaned(flags: Flags) -> Image:
-    """Drop specks, and fill gaps of a few pixels."""
-    mask = cv2.morphologyEx(flags.view(np.uint8), cv2.MORPH_OPEN, SMALL)
-    return np.asarray(cv2.morphologyEx(mask, cv2.MORPH_CLOSE, WIDE), np.uint8)
-
-
 def connected(
-    hand: Image,
+    flags: Flags,
     window: Window,
     outline: Image,
     evidence: Flags,
@@ -58,7 +52,7 @@ def connected(
 
     Parameters
     ----------
-    hand
+    flags
         What may be one, (h, w).
     window
         Where that is.
@@ -69,28 +63,28 @@ def connected(
     by_colour
         What colours speak for a hand, (h, w).
     """
+    hand = cv2.morphologyEx(flags.view(np.uint8), cv2.MORPH_OPEN, SMALL)
+    hand = cv2.morphologyEx(hand, cv2.MORPH_CLOSE, WIDE)
     count, labels32 = cv2.connectedComponents(hand)
     if count == 1:
         return None
     labels = np.asarray(cv2.convertScaleAbs(labels32), np.uint8)
     beside = cv2.dilate(outline, WIDE, iterations=3).view(bool)
     square, by_cube = window.edge**2, labels[window.cube_box]
-    hides_face = np.zeros(256, bool)
-    hides_face[by_cube[evidence]] = True
-    keep = np.bincount(by_cube[beside], minlength=256) > MIN_TOUCH_EDGES2 * square
-    keep &= ~hides_face
-    keep[0] = False
-    if keep.any():
-        area = _counts(labels)
-        keep &= area > MIN_AREA_EDGES2 * square
-        keep &= area > _counts(np.ascontiguousarray(labels[_within_reach(window)]))
-        keep &= _counts(labels, (place.odds > 0).view(np.uint8)) > MIN_CHANGED_SHARE * area
-        for label in np.flatnonzero(keep).tolist():
-            part = labels == label
-            keep[label] = (
-                by_colour[part].mean() > MIN_COLOUR_ODDS and place.likeness(part) < MAX_LIKENESS
-            )
-    keep |= hides_face
+    keep = np.zeros(256, bool)
+    keep[by_cube[evidence]] = True
+    touching = np.bincount(by_cube[beside], minlength=256) > MIN_TOUCH_EDGES2 * square
+    touching[0] = False
+    for label in np.flatnonzero(touching & ~keep).tolist():
+        part = labels == label
+        area = np.count_nonzero(part)
+        keep[label] = (
+            area > MIN_AREA_EDGES2 * square
+            and area > np.count_nonzero(part[_within_reach(window)])
+            and np.count_nonzero(part & (place.odds > 0)) > MIN_CHANGED_SHARE * area
+            and by_colour[part].mean() > MIN_COLOUR_ODDS
+            and place.likeness(part) < MAX_LIKENESS
+        )
     keep[[0, 255]] = False
     return np.asarray(cv2.LUT(labels, keep.view(np.uint8)), np.uint8) if keep.any() else None
 
@@ -100,8 +94,3 @@ def _within_reach(window: Window) -> tuple[slice, slice]:
     far = MIN_EXTENT_EDGES * window.edge
     (left, top), (right, bottom) = (low - far).tolist(), (high + far).tolist()
     return np.s_[max(int(top), 0) : int(bottom) + 1, max(int(left), 0) : int(right) + 1]
-
-
-def _counts(labels: Image, where: Image | None = None) -> Floats:
-    """Return how many pixels each of 256 labels has."""
-    return np.asarray(cv2.calcHist([labels], [0], where, [256], (0, 256)), np.float32).ravel()

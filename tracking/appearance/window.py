@@ -1,7 +1,7 @@
 """The part of the image around the cube in which the hand is looked for, at working resolution."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -75,6 +75,25 @@ class Window:
             slice(columns.start * self.scale, columns.stop * self.scale),
         )
 
+    def part(self, box: Box) -> "Window":
+        """Return a part of the window, with some rows and columns of it, that holds the cube."""
+        rows, columns = (
+            range(side)[part] for side, part in zip((self.height, self.width), box, strict=True)
+        )
+        cube_rows, cube_columns = (
+            slice(cube.start - part.start, cube.stop - part.start)
+            for cube, part in zip(self.cube_box, (rows, columns), strict=True)
+        )
+        return replace(
+            self,
+            left=self.left + columns.start,
+            top=self.top + rows.start,
+            width=len(columns),
+            height=len(rows),
+            quads=self.quads - (columns.start, rows.start),
+            cube_box=(cube_rows, cube_columns),
+        )
+
     def cube_quads(self) -> Array:
         """Where the faces' prints are in `cube_box`, (faces, 4, 2) [px of it]."""
         rows, columns = self.cube_box
@@ -103,19 +122,22 @@ class WindowFinder:
             self._scale = max(1, round(edge / WORKING_EDGE_PX))
         scale, reach = self._scale, REACH_EDGES * edge
         quads = (pixels[8:] + 0.5) / scale - 0.5
+        bounds = (
+            each.tolist()
+            for part in (pixels[:8], quads)
+            for each in (part.min(axis=0), part.max(axis=0))
+        )
         ranges = []
-        for axis, side in enumerate(self._projection.size):
-            corners, prints = pixels[:8, axis], quads[:, axis]
-            low = max(math.floor((corners.min() - reach) / scale), 0)
-            high = min(math.ceil((corners.max() + reach) / scale), side // scale)
-            if high - low < MIN_SIDE_PX:
+        for low, high, first, last, side in zip(*bounds, self._projection.size, strict=True):
+            start = max(math.floor((low - reach) / scale), 0)
+            length = min(math.ceil((high + reach) / scale), side // scale) - start
+            if length < MIN_SIDE_PX:
                 return None
-            prints -= low
-            first = min(max(int(prints.min()) - MARGIN_PX, 0), high - low - 1)
-            last = min(max(math.ceil(prints.max()) + MARGIN_PX, first + 1), high - low)
-            ranges.append((low, high - low, slice(first, last)))
+            begin = min(max(int(first) - start - MARGIN_PX, 0), length - 1)
+            end = min(max(math.ceil(last) - start + MARGIN_PX, begin + 1), length)
+            ranges.append((start, length, slice(begin, end)))
         (left, width, columns), (top, height, rows) = ranges
-        quads = quads.reshape(-1, 4, 2)
+        quads = (quads - (left, top)).reshape(-1, 4, 2)
         return Window(left, top, width, height, scale, edge / scale, quads, (rows, columns))
 
 

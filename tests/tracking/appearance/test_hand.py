@@ -138,6 +138,19 @@ def test_a_finger_that_comes_into_a_still_picture_is_found_at_once():
     assert finder.update(picture, state_at(pose)) is not None
 
 
+def test_a_finger_is_found_when_the_cube_has_come_nearer():
+    pose, finder = held(), HandFinder(CUBE, WIDE)
+    picture = photograph(scene((CUBE, pose), camera=WIDE))
+    for _ in range(MANY_FRAMES + 1):
+        finder.update(picture, state_at(pose))
+    near = pose.copy()
+    near[:3, 3] *= 0.55  # so near that the hand is looked for at another resolution
+    picture = photograph(scene((CUBE, near), camera=WIDE))
+    assert finder.update(picture, state_at(near)) is None
+    picture[160:276, 626:656] = (96, 124, 168)
+    assert finder.update(picture, state_at(near)) is not None
+
+
 def test_a_window_that_shows_the_same_is_looked_at_now_and_then():
     made = HandScene(HandView("000000", hand=False), CUBE)
     projection = Projection(made.intrinsics)

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from tracking.appearance.background import Place
-from tracking.appearance.hand_edge import soft_cover
+from tracking.appearance.hand_edge import ODDS_RANGE, soft_cover
 from tracking.appearance.window import Window
 
 SIDE, SCALE, EDGE = 40, 3, 20.3
@@ -12,16 +11,14 @@ SIDE, SCALE, EDGE = 40, 3, 20.3
 window], measured from the left of the first column."""
 
 
-def place(hand: tuple[float, ...], desk: tuple[float, ...], light: float) -> Place:
-    """A hand at the left of a desk that it shades, as CIELab's L + 16, a and b."""
-    share = np.clip(EDGE - np.arange(SIDE), 0, 1).astype(np.float32) * np.ones(
-        (SIDE, 1), np.float32
-    )
-    before = np.array(desk, np.float32)[:, None, None] * np.ones((SIDE, SIDE), np.float32)
-    inside = np.array(hand, np.float32)[:, None, None]
-    nothing = np.zeros((SIDE, SIDE), np.float32)
-    picture = share * inside + (1 - share) * np.float32(light) * before
-    return Place(nothing, nothing > 0, True, picture, before, nothing == 0)
+def difference(hand: tuple[float, ...], desk: tuple[float, ...], light: float) -> np.ndarray:
+    """How a hand at the left of a desk that it shades differs from it, by CIELab's L + 16, a, b."""
+    share = np.clip(EDGE - np.arange(SIDE), 0, 1) * np.ones((SIDE, 1))
+    before, inside = (np.array(colour)[:, None, None] for colour in (desk, hand))
+    picture = share * inside + (1 - share) * light * before
+    gain = picture[0] / before[0]
+    off = np.hypot(*(picture[1:] - gain * before[1:]))
+    return np.asarray(np.abs(picture[0] - before[0]) + 2 * off, np.float32)
 
 
 @pytest.mark.parametrize("light", [1.0, 0.7])
@@ -31,8 +28,8 @@ def test_the_edge_is_where_the_hand_ends(hand, light, grown):
     window = Window(0, 0, SIDE, SIDE, SCALE, 28.0, np.zeros((6, 4, 2)), np.s_[0:1, 0:1])
     mask = np.zeros((SIDE, SIDE), np.uint8)
     mask[5:35, : 20 + grown] = 1
-    odds = np.where(mask, np.float32(3), np.float32(-3))
-    x, y, cover = soft_cover(mask, odds, window, place(hand, (160, 8, 30), light))
+    odds = np.where(mask, np.float32(ODDS_RANGE), np.float32(-ODDS_RANGE))
+    x, y, cover = soft_cover(mask, odds, difference(hand, (160, 8, 30), light), window)
     row = cover[20 * SCALE - y].astype(float)
     half = x + np.count_nonzero(row > 127)
     assert abs(half - EDGE * SCALE) < 2

@@ -1,0 +1,93 @@
+"""The background of a window, and the part of it where the picture differs."""
+
+import numpy as np
+import pytest
+
+from tracking.appearance.background import GRID_PX, MARGIN_PX, Background
+from tracking.appearance.window import Window
+
+HEIGHT, WIDTH = 120, 150
+BOX = np.s_[10 : 10 + HEIGHT, 20 : 20 + WIDTH]
+"""A window in a background of 160 x 200 pixels."""
+
+CUBE = np.s_[50:80, 60:90]
+"""Where the cube is in it."""
+
+
+def desk() -> np.ndarray:
+    """L + 16, a and b of a desk with texture."""
+    planes = np.random.default_rng(1).normal(0, 0.5, (3, HEIGHT, WIDTH))
+    return np.asarray(planes + np.array([140, 6, 20])[:, None, None], np.float32)
+
+
+def outside() -> np.ndarray:
+    flags = np.ones((HEIGHT, WIDTH), bool)
+    flags[CUBE] = False
+    return flags
+
+
+@pytest.fixture
+def background() -> Background:
+    """One that has seen the desk for long."""
+    made, free = Background(), outside()
+    made.match_size(200, 160)
+    for _ in range(10):
+        made.compare(desk(), BOX, free, whole=True)
+        made.learn(desk(), BOX, free, ~free)
+    made.learn(desk(), BOX, ~free, ~free)
+    return made
+
+
+def differing(background: Background, picture: np.ndarray) -> tuple[slice, slice]:
+    return background.differing(picture[:, ::GRID_PX, ::GRID_PX], BOX, CUBE)
+
+
+def test_the_differing_part_of_a_still_desk_is_around_the_cube(background):
+    rows, columns = differing(background, desk())
+    assert 50 - MARGIN_PX - 2 * GRID_PX <= rows.start <= 50 - MARGIN_PX + GRID_PX
+    assert 90 + MARGIN_PX - GRID_PX <= columns.stop <= 90 + MARGIN_PX + 3 * GRID_PX
+
+
+def test_the_differing_part_holds_the_arm_at_the_cube_and_nothing_else(background):
+    picture = desk()
+    picture[0, 60:70, 85:150] += 60
+    picture[0, 5:15, 5:15] += 60  # somewhere else
+    rows, columns = differing(background, picture)
+    assert columns.stop >= WIDTH
+    assert rows.start > 20
+
+
+def test_a_desk_that_was_never_seen_differs(background):
+    background.forget()
+    rows, columns = differing(background, desk())
+    assert (rows.start, columns.start) == (0, 0)
+    assert rows.stop >= HEIGHT
+
+
+def test_noise_measured_in_a_whole_window_is_kept_for_its_parts(background):
+    part = np.s_[10 : 10 + 90, 20 : 20 + 100]
+    picture, free = desk()[:, :90, :100], outside()[:90, :100]
+    picture[0, :50, :40] += 60
+    place = background.compare(picture, part, free, whole=False)
+    assert place.changed[10:40, 10:30].all()
+    assert not place.changed[60:, :50].any()
+
+
+def test_a_picture_of_something_else_is_not_steady(background):
+    assert background.steady
+    other = desk()
+    other[0] -= np.random.default_rng(2).uniform(30, 90, (HEIGHT, WIDTH)).astype(np.float32)
+    background.compare(other, BOX, outside(), whole=True)
+    assert not background.steady
+    background.forget()
+    assert background.steady
+
+
+def test_a_part_of_a_window_shows_the_same_of_the_image():
+    quads = np.arange(48.0).reshape(6, 4, 2)
+    window = Window(20, 10, WIDTH, HEIGHT, 3, 30.0, quads, CUBE)
+    part = window.part(np.s_[40:200, 30:100])
+    assert part.image_box == (slice(150, 390), slice(150, 360))
+    assert part.cube_box == np.s_[10:40, 30:60]
+    assert np.allclose(part.quads + (part.left, part.top), quads + (window.left, window.top))
+    assert np.allclose(part.cube_quads(), window.cube_quads())
