@@ -36,9 +36,9 @@ class ContactSheets:
     """
 
     def __init__(self, context: moderngl.Context, drawn: Callable[[], None] | None = None) -> None:
-        self._large = PortraitRenderer(context, (240, 280), drawn)
-        self._small = PortraitRenderer(context, (150, 200), drawn)
-        self._faces = PortraitRenderer(context, (230, 230), drawn)
+        self._large = PortraitRenderer(context, (240, 280), drawn, levels=False)
+        self._small = PortraitRenderer(context, (150, 200), drawn, levels=False)
+        self._faces = PortraitRenderer(context, (230, 230), drawn, levels=False)
 
     def turntable(self, character: Character) -> Image:
         """Return a character from all sides, in its idle pose."""

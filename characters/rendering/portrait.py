@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import cv2
 import moderngl
@@ -12,6 +13,7 @@ from characters.control.command import PosedCharacter
 from characters.model.character import Character
 from characters.motion.clip import Clip
 from characters.rendering.portrait_camera import CharacterExtent, PortraitCamera, joints_below
+from characters.rendering.quality import FULL
 from characters.rendering.scene import SceneCharacter, View
 from characters.rendering.stage import Stage
 from characters.skeleton import rotations
@@ -55,6 +57,9 @@ class PortraitRenderer:
         Of one picture, (width, height) [px].
     drawn
         Called after each picture, to show progress.
+    levels
+        Whether small characters are drawn with fewer triangles: these take longer to find than a
+        few pictures to draw.
     """
 
     def __init__(
@@ -62,10 +67,14 @@ class PortraitRenderer:
         context: moderngl.Context,
         size: tuple[int, int] = (360, 420),
         drawn: Callable[[], None] | None = None,
+        *,
+        levels: bool = True,
     ) -> None:
         self.size = size
         self._drawn = drawn
         self._stage = Stage(context, size)
+        if not levels:
+            self._stage.quality = replace(FULL, max_error_px=0.0)
         self._fade = _fade_mask(size)
         self._extents: dict[int, tuple[Character, CharacterExtent]] = {}
 

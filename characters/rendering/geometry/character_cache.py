@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
+from characters.rendering.geometry.detail_levels import LEVEL_TOLERANCES
 from characters.rendering.geometry.skinned_character import SkinnedCharacter
 from characters.rendering.occlusion import is_usable
 from characters.rendering.programs import ShaderPrograms
@@ -83,8 +84,11 @@ class CharacterCache:
         self._programs = programs
         self.triangles = 0
         """Number of triangles of the characters that were skinned last."""
-        # By character, and by its number among its copies in the picture: each has own vertices.
-        self._kept: OrderedDict[tuple[int, int], tuple[Drawable, SkinnedCharacter]] = OrderedDict()
+        # By character, by its number among its copies in the picture, as each has own vertices, and
+        # by whether it has levels of detail.
+        self._kept: OrderedDict[tuple[int, int, bool], tuple[Drawable, SkinnedCharacter]] = (
+            OrderedDict()
+        )
 
     def skin(
         self, characters: Sequence[SceneCharacter], fineness: PictureFineness
@@ -103,7 +107,9 @@ class CharacterCache:
                 continue
             if each.inside is not None and not is_usable(each.inside):
                 continue
-            skinned = self._buffers(each.character, copies[id(each.character)])
+            skinned = self._buffers(
+                each.character, copies[id(each.character)], fineness.max_error_px > 0.0
+            )
             copies[id(each.character)] += 1
             with np.errstate(invalid="ignore", over="ignore"):  # `skin` checks the result
                 joints = each.posed.pose.globals(each.character.skeleton)
@@ -126,12 +132,14 @@ class CharacterCache:
         while self._kept:
             self._kept.popitem()[1][1].release()
 
-    def _buffers(self, character: Drawable, copy: int) -> SkinnedCharacter:
+    def _buffers(self, character: Drawable, copy: int, leveled: bool) -> SkinnedCharacter:
         """Return the buffers of one copy of a character, created when it is first drawn."""
-        key = id(character), copy
+        key = id(character), copy, leveled
         kept = self._kept.pop(key, None)
         if kept is None:
-            kept = (character, SkinnedCharacter(self._context, self._programs, character))
+            tolerances = LEVEL_TOLERANCES if leveled else ()
+            skinned = SkinnedCharacter(self._context, self._programs, character, tolerances)
+            kept = character, skinned
         self._kept[key] = kept
         return kept[1]
 

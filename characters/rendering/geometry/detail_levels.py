@@ -63,24 +63,27 @@ class DetailLevel:
 
 
 def with_levels(
-    vertices: CharacterVertices, dormant: NDArray[np.bool_] | None = None
+    vertices: CharacterVertices,
+    dormant: NDArray[np.bool_] | None = None,
+    tolerances: Sequence[float] = LEVEL_TOLERANCES,
 ) -> tuple[CharacterVertices, tuple[DetailLevel, ...]]:
     """Return the vertices in an order that suits all levels, and the levels, the finest first.
 
     The vertices of a coarser level come before those that only finer ones use, in each part of the
     vertices, so that only they need to be skinned. `dormant` (rows,) are the rows of the palette
     whose vertices are seldom seen, as effects: those are a part of their own, the last one.
+    `tolerances` are like `LEVEL_TOLERANCES`.
     """
     stands = [np.arange(len(vertices.positions))]
     bones = _moving_joints(vertices)
     sizes = np.ptp(vertices.positions, axis=0)
     side = float(sizes.max())
-    if len(vertices.indices) >= 3 * MIN_TRIANGLES and side > 0.0:
+    if tolerances and len(vertices.indices) >= 3 * MIN_TRIANGLES and side > 0.0:
         stands += collapsed_levels(
             vertices.positions,
             _features(vertices, side, bones),
             vertices.indices.reshape(-1, 3).astype(np.intp),
-            [side * tolerance for tolerance in LEVEL_TOLERANCES],
+            [side * tolerance for tolerance in tolerances],
         )
     part = np.where(np.arange(len(vertices.positions)) < vertices.moved, 0, 1)
     if dormant is not None:
@@ -95,7 +98,7 @@ def with_levels(
     starts = np.searchsorted(part[order], range(3)).tolist()
     levels = []
     for number, ((indices, materials, awake), tolerance) in enumerate(
-        zip(drawn, (0.0, *LEVEL_TOLERANCES), strict=False)
+        zip(drawn, (0.0, *tolerances), strict=False)
     ):
         counts = np.bincount(part[last >= number], minlength=3).tolist()
         parts = tuple(zip(starts, counts, strict=True))

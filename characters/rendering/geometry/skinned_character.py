@@ -9,7 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.face.action_units import ActionUnits
-from characters.rendering.geometry.detail_levels import chosen_level, with_levels
+from characters.rendering.geometry.detail_levels import (
+    LEVEL_TOLERANCES,
+    chosen_level,
+    with_levels,
+)
 from characters.rendering.geometry.extreme_vertices import SkinnedPoints
 from characters.rendering.geometry.face_split import split_faces
 from characters.rendering.geometry.face_texture import FaceTexture
@@ -37,16 +41,22 @@ class SkinnedCharacter:
     Vertices are skinned once a picture by transform feedback into `skinned`, in the table frame,
     where the passes for shadow and colour read them. The joint matrices go through a texture with
     one row for each joint, so their number is not limited.
+
+    `tolerances` are those of its levels of detail.
     """
 
     def __init__(
-        self, context: moderngl.Context, programs: ShaderPrograms, character: Drawable
+        self,
+        context: moderngl.Context,
+        programs: ShaderPrograms,
+        character: Drawable,
+        tolerances: Sequence[float] = LEVEL_TOLERANCES,
     ) -> None:
         given = CharacterVertices.of(character.meshes)
         rest = given.palette(character.skeleton.rest.globals(character.skeleton))
         dormant = _vanished(rest)
         self._dormant = np.flatnonzero(dormant)
-        vertices, self._levels = with_levels(given, dormant)
+        vertices, self._levels = with_levels(given, dormant, tolerances)
         self._vertices, self._level = vertices, 0
         self._asleep = False
         extreme = vertices.extreme()

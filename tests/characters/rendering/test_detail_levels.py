@@ -205,3 +205,10 @@ def test_the_error_is_that_of_the_nearest_part(ctx, human):
     assert error == pytest.approx(0.4 * (0.3 - 0.2 * 0.1 * human.height) / (900.0 * 0.1))
     behind = PictureFineness(np.eye(4), 900.0, 0.4)
     assert behind.error(np.eye(4), human.height) == 0.0
+
+
+def test_a_character_without_levels_keeps_its_triangles(human):
+    given = CharacterVertices.of(human.meshes)
+    vertices, (finest,) = with_levels(given, tolerances=())
+    before, after = given.positions[given.indices], vertices.positions[finest.indices]
+    assert np.array_equal(np.sort(before.ravel()), np.sort(after.ravel()))
