@@ -17,6 +17,7 @@ from characters.skeleton.scalar_quaternions import (
     Quaternion,
     Vector,
     conjugate,
+    make_global,
     multiply,
     rotate,
     subtract,
@@ -69,12 +70,7 @@ class LegIK:
         """Return the global frames of the joints in one pose."""
         turns: list[Quaternion] = pose.rotations[self.indices].tolist()
         positions: list[Vector] = pose.translations[self.indices].tolist()
-        for joint, parent in enumerate(self.skeleton.parents):
-            if parent >= 0:
-                above, (x, y, z) = turns[parent], positions[parent]
-                turns[joint] = multiply(above, turns[joint])
-                dx, dy, dz = rotate(above, positions[joint])
-                positions[joint] = (x + dx, y + dy, z + dz)
+        make_global(turns, positions, self.skeleton.parents)
         return LegFrames(turns, positions)
 
     def reach(

@@ -112,3 +112,16 @@ def add(a: Vector, b: Vector) -> Vector:
 def subtract(a: Vector, b: Vector) -> Vector:
     """Return a − b."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def make_global(turns: list[Quaternion], places: list[Vector], parents: Sequence[int]) -> None:
+    """Turn the local rotations and places of joints into global ones, in the lists themselves.
+
+    `parents` are smaller numbers than those of their children, negative for none.
+    """
+    for joint, parent in enumerate(parents):
+        if parent >= 0:
+            above, (x, y, z) = turns[parent], places[parent]
+            turns[joint] = multiply(above, turns[joint])
+            dx, dy, dz = rotate(above, places[joint])
+            places[joint] = (x + dx, y + dy, z + dz)

@@ -41,7 +41,7 @@ SPARSE = np.s_[::5, ::5]
 GRID_PX = 3
 """Distance of the pixels by which the part of a window is found that differs [px]."""
 
-DIFFERENT = 5.0
+MIN_CHANGE = 5.0
 """Change of lightness or chroma from which on a pixel of that grid differs [CIELab bytes]."""
 
 MARGIN_PX = 10
@@ -221,7 +221,7 @@ class Background:
             Rows and columns in the window of that part: the cube.
         """
         means = self._mean[:, box[0], box[1]][:, ::GRID_PX, ::GRID_PX]
-        flags = np.abs(lab - means).max(axis=0) > DIFFERENT
+        flags = np.abs(lab - means).max(axis=0) > MIN_CHANGE
         flags |= self._age[box][::GRID_PX, ::GRID_PX] == 0
         rows, columns = (slice(side.start // GRID_PX, side.stop // GRID_PX + 1) for side in start)
         flags[rows, columns] = True

@@ -93,7 +93,7 @@ def _planks(random: np.random.Generator) -> Floats:
         shift = int(random.integers(DESK_TEXELS))
         figure = (0.075 * np.roll(grain[rows], shift, axis=1)).astype(float)
         colour = WOOD_BGR[int(random.integers(len(WOOD_BGR)))] * random.uniform(0.95, 1.04)
-        # One channel at a time: loops over three values take thrice as long.
+        # One channel at a time: loops over three values take three times as long.
         for channel, contrast in enumerate((1.15, 1.0, 0.9)):
             texture[rows, :, channel] = colour[channel] * (1.0 + figure * contrast)
         if number:

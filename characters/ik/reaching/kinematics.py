@@ -20,8 +20,8 @@ from characters.skeleton.scalar_quaternions import (
     Quaternion,
     Vector,
     conjugate,
+    make_global,
     multiply,
-    rotate,
 )
 
 
@@ -67,12 +67,7 @@ class UpperBodyKinematics:
         order = self._order if whole_arms else self._order[: self._roots]
         turns: list[Quaternion] = pose.rotations[order].tolist()
         places: list[Vector] = (pose.translations[order] * self._sizes[: len(order)]).tolist()
-        for joint, parent in enumerate(self.parents[: len(order)]):
-            if parent >= 0:
-                above, (x, y, z) = turns[parent], places[parent]
-                turns[joint] = multiply(above, turns[joint])
-                dx, dy, dz = rotate(above, places[joint])
-                places[joint] = (x + dx, y + dy, z + dz)
+        make_global(turns, places, self.parents[: len(order)])
         return Frames(turns, places)
 
     def torso(self, frames: Frames) -> PlacedTorso:
