@@ -52,9 +52,8 @@ class Heels:
         frames = np.flatnonzero(out.any(1))
         if not len(frames):
             return tilts
-        tilts[frames] = np.where(
-            out[frames], self._at(frames)._least(held.at(frames), pose[frames]), 0.0
-        )
+        least = self._at(frames)._least(held.at(frames), pose[frames])
+        tilts[frames] = np.where(out[frames], least, 0.0)
         return _settling(tilts, self.on_ball, held.ground)
 
     def _least(self, held: HeldLegs, pose: Pose) -> Array:

@@ -72,7 +72,7 @@ def with_levels(
     The vertices of a coarser level come before those that only finer ones use, in each part of the
     vertices, so that only they need to be skinned. `dormant` (rows,) are the rows of the palette
     whose vertices are seldom seen, as effects: those are a part of their own, the last one.
-    `tolerances` are like `LEVEL_TOLERANCES`.
+    `tolerances` are as in `LEVEL_TOLERANCES`; none leaves the finest level alone.
     """
     stands = [np.arange(len(vertices.positions))]
     bones = _moving_joints(vertices)

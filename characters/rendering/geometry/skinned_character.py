@@ -42,7 +42,7 @@ class SkinnedCharacter:
     where the passes for shadow and colour read them. The joint matrices go through a texture with
     one row for each joint, so their number is not limited.
 
-    `tolerances` are those of its levels of detail.
+    `tolerances` are those of its levels of detail; see `with_levels`.
     """
 
     def __init__(
