@@ -256,6 +256,10 @@ class Background:
         """Forget all: the camera was moved."""
         self._age[:], self._trust = 0, 1.0
 
+    def age(self, box: Box) -> Image:
+        """Return the frames for which each pixel of a window is known, (h, w), up to `MAX_AGE`."""
+        return self._age[box]
+
     def planes(self, box: Box, where: Flags) -> list[Image]:
         """Return L, a and b of CIELab in bytes, of some pixels of a window, (n,) each."""
         offsets = (-LIGHTNESS_OFFSET, 128.0, 128.0)

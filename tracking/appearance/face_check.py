@@ -36,6 +36,14 @@ relative to the face that does least."""
 MIN_PIXELS = 8
 """Pixels that a level must rest on."""
 
+MIN_CHROMA_OFF = 2.0
+"""Least difference in chroma of hand and print by which a pixel is told to be one or the other
+[CIELab]."""
+
+MAX_PRINT_SHARE, MIN_HAND_SHARE = 0.4, 0.6
+"""Share of that difference up to which a pixel is print, and from which on it is the hand; between
+them, it is not told."""
+
 SMALL = np.ones((3, 3), np.uint8)
 """The neighbours of a pixel."""
 
@@ -92,6 +100,31 @@ class FaceCheck:
         if learns and np.count_nonzero(paper) > 4 * MIN_PIXELS:
             self._tint += np.float32(TINT_STEP) * (_tint(lab, paper) - self._tint)
         return found
+
+    def told_by_chroma(
+        self, lab: Floats, seen: SeenPattern, evidence: Flags, doubtful: Flags
+    ) -> tuple[Flags, Flags]:
+        """Return which doubtful pixels are the hand, and which are print, (h, w) each.
+
+        Dark skin is as dark as ink. But its chroma is another one, and differs from that of the
+        print as it does where the hand is sure, which is `evidence`.
+        """
+        none = np.zeros(doubtful.shape, bool)
+        if self._tint is None or self._ink is None or np.count_nonzero(evidence) < MIN_PIXELS:
+            return none, none
+        ink = seen.ink * np.float32(1 / 255)
+        paper = lab[0] * (np.float32(1) - ink)
+        a, b = (
+            cv2.blur(chroma - paper * tint - ink * of_ink, (3, 3))
+            for chroma, tint, of_ink in zip(lab[1:], self._tint, self._ink, strict=True)
+        )
+        hand_a, hand_b = (float(np.median(off[evidence])) for off in (a, b))
+        square = hand_a * hand_a + hand_b * hand_b
+        if square < MIN_CHROMA_OFF**2:
+            return none, none
+        share = (a * hand_a + b * hand_b) / square
+        plain = doubtful & ~seen.icon
+        return plain & (share > MIN_HAND_SHARE), plain & (share < MAX_PRINT_SHARE)
 
     def _learn_ink(self, lab: Floats, dark: Flags) -> None:
         """Learn the chroma of ink: on photographs it is often bluish."""

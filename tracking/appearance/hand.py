@@ -23,7 +23,7 @@ from tracking.appearance.window import Stillness, Window, WindowFinder, shrunk
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Flags, Floats, Image
 from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.projection import Projection
+from tracking.geometry.projection import MIN_DEPTH, Projection
 from tracking.geometry.state import CubeState
 
 SLANTED_EVIDENCE = -1.0
@@ -41,6 +41,9 @@ MIN_LEARNED_PX = 8
 
 HELD_S = 0.15
 """Time for which the hand stays where it was after the cube is lost: the hand may hide it [s]."""
+
+MAX_HAND_AGE = 15
+"""Frames for which a pixel is known, from which on it was no hand: the first hand comes there."""
 
 MANY_FRAMES = 20
 """Frames of a session's beginning, in which all is looked at and learned each time."""
@@ -75,6 +78,17 @@ class HandMask:
     """Distance of the nearest surface of the cube that the hand hides, along the camera's axis [m]:
     the hand is nearer. That of the cube's centre where the hand hides no face."""
 
+    def moved(self, right: int, down: int, size: tuple[int, int]) -> "HandMask | None":
+        """Return what is in an image of a width and height [px] after a move by some pixels."""
+        height, width = self.cover.shape
+        left, top = self.x + right, self.y + down
+        columns = range(max(left, 0), min(left + width, size[0]))
+        rows = range(max(top, 0), min(top + height, size[1]))
+        if not (columns and rows):
+            return None
+        part = np.s_[rows.start - top : rows.stop - top, columns.start - left : columns.stop - left]
+        return replace(self, x=columns.start, y=rows.start, cover=self.cover[part])
+
 
 @dataclass(frozen=True)
 class _View:
@@ -107,7 +121,10 @@ class _CubePart:
     """Pixels that do not look like their print, (h, w)."""
 
     doubtful: Flags
-    """Pixels that look like print, and like the hand, (h, w)."""
+    """Pixels that look like print, and like the hand, and are not told by their chroma, (h, w)."""
+
+    told: Flags
+    """Pixels that look like print, but have the chroma of the hand, (h, w)."""
 
     distance: float
     """That of a `HandMask` [m]."""
@@ -130,7 +147,7 @@ class HandFinder:
         self._stillness = Stillness()
         self._strip = self._frames = 0
         self._last: HandMask | None = None
-        self._seen = -np.inf
+        self._seen, self._pose = -np.inf, np.eye(4)
 
     def update(self, image: Image, state: CubeState) -> HandMask | None:
         """Find the hand in the next image, (H, W, 3) BGR, with the cube's state in it.
@@ -138,12 +155,12 @@ class HandFinder:
         Returns
         -------
         None where no hand is in front of the cube. A cube that is not seen has the hand before, for
-        `HELD_S`.
+        `HELD_S`, which moves as the cube is expected to.
         """
         pose = state.camera_from_cube
         if pose is None or not state.visible:
-            return self._last if state.timestamp - self._seen < HELD_S else None
-        self._seen = state.timestamp
+            return self._held(pose) if state.timestamp - self._seen < HELD_S else None
+        self._seen, self._pose = state.timestamp, pose
         window = self._windows.window(pose)
         if window is None:
             self._last = None
@@ -164,6 +181,17 @@ class HandFinder:
         """Rows and columns of the image in which the hand is looked for at a pose of the cube."""
         window = self._windows.window(camera_from_cube)
         return window.image_box if window else None
+
+    def _held(self, pose: Array | None) -> HandMask | None:
+        """Return the hand before, moved with the cube to a pose where it is expected."""
+        if self._last is None or pose is None:
+            return self._last
+        centres = np.stack([self._pose[:3, 3], pose[:3, 3]])
+        if centres[:, 2].min() < MIN_DEPTH:
+            return self._last
+        before, now = np.rint(self._projection.project(centres))
+        right, down = (int(step) for step in now - before)
+        return self._last.moved(right, down, self._projection.size)
 
     def _found(
         self, image: Image, pose: Array, window: Window, small: Image, whole: bool
@@ -205,9 +233,8 @@ class HandFinder:
         cv2.fillConvexPoly(outline, hull, 1, shift=4)
         like_hand = by_colour[rows, columns] > DOUBTFUL_ODDS
         seen = self._pattern.seen(pose, quads, size)
-        evidence = self._faces.disagreement(
-            view.lab[:, rows, columns], seen, like_hand, window.edge
-        )
+        lab = view.lab[:, rows, columns]
+        evidence = self._faces.disagreement(lab, seen, like_hand, window.edge)
         distance = float(pose[2, 3])
         if evidence.any():
             corner = np.array([window.left + columns.start, window.top + rows.start], np.float64)
@@ -215,14 +242,19 @@ class HandFinder:
             distance = self._pattern.distance(pose, seen.face * evidence, corner * scale, scale)
         inner = cv2.erode(seen.face, SMALL) > 0
         slanted = (seen.face == 0) & outline.view(bool)
-        return _CubePart(outline, inner, slanted, evidence, inner & ~evidence & like_hand, distance)
+        doubtful = inner & ~evidence & like_hand
+        told = self._faces.told_by_chroma(lab, seen, evidence, doubtful)
+        doubtful &= ~(told[0] | told[1])
+        return _CubePart(outline, inner, slanted, evidence, doubtful, told[0], distance)
 
     def _without_uncovered(self, place: Place, view: _View, by_colour: Floats) -> Place:
         """Forget the background where it was a hand, which has gone: at a session's beginning."""
+        box = view.window.box
         doubtful = place.changed & (by_colour < MAX_ODDS - MIN_DIFFERENCE)
+        if not self._colours.knows_hand:
+            doubtful &= self._background.age(box) < MAX_HAND_AGE
         if not doubtful.any():
             return place
-        box = view.window.box
         before = colours(self._background.planes(box, doubtful)).ravel()
         uncovered = np.zeros(doubtful.shape, bool)
         uncovered[doubtful] = self._colours.uncovered(view.colours[doubtful], before)
@@ -285,7 +317,7 @@ def _odds(
     part = odds[window.cube_box]
     part[cube.slanted] += SLANTED_EVIDENCE
     part[cube.inner] = -ODDS_RANGE
-    part[cube.evidence] = ODDS_RANGE
+    part[cube.evidence | cube.told] = ODDS_RANGE
     odds = np.minimum(np.maximum(odds, -ODDS_RANGE), ODDS_RANGE)
     smooth = np.asarray(cv2.GaussianBlur(odds, (5, 5), 1.0), np.float32)
     part = smooth[window.cube_box]

@@ -224,3 +224,58 @@ def test_a_hand_stays_for_a_moment_when_the_cube_is_lost(film):
     ]
     assert mask is not None
     assert lost == [mask, None]
+
+
+def test_what_the_first_hand_hides_for_a_moment_is_not_taken_for_a_hand_later():
+    pose, finder = held(), HandFinder(CUBE, WIDE)
+    desk = photograph(scene((CUBE, pose), camera=WIDE))
+    desk[150:200, 640:690] = (60, 60, 160)  # a red thing behind the cube
+    passed = desk.copy()
+    passed[140:220, 560:720] = desk[100, 560]  # an arm in the colour of the desk
+    for _ in range(MANY_FRAMES - 4):
+        finder.update(desk, state_at(pose))
+    finder.update(passed, state_at(pose))
+    holding = desk.copy()
+    holding[190:276, 626:656] = (96, 124, 168)
+    for _ in range(4):
+        mask = finder.update(holding, state_at(pose))
+    assert mask is not None
+    assert not covered(mask)[150:184, 664:690].any()
+
+
+def test_dark_fingers_on_ink_are_told_by_their_chroma():
+    view = HandView("3a312a", azimuth_deg=-165, seed=4, gradient=0.5)
+    mask, truth, region = shown(view, 26)
+    assert mask is not None
+    found = covered(mask)[region]
+    assert np.minimum(found, truth[region]).sum() > 0.95 * np.maximum(found, truth[region]).sum()
+
+
+def test_a_held_hand_moves_with_the_cube():
+    mask = HandMask(100, 50, np.arange(12, dtype=np.uint8).reshape(3, 4), 0.5)
+    moved = mask.moved(5, -2, (1280, 720))
+    assert moved is not None
+    assert (moved.x, moved.y, moved.distance) == (105, 48, 0.5)
+    np.testing.assert_array_equal(moved.cover, mask.cover)
+
+
+def test_a_held_hand_is_cut_off_at_the_border_of_the_image():
+    mask = HandMask(100, 50, np.arange(12, dtype=np.uint8).reshape(3, 4), 0.5)
+    moved = mask.moved(-101, 668, (1280, 720))
+    assert moved is not None
+    assert (moved.x, moved.y) == (0, 718)
+    np.testing.assert_array_equal(moved.cover, mask.cover[:2, 1:])
+    assert mask.moved(-104, 0, (1280, 720)) is None
+
+
+def test_a_hand_is_where_the_lost_cube_is_expected(film):
+    intrinsics, pictures = film
+    finder = HandFinder(CUBE, intrinsics)
+    for picture, pose in pictures:
+        mask = finder.update(picture, state_at(pose))
+    expected = pose.copy()
+    expected[0, 3] += 0.1 * pose[2, 3]
+    lost = finder.update(picture, state_at(expected, visible=False))
+    assert mask is not None
+    assert lost is not None
+    assert lost.x - mask.x == pytest.approx(0.1 * intrinsics.matrix[0, 0], rel=0.1)
