@@ -243,9 +243,9 @@ class HandFinder:
         inner = cv2.erode(seen.face, SMALL) > 0
         slanted = (seen.face == 0) & outline.view(bool)
         doubtful = inner & ~evidence & like_hand
-        told = self._faces.told_by_chroma(lab, seen, evidence, doubtful)
-        doubtful &= ~(told[0] | told[1])
-        return _CubePart(outline, inner, slanted, evidence, doubtful, told[0], distance)
+        told, bare = self._faces.told_by_chroma(lab, seen, evidence, doubtful)
+        doubtful &= ~(told | bare)
+        return _CubePart(outline, inner, slanted, evidence, doubtful, told, distance)
 
     def _without_uncovered(self, place: Place, view: _View, by_colour: Floats) -> Place:
         """Forget the background where it was a hand, which has gone: at a session's beginning."""
