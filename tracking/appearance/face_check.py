@@ -110,7 +110,9 @@ class FaceCheck:
         print as it does where the hand is sure, which is `evidence`.
         """
         none = np.zeros(doubtful.shape, bool)
-        if self._tint is None or self._ink is None or np.count_nonzero(evidence) < MIN_PIXELS:
+        if self._tint is None or self._ink is None or not doubtful.any():
+            return none, none
+        if np.count_nonzero(evidence) < MIN_PIXELS:
             return none, none
         ink = seen.ink * np.float32(1 / 255)
         paper = lab[0] * (np.float32(1) - ink)

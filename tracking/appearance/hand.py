@@ -40,10 +40,11 @@ MIN_LEARNED_PX = 8
 """Pixels of a hand above which its colours are learned."""
 
 HELD_S = 0.15
-"""Time for which the hand stays where it was after the cube is lost: the hand may hide it [s]."""
+"""Time for which the hand before is kept after the cube is lost: the hand may hide it [s]."""
 
 MAX_HAND_AGE = 15
-"""Frames for which a pixel is known, from which on it was no hand: the first hand comes there."""
+"""Frames after which what a pixel shows is the desk, and no hand that was there from the beginning:
+what changes it is the first hand."""
 
 MANY_FRAMES = 20
 """Frames of a session's beginning, in which all is looked at and learned each time."""
@@ -184,11 +185,9 @@ class HandFinder:
 
     def _held(self, pose: Array | None) -> HandMask | None:
         """Return the hand before, moved with the cube to a pose where it is expected."""
-        if self._last is None or pose is None:
+        if self._last is None or pose is None or pose[2, 3] < MIN_DEPTH:
             return self._last
         centres = np.stack([self._pose[:3, 3], pose[:3, 3]])
-        if centres[:, 2].min() < MIN_DEPTH:
-            return self._last
         before, now = np.rint(self._projection.project(centres))
         right, down = (int(step) for step in now - before)
         return self._last.moved(right, down, self._projection.size)
