@@ -58,6 +58,9 @@ SHOULDER_DROP = 0.25
 NEUTRAL_SWIVEL = math.radians(sum(SWIVEL_DEG) / 2.0)
 """Swivel of the elbow for which the wrist is placed: openness changes the elbow alone [rad]."""
 
+AT_PLACE = 1e-6
+"""Distance from its place at which a wrist is there, in lengths of the forearm: it is rounded."""
+
 _POINTING_ROUNDS = 2
 
 
@@ -145,7 +148,8 @@ def oriented(hand: HandOnItsWay, wrist: Effector, shoulder: Vector, chest: Quate
     bent = bend(arm, wrist, shoulder, place, chest, NEUTRAL_SWIVEL)
     wanted = multiply(turn, conjugate(bent.hand))
     allowed = _allowed(arm, bent, wanted)
-    if allowed is wanted and bent.wrist == place:
+    short = length(subtract(bent.wrist, place))
+    if allowed is wanted and short < AT_PLACE * arm.fore:
         return bent._replace(hand=turn)
     # The hand turns as far as it can; then it is brought to its place as it is.
     turn = multiply(allowed, bent.hand)

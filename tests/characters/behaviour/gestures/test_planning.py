@@ -61,6 +61,18 @@ def test_a_palm_is_where_its_cell_is(performers, left):
     assert np.linalg.norm(shown - performer.space.point(place, left)) < 0.01
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_what_a_processor_rounds_changes_no_posture(performers, name):
+    performer = performers[name]
+    turns = performer.posture.rotations
+    for gesture in GestureCollection.bundled():
+        planned = performer.plan(gesture).arm_turns
+        for share in (-1e-12, 1e-12):
+            posture = replace(performer.posture, rotations=turns * (1.0 + share))
+            rounded = replace(performer, posture=posture).plan(gesture).arm_turns
+            assert np.abs(rotations.align(rounded, planned) - planned).max() < 1e-6, gesture.name
+
+
 def test_key_frames_are_reproduced_exactly_at_their_times(performers):
     motion = performers["human"].plan(SWING)
     for number, at in enumerate(motion.times):
