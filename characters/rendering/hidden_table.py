@@ -6,13 +6,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.cover import PictureCover
 from characters.rendering.projection import Rectangle
+from characters.rendering.scene import Cover
 
 
 def hidden_table(
     cubes: Sequence[tuple[Rectangle, NDArray[np.uint8]]],
-    cover: PictureCover | None,
+    cover: Cover | None,
     area: Rectangle,
 ) -> NDArray[np.uint8] | None:
     """Return the share of each pixel of a region that is hidden, or None where nothing is.

@@ -8,7 +8,6 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.cover import ShareTexture
 from characters.rendering.geometry.character_cache import CharacterInstance
 from characters.rendering.haze import haze_table
 from characters.rendering.light import Light
@@ -16,6 +15,7 @@ from characters.rendering.occlusion import corners_of, hidden_by_cube
 from characters.rendering.programs import set_uniforms
 from characters.rendering.projection import NEAR_M, Rectangle, bounding_rectangle, clip_from_camera
 from characters.rendering.scene import Box, Scene, Softness
+from characters.rendering.share_texture import ShareTexture
 from characters.rendering.target import LayerTarget, PictureTarget, RenderTargets
 from characters.skeleton.pose import Array
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from characters.control.command import PosedCharacter
 from characters.model.mesh import Mesh
+from characters.rendering.projection import Rectangle
 from characters.skeleton.pose import Array, Skeleton
 
 RIM_SHARE, WALL_SHARE = 0.055, 0.025
@@ -50,6 +51,12 @@ class Cover:
 
     distance: float
     """Of the surface behind it from the camera, along its axis [m]."""
+
+    @property
+    def area(self) -> Rectangle:
+        """Where it is in the frame."""
+        height, width = self.share.shape
+        return Rectangle(self.x, self.y, width, height)
 
 
 @dataclass(frozen=True)

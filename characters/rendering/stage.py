@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
-from characters.rendering.cover import ShareTexture
 from characters.rendering.geometry.character_cache import CharacterCache, PictureFineness
 from characters.rendering.light import LightEstimator, paper_color
 from characters.rendering.occlusion import visible_cubes
@@ -19,6 +18,7 @@ from characters.rendering.projection import is_invertible, is_pinhole
 from characters.rendering.quality import FULL, QUALITIES, Quality
 from characters.rendering.resources import FrameResources
 from characters.rendering.scene import Cover, FloorPath, Scene, SceneCharacter, Softness, View
+from characters.rendering.share_texture import ShareTexture
 from characters.rendering.target import RenderTargets
 from characters.rendering.undistortion import Undistorter
 from characters.skeleton.pose import Array
@@ -70,7 +70,7 @@ class Stage:
         self._light = LightEstimator()
         self._quality = FULL
         self._targets = RenderTargets(context, FULL)
-        self._cover, self._hidden = ShareTexture(context), ShareTexture(context)
+        self._hidden = ShareTexture(context)
         self._characters = CharacterCache(context, self.programs)
 
     @property
@@ -137,10 +137,9 @@ class Stage:
         if frame is None:
             return self._undistorter.undistort(view)
         cover = None if found is None else self._undistorter.cover_in_picture(found)
-        uploaded = None if cover is None else self._cover.upload(cover)
         self._context.front_face = "cw"
         for each in self.passes:
-            each.composite(frame, uploaded)
+            each.composite(frame, cover)
         self._context.front_face = "ccw"
         return frame.picture
 
@@ -171,7 +170,6 @@ class Stage:
         self._characters.release()
         self._targets.release()
         self._undistorter.release()
-        self._cover.release()
         self._hidden.release()
         self.programs.release()
 

@@ -2,10 +2,14 @@
 
 import moderngl
 
-from characters.rendering.cover import PictureCover
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.resources import FrameResources
+from characters.rendering.scene import Cover
+from characters.rendering.share_texture import ShareTexture
+
+COVER_UNIT = 7
+"""Texture unit of the cover."""
 
 HAND_DEPTH_M = 0.05
 """Depth of a hand in front of the cube that it holds: what is nearer still stands before it."""
@@ -17,9 +21,10 @@ class HandOcclusionPass(RenderPass):
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
         self._program = programs.load("cover", "cover")
         self._rectangle = context.vertex_array(self._program, [])
-        self.owned = (self._rectangle,)
+        self._texture = ShareTexture(context)
+        self.owned = (self._rectangle, self._texture)
 
-    def composite(self, frame: FrameResources, cover: PictureCover | None) -> None:
+    def composite(self, frame: FrameResources, cover: Cover | None) -> None:
         """Clear the character layer behind the hand."""
         layer = frame.layer
         if layer is None or cover is None:
@@ -32,9 +37,12 @@ class HandOcclusionPass(RenderPass):
         size = layer.area.width, layer.area.height, layer.area.width, layer.area.height
         ends = left, top, left + shared.width, top + shared.height
         clip = layer.clip_from_camera[2:] @ [0.0, 0.0, cover.distance - HAND_DEPTH_M, 1.0]
-        cover.set_uniforms(self._program, layer.area)
+        self._texture.write(cover.share).use(COVER_UNIT)
         set_uniforms(
             self._program,
+            cover=COVER_UNIT,
+            cover_corner=(cover.area.x - layer.area.x, cover.area.y - layer.area.y),
+            cover_size=(cover.area.width, cover.area.height),
             clip_area=[2.0 * end / side - 1.0 for end, side in zip(ends, size, strict=True)],
             depth=float(clip[0] / clip[1]),
             fineness=float(layer.target.fineness),

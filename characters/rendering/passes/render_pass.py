@@ -4,10 +4,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import Protocol
 
-from characters.rendering.cover import PictureCover
 from characters.rendering.hidden_table import hidden_table
 from characters.rendering.projection import Rectangle, clip_from_camera
 from characters.rendering.resources import CharacterLayer, FrameResources, Region
+from characters.rendering.scene import Cover
 from characters.rendering.target import bgra_from_bgr
 
 
@@ -39,7 +39,7 @@ class RenderPass:
         The driver is at work on it already while the hand is found.
         """
 
-    def composite(self, frame: FrameResources, cover: PictureCover | None) -> None:
+    def composite(self, frame: FrameResources, cover: Cover | None) -> None:
         """Change the picture of the frame, in place; `cover` is the hand."""
 
     def release(self) -> None:
@@ -61,7 +61,7 @@ class RegionPass(RenderPass, ABC):
     def draw(self, frame: FrameResources, region: Region) -> None:
         """Draw one region."""
 
-    def composite(self, frame: FrameResources, cover: PictureCover | None) -> None:
+    def composite(self, frame: FrameResources, cover: Cover | None) -> None:
         """Draw all regions. Where they overlap, the last one is right."""
         drawn = []
         for area in self.areas:

@@ -9,11 +9,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.cover import PictureCover
 from characters.rendering.haze import darkened
 from characters.rendering.hidden_table import hidden_table
 from characters.rendering.projection import Rectangle
 from characters.rendering.resources import FrameResources
+from characters.rendering.scene import Cover
 from characters.skeleton.pose import Array
 
 UNSEEN_LEVEL = 254
@@ -56,7 +56,7 @@ class TableFactors:
         return np.array([(self.texel, 0.0, x), (0.0, self.texel, z), (0.0, 0.0, 1.0)])
 
 
-def darken(frame: FrameResources, cover: PictureCover | None, factors: TableFactors) -> None:
+def darken(frame: FrameResources, cover: Cover | None, factors: TableFactors) -> None:
     """Multiply the table in the picture of a frame, except where real cubes or a hand hide it."""
     factors = factors.cropped()
     area = frame.area_of(factors.corners) if factors.bgr.size else None
