@@ -9,13 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.model.mesh import Material
-from characters.rendering.geometry.edge_collapse import collapsed_levels
+from characters.rendering.geometry.edge_collapse import Tolerance, collapsed_levels
 from characters.rendering.geometry.vertices import CharacterVertices
 from characters.rendering.projection import is_invertible
 
-LEVEL_TOLERANCES = (1 / 850, 1 / 600, 1 / 425, 1 / 300, 1 / 200)
-"""Errors of the coarser levels, as shares of the character's largest side; each is for half the
-size in the picture of the one before."""
+LEVEL_TOLERANCES = (
+    *map(Tolerance, (1 / 850, 1 / 600, 1 / 425, 1 / 300, 1 / 200)),
+    Tolerance(1 / 140, thickness_share=0.3),
+)
+"""Those of the coarser levels, with distances as shares of the character's largest side. In the
+coarsest one, small parts are not looked at closely."""
 
 SIZE_HYSTERESIS = 1.15
 """Factor by which the size in the picture changes back before the level does."""
@@ -65,7 +68,7 @@ class DetailLevel:
 def with_levels(
     vertices: CharacterVertices,
     dormant: NDArray[np.bool_] | None = None,
-    tolerances: Sequence[float] = LEVEL_TOLERANCES,
+    tolerances: Sequence[Tolerance] = LEVEL_TOLERANCES,
 ) -> tuple[CharacterVertices, tuple[DetailLevel, ...]]:
     """Return the vertices in an order that suits all levels, and the levels, the finest first.
 
@@ -83,7 +86,7 @@ def with_levels(
             vertices.positions,
             _features(vertices, side, bones),
             vertices.indices.reshape(-1, 3).astype(np.intp),
-            [side * tolerance for tolerance in tolerances],
+            [each._replace(distance=side * each.distance) for each in tolerances],
         )
     part = np.where(np.arange(len(vertices.positions)) < vertices.moved, 0, 1)
     if dormant is not None:
@@ -98,11 +101,13 @@ def with_levels(
     starts = np.searchsorted(part[order], range(3)).tolist()
     levels = []
     for number, ((indices, materials, awake), tolerance) in enumerate(
-        zip(drawn, (0.0, *tolerances), strict=False)
+        zip(drawn, (Tolerance(0.0), *tolerances), strict=False)
     ):
         counts = np.bincount(part[last >= number], minlength=3).tolist()
         parts = tuple(zip(starts, counts, strict=True))
-        levels.append(DetailLevel(side * tolerance, new_index[indices], materials, awake, parts))
+        levels.append(
+            DetailLevel(side * tolerance.distance, new_index[indices], materials, awake, parts)
+        )
     return vertices.reordered(order), tuple(levels)
 
 

@@ -5,7 +5,7 @@ small error (see `quadrics`) that are no neighbours are done at the same time, i
 """
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +17,6 @@ from characters.rendering.geometry.quadrics import (
     triangle_normals,
     vertex_quadrics,
 )
-
-MAX_THICKNESS_SHARE = 0.1
-"""Largest error as a share of how thick a part is: small parts stay, and stay above what they lie
-on."""
 
 MIN_COS_TURN = 0.3
 """Least cosine of the angle by which a collapse may turn a triangle."""
@@ -35,11 +31,22 @@ PICKS_PER_ROUND = 3
 """How often a round picks collapses that do not touch those picked before."""
 
 
+class Tolerance(NamedTuple):
+    """How much a coarser level may differ from the given surface."""
+
+    distance: float
+    """Root mean square distance [m]."""
+
+    thickness_share: float = 0.1
+    """Largest distance as a share of how thick a part is: small parts stay, and stay above what
+    they lie on."""
+
+
 def collapsed_levels(
     positions: NDArray[np.float32],
     features: Floats,
     triangles: Indices,
-    tolerances: Sequence[float],
+    tolerances: Sequence[Tolerance],
 ) -> list[Indices]:
     """Return, for each tolerance, the vertex that stands for each vertex, (vertices,).
 
@@ -53,14 +60,14 @@ def collapsed_levels(
     triangles
         (triangles, 3).
     tolerances
-        Root mean square distances from the given surface [m], ascending. The levels are nested.
+        Of the levels, ascending. The levels are nested.
     """
     mesh = _Mesh(positions, features, triangles)
     levels = []
     for tolerance in tolerances:
         for _ in range(MAX_ROUNDS):
             before = mesh.vertex_count
-            if mesh.collapse(tolerance**2) < MIN_COLLAPSED_SHARE * before:
+            if mesh.collapse(tolerance) < MIN_COLLAPSED_SHARE * before:
                 break
         levels.append(mesh.standing.copy())
     return levels
@@ -81,18 +88,17 @@ class _Mesh:
         self._triangles = self._without_degenerate(triangles.astype(np.intp))
         self._quadrics = vertex_quadrics(self._positions, features, self._triangles)
         corners = self._positions[self._triangles]
-        thickness = _thickness(corners, self._place[self._triangles], len(positions))
+        self._thickness = _thickness(corners, self._place[self._triangles], len(positions))
         self._known = np.full(1, -1), np.full(1, np.nan)  # keys of two vertices, and their errors
         self._changed = np.zeros(len(positions), bool)  # vertices with a new quadric
-        self._limits = (MAX_THICKNESS_SHARE * thickness) ** 2
 
     @property
     def vertex_count(self) -> int:
         """Number of vertices left in the triangles."""
         return int(np.count_nonzero(np.bincount(self._triangles.ravel())))
 
-    def collapse(self, max_error: float) -> int:
-        """Do collapses whose mean squared error [m²] is small; return how many were done."""
+    def collapse(self, tolerance: Tolerance) -> int:
+        """Do collapses of small error; return how many were done."""
         count = len(self._place)
         ends = self._triangles[:, [0, 0, 1, 1, 2, 2]], self._triangles[:, [1, 2, 0, 2, 0, 1]]
         keys, uses = np.unique(ends[0].ravel() * count + ends[1].ravel(), return_counts=True)
@@ -101,7 +107,8 @@ class _Mesh:
         pairs, pair = np.unique(key, return_inverse=True)
         froms, tos = np.divmod(pairs, count)  # places
         error = self._errors(keys, pair, froms)
-        error[~(error <= np.minimum(max_error, self._limits[froms]))] = np.inf
+        limits = np.minimum(tolerance.distance, tolerance.thickness_share * self._thickness[froms])
+        error[~(error <= limits**2)] = np.inf
         chosen = self._picked(froms, tos, error)
         chosen = chosen[self._linked(pairs, froms, tos, np.bincount(pair, uses), chosen)]
         is_chosen = np.zeros(len(pairs), bool)

@@ -14,6 +14,7 @@ from characters.rendering.geometry.detail_levels import (
     chosen_level,
     with_levels,
 )
+from characters.rendering.geometry.edge_collapse import Tolerance
 from characters.rendering.geometry.extreme_vertices import SkinnedPoints
 from characters.rendering.geometry.face_split import split_faces
 from characters.rendering.geometry.face_texture import FaceTexture
@@ -50,7 +51,7 @@ class SkinnedCharacter:
         context: moderngl.Context,
         programs: ShaderPrograms,
         character: Drawable,
-        tolerances: Sequence[float] = LEVEL_TOLERANCES,
+        tolerances: Sequence[Tolerance] = LEVEL_TOLERANCES,
     ) -> None:
         given = CharacterVertices.of(character.meshes)
         rest = given.palette(character.skeleton.rest.globals(character.skeleton))

@@ -9,9 +9,11 @@ from characters import Character
 from characters.rendering import QUALITIES
 from characters.rendering.geometry.character_cache import PictureFineness
 from characters.rendering.geometry.detail_levels import DetailLevel, chosen_level, with_levels
-from characters.rendering.geometry.edge_collapse import collapsed_levels
+from characters.rendering.geometry.edge_collapse import Tolerance, collapsed_levels
 from characters.rendering.geometry.vertices import CharacterVertices
 from tests.bench.detail import compared
+
+FINE_AND_COARSE = (Tolerance(0.01), Tolerance(0.05))
 
 
 def ball(center=(0.0, 0.0, 0.0), radius=1.0, rows=32):
@@ -41,19 +43,19 @@ def left(triangles, stand):
 
 def test_a_coarser_ball_is_still_a_ball():
     positions, triangles = ball()
-    levels = collapsed_levels(positions, np.zeros((len(positions), 0)), triangles, [0.01, 0.05])
+    levels = collapsed_levels(positions, np.zeros((len(positions), 0)), triangles, FINE_AND_COARSE)
     counts = [len(left(triangles, stand)) for stand in levels]
     assert len(triangles) > 2 * counts[0] > 2 * counts[1] > 0
-    for stand, tolerance in zip(levels, (0.01, 0.05), strict=True):
+    for stand, tolerance in zip(levels, FINE_AND_COARSE, strict=True):
         middles = positions[left(triangles, stand)].mean(axis=1)
         heights = np.abs(middles[:, 1]) < 0.9  # beside the holes
-        assert np.abs(np.linalg.norm(middles, axis=1)[heights] - 1.0).mean() < tolerance
+        assert np.abs(np.linalg.norm(middles, axis=1)[heights] - 1.0).mean() < tolerance.distance
 
 
 def test_levels_are_nested():
     positions, triangles = ball()
     fine, coarse = collapsed_levels(
-        positions, np.zeros((len(positions), 0)), triangles, [0.01, 0.05]
+        positions, np.zeros((len(positions), 0)), triangles, FINE_AND_COARSE
     )
     assert set(coarse) < set(fine)
     assert (coarse[fine] == coarse).all()
@@ -66,7 +68,7 @@ def test_a_seam_of_two_colours_does_not_tear():
     both = np.concatenate([positions, positions])
     split = np.where(low[:, None], triangles + len(positions), triangles)
     colors = np.repeat([0.0, 0.1], len(positions))[:, None]
-    (stand,) = collapsed_levels(both, colors, split, [0.03])
+    (stand,) = collapsed_levels(both, colors, split, [Tolerance(0.03)])
     _, places = np.unique(both, axis=0, return_inverse=True)
     places = places.ravel()
     coarse = left(split, stand)
@@ -80,8 +82,10 @@ def test_a_seam_of_two_colours_does_not_tear():
 def test_what_joints_or_morphs_move_apart_stays():
     positions, triangles = ball()
     steps = 0.2 * np.sin(40.0 * positions[:, :1])
-    plain = collapsed_levels(positions, np.zeros((len(positions), 0)), triangles, [0.03])[0]
-    moving = collapsed_levels(positions, steps, triangles, [0.03])[0]
+    plain = collapsed_levels(
+        positions, np.zeros((len(positions), 0)), triangles, [Tolerance(0.03)]
+    )[0]
+    moving = collapsed_levels(positions, steps, triangles, [Tolerance(0.03)])[0]
     assert len(left(triangles, moving)) > 2 * len(left(triangles, plain))
 
 
@@ -92,13 +96,25 @@ def test_a_spot_on_a_ball_stays_as_it_is():
     spot[:, 2] = 1.0 + 0.01 * (spot[:, 2] - 1.0)
     both = np.concatenate([positions, spot])
     all_triangles = np.concatenate([triangles, spot_triangles + len(positions)])
-    (stand,) = collapsed_levels(both, np.zeros((len(both), 0)), all_triangles, [0.05])
+    (stand,) = collapsed_levels(both, np.zeros((len(both), 0)), all_triangles, [Tolerance(0.05)])
     coarse = left(all_triangles, stand)
     of_spot = (coarse >= len(positions)).all(axis=1)
     outline = both[coarse[of_spot]].reshape(-1, 3)
     assert np.ptp(outline[:, :2], axis=0) == pytest.approx(np.ptp(spot[:, :2], axis=0), rel=0.02)
     assert np.ptp(outline[:, 2]) > 0.9 * np.ptp(spot[:, 2])
     assert (~of_spot).sum() < 0.5 * len(triangles)
+
+
+def test_small_parts_give_way_where_a_level_lets_them():
+    positions, triangles = ball(rows=12)
+    counts = [
+        len(left(triangles, stand))
+        for share in (0.001, 0.1, 0.3)
+        for stand in collapsed_levels(
+            positions, np.zeros((len(positions), 0)), triangles, [Tolerance(1.0, share)]
+        )
+    ]
+    assert len(triangles) == counts[0] > counts[1] > counts[2] > 0
 
 
 @pytest.fixture(scope="module")
