@@ -19,8 +19,8 @@ from characters.model.mesh import FaceMaps
 from characters.rendering.projection import Rectangle
 from characters.skeleton.pose import Array
 
-MIN_INTENSITY = 1e-3
-"""A layer of a lower intensity is not drawn."""
+INTENSITY_STEPS = 64
+"""Steps of a layer's intensity, which nobody tells apart: the layers are seldom added anew."""
 
 WRINKLE_DEPTHS_PX = 0.85, 1.15
 """Depths of wrinkles in the picture from which on they are seen at all, and as they are [px]:
@@ -47,7 +47,7 @@ class WrinkleMixer:
 
     def compose(self, intensities: Array) -> Rectangle | None:
         """Set the slopes for intensities of all layers, (12,); return which texels may change."""
-        wanted = np.where(intensities < MIN_INTENSITY, 0.0, intensities)
+        wanted = np.rint(intensities * INTENSITY_STEPS) / INTENSITY_STEPS
         changed = wanted != self._shown
         areas = [area for number, area, _ in self._layers if changed[number]]
         self._shown = wanted

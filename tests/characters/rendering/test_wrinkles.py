@@ -11,6 +11,7 @@ from characters.control.command import PosedCharacter
 from characters.model.face_maps import LAYER_NAMES, WRINKLE_LAYERS
 from characters.model.mesh import FaceMaps, ToonShading
 from characters.rendering import FULL, Quality, SceneCharacter
+from characters.rendering.geometry.face_texture import WrinkleMixer
 from tests.characters.rendering.wrinkle_reference import agreement
 
 LAYERS = len(LAYER_NAMES)
@@ -136,6 +137,15 @@ def test_wrinkles_grow_with_their_intensity(ctx, human_maps):
     ]
     assert bends[0] < 1e-3
     assert np.all(np.diff(bends) > 0.5)
+
+
+def test_layers_are_not_added_anew_for_what_nobody_sees(human_maps):
+    mixer = WrinkleMixer(human_maps)
+    assert mixer.compose(np.full(LAYERS, 0.5)) is not None
+    before = mixer.texels.copy()
+    assert mixer.compose(np.full(LAYERS, 0.503)) is None
+    assert np.array_equal(mixer.texels, before)
+    assert mixer.compose(np.full(LAYERS, 0.52)) is not None
 
 
 @pytest.mark.parametrize("yaw_deg", [40.0, -60.0])
