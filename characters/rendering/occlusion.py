@@ -1,6 +1,8 @@
 """Where real cubes are in the picture, and what they hide."""
 
+import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 import cv2
 import numpy as np
@@ -34,8 +36,10 @@ def hidden_by_cube(box: Box, matrix: Array, area: Rectangle) -> NDArray[np.uint8
     x = np.arange(area.x, area.x + area.width, dtype=np.float32)
     y = np.arange(area.y, area.y + area.height, dtype=np.float32)[:, None]
     inside = np.ones((area.height, area.width), np.float32)
-    for a, b, c in _outline(box, matrix).astype(np.float32):
-        np.minimum(inside, a * x + (b * y + (c + np.float32(0.5))), out=inside)
+    for a, b, c in _outline(box, matrix):
+        np.minimum(
+            inside, np.float32(a) * x + (np.float32(b) * y + np.float32(c + 0.5)), out=inside
+        )
     return np.asarray(np.rint(255.0 * np.maximum(inside, 0.0)), np.uint8)
 
 
@@ -73,18 +77,29 @@ def is_usable(box: Box) -> bool:
     return is_invertible(box.camera_from_box) and bool(np.isfinite(box.edge) and box.edge > 0.0)
 
 
-def _outline(box: Box, matrix: Array) -> Array:
-    """Return the lines (n, 3) around a box in the picture, positive inside."""
+def _outline(box: Box, matrix: Array) -> list[tuple[float, float, float]]:
+    """Return the lines a·x + b·y + c = 0 around a box in the picture, positive inside [px]."""
     pose = np.asarray(box.camera_from_box, float)
-    ends = box.edge * CUBE_EDGES @ pose[:3, :3].T + pose[:3, 3]
-    depths = ends[..., 2]
+    visible = box.edge * _CORNERS @ pose[:3, :3].T + pose[:3, 3]
+    if visible[:, 2].min() < NEAR_M:
+        visible = _clipped(box.edge * CUBE_EDGES @ pose[:3, :3].T + pose[:3, 3])
+    # All its corners are in one sense of rotation. Plain numbers: numpy takes longer for so few.
+    hull = cv2.convexHull(project(visible, matrix).astype(np.float32), clockwise=False)[:, 0]
+    lines = []
+    for (x, y), (to_x, to_y) in pairwise([*hull.tolist(), hull[0].tolist()]):
+        length = max(math.hypot(to_x - x, to_y - y), 1e-9)
+        a, b = (y - to_y) / length, (to_x - x) / length
+        lines.append((a, b, -(a * x + b * y)))
+    return lines
+
+
+def _clipped(edges: Array) -> Array:
+    """Return the ends of edges (n, 2, 3) that are not before the near plane, and where they cut it.
+
+    In the camera frame, (m, 3) [m].
+    """
+    depths = edges[..., 2]
     crossing = (depths.min(axis=1) < NEAR_M) & (depths.max(axis=1) > NEAR_M)
     share = (NEAR_M - depths[crossing, :1]) / np.diff(depths[crossing], axis=1)
-    cuts = ends[crossing, 0] + share * (ends[crossing, 1] - ends[crossing, 0])
-    visible = np.concatenate([ends[depths >= NEAR_M], cuts])
-    hull = cv2.convexHull(project(visible, matrix).astype(np.float32))[:, 0].astype(float)
-    along = np.roll(hull, -1, axis=0) - hull
-    inward = np.stack([-along[:, 1], along[:, 0]], axis=1)
-    inward /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
-    lines = np.column_stack([inward, -np.einsum("ij,ij->i", inward, hull)])
-    return np.asarray(lines * np.sign(lines @ [*hull.mean(axis=0), 1.0])[:, None])
+    cuts = edges[crossing, 0] + share * (edges[crossing, 1] - edges[crossing, 0])
+    return np.concatenate([edges[depths >= NEAR_M], cuts])

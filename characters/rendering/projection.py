@@ -123,19 +123,20 @@ def bounding_rectangle(
     """
     # One row for each coordinate: numpy takes several times as long over short rows.
     in_camera = camera_from_points[:3, :3] @ points.T + camera_from_points[:3, 3:]
-    behind = in_camera[2] < NEAR_M
-    if not len(points) or behind.all():
+    if not len(points) or in_camera[2].max() < NEAR_M:
         return None
-    if behind.any():
+    if in_camera[2].min() < NEAR_M:
         return Rectangle(0, 0, *size)
     pixels = matrix[:2] @ (in_camera / in_camera[2])
-    low, high = pixels.min(axis=1), pixels.max(axis=1)
-    rim = MARGIN_PX + RELATIVE_MARGIN * (high - low)
-    low = np.clip(np.floor(low - rim), 0, size).astype(int)
-    high = np.clip(np.ceil(high + rim) + 1, 0, size).astype(int)
-    if (high <= low).any():
-        return None
-    return Rectangle(int(low[0]), int(low[1]), int(high[0] - low[0]), int(high[1] - low[1]))
+    ranges = []
+    for low, high, side in zip(
+        pixels.min(axis=1).tolist(), pixels.max(axis=1).tolist(), size, strict=True
+    ):
+        rim = MARGIN_PX + RELATIVE_MARGIN * (high - low)
+        first = min(max(math.floor(low - rim), 0), side)
+        ranges.append((first, min(max(math.ceil(high + rim) + 1, 0), side) - first))
+    (x, width), (y, height) = ranges
+    return Rectangle(x, y, width, height) if min(width, height) > 0 else None
 
 
 def merge_rectangles(rectangles: Sequence[Rectangle]) -> list[Rectangle]:

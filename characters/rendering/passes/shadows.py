@@ -200,17 +200,22 @@ class ShadowMap:
 
     def _used_texels(self) -> tuple[int, int, int, int]:
         """Return the texels of a half that can have a shadow: first x and z, width and depth."""
-        area = self.area
-        low, high = (self.extent.reshape(2, 2) - area[:2]) / area[2] * MAP_SIDE
-        x, z = np.maximum(np.floor(low), 0).astype(int).tolist()
-        right, far = np.minimum(np.ceil(high), MAP_SIDE).astype(int).tolist()
-        return x, z, right - x, far - z
+        area_x, area_z, side, _ = self.area.tolist()
+        left, near, right, far = self.extent.tolist()
+        x, end_x = _texels((left - area_x) / side, (right - area_x) / side)
+        z, end_z = _texels((near - area_z) / side, (far - area_z) / side)
+        return x, z, end_x - x, end_z - z
 
     def release(self) -> None:
         """Release the buffers; a second call does nothing."""
         for each in (self._target, self._covered, self._texture):
             if each is not None:
                 each.release()
+
+
+def _texels(low: float, high: float) -> tuple[int, int]:
+    """Return the texels along a side of a map between two shares of it: the first, the end."""
+    return max(math.floor(low * MAP_SIDE), 0), min(math.ceil(high * MAP_SIDE), MAP_SIDE)
 
 
 def sky_extent(enclosing: Array, height: float) -> Array:
