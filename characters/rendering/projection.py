@@ -1,7 +1,6 @@
 """From OpenCV's pinhole matrix to OpenGL's clip space, and rectangles in the picture."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,9 +16,6 @@ MARGIN_PX, RELATIVE_MARGIN = 3, 0.02
 SIZE_STEP_PX = 64
 """Sizes of textures are rounded up to a multiple, so that a walking character does not need a new
 one in each picture."""
-
-COST_PER_REGION_PX = 12_000
-"""Pixels that software rendering draws in the time that one more region costs."""
 
 MIN_RELATIVE_VOLUME = 1e-6
 """Determinant of a transform's axes over the product of their lengths; less counts as singular."""
@@ -137,22 +133,6 @@ def bounding_rectangle(
         ranges.append((first, min(max(math.ceil(high + rim) + 1, 0), side) - first))
     (x, width), (y, height) = ranges
     return Rectangle(x, y, width, height) if min(width, height) > 0 else None
-
-
-def merge_rectangles(rectangles: Sequence[Rectangle]) -> list[Rectangle]:
-    """Return fewer rectangles that contain the same pixels.
-
-    Neighbours in the sequence are merged where the extra pixels cost less than a region of its own.
-    """
-    merged: list[Rectangle] = []
-    for rectangle in rectangles:
-        while merged:
-            both = rectangle.union(merged[-1])
-            if both.area > rectangle.area + merged[-1].area + COST_PER_REGION_PX:
-                break
-            rectangle, _ = both, merged.pop()
-        merged.append(rectangle)
-    return merged
 
 
 def texture_size(width: int, height: int) -> tuple[int, int]:

@@ -1,4 +1,4 @@
-"""What the passes of a picture share: the resources of a frame, and of one region of it."""
+"""What the passes of a picture share."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,17 +12,12 @@ from characters.rendering.geometry.character_cache import CharacterInstance
 from characters.rendering.haze import haze_table
 from characters.rendering.light import Light
 from characters.rendering.occlusion import corners_of, hidden_by_cube
-from characters.rendering.programs import set_uniforms
 from characters.rendering.projection import NEAR_M, Rectangle, bounding_rectangle, clip_from_camera
 from characters.rendering.scene import Box, Scene, Softness
-from characters.rendering.share_texture import ShareTexture
-from characters.rendering.target import LayerTarget, PictureTarget, RenderTargets
+from characters.rendering.target import LayerTarget, TargetCache
 from characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
-
-HIDDEN_UNIT = 13
-"""Texture unit of what hides the table."""
 
 MIN_TABLE_DISTANCE_M = 1e-6
 """A camera that is nearer to the plane of the table sees its edge, and nothing on it [m]."""
@@ -76,42 +71,14 @@ class CharacterLayer:
 
 
 @dataclass(frozen=True)
-class Region:
-    """A part of the picture that is drawn on the graphics card."""
-
-    area: Rectangle
-    """Where it is in the picture."""
-
-    target: PictureTarget
-    """It is drawn on from the first texel on."""
-
-    clip_from_table: Array
-    """Projection to the region, (4, 4); its first row is the top row, so triangles turn
-    clockwise."""
-
-    hidden: moderngl.Texture | None
-    """Share of each pixel in which real cubes or the hand hide the table; None if in no pixel."""
-
-    def use(self) -> None:
-        """Draw on the picture of this region from now on."""
-        self.target.use((0, 0, self.area.width, self.area.height))
-
-    def set_table_uniforms(self, program: moderngl.Program) -> None:
-        """Set the uniforms of a program that paints on the table, except where it is hidden."""
-        set_uniforms(program, clip_from_table=self.clip_from_table, hidden=HIDDEN_UNIT)
-        if self.hidden is not None:
-            self.hidden.use(HIDDEN_UNIT)
-
-
-@dataclass(frozen=True)
 class FrameResources:
     """All that the passes share while they draw one picture; built once a frame."""
 
     context: moderngl.Context
     """Where everything is drawn."""
 
-    targets: RenderTargets
-    """Framebuffers to draw in."""
+    layers: TargetCache
+    """Targets to draw the characters in."""
 
     scene: Scene
     """What the picture shows."""
@@ -136,9 +103,6 @@ class FrameResources:
 
     cubes: tuple[tuple[Box, Rectangle], ...]
     """Real cubes in the picture, and where they are in it."""
-
-    hidden: ShareTexture
-    """Keeps the texture of what hides the table."""
 
     characters: tuple[CharacterInstance, ...]
     """The visible characters, skinned on the graphics card."""
@@ -235,7 +199,7 @@ class FrameResources:
             return None
         return CharacterLayer(
             area,
-            self.targets.layers.at_least(area.width, area.height),
+            self.layers.at_least(area.width, area.height),
             clip_from_camera(self.camera_matrix, area),
             tuple(box for box, place in self.cubes if place.intersection(area)),
         )

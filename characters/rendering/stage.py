@@ -18,8 +18,7 @@ from characters.rendering.projection import is_invertible, is_pinhole
 from characters.rendering.quality import FULL, QUALITIES, Quality
 from characters.rendering.resources import FrameResources
 from characters.rendering.scene import Cover, FloorPath, Scene, SceneCharacter, Softness, View
-from characters.rendering.share_texture import ShareTexture
-from characters.rendering.target import RenderTargets
+from characters.rendering.target import TargetCache
 from characters.rendering.undistortion import Undistorter
 from characters.skeleton.pose import Array
 
@@ -69,8 +68,9 @@ class Stage:
         self._undistorter = Undistorter(size)
         self._light = LightEstimator()
         self._quality = FULL
-        self._targets = RenderTargets(context, FULL)
-        self._hidden = ShareTexture(context)
+        self._layers = TargetCache(context, FULL.fineness)
+        self._one_texel = context.texture((1, 1), 4)
+        self._idle = context.framebuffer([self._one_texel])
         self._characters = CharacterCache(context, self.programs)
 
     @property
@@ -82,8 +82,8 @@ class Stage:
     def quality(self, quality: Quality) -> None:
         if quality != self._quality:
             self._context.detect_framebuffer(0).use()
-            self._targets.release()
-            self._targets = RenderTargets(self._context, quality)
+            self._layers.release()
+            self._layers = TargetCache(self._context, quality.fineness)
             self._quality = quality
             added = [each for each in self.passes if each not in self._own_passes]
             for render_pass in self._own_passes:
@@ -159,7 +159,8 @@ class Stage:
 
     def _begin_to_draw(self) -> None:
         """Let a software driver start, as it does when another framebuffer is drawn on."""
-        self._targets.pictures.at_least(1, 1).clear()
+        self._idle.use()
+        self._idle.clear()
 
     def release(self) -> None:
         """Release everything but the context; a second call does nothing."""
@@ -168,9 +169,10 @@ class Stage:
         for render_pass in self.passes:
             render_pass.release()
         self._characters.release()
-        self._targets.release()
+        self._layers.release()
+        self._idle.release()
+        self._one_texel.release()
         self._undistorter.release()
-        self._hidden.release()
         self.programs.release()
 
     def _softness(self, view: View) -> Softness | None:
@@ -188,10 +190,10 @@ class Stage:
         light = self._light.update(seen, partial(paper_color, view), view.light, table)
         if table is None or not is_pinhole(view.matrix):
             return None
-        self._targets.pictures.at_least(1, 1).use((0, 0, 1, 1))
+        self._idle.use()
         return FrameResources(
             context=self._context,
-            targets=self._targets,
+            layers=self._layers,
             scene=scene,
             undistorted=partial(self._undistorter.undistort, view),
             size=self.size,
@@ -200,7 +202,6 @@ class Stage:
             light=light,
             softness=self._softness(view),
             cubes=visible_cubes(view.occluders, matrix, self.size),
-            hidden=self._hidden,
             characters=self._characters.skin(
                 scene.characters,
                 PictureFineness(table, float(matrix[1, 1]), self._quality.max_error_px),

@@ -38,7 +38,6 @@ PARTS = (
     ("undistort", Undistorter, "undistort"),
     ("estimate the light", LightEstimator, "update"),
     ("skin", SkinnedCharacter, "skin"),
-    ("prepare floor paths", FloorPathPass, "prepare"),
     ("render shadow maps", ShadowPass, "prepare"),
     ("floor paths", FloorPathPass, "composite"),
     ("shadows", ShadowPass, "composite"),

@@ -37,7 +37,7 @@ def passes_for(
     if quality.deferred:
         shading = _deferred_shading(quality.effects, context, programs, blockers)
     return [
-        FloorPathPass(context, programs),
+        FloorPathPass(),
         shadows,
         CubeOcclusionPass(context, programs),
         CubeWindowPass(context, programs),

@@ -1,14 +1,23 @@
-"""Paths painted on the table: discs, a ring, and dashes between them."""
+"""Paths painted on the table: discs, a ring, and dashes between them.
 
-import moderngl
+They are painted into an image of the table when they change; in each picture, it is bent and
+blended in memory.
+"""
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.passes.render_pass import RegionPass
-from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.projection import merge_rectangles
-from characters.rendering.resources import FrameResources, Region
-from characters.rendering.scene import FloorPath
+from characters.rendering.hidden_table import hidden_table
+from characters.rendering.passes.render_pass import RenderPass
+from characters.rendering.passes.table_image import TableImage
+from characters.rendering.projection import NEAR_M
+from characters.rendering.resources import FrameResources
+from characters.rendering.scene import Cover, FloorPath
 from characters.skeleton.pose import Array
 
 POINT_RADIUS_M, HIGHLIGHT_RADIUS_M = 0.005, 0.0075
@@ -23,71 +32,114 @@ DASH_M, GAP_M, DASH_WIDTH_M = 0.011, 0.008, 0.0028
 CLEARANCE_M = 0.006
 """Distance between a disc and the first dash [m]."""
 
+OPACITY = 0.82
+"""Share of the table that paint hides."""
 
-class FloorPathPass(RegionPass):
+MAX_SIDE_TEXELS = 2048
+"""Longest side of an image of paths; texels are larger where paths reach further."""
+
+KEPT_PATHS = 8
+"""Images that are kept for the next picture."""
+
+
+class FloorPathPass(RenderPass):
     """Paints the floor paths on the table."""
 
-    def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
-        self._buffer = context.buffer(reserve=1 << 14, dynamic=True)
-        content = [(self._buffer, "2f 2f 3f 3f", "position", "local", "shape", "color")]
-        self._arrays = [
-            context.vertex_array(programs.load("floor_paths", "floor_paths", *defines), content)
-            for defines in ((), ("HIDDEN",))
-        ]
-        self._count = 0
-        self.owned = (*self._arrays, self._buffer)
-
-    def prepare(self, frame: FrameResources) -> None:
-        """Upload the paths, and find the areas around them; what lies between is left out."""
-        marks = [mark for path in frame.scene.floor for mark in _marks(path)]
-        self._count = sum(len(mark) for mark in marks)
-        self.areas = ()
-        if self._count == 0:
-            return
-        vertices = np.concatenate(marks)
-        if vertices.nbytes > self._buffer.size:
-            self._buffer.orphan(2 * vertices.nbytes)
-        self._buffer.write(vertices)
-        areas = [
-            frame.area_of(np.insert(mark[:, :2].astype(float), 1, 0.0, axis=1)) for mark in marks
-        ]
-        self.areas = merge_rectangles([area for area in areas if area is not None])
-
-    def draw(self, frame: FrameResources, region: Region) -> None:
+    def composite(self, frame: FrameResources, cover: Cover | None) -> None:
         """Paint the paths, except where real cubes or a hand hide them."""
-        region.use()
-        frame.context.enable_only(moderngl.BLEND)
-        frame.context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-        array = self._arrays[region.hidden is not None]
-        region.set_table_uniforms(array.program)
-        set_uniforms(array.program, light=frame.light.white)
-        array.render(moderngl.TRIANGLES, vertices=self._count)
+        for path in frame.scene.floor:
+            points = np.asarray(path.points, float).reshape(-1, 2)
+            points = points[np.isfinite(points).all(axis=1)]
+            if len(points):
+                texel = _texel(frame, points)
+                image = _painted(points.tobytes(), path.closed, path.highlight, texel)
+                _blend(frame, cover, image, path)
 
 
-def _marks(path: FloorPath) -> list[NDArray[np.float32]]:
-    """Return the vertices of each point and of each dashed segment of a path.
+def _texel(frame: FrameResources, points: Array) -> float:
+    """Return a side of texels that are about as large as the nearest pixels of a path [m].
 
-    Each is (n, 10): position, position in the mark, shape, linear colour.
+    It is a power of two, so that paths are seldom painted anew.
     """
-    points = np.asarray(path.points, float).reshape(-1, 2)
-    points = points[np.isfinite(points).all(axis=1)]
-    highlighted = np.arange(len(points)) == (-1 if path.highlight is None else path.highlight)
+    row = frame.camera_from_table[2]
+    depth = max(float((points @ row[[0, 2]]).min() + row[3]), NEAR_M)
+    coarsest = float(np.ptp(points, axis=0).max()) / MAX_SIDE_TEXELS
+    return 2.0 ** round(math.log2(max(depth / float(frame.camera_matrix[1, 1]), coarsest)))
+
+
+def _blend(frame: FrameResources, cover: Cover | None, image: TableImage, path: FloorPath) -> None:
+    """Blend the paint of a path, lit as the table is, with the picture."""
+    area = frame.area_of(image.corners)
+    if area is None:
+        return
+    share = image.in_picture(frame, area, beyond=0)
+    hidden = hidden_table(frame.hidden_by_cubes, cover, area)
+    if hidden is not None:
+        share = np.asarray(cv2.multiply(share, cv2.bitwise_not(hidden), scale=1 / 255), np.uint8)
+    if not cv2.countNonZero(share):
+        return
+    columns, rows = cv2.findNonZero(share).reshape(-1, 2).T  # few of all pixels
+    light = np.asarray(path.color, float) ** 2.2 * frame.light.white
+    paint = np.clip(light[::-1], 0.0, 1.0) ** (1.0 / 2.2)
+    opacity = (OPACITY / 255.0 * share[rows, columns])[:, None]
+    part = frame.picture[area.slices]
+    before = part[rows, columns]
+    part[rows, columns] = np.rint(before + opacity * (255.0 * paint - before))
+
+
+@lru_cache(maxsize=KEPT_PATHS)
+def _painted(points: bytes, closed: bool, highlight: int | None, texel: float) -> TableImage:
+    """Return the share of each texel that paint covers; `points` are finite, (n, 2) float64 [m]."""
+    places = np.frombuffer(points).reshape(-1, 2)
+    highlighted = np.arange(len(places)) == (-1 if highlight is None else highlight)
+    capsules = _discs(places, highlighted)
+    if texel < DASH_M:  # else dashes are not seen, and may be many
+        capsules = np.concatenate([capsules, *_dashes(places, closed, highlighted)])
+    reach = RING_RADII_M[1] + 3.0 * texel
+    corner = np.floor((places.min(axis=0) - reach) / texel) * texel
+    columns, rows = np.ceil((places.max(axis=0) + reach - corner) / texel).astype(int).tolist()
+    pixels = np.zeros((rows, columns), np.uint8)
+    for capsule in capsules.tolist():
+        _paint(pixels, corner.tolist(), texel, capsule)
+    return TableImage(pixels, (float(corner[0]), float(corner[1])), texel)
+
+
+def _paint(
+    pixels: NDArray[np.uint8], corner: Sequence[float], texel: float, capsule: Sequence[float]
+) -> None:
+    """Paint a capsule, a row of `_discs`, into an image; its edge is a texel wide."""
+    x, z, along_x, along_z, half_length, radius, hole = capsule
+    far = half_length + radius + 2.0 * texel
+    (left, right), (near, end) = (
+        (int((middle - far - low) / texel), int((middle + far - low) / texel) + 1)
+        for middle, low in zip((x, z), corner, strict=True)
+    )
+    beside = corner[0] + texel * (np.arange(left, right) + 0.5) - x
+    ahead = corner[1] + texel * (np.arange(near, end) + 0.5)[:, None] - z
+    beyond = np.maximum(np.abs(beside * along_x + ahead * along_z) - half_length, 0.0)
+    off = np.hypot(beyond, ahead * along_x - beside * along_z)
+    covered = np.clip((radius - off) / texel + 0.5, 0.0, 1.0)
+    if hole > 0.0:
+        covered *= np.clip((off - hole) / texel + 0.5, 0.0, 1.0)
+    part = pixels[near:end, left:right]
+    np.maximum(part, np.rint(255.0 * covered).astype(np.uint8), out=part)
+
+
+def _discs(points: Array, highlighted: NDArray[np.bool_]) -> Array:
+    """Return the points of a path as capsules without length, with the ring, (n, 7).
+
+    Centre and direction on the table, half length, radius, radius of the hole [m].
+    """
     discs = np.zeros((len(points), 7))
     discs[:, 0:2], discs[:, 2] = points, 1.0
     discs[:, 5] = np.where(highlighted, HIGHLIGHT_RADIUS_M, POINT_RADIUS_M)
     rings = discs[highlighted]
     rings[:, 6], rings[:, 5] = RING_RADII_M
-    segments = _dashes(points, path.closed, highlighted)
-    color = np.asarray(path.color, float) ** 2.2
-    marks = (*discs[:, None], rings, *segments)
-    return [_quads(capsules, color) for capsules in marks if len(capsules)]
+    return np.concatenate([discs, rings])
 
 
 def _dashes(points: Array, closed: bool, highlighted: NDArray[np.bool_]) -> list[Array]:
-    """Return the dashes of each segment as capsules, (n, 7).
-
-    Centre and direction on the table, half length, radius, radius of the hole.
-    """
+    """Return the dashes of each segment, as `_discs` returns points."""
     count = len(points)
     segments = [(i, (i + 1) % count) for i in range(count if closed and count > 2 else count - 1)]
     clearance = np.where(highlighted, RING_RADII_M[1], POINT_RADIUS_M) + CLEARANCE_M
@@ -109,17 +161,3 @@ def _dashes(points: Array, closed: bool, highlighted: NDArray[np.bool_]) -> list
         )
         dashes.append(np.hstack([centers, shape]))
     return dashes
-
-
-def _quads(capsules: Array, color: Array) -> NDArray[np.float32]:
-    """Return two triangles around each capsule, with a margin for its soft edge."""
-    corner = np.array([(-1, -1), (1, -1), (1, 1), (-1, -1), (1, 1), (-1, 1)], float)
-    local = 1.3 * capsules[:, None, 5:6] * corner
-    local[..., 0] += capsules[:, None, 4] * corner[:, 0]
-    along = capsules[:, None, 2:4]
-    across = np.stack([-along[..., 1], along[..., 0]], axis=-1)
-    position = capsules[:, None, :2] + local[..., :1] * along + local[..., 1:] * across
-    shape = np.broadcast_to(capsules[:, None, 4:7], (*position.shape[:2], 3))
-    colors = np.broadcast_to(color, (*position.shape[:2], 3))
-    vertices = np.concatenate([position, local, shape, colors], axis=-1)
-    return vertices.reshape(-1, 10).astype(np.float32)

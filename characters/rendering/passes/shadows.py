@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from characters.rendering.geometry.character_cache import CharacterInstance
 from characters.rendering.light import Light
 from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.passes.table_factors import TableFactors, darken
+from characters.rendering.passes.table_factors import darken
+from characters.rendering.passes.table_image import TableImage
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.resources import CharacterLayer, FrameResources
 from characters.rendering.scene import Cover
@@ -85,7 +86,7 @@ class ShadowPass(RenderPass):
         """Return the share of the key light in the light on the table, (3,)."""
         return key_share(light)
 
-    def _table_factors(self) -> list[TableFactors]:
+    def _table_factors(self) -> list[TableImage]:
         """Return the light that each character leaves."""
         return [shadow.factors() for shadow in self._maps[: self._count]]
 
@@ -166,7 +167,7 @@ class ShadowMap:
         if self._drawn is None:
             self._drawn = read_bytes(self._target, (0, 0, 2 * MAP_SIDE, MAP_SIDE), 4)
 
-    def factors(self) -> TableFactors:
+    def factors(self) -> TableImage:
         """Return what is left of the light, with one more texel on each side."""
         self.read_back()
         assert self._drawn is not None
@@ -184,14 +185,14 @@ class ShadowMap:
         )
         texel = float(self.area[2]) / MAP_SIDE
         corner = self.area[:2] + texel * (np.array([x, z]) - 1)
-        return TableFactors(np.asarray(bgr, np.uint8), (float(corner[0]), float(corner[1])), texel)
+        return TableImage(np.asarray(bgr, np.uint8), (float(corner[0]), float(corner[1])), texel)
 
     def texture(self) -> moderngl.Texture:
         """Return what is left of the light for other passes, BGR in the texels of `area`."""
         if self._texture is None:
             self._texture = self._context.texture((MAP_SIDE, MAP_SIDE), 3, alignment=1)
             self._texture.repeat_x = self._texture.repeat_y = False
-        factors = self.factors().bgr
+        factors = self.factors().pixels
         x, z, _, _ = self._used_texels()
         bgr = np.full((MAP_SIDE + 2, MAP_SIDE + 2, 3), 255, np.uint8)
         bgr[z : z + factors.shape[0], x : x + factors.shape[1]] = factors

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from characters.rendering.passes.resolve import MAX_BLUR_PX, OWN_BLUR_PX, blurred
-from characters.rendering.passes.table_factors import TableFactors, darken
+from characters.rendering.passes.table_factors import darken
+from characters.rendering.passes.table_image import TableImage
 from characters.rendering.projection import Rectangle, project
 
 MATRIX = np.array([[300.0, 0.0, 159.5], [0.0, 300.0, 89.5], [0.0, 0.0, 1.0]])
@@ -36,7 +37,7 @@ def test_each_texel_of_a_shadow_lies_where_the_camera_sees_its_place(pitch):
     bgr = np.full((9, 9, 3), 255, np.uint8)
     bgr[3, 6] = 0
     texel, corner = 0.02, (-0.05, -HEIGHT_M / np.tan(pitch) - 0.09)
-    darken(seen, None, TableFactors(bgr, corner, texel))
+    darken(seen, None, TableImage(bgr, corner, texel))
     place = np.array([corner[0] + 6.5 * texel, 0.0, corner[1] + 3.5 * texel, 1.0])
     expected = project((seen.camera_from_table @ place)[:3], MATRIX)
     dark = 255.0 - seen.picture[..., 0]
@@ -48,7 +49,7 @@ def test_each_texel_of_a_shadow_lies_where_the_camera_sees_its_place(pitch):
 def test_a_shadow_behind_the_camera_is_not_seen_in_the_sky():
     seen = frame(0.1)
     black = np.zeros((20, 20, 3), np.uint8)
-    darken(seen, None, TableFactors(black, (-5.0, 0.2), 0.5))  # +z is towards the viewer
+    darken(seen, None, TableImage(black, (-5.0, 0.2), 0.5))  # +z is towards the viewer
     assert seen.picture[:40].min() == 255
 
 

@@ -15,7 +15,6 @@ from characters.rendering.projection import (
     bounding_rectangle,
     clip_from_camera,
     is_invertible,
-    merge_rectangles,
 )
 
 MATRIX = np.array([[310.0, 0.7, 158.2], [0.0, 305.0, 92.4], [0.0, 0.0, 1.0]])
@@ -73,22 +72,6 @@ def test_a_point_behind_the_camera_needs_the_whole_picture():
     assert bounding_rectangle(points, MATRIX, np.eye(4), (320, 180)) == Rectangle(0, 0, 320, 180)
     assert bounding_rectangle(points[1:], MATRIX, np.eye(4), (320, 180)) is None
     assert bounding_rectangle(points[:0], MATRIX, np.eye(4), (320, 180)) is None
-
-
-@given(
-    st.lists(
-        st.builds(
-            Rectangle,
-            st.integers(0, 900), st.integers(0, 600), st.integers(1, 300), st.integers(1, 200),
-        ),
-        max_size=12,
-    )
-)  # fmt: skip
-def test_merged_rectangles_contain_the_originals(parts):
-    fewer = merge_rectangles(parts)
-    assert len(fewer) <= len(parts)
-    for part in parts:
-        assert any(other.union(part) == other for other in fewer)
 
 
 @pytest.mark.parametrize("scale", [1e-7, 1e-4, 1.0, 1e5])

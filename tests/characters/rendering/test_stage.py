@@ -1,11 +1,11 @@
 """Whole pictures: what is drawn, what is not drawn, and invalid input."""
 
 import gc
+import time
 from dataclasses import replace
 from pathlib import Path
 
 import cv2
-import moderngl
 import numpy as np
 import pytest
 
@@ -19,7 +19,7 @@ from characters.rendering import (
     Stage,
     View,
 )
-from characters.rendering.passes.render_pass import RegionPass
+from characters.rendering.passes.render_pass import RenderPass
 
 GOLDEN = Path(__file__).parent / "golden"
 LOOP = FloorPath(
@@ -122,6 +122,21 @@ def test_the_hand_is_looked_for_in_every_frame(stage, view, pawn):
     for table in (view.camera_from_table, None):
         stage.draw(replace(view, camera_from_table=table), [], (), lambda: looked.append(1))
     assert len(looked) == 2
+
+
+def test_a_path_behind_the_hand_is_not_seen(stage, view):
+    behind = replace(LOOP, points=np.array([[0.03, 0.0], [0.04, 0.03]]))
+    assert not np.array_equal(stage.draw(view, [], [behind]), view.image)
+    whole = Cover(0, 0, np.full((180, 320), 255, np.uint8), 0.3)
+    hidden = stage.draw(replace(view, cover=whole), [], [behind])
+    assert np.array_equal(hidden, view.image)
+
+
+def test_a_path_far_beyond_the_table_is_painted_in_no_time(stage, view):
+    far = replace(LOOP, points=np.array([[0.0, 0.0], [1e9, -1e9], [0.05, 0.0]]))
+    started = time.perf_counter()
+    stage.draw(view, [], [far])
+    assert time.perf_counter() - started < 1.0
 
 
 def test_half_a_hand_hides_half_of_the_pawn(stage, view, pawn):
@@ -265,40 +280,19 @@ def test_five_hundred_pictures_leak_no_memory(ctx, view, pawn, cube):
     stage.release()
 
 
-class TintPass(RegionPass):
+class TintPass(RenderPass):
     """Multiplies the picture with a colour: the example of the room's README."""
 
-    def __init__(self, context, bgr):
-        program = context.program(vertex_shader=FULL_SCREEN, fragment_shader=TINT)
-        program["tint"] = bgr
-        self._triangle = context.vertex_array(program, [])
-        self.owned = (self._triangle, program)
+    def __init__(self, bgr):
+        self._factors = np.array([*bgr, 1.0])
 
-    def prepare(self, frame):
-        self.areas = [frame.whole]
-
-    def draw(self, frame, region):
-        region.use()
-        frame.context.enable_only(moderngl.BLEND)
-        frame.context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
-        self._triangle.render(moderngl.TRIANGLES, vertices=3)
-
-
-FULL_SCREEN = """#version 330 core
-void main() {
-    gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
-}"""
-TINT = """#version 330 core
-uniform vec3 tint;
-out vec4 color;
-void main() {
-    color = vec4(tint, 1.0);
-}"""
+    def composite(self, frame, cover):
+        cv2.multiply(frame.picture, self._factors, dst=frame.picture)
 
 
 def test_a_pass_of_ones_own_is_one_class_and_one_line(ctx, view, pawn):
     plain, tinted = Stage(ctx, (320, 180)), Stage(ctx, (320, 180))
-    tinted.passes.append(TintPass(ctx, (0.5, 1.0, 0.0)))
+    tinted.passes.append(TintPass((0.5, 1.0, 0.0)))
     expected = plain.draw(view, [pawn.posed()]) * [0.5, 1.0, 0.0]
     picture = tinted.draw(view, [pawn.posed()])
     plain.release()

@@ -9,7 +9,7 @@ from characters.rendering.deferred.blocker_map import TABLE_RANGE_TEXELS, Blocke
 from characters.rendering.deferred.lamp import Lamp
 from characters.rendering.light import Light
 from characters.rendering.passes.shadows import ShadowPass, key_share, sky_extent
-from characters.rendering.passes.table_factors import TableFactors
+from characters.rendering.passes.table_image import TableImage
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.resources import FrameResources
 from characters.rendering.target import read_bytes
@@ -77,13 +77,13 @@ class SoftShadowPass(ShadowPass):
         """Return zero: the maps of `ShadowPass` hold the light from all around alone."""
         return np.zeros(3)
 
-    def _table_factors(self) -> list[TableFactors]:
+    def _table_factors(self) -> list[TableImage]:
         """Return the light that all characters leave together."""
         x, z, side = self.square
         texel = side / TABLE_SIDE
         width, depth = np.ceil((self._extent[2:] - [x, z]) / texel).astype(int).tolist()
         factors = read_bytes(self._targets[2], (0, 0, width, depth), 3)
-        return [TableFactors(factors, (x, z), texel)]
+        return [TableImage(factors, (x, z), texel)]
 
     @property
     def square(self) -> tuple[float, float, float]:
