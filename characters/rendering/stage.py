@@ -31,8 +31,8 @@ COARSE_SOFTNESS = Softness(0.64, 0.0)
 class Stage:
     """Draws characters into the camera's picture.
 
-    A picture is an ordered list of passes over one `FrameResources`. Only the regions in which a
-    pass draws go through the graphics card, so that software rendering keeps up with a camera. The
+    A picture is an ordered list of passes over one `FrameResources`. Only the characters go through
+    the graphics card, so that software rendering keeps up with a camera: all else is in memory. The
     light is estimated from the pictures: a picture depends on those before it and on nothing else.
 
     Parameters
