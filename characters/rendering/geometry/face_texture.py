@@ -20,7 +20,7 @@ from characters.rendering.projection import Rectangle
 from characters.skeleton.pose import Array
 
 INTENSITY_STEPS = 64
-"""Steps of a layer's intensity, which nobody tells apart: the layers are seldom added anew."""
+"""Steps of a layer's intensity, too small to be seen: layers are composed again for whole ones."""
 
 WRINKLE_DEPTHS_PX = 0.85, 1.15
 """Depths of wrinkles in the picture from which on they are seen at all, and as they are [px]:

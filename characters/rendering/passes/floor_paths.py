@@ -32,7 +32,7 @@ DASH_M, GAP_M, DASH_WIDTH_M = 0.011, 0.008, 0.0028
 CLEARANCE_M = 0.006
 """Distance between a disc and the first dash [m]."""
 
-OPACITY = 0.82
+PAINT_OPACITY = 0.82
 """Share of the table that paint hides."""
 
 MAX_SIDE_TEXELS = 2048
@@ -59,7 +59,7 @@ class FloorPathPass(RenderPass):
 def _texel(frame: FrameResources, points: Array) -> float:
     """Return a side of texels that are about as large as the nearest pixels of a path [m].
 
-    It is a power of two, so that paths are seldom painted anew.
+    It is a power of two, so that paths are seldom painted again.
     """
     row = frame.camera_from_table[2]
     depth = max(float((points @ row[[0, 2]]).min() + row[3]), NEAR_M)
@@ -81,7 +81,7 @@ def _blend(frame: FrameResources, cover: Cover | None, image: TableImage, path: 
     columns, rows = cv2.findNonZero(share).reshape(-1, 2).T  # few of all pixels
     light = np.asarray(path.color, float) ** 2.2 * frame.light.white
     paint = np.clip(light[::-1], 0.0, 1.0) ** (1.0 / 2.2)
-    opacity = (OPACITY / 255.0 * share[rows, columns])[:, None]
+    opacity = (PAINT_OPACITY / 255.0 * share[rows, columns])[:, None]
     part = frame.picture[area.slices]
     before = part[rows, columns]
     part[rows, columns] = np.rint(before + opacity * (255.0 * paint - before))

@@ -139,7 +139,7 @@ def test_wrinkles_grow_with_their_intensity(ctx, human_maps):
     assert np.all(np.diff(bends) > 0.5)
 
 
-def test_layers_are_not_added_anew_for_what_nobody_sees(human_maps):
+def test_layers_are_composed_again_only_for_a_visible_change(human_maps):
     mixer = WrinkleMixer(human_maps)
     assert mixer.compose(np.full(LAYERS, 0.5)) is not None
     before = mixer.texels.copy()
