@@ -15,7 +15,7 @@ from characters.rendering.projection import is_invertible
 
 LEVEL_TOLERANCES = (
     *map(Tolerance, (1 / 850, 1 / 600, 1 / 425, 1 / 300, 1 / 200)),
-    Tolerance(1 / 140, thickness_share=0.3),
+    Tolerance(1 / 170, thickness_share=0.3),
 )
 """Those of the coarser levels, with distances as shares of the character's largest side. In the
 coarsest one, small parts are not looked at closely."""
