@@ -17,9 +17,6 @@ def hidden_table(
 ) -> NDArray[np.uint8] | None:
     """Return the share of each pixel of a region that is hidden, or None where nothing is.
 
-    It is found here, and not by the shaders of all that is painted on the table: cubes and hands
-    are small in the region, and one texel is fetched faster than a distance to six sides.
-
     Parameters
     ----------
     cubes

@@ -36,10 +36,8 @@ def hidden_by_cube(box: Box, matrix: Array, area: Rectangle) -> NDArray[np.uint8
     x = np.arange(area.x, area.x + area.width, dtype=np.float32)
     y = np.arange(area.y, area.y + area.height, dtype=np.float32)[:, None]
     inside = np.ones((area.height, area.width), np.float32)
-    for a, b, c in _outline(box, matrix):
-        np.minimum(
-            inside, np.float32(a) * x + (np.float32(b) * y + np.float32(c + 0.5)), out=inside
-        )
+    for a, b, c in np.array(_outline(box, matrix), np.float32):
+        np.minimum(inside, a * x + (b * y + (c + np.float32(0.5))), out=inside)
     return np.asarray(np.rint(255.0 * np.maximum(inside, 0.0)), np.uint8)
 
 
@@ -83,7 +81,7 @@ def _outline(box: Box, matrix: Array) -> list[tuple[float, float, float]]:
     visible = box.edge * _CORNERS @ pose[:3, :3].T + pose[:3, 3]
     if visible[:, 2].min() < NEAR_M:
         visible = _clipped(box.edge * CUBE_EDGES @ pose[:3, :3].T + pose[:3, 3])
-    # All its corners are in one sense of rotation. Plain numbers: numpy takes longer for so few.
+    # Its corners come in one sense of rotation, so that the inside is on one side of all lines.
     hull = cv2.convexHull(project(visible, matrix).astype(np.float32), clockwise=False)[:, 0]
     lines = []
     for (x, y), (to_x, to_y) in pairwise([*hull.tolist(), hull[0].tolist()]):

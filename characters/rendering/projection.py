@@ -42,15 +42,6 @@ class Rectangle:
         """Index of the area in an image array: rows, columns."""
         return slice(self.y, self.y + self.height), slice(self.x, self.x + self.width)
 
-    @property
-    def area(self) -> int:
-        """Number of pixels."""
-        return self.width * self.height
-
-    def contains(self, other: "Rectangle") -> bool:
-        """Return whether another rectangle lies completely inside."""
-        return self.union(other) == self
-
     def intersection(self, other: "Rectangle") -> "Rectangle | None":
         """Return the pixels in both, or None where there are none.
 

@@ -112,11 +112,6 @@ class FrameResources:
         """Size of a pixel of the camera's frame in the picture [px]."""
         return float(self.camera_matrix[1, 1] / self.scene.view.matrix[1, 1])
 
-    @property
-    def whole(self) -> Rectangle:
-        """The whole picture."""
-        return Rectangle(0, 0, *self.size)
-
     @cached_property
     def picture(self) -> Image:
         """The undistorted camera frame, (height, width, 3) BGR, which passes draw on.

@@ -70,7 +70,7 @@ class Stage:
         self._quality = FULL
         self._layers = TargetCache(context, FULL.fineness)
         self._one_texel = context.texture((1, 1), 4)
-        self._idle = context.framebuffer([self._one_texel])
+        self._idle = context.framebuffer([self._one_texel])  # in use while nothing is drawn
         self._characters = CharacterCache(context, self.programs)
 
     @property

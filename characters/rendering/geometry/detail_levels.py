@@ -100,14 +100,13 @@ def with_levels(
     new_index[order] = np.arange(len(order))
     starts = np.searchsorted(part[order], range(3)).tolist()
     levels = []
-    for number, ((indices, materials, awake), tolerance) in enumerate(
-        zip(drawn, (Tolerance(0.0), *tolerances), strict=False)
+    distances = (0.0, *(side * each.distance for each in tolerances))
+    for number, ((indices, materials, awake), distance) in enumerate(
+        zip(drawn, distances, strict=False)
     ):
         counts = np.bincount(part[last >= number], minlength=3).tolist()
         parts = tuple(zip(starts, counts, strict=True))
-        levels.append(
-            DetailLevel(side * tolerance.distance, new_index[indices], materials, awake, parts)
-        )
+        levels.append(DetailLevel(distance, new_index[indices], materials, awake, parts))
     return vertices.reordered(order), tuple(levels)
 
 

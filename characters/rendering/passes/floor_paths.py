@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from characters.rendering.hidden_table import hidden_table
 from characters.rendering.passes.render_pass import RenderPass
+from characters.rendering.passes.shadows import DISPLAY_GAMMA
 from characters.rendering.passes.table_image import TableImage
 from characters.rendering.projection import NEAR_M
 from characters.rendering.resources import FrameResources
@@ -79,8 +80,8 @@ def _blend(frame: FrameResources, cover: Cover | None, image: TableImage, path: 
     if not cv2.countNonZero(share):
         return
     columns, rows = cv2.findNonZero(share).reshape(-1, 2).T  # few of all pixels
-    light = np.asarray(path.color, float) ** 2.2 * frame.light.white
-    paint = np.clip(light[::-1], 0.0, 1.0) ** (1.0 / 2.2)
+    light = np.asarray(path.color, float) ** DISPLAY_GAMMA * frame.light.white
+    paint = np.clip(light[::-1], 0.0, 1.0) ** (1.0 / DISPLAY_GAMMA)
     opacity = (PAINT_OPACITY / 255.0 * share[rows, columns])[:, None]
     part = frame.picture[area.slices]
     before = part[rows, columns]

@@ -38,7 +38,8 @@ class RenderPass:
     def composite(self, frame: FrameResources, cover: Cover | None) -> None:
         """Change the picture of the frame, in place; `cover` is the hand.
 
-        This is done in memory: a software driver takes several times as long for it as OpenCV does.
+        The picture is in memory: a software driver takes several times as long as OpenCV to change
+        it.
         """
 
     def release(self) -> None:

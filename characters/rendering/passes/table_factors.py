@@ -18,11 +18,11 @@ def darken(frame: FrameResources, cover: Cover | None, factors: TableImage) -> N
 
     `factors` are those of sRGB values, BGR, 255 for 1; beyond them, all light is left.
     """
-    factors = _cropped(factors)
-    area = frame.area_of(factors.corners) if factors.pixels.size else None
-    if area is None:
+    dark = _cropped(factors)
+    area = None if dark is None else frame.area_of(dark.corners)
+    if dark is None or area is None:
         return
-    left = factors.in_picture(frame, area, beyond=255)
+    left = dark.in_picture(frame, area, beyond=255)
     hidden = hidden_table(frame.hidden_by_cubes, cover, area)
     if hidden is not None and hidden.any():
         x, y, width, height = cv2.boundingRect(hidden)
@@ -34,13 +34,13 @@ def darken(frame: FrameResources, cover: Cover | None, factors: TableImage) -> N
     part[:] = darkened(part, left, frame.haze)
 
 
-def _cropped(factors: TableImage) -> TableImage:
-    """Return the part that is seen to be dark, and one texel around it."""
+def _cropped(factors: TableImage) -> TableImage | None:
+    """Return the part that is seen to be dark, and one texel around it; None if none is."""
     seen = cv2.inRange(factors.pixels, (UNSEEN_LEVEL,) * 3, (255,) * 3)
     x, y, width, height = cv2.boundingRect(cv2.bitwise_not(seen))
+    if not width:
+        return None
     left, top = max(x - 1, 0), max(y - 1, 0)
     part = factors.pixels[top : y + height + 1, left : x + width + 1]
     corner = factors.corner[0] + left * factors.texel, factors.corner[1] + top * factors.texel
-    if not width:
-        part = part[:0]
     return TableImage(np.ascontiguousarray(part), corner, factors.texel)
