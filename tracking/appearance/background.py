@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from tracking.appearance.colour_model import LIGHTNESS_OFFSET
 from tracking.geometry.arrays import Flags, Floats, Image
 from tracking.geometry.robust_statistics import quantile
 
@@ -260,13 +259,9 @@ class Background:
         """Return the frames for which each pixel of a window is known, (h, w), up to `MAX_AGE`."""
         return self._age[box]
 
-    def planes(self, box: Box, where: Flags) -> list[Image]:
-        """Return L, a and b of CIELab in bytes, of some pixels of a window, (n,) each."""
-        offsets = (-LIGHTNESS_OFFSET, 128.0, 128.0)
-        means = (plane[where] for plane in self._mean[:, box[0], box[1]])
-        return [
-            (mean + offset).astype(np.uint8) for mean, offset in zip(means, offsets, strict=True)
-        ]
+    def lab(self, box: Box, where: Flags) -> Floats:
+        """Return L + 16, a and b of CIELab in bytes, of some pixels of a window, (3, n)."""
+        return self._mean[:, box[0], box[1]][:, where]
 
     def forget_some(self, box: Box, where: Flags) -> None:
         """Forget some pixels of a window: what was learned there was no background."""

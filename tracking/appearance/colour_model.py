@@ -1,18 +1,17 @@
 """The colours of the hand and of what is behind it, learned over frames."""
 
-from collections.abc import Sequence
-
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.geometry.arrays import Flags, Floats, Image
+from tracking.geometry.arrays import Flags, Floats
 
-LAB_BINS = (24, 24, 8)
-"""Bins along a, b and L of CIELab: chroma tells skin, lightness varies with the light."""
+LAB_BINS = (32, 32, 8)
+"""Bins along chroma a and b and along lightness."""
 
-MIN_CHROMA, CHROMA_STEP, LIGHTNESS_STEP = 80, 4, 32
-"""Least a and b in the first bin but what is below it, and widths of bins [CIELab bytes]."""
+CHROMA_STEP, LIGHTNESS_STEP = 1 / 75, 40.0
+"""Width of the bins of chroma, as a share of the lightness, which a shadow does not change; and of
+the bins of lightness, L + 16 [CIELab bytes]."""
 
 LIGHTNESS_OFFSET = 41.0
 """16 of CIELab's L in bytes: light scales L + 16, and the chroma by the same factor."""
@@ -29,6 +28,10 @@ MIN_DENSITY = 1e-4
 MAX_ODDS = 2.0
 """What a colour speaks for or against a hand at most, as the logarithm of odds."""
 
+DISTINCT_ODDS = 1.2, 1.7
+"""Mean of what a hand's own colours speak for it, from which on they tell it from what is behind it
+at all, and wherever it is."""
+
 MIN_DIFFERENCE = 1.0
 """Difference of such odds from which on one of two colours is more likely that of a hand."""
 
@@ -38,19 +41,14 @@ MIN_COMMON = 0.01
 Colours = NDArray[np.uint16]
 """Number of the bin of each pixel, (h, w)."""
 
-_BYTES = np.arange(256)
-_CHROMA = ((_BYTES - MIN_CHROMA) // CHROMA_STEP).clip(0, LAB_BINS[0] - 1)
-_BINS_OF_A = (_CHROMA * (LAB_BINS[1] * LAB_BINS[2])).astype(np.uint16)
-_BINS_OF_B = (_CHROMA * LAB_BINS[2]).astype(np.uint16)
-_BINS_OF_L = (_BYTES // LIGHTNESS_STEP).astype(np.uint16)
 
-
-def colours(planes: Sequence[Image]) -> Colours:
-    """Return the bin of each pixel; `planes` are L, a and b of CIELab in bytes, (h, w) each."""
-    light, a, b = planes
-    bins = np.asarray(cv2.LUT(a, _BINS_OF_A), np.uint16)
-    bins += np.asarray(cv2.LUT(b, _BINS_OF_B), np.uint16)
-    bins += np.asarray(cv2.LUT(light, _BINS_OF_L), np.uint16)
+def colours(lab: Floats) -> Colours:
+    """Return the bin of each pixel; `lab` is L + 16, a and b of CIELab in bytes, (3, …)."""
+    light, a, b = lab
+    bins: Colours = (light * np.float32(1 / LIGHTNESS_STEP)).astype(np.uint16)
+    for chroma, count, places in ((a, LAB_BINS[0], LAB_BINS[1] * LAB_BINS[2]), (b, *LAB_BINS[1:])):
+        share = np.float32(1 / CHROMA_STEP) * chroma / light + np.float32(count // 2)
+        bins += share.clip(0, count - 1).astype(np.uint16) * np.uint16(places)
     return bins
 
 
@@ -62,6 +60,8 @@ class ColourModel:
         self._odds = np.zeros(self._hand.size, np.float32)
         self._behind_density = np.zeros(self._hand.size, np.float32)
         self._odds_are_new = True
+        self.distinctness = 0.0
+        """How well the colours of the hand tell it from what is behind it, 0…1."""
 
     @property
     def knows_hand(self) -> bool:
@@ -93,6 +93,8 @@ class ColourModel:
             if self.knows_hand:
                 ratio = np.log(_density(self._hand) / self._behind_density)
                 self._odds = np.minimum(np.maximum(ratio, -MAX_ODDS), MAX_ODDS)
+                own = float(self._hand.ravel() @ self._odds / self._hand.sum())
+                self.distinctness = float(np.interp(own, DISTINCT_ODDS, (0.0, 1.0)))
             self._odds_are_new = True
         return np.asarray(self._odds.take(seen), np.float32)
 

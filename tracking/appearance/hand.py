@@ -172,7 +172,7 @@ class HandFinder:
             self._background.match_size(columns, rows)
             whole = self._frames < MANY_FRAMES or self._frames % WHOLE_FRAMES == 0
             if not whole:
-                sparse = _float_planes(_planes(np.ascontiguousarray(small[::GRID_PX, ::GRID_PX])))
+                sparse = _lab(np.ascontiguousarray(small[::GRID_PX, ::GRID_PX]))
                 part = self._background.differing(sparse, window.box, window.cube_box)
                 window, small = window.part(part), small[part]
             self._last = self._found(image, pose, window, small, whole)
@@ -196,8 +196,8 @@ class HandFinder:
         self, image: Image, pose: Array, window: Window, small: Image, whole: bool
     ) -> HandMask | None:
         """Find the hand in the window, or in the part of it where something differs."""
-        planes = _planes(small)
-        view = _View(window, _float_planes(planes), colours(planes))
+        lab = _lab(small)
+        view = _View(window, lab, colours(lab))
         by_colour = self._colours.odds(view.colours)
         cube = self._cube_part(view, by_colour, pose)
         outside = np.ones(by_colour.shape, bool)
@@ -211,13 +211,10 @@ class HandFinder:
             by_colour = self._colours.odds(view.colours)
         if whole:
             place = self._without_uncovered(place, view, by_colour)
-        odds = _odds(by_colour, place.odds, place.changed | ~outside, cube, window)
+        by_place = _credible(place.odds, by_colour, self._colours.distinctness)
+        odds = _odds(by_colour, by_place, place.changed | ~outside, cube, window)
         hand = connected(odds > 0, window, cube.outline, cube.evidence, place, by_colour)
-        sure = place.changed & (odds > SURE_ODDS)
-        if hand is not None:
-            sure &= hand.view(bool)
-            sure[window.cube_box] |= cube.evidence
-        self._learn(view, hand, sure, outside, place.changed, whole)
+        self._learn(view, cube, hand, odds, outside, place.changed, whole)
         if self._frames < MANY_FRAMES or hand is None:
             self._learn_strip(image, window)
         if hand is None:
@@ -254,7 +251,7 @@ class HandFinder:
             doubtful &= self._background.age(box) < MAX_HAND_AGE
         if not doubtful.any():
             return place
-        before = colours(self._background.planes(box, doubtful)).ravel()
+        before = colours(self._background.lab(box, doubtful))
         uncovered = np.zeros(doubtful.shape, bool)
         uncovered[doubtful] = self._colours.uncovered(view.colours[doubtful], before)
         if not uncovered.any():
@@ -274,8 +271,9 @@ class HandFinder:
     def _learn(
         self,
         view: _View,
+        cube: _CubePart,
         hand: Image | None,
-        sure: Flags,
+        odds: Floats,
         outside: Flags,
         changed: Flags,
         whole: bool,
@@ -283,13 +281,30 @@ class HandFinder:
         """Learn the colours of the hand where it is sure, and what is behind it."""
         self._frames += 1
         its_turn = whole or self._frames % LEARNING_FRAMES == 0 or self._colours.hand_is_new
-        if its_turn and hand is not None and np.count_nonzero(sure) > MIN_LEARNED_PX:
-            self._colours.learn_hand(view.colours, sure)
+        if its_turn and hand is not None:
+            sure = self._covered(view, hand.view(bool) & changed & (odds > SURE_ODDS))
+            sure[view.window.cube_box] |= cube.evidence
+            if np.count_nonzero(sure) > MIN_LEARNED_PX:
+                self._colours.learn_hand(view.colours, sure)
         if whole or self._frames % LEARNING_FRAMES == LEARNING_FRAMES // 2:
             free = outside if hand is None else outside & (cv2.dilate(hand, WIDE) == 0)
             self._background.learn(view.lab, view.window.box, free, changed)
             if whole:
                 self._colours.learn_behind(view.colours, free & ~changed)
+
+    def _covered(self, view: _View, where: Flags) -> Flags:
+        """Return which of some pixels a hand may have covered, (h, w).
+
+        Others are less like the hand than what was there before: a hand has left them, which was
+        there when the background was learned.
+        """
+        if not self._colours.knows_hand:
+            return where
+        before = colours(self._background.lab(view.window.box, where))
+        covered = np.zeros(where.shape, bool)
+        odds = self._colours.odds
+        covered[where] = odds(view.colours[where]) > odds(before) - MIN_DIFFERENCE
+        return covered
 
     def _learn_strip(self, image: Image, window: Window) -> None:
         """Learn a strip of the whole image: the cube may come there."""
@@ -301,8 +316,19 @@ class HandFinder:
         free = np.ones((bottom - top, columns), bool)
         first, last = max(window.top - top, 0), max(window.top + window.height - top, 0)
         free[first:last, window.left : window.left + window.width] = False
-        lab = _float_planes(_planes(shrunk(part, scale)))
+        lab = _lab(shrunk(part, scale))
         self._background.learn_first(lab, np.s_[top:bottom, :columns], free)
+
+
+def _credible(by_place: Floats, by_colour: Floats, distinctness: float) -> Floats:
+    """Return what the place speaks for a hand, less where nothing near has its colours, (h, w).
+
+    The more its colours tell the hand from the desk, the less can a hand be without them: what
+    looks like something else is a shadow, or desk in the place of something that was moved.
+    """
+    near = cv2.dilate(cv2.blur(by_colour, (3, 3)), SMALL)
+    lack = np.minimum(np.maximum(np.float32(1) - near, 0), 1)
+    return np.asarray(by_place - np.float32(distinctness) * lack * np.maximum(by_place, 0))
 
 
 def _odds(
@@ -324,14 +350,10 @@ def _odds(
     return smooth
 
 
-def _planes(image: Image) -> list[Image]:
-    """Return CIELab in bytes, (h, w) each."""
-    return [np.asarray(plane) for plane in cv2.split(cv2.cvtColor(image, cv2.COLOR_BGR2LAB))]
-
-
-def _float_planes(planes: list[Image]) -> Floats:
-    """Return L + 16, a and b in single precision, (3, h, w)."""
-    lab = np.empty((3, *planes[0].shape), np.float32)
+def _lab(image: Image) -> Floats:
+    """Return L + 16, a and b of CIELab in bytes, in single precision, (3, h, w)."""
+    planes = cv2.split(cv2.cvtColor(image, cv2.COLOR_BGR2LAB))
+    lab = np.empty((3, *image.shape[:2]), np.float32)
     for plane, offset, of in zip(planes, (LIGHTNESS_OFFSET, -128.0, -128.0), lab, strict=True):
         np.add(plane, np.float32(offset), out=of)
     return lab

@@ -13,8 +13,9 @@ CLOSED_EDGES = 0.25
 MIN_TOUCH_EDGES2, MIN_AREA_EDGES2 = 0.01, 0.15
 """Least area beside the cube, and in all, of a hand that hides no face [square edges]."""
 
-MIN_EXTENT_EDGES = 0.9
-"""How far from the cube's bounds it must reach: there is an arm behind a hand."""
+MIN_EXTENT_EDGES, SURE_COLOUR_ODDS = 0.9, 1.0
+"""How far from the cube's bounds it must reach, as there is an arm behind a hand; but not if its
+colours speak so much for a hand on average, as a watch or a sleeve may be between."""
 
 MIN_CHANGED_SHARE = 0.3
 """Least share of such a hand that does not look like the desk."""
@@ -78,11 +79,13 @@ def connected(
     for label in np.flatnonzero(touching & ~keep).tolist():
         part = labels == label
         area = np.count_nonzero(part)
+        colour = by_colour[part].mean()
+        reaches = area > np.count_nonzero(part[_within_reach(window)])
         keep[label] = (
             area > MIN_AREA_EDGES2 * square
-            and area > np.count_nonzero(part[_within_reach(window)])
+            and (reaches or colour > SURE_COLOUR_ODDS)
             and np.count_nonzero(part & (place.odds > 0)) > MIN_CHANGED_SHARE * area
-            and by_colour[part].mean() > MIN_COLOUR_ODDS
+            and colour > MIN_COLOUR_ODDS
             and place.likeness(part) < MAX_LIKENESS
         )
     keep[[0, 255]] = False

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from tests.bench.photographs import comparison, dodecahedron, targets, variants
+from tests.bench.photographs import comparison, dodecahedron, hands, targets, variants
 from tests.bench.photographs.boards import tilt_between
 from tests.bench.photographs.body import BodyScore
 from tests.bench.photographs.marker_corners import (
@@ -253,3 +253,20 @@ def test_without_the_photographs_one_line_says_so(monkeypatch, capsys):
     said = capsys.readouterr().out
     assert said.startswith("skipped: there are no photographs in ")
     assert said.count("\n") == 1
+
+
+def test_covers_are_compared_where_they_are_scored():
+    hand, scored = np.zeros((4, 10), bool), np.ones((4, 10), bool)
+    hand[:, :4], scored[:, 8:] = True, False
+    cover = np.zeros((4, 10), np.float32)
+    cover[:, 2:6], cover[:, 8:] = 0.5, 1.0
+    found = hands.score(cover, hand, scored)
+    assert (found.iou, found.found, found.besides) == pytest.approx((0.2, 0.25, 0.25))
+
+
+@needs_photographs
+def test_the_edge_of_an_outlined_hand_is_found():
+    hand, scored = hands.hand_on(62)
+    assert 15_000 < np.count_nonzero(hand & scored) < 25_000
+    assert hand[250, 700]  # a knuckle
+    assert not hand[330, 560]  # the shadow below the wrist
