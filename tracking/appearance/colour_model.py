@@ -5,6 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking.geometry.arrays import Flags, Floats
+from tracking.geometry.robust_statistics import quantile
 
 LAB_BINS = (32, 32, 8)
 """Bins along chroma a and b and along lightness."""
@@ -60,8 +61,13 @@ class ColourModel:
         self._odds = np.zeros(self._hand.size, np.float32)
         self._behind_density = np.zeros(self._hand.size, np.float32)
         self._odds_are_new = True
-        self.distinctness = 0.0
-        """How well the colours of the hand tell it from what is behind it, 0…1."""
+        self._learned_odds, self._seen_odds = 0.0, MAX_ODDS
+
+    @property
+    def distinctness(self) -> float:
+        """How well its colours tell the hand that is there from what is behind it, 0…1."""
+        own = min(self._learned_odds, self._seen_odds)
+        return float(np.interp(own, DISTINCT_ODDS, (0.0, 1.0)))
 
     @property
     def knows_hand(self) -> bool:
@@ -78,6 +84,10 @@ class ColourModel:
         """Whether anything behind the hand was seen."""
         return bool(self._behind.any())
 
+    def see_hand(self, odds: Floats) -> None:
+        """Take note of the odds of pixels that are a hand for sure, (n,): it may be another one."""
+        self._seen_odds = quantile(odds, 0.5)
+
     def learn_hand(self, seen: Colours, where: Flags) -> None:
         """Add the marked pixels to those of the hand."""
         self._hand, self._odds_are_new = _learned(self._hand, seen[where]), False
@@ -93,8 +103,7 @@ class ColourModel:
             if self.knows_hand:
                 ratio = np.log(_density(self._hand) / self._behind_density)
                 self._odds = np.minimum(np.maximum(ratio, -MAX_ODDS), MAX_ODDS)
-                own = float(self._hand.ravel() @ self._odds / self._hand.sum())
-                self.distinctness = float(np.interp(own, DISTINCT_ODDS, (0.0, 1.0)))
+                self._learned_odds = float(self._hand.ravel() @ self._odds / self._hand.sum())
             self._odds_are_new = True
         return np.asarray(self._odds.take(seen), np.float32)
 

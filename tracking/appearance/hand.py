@@ -36,6 +36,10 @@ SURE_ODDS = 1.2
 DOUBTFUL_ODDS = 1.6
 """What the colour of print must speak for a hand, so that it may be one: a dark finger on ink."""
 
+FAMILIAR_ODDS = -0.5, 0.5
+"""What the colours near it speak for a hand, from which on what has changed may be one at all, and
+without doubt; a colour that was never seen speaks neither for nor against it."""
+
 MIN_LEARNED_PX = 8
 """Pixels of a hand above which its colours are learned."""
 
@@ -200,6 +204,8 @@ class HandFinder:
         view = _View(window, lab, colours(lab))
         by_colour = self._colours.odds(view.colours)
         cube = self._cube_part(view, by_colour, pose)
+        if np.count_nonzero(cube.evidence) > MIN_LEARNED_PX:
+            self._colours.see_hand(by_colour[window.cube_box][cube.evidence])
         outside = np.ones(by_colour.shape, bool)
         outside[window.cube_box] = cv2.dilate(cube.outline, SMALL) == 0
         place = self._background.compare(view.lab, window.box, outside, whole)
@@ -323,11 +329,12 @@ class HandFinder:
 def _credible(by_place: Floats, by_colour: Floats, distinctness: float) -> Floats:
     """Return what the place speaks for a hand, less where nothing near has its colours, (h, w).
 
-    The more its colours tell the hand from the desk, the less can a hand be without them: what
-    looks like something else is a shadow, or desk in the place of something that was moved.
+    The more its colours tell the hand from the desk, the less can it have those of the desk: then
+    what has changed is a shadow, or desk in the place of something that was moved.
     """
+    low, high = FAMILIAR_ODDS
     near = cv2.dilate(cv2.blur(by_colour, (3, 3)), SMALL)
-    lack = np.minimum(np.maximum(np.float32(1) - near, 0), 1)
+    lack = np.minimum(np.maximum((np.float32(high) - near) / np.float32(high - low), 0), 1)
     return np.asarray(by_place - np.float32(distinctness) * lack * np.maximum(by_place, 0))
 
 

@@ -61,6 +61,12 @@ def test_colours_of_the_desk_are_not_distinct(offset):
     assert learned(desk + np.float32(offset), desk).distinctness == 0.0
 
 
+def test_a_hand_in_other_colours_than_the_first_is_not_distinct():
+    model = learned(patch(150.0, 18.0, 24.0), patch(220.0, 2.0, 12.0))
+    model.see_hand(model.odds(colours(patch(215.0, 3.0, 12.0))).ravel())
+    assert model.distinctness == 0.0
+
+
 def test_nothing_is_distinct_before_a_hand_is_known():
     model = ColourModel()
     model.learn_behind(colours(patch(220.0, 2.0, 12.0)), EVERYWHERE)

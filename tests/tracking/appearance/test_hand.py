@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from tests.bench.hand_scenes import HandScene, HandView
+from tests.bench.hand_scenes import GLOVES, SKINS, HandScene, HandView
 from tests.tracking.drawn import WIDE, held, photograph, scene
 from tracking.appearance.hand import MANY_FRAMES, HandFinder, HandMask
 from tracking.appearance.window import STILL_FRAMES, Stillness, WindowFinder
@@ -77,6 +77,21 @@ def test_a_cube_without_a_hand_is_not_covered():
     for index in range(30):
         frame, _ = made.frame(index)
         assert finder.update(frame.image, state_at(made.truth(index))) is None
+
+
+def test_a_hand_of_another_colour_is_found_after_the_first():
+    skins = GLOVES["yellow rubber"], SKINS["Monk 06"]  # the second is as the desk
+    scenes = [HandScene(HandView(skin, -120, seed=3, defocus=1.2), CUBE) for skin in skins]
+    finder, mask = HandFinder(CUBE, scenes[0].intrinsics), None
+    for made in scenes:
+        for index in range(31):
+            frame, truth = made.frame(index)
+            mask = finder.update(frame.image, state_at(made.truth(index)))
+    assert mask is not None
+    region = finder.region(made.truth(30))
+    assert region is not None
+    found, truth = covered(mask)[region], truth[region]
+    assert np.minimum(found, truth).sum() / np.maximum(found, truth).sum() > 0.6
 
 
 def test_a_shadow_on_a_face_is_no_finger():
