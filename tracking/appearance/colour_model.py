@@ -61,7 +61,7 @@ class ColourModel:
         self._odds = np.zeros(self._hand.size, np.float32)
         self._behind_density = np.zeros(self._hand.size, np.float32)
         self._odds_are_new = True
-        self._learned_odds, self._seen_odds = 0.0, MAX_ODDS
+        self._learned_odds = self._seen_odds = 0.0
 
     @property
     def distinctness(self) -> float:
@@ -84,9 +84,13 @@ class ColourModel:
         """Whether anything behind the hand was seen."""
         return bool(self._behind.any())
 
-    def see_hand(self, odds: Floats) -> None:
-        """Take note of the odds of pixels that are a hand for sure, (n,): it may be another one."""
-        self._seen_odds = quantile(odds, 0.5)
+    def see_hand(self, seen: Colours) -> None:
+        """Take note of colours of the hand that is there, (n,): it may be another one."""
+        self._seen_odds = quantile(self.odds(seen), 0.5)
+
+    def lose_hand(self) -> None:
+        """Take note that no hand is there: the next may be another one."""
+        self._seen_odds = 0.0
 
     def learn_hand(self, seen: Colours, where: Flags) -> None:
         """Add the marked pixels to those of the hand."""

@@ -205,7 +205,7 @@ class HandFinder:
         by_colour = self._colours.odds(view.colours)
         cube = self._cube_part(view, by_colour, pose)
         if np.count_nonzero(cube.evidence) > MIN_LEARNED_PX:
-            self._colours.see_hand(by_colour[window.cube_box][cube.evidence])
+            self._colours.see_hand(view.colours[window.cube_box][cube.evidence])
         outside = np.ones(by_colour.shape, bool)
         outside[window.cube_box] = cv2.dilate(cube.outline, SMALL) == 0
         place = self._background.compare(view.lab, window.box, outside, whole)
@@ -287,8 +287,12 @@ class HandFinder:
         """Learn the colours of the hand where it is sure, and what is behind it."""
         self._frames += 1
         its_turn = whole or self._frames % LEARNING_FRAMES == 0 or self._colours.hand_is_new
-        if its_turn and hand is not None:
+        if hand is None:
+            self._colours.lose_hand()
+        elif its_turn:
             sure = self._covered(view, hand.view(bool) & changed & (odds > SURE_ODDS))
+            if np.count_nonzero(cube.evidence) <= MIN_LEARNED_PX < np.count_nonzero(sure):
+                self._colours.see_hand(view.colours[sure])
             sure[view.window.cube_box] |= cube.evidence
             if np.count_nonzero(sure) > MIN_LEARNED_PX:
                 self._colours.learn_hand(view.colours, sure)

@@ -21,7 +21,7 @@ def learned(hand: np.ndarray, desk: np.ndarray) -> ColourModel:
     model = ColourModel()
     model.learn_hand(colours(hand), EVERYWHERE)
     model.learn_behind(colours(desk), EVERYWHERE)
-    model.odds(colours(desk))
+    model.see_hand(colours(hand).ravel())
     return model
 
 
@@ -63,7 +63,13 @@ def test_colours_of_the_desk_are_not_distinct(offset):
 
 def test_a_hand_in_other_colours_than_the_first_is_not_distinct():
     model = learned(patch(150.0, 18.0, 24.0), patch(220.0, 2.0, 12.0))
-    model.see_hand(model.odds(colours(patch(215.0, 3.0, 12.0))).ravel())
+    model.see_hand(colours(patch(215.0, 3.0, 12.0)).ravel())
+    assert model.distinctness == 0.0
+
+
+def test_the_next_hand_may_be_another_one():
+    model = learned(patch(150.0, 18.0, 24.0), patch(220.0, 2.0, 12.0))
+    model.lose_hand()
     assert model.distinctness == 0.0
 
 
