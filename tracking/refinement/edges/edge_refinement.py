@@ -159,7 +159,10 @@ def _sharpness(measured: EdgeMeasurements, kept: Indices, lines: Indices) -> tup
 def _fit_repeatedly(
     patch: Patch, profiles: EdgeProfiles, widths: tuple[float, ...]
 ) -> EdgeFit | None:
-    """Fit until the edges stay in place: the profiles follow them, the geometry stays."""
+    """Fit until the edges stay in place: the profiles follow them, the geometry stays.
+
+    Where the first, wide step moves them so far that they are placed again, it is the only one.
+    """
     shifts: Array | None = None
     step: EdgeFit | None = None
     for width in (*widths, *STEPS_PX[1:] * 2):
@@ -167,6 +170,9 @@ def _fit_repeatedly(
         if step is None:
             return None
         before, shifts = shifts, profiles.shifts(step.solution)
-        if before is not None and np.abs(shifts - before).max() < CONVERGED_PX:
+        if width == STEPS_PX[0]:
+            if np.abs(shifts).max() > MAX_SHIFT_PX:
+                break
+        elif before is not None and np.abs(shifts - before).max() < CONVERGED_PX:
             break
     return step
