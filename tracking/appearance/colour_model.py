@@ -14,9 +14,6 @@ CHROMA_STEP, LIGHTNESS_STEP = 1 / 75, 40.0
 """Width of the bins of chroma, as a share of the lightness, which a shadow does not change; and of
 the bins of lightness, L + 16 [CIELab bytes]."""
 
-LIGHTNESS_OFFSET = 41.0
-"""16 of CIELab's L in bytes: light scales L + 16, and the chroma by the same factor."""
-
 MEMORY_PER_PICTURE = 0.96
 """What remains of a histogram after one more picture was learned: half of it after 17."""
 
@@ -32,6 +29,10 @@ MAX_ODDS = 2.0
 DISTINCT_ODDS = 1.2, 1.7
 """Mean of what a hand's own colours speak for it, from which on they tell it from what is behind it
 at all, and wherever it is."""
+
+MIN_SEEN_ODDS, MIN_LEARNED_ODDS = 1.0, 0.2
+"""What most of a hand's pixels speak for it, from which on the others are learned only if they
+speak so much for it."""
 
 MIN_DIFFERENCE = 1.0
 """Difference of such odds from which on one of two colours is more likely that of a hand."""
@@ -93,8 +94,14 @@ class ColourModel:
         self._seen_odds = 0.0
 
     def learn_hand(self, seen: Colours, where: Flags) -> None:
-        """Add the marked pixels to those of the hand."""
-        self._hand, self._odds_are_new = _learned(self._hand, seen[where]), False
+        """Add the marked pixels to those of the hand.
+
+        Where its colours are distinct, others that moved with it are none: its shadow, the desk.
+        """
+        new = seen[where]
+        if self._seen_odds > MIN_SEEN_ODDS:
+            new = new[self.odds(new) > MIN_LEARNED_ODDS]
+        self._hand, self._odds_are_new = _learned(self._hand, new), False
 
     def learn_behind(self, seen: Colours, where: Flags) -> None:
         """Add the marked pixels to those behind the hand."""

@@ -36,7 +36,7 @@ relative to the face that does least."""
 MIN_PIXELS = 8
 """Pixels that a level must rest on."""
 
-MIN_CHROMA_OFF = 2.0
+MIN_CHROMA_OFF = 1.5
 """Least difference in chroma of hand and print by which a pixel is told to be one or the other
 [CIELab]."""
 

@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 
 from tracking.appearance.background import GRID_PX, UNKNOWN, Background, Box, Place
 from tracking.appearance.colour_model import (
-    LIGHTNESS_OFFSET,
     MAX_ODDS,
     MIN_DIFFERENCE,
     ColourModel,
     Colours,
     colours,
 )
+from tracking.appearance.colour_space import lab
 from tracking.appearance.face_check import FaceCheck
 from tracking.appearance.face_pattern import FacePattern
 from tracking.appearance.hand_edge import ODDS_RANGE, soft_cover
@@ -176,7 +176,7 @@ class HandFinder:
             self._background.match_size(columns, rows)
             whole = self._frames < MANY_FRAMES or self._frames % WHOLE_FRAMES == 0
             if not whole:
-                sparse = _lab(np.ascontiguousarray(small[::GRID_PX, ::GRID_PX]))
+                sparse = lab(np.ascontiguousarray(small[::GRID_PX, ::GRID_PX]))
                 part = self._background.differing(sparse, window.box, window.cube_box)
                 window, small = window.part(part), small[part]
             self._last = self._found(image, pose, window, small, whole)
@@ -200,8 +200,8 @@ class HandFinder:
         self, image: Image, pose: Array, window: Window, small: Image, whole: bool
     ) -> HandMask | None:
         """Find the hand in the window, or in the part of it where something differs."""
-        lab = _lab(small)
-        view = _View(window, lab, colours(lab))
+        planes = lab(small)
+        view = _View(window, planes, colours(planes))
         by_colour = self._colours.odds(view.colours)
         cube = self._cube_part(view, by_colour, pose)
         if np.count_nonzero(cube.evidence) > MIN_LEARNED_PX:
@@ -235,8 +235,8 @@ class HandFinder:
         cv2.fillConvexPoly(outline, hull, 1, shift=4)
         like_hand = by_colour[rows, columns] > DOUBTFUL_ODDS
         seen = self._pattern.seen(pose, quads, size)
-        lab = view.lab[:, rows, columns]
-        evidence = self._faces.disagreement(lab, seen, like_hand, window.edge)
+        part = view.lab[:, rows, columns]
+        evidence = self._faces.disagreement(part, seen, like_hand, window.edge)
         distance = float(pose[2, 3])
         if evidence.any():
             corner = np.array([window.left + columns.start, window.top + rows.start], np.float64)
@@ -245,7 +245,7 @@ class HandFinder:
         inner = cv2.erode(seen.face, SMALL) > 0
         slanted = (seen.face == 0) & outline.view(bool)
         doubtful = inner & ~evidence & like_hand
-        told, bare = self._faces.told_by_chroma(lab, seen, evidence, doubtful)
+        told, bare = self._faces.told_by_chroma(part, seen, evidence, doubtful)
         doubtful &= ~(told | bare)
         return _CubePart(outline, inner, slanted, evidence, doubtful, told, distance)
 
@@ -326,8 +326,7 @@ class HandFinder:
         free = np.ones((bottom - top, columns), bool)
         first, last = max(window.top - top, 0), max(window.top + window.height - top, 0)
         free[first:last, window.left : window.left + window.width] = False
-        lab = _lab(shrunk(part, scale))
-        self._background.learn_first(lab, np.s_[top:bottom, :columns], free)
+        self._background.learn_first(lab(shrunk(part, scale)), np.s_[top:bottom, :columns], free)
 
 
 def _credible(by_place: Floats, by_colour: Floats, distinctness: float) -> Floats:
@@ -359,12 +358,3 @@ def _odds(
     part = smooth[window.cube_box]
     part[filled(part, cube.inner, cube.doubtful, window.edge)] = 0.5 * ODDS_RANGE
     return smooth
-
-
-def _lab(image: Image) -> Floats:
-    """Return L + 16, a and b of CIELab in bytes, in single precision, (3, h, w)."""
-    planes = cv2.split(cv2.cvtColor(image, cv2.COLOR_BGR2LAB))
-    lab = np.empty((3, *image.shape[:2]), np.float32)
-    for plane, offset, of in zip(planes, (LIGHTNESS_OFFSET, -128.0, -128.0), lab, strict=True):
-        np.add(plane, np.float32(offset), out=of)
-    return lab

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from tracking.appearance.colour_space import LINEAR_FROM_SRGB
 from tracking.appearance.light_fit import SHADOW_SHARE, MeasuredLight, fit_patches, sphere
-from tracking.appearance.patches import LINEAR_FROM_SRGB, MAX_VALUE, Patches
+from tracking.appearance.patches import MAX_VALUE, Patches
 from tracking.geometry.arrays import Array, Image
 
 ORIENTATIONS = sphere(192)

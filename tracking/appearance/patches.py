@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from tracking.appearance.colour_space import LINEAR_FROM_SRGB
 from tracking.cube.faces import FacePlanes, face_frame
 from tracking.cube.icons import FOLD_GAP_SHARE, ICON_SHARE
 from tracking.cube.marker import cell_size, marker_cells
@@ -40,11 +41,6 @@ PAPER_SPREAD = 0.12
 
 MIN_POINTS = 8
 """Least number of samples that agree on a face."""
-
-LINEAR_FROM_SRGB = np.where(
-    np.arange(256) <= 10, np.arange(256) / 3294.6, ((np.arange(256) / 255 + 0.055) / 1.055) ** 2.4
-)
-"""Linear light of each 8-bit sRGB value (IEC 61966-2-1)."""
 
 
 @dataclass(frozen=True)
