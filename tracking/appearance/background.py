@@ -46,6 +46,9 @@ MIN_CHANGE = 5.0
 MARGIN_PX = 10
 """What is added around that part: filters reach so far [px]."""
 
+RECOLOURED_SHARE = 0.2
+"""Change of chroma from which on a shadow is out of the question, as a share of L + 16."""
+
 SAME_LIGHTNESS = 9.0
 """Change of lightness below which a pixel looks as before [CIELab bytes]."""
 
@@ -97,6 +100,9 @@ class Place:
 
     difference: Floats
     """How much it differs, in lightness and chroma, (h, w) [CIELab bytes], 0 where unknown."""
+
+    recoloured: Flags
+    """Pixels of another hue or saturation than before, which no shadow gives them, (h, w)."""
 
     lights: tuple[Floats, Floats]
     """L + 16 of CIELab of picture and background, in bytes, (h, w)."""
@@ -165,7 +171,8 @@ class Background:
         if whole and (total < max(MIN_KNOWN * known.size, 200) or not some.any()):
             self._lit_anew, self._trust = np.zeros(age.shape, bool), 1.0
             odds = np.float32(UNKNOWN) * outside
-            return Place(odds, self._lit_anew, np.zeros_like(light), (light, mean))
+            none = self._lit_anew
+            return Place(odds, none, np.zeros_like(light), none, (light, mean))
         gain = light / mean
         off_a, off_b = a - gain * mean_a, b - gain * mean_b
         if whole:  # the camera's white balance drifts
@@ -205,7 +212,8 @@ class Background:
         odds = np.asarray(cv2.LUT(looks, table), np.float32)
         self._lit_anew = lit & ~unchanged
         difference = (shade + np.float32(2) * off) * known
-        return Place(odds, (odds > 0) & ~lit, difference, (light, mean))
+        recoloured = off > np.float32(RECOLOURED_SHARE) * light
+        return Place(odds, (odds > 0) & ~lit, difference, recoloured, (light, mean))
 
     def differing(self, lab: Floats, box: Box, start: Box) -> Box:
         """Return the rows and columns with all that differs from the background around a part.

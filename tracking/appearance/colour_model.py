@@ -30,9 +30,9 @@ DISTINCT_ODDS = 1.2, 1.7
 """Mean of what a hand's own colours speak for it, from which on they tell it from what is behind it
 at all, and wherever it is."""
 
-MIN_SEEN_ODDS, MIN_LEARNED_ODDS = 1.0, 0.2
-"""What most of a hand's pixels speak for it, from which on the others are learned only if they
-speak so much for it."""
+MIN_SEEN_ODDS, MIN_OWN_ODDS = 1.0, 0.2
+"""What half of a hand's pixels speak for it, from which on it is told by its colours; and what its
+own colours then speak at least."""
 
 MIN_DIFFERENCE = 1.0
 """Difference of such odds from which on one of two colours is more likely that of a hand."""
@@ -94,14 +94,8 @@ class ColourModel:
         self._seen_odds = 0.0
 
     def learn_hand(self, seen: Colours, where: Flags) -> None:
-        """Add the marked pixels to those of the hand.
-
-        Where its colours are distinct, others that moved with it are none: its shadow, the desk.
-        """
-        new = seen[where]
-        if self._seen_odds > MIN_SEEN_ODDS:
-            new = new[self.odds(new) > MIN_LEARNED_ODDS]
-        self._hand, self._odds_are_new = _learned(self._hand, new), False
+        """Add the marked pixels to those of the hand."""
+        self._hand, self._odds_are_new = _learned(self._hand, seen[where]), False
 
     def learn_behind(self, seen: Colours, where: Flags) -> None:
         """Add the marked pixels to those behind the hand."""
@@ -119,14 +113,28 @@ class ColourModel:
         return np.asarray(self._odds.take(seen), np.float32)
 
     def uncovered(self, now: Colours, before: Colours) -> Flags:
+        """Return where a hand may have gone: what is there now is common behind it, (n,)."""
+        common = self._behind_density.take(now) > MIN_COMMON
+        return np.asarray(common & self._less_like_hand(now, before))
+
+    def covered(self, now: Colours, before: Colours, recoloured: Flags) -> Flags:
+        """Return where a hand may be that was not there before, (n,).
+
+        Where a hand was before, it has gone. Where the hand is told by its colours, what does not
+        have them is in its shadow, if it is not `recoloured`.
+        """
+        covered = ~self._less_like_hand(now, before)
+        if self._seen_odds > MIN_SEEN_ODDS:
+            covered &= recoloured | (self._odds.take(now) > MIN_OWN_ODDS)
+        return np.asarray(covered)
+
+    def _less_like_hand(self, now: Colours, before: Colours) -> Flags:
         """Return where what was there before is more likely a hand than what is there now, (n,).
 
         Before a hand is known, that is what is rarer behind it.
         """
-        behind = self._behind_density
-        odds = self._odds if self.knows_hand else -np.log(behind)
-        uncovered = odds.take(before) - odds.take(now) > MIN_DIFFERENCE
-        return np.asarray(uncovered & (behind.take(now) > MIN_COMMON))
+        odds = self._odds if self.knows_hand else -np.log(self._behind_density)
+        return np.asarray(odds.take(before) - odds.take(now) > MIN_DIFFERENCE)
 
 
 def _learned(counts: Floats, seen: Colours) -> Floats:

@@ -44,6 +44,10 @@ MAX_PRINT_SHARE, MIN_HAND_SHARE = 0.4, 0.6
 """Share of that difference up to which a pixel is print, and from which on it is the hand; between
 them, it is not told."""
 
+NEAR, MIN_SPREAD, MIN_CONTRAST = (7, 7), 0.03, 0.45
+"""A square in which print is looked for [px], the least variance of ink in it that can tell, and
+how much darker than the mean ink must be than paper, to be seen."""
+
 SMALL = np.ones((3, 3), np.uint8)
 """The neighbours of a pixel."""
 
@@ -77,16 +81,15 @@ class FaceCheck:
         inner, plain = cv2.erode(cube, SMALL) > 0, ~seen.icon
         no_ink, all_ink = most < NO_INK, inner & (least > ALL_INK)
         all_paper = inner & no_ink & plain
-        if self._tint is None:
-            self._tint = _first_tint(lab, all_paper)
+        if self._frames % LEARNING_FRAMES == 0:
+            visible = _visible(light, seen.ink)
+            self._learn_tint(lab, all_paper & visible)
+            self._learn_ink(lab, all_ink & (light < DARK) & visible)
         if self._tint is None:
             return np.zeros(cube.shape, bool)
+        self._frames += 1
         coloured = _off(a - light * self._tint[0], b - light * self._tint[1], CHROMA_TOLERANCE)
         coloured &= plain
-        learns = self._frames % LEARNING_FRAMES == 0
-        self._frames += 1
-        if learns:
-            self._learn_ink(lab, all_ink & (light < DARK))
         ink = np.zeros(2, np.float32) if self._ink is None else self._ink
         coloured &= no_ink | _off(a - ink[0], b - ink[1], INK_TOLERANCE)
         paper = all_paper & ~coloured
@@ -95,11 +98,7 @@ class FaceCheck:
         found |= light < MIN_SHADE * (white - contrast * most) - 0.5 * LIGHTNESS_TOLERANCE
         found = (found | coloured) & inner
         opened = cv2.morphologyEx(found.view(np.uint8), cv2.MORPH_OPEN, SMALL[:2, :2])
-        found = _from_outside(np.asarray(opened), like_hand, cube, edge * edge)
-        paper &= ~found
-        if learns and np.count_nonzero(paper) > 4 * MIN_PIXELS:
-            self._tint += np.float32(TINT_STEP) * (_tint(lab, paper) - self._tint)
-        return found
+        return _from_outside(np.asarray(opened), like_hand, cube, edge * edge)
 
     def told_by_chroma(
         self, lab: Floats, seen: SeenPattern, evidence: Flags, doubtful: Flags
@@ -127,6 +126,14 @@ class FaceCheck:
         share = (a * hand_a + b * hand_b) / square
         plain = doubtful & ~seen.icon
         return plain & (share > MIN_HAND_SHARE), plain & (share < MAX_PRINT_SHARE)
+
+    def _learn_tint(self, lab: Floats, paper: Flags) -> None:
+        """Learn the chroma of paper per L + 16."""
+        if np.count_nonzero(paper) < 4 * MIN_PIXELS:
+            return
+        light = lab[0][paper]
+        now = np.array([quantile(plane[paper] / light, 0.5) for plane in lab[1:]], np.float32)
+        self._tint = now if self._tint is None else self._tint + TINT_STEP * (now - self._tint)
 
     def _learn_ink(self, lab: Floats, dark: Flags) -> None:
         """Learn the chroma of ink: on photographs it is often bluish."""
@@ -166,17 +173,13 @@ def _off(a: Floats, b: Floats, tolerance: float) -> Flags:
     return np.asarray(a * a + b * b > tolerance**2)
 
 
-def _tint(lab: Floats, where: Flags) -> Floats:
-    """Chroma per L + 16 of some pixels, (2,)."""
-    light = lab[0][where]
-    return np.array([quantile(plane[where] / light, 0.5) for plane in lab[1:]], np.float32)
-
-
-def _first_tint(lab: Floats, paper: Flags) -> Floats | None:
-    """Tint of the brighter half of what should be paper."""
-    if np.count_nonzero(paper) < MIN_PIXELS:
-        return None
-    return _tint(lab, paper & (lab[0] >= quantile(lab[0][paper], 0.5)))
+def _visible(light: Floats, ink: Image) -> Flags:
+    """Return where the print is seen: ink is as much darker than the paper beside it, (h, w)."""
+    share = ink * np.float32(1 / 255)
+    mean_light, mean_ink = cv2.blur(light, NEAR), cv2.blur(share, NEAR)
+    falls = mean_light * mean_ink - cv2.blur(light * share, NEAR)
+    spread = cv2.blur(share * share, NEAR) - mean_ink * mean_ink
+    return np.asarray((spread > MIN_SPREAD) & (falls > MIN_CONTRAST * spread * mean_light))
 
 
 def _from_outside(flags: Image, like_hand: Flags, cube: Image, square: float) -> Flags:

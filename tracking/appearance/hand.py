@@ -1,6 +1,7 @@
 """The hand in front of the cube, as a soft mask."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import cv2
 import numpy as np
@@ -134,6 +135,11 @@ class _CubePart:
     distance: float
     """That of a `HandMask` [m]."""
 
+    @cached_property
+    def shows_hand(self) -> bool:
+        """Whether there is enough evidence to learn the colours of the hand."""
+        return bool(np.count_nonzero(self.evidence) > MIN_LEARNED_PX)
+
 
 class HandFinder:
     """Finds the hand in front of one cube seen by one camera.
@@ -204,7 +210,7 @@ class HandFinder:
         view = _View(window, planes, colours(planes))
         by_colour = self._colours.odds(view.colours)
         cube = self._cube_part(view, by_colour, pose)
-        if np.count_nonzero(cube.evidence) > MIN_LEARNED_PX:
+        if cube.shows_hand:
             self._colours.see_hand(view.colours[window.cube_box][cube.evidence])
         outside = np.ones(by_colour.shape, bool)
         outside[window.cube_box] = cv2.dilate(cube.outline, SMALL) == 0
@@ -217,10 +223,10 @@ class HandFinder:
             by_colour = self._colours.odds(view.colours)
         if whole:
             place = self._without_uncovered(place, view, by_colour)
-        by_place = _credible(place.odds, by_colour, self._colours.distinctness)
+        by_place = _credible(place, by_colour, self._colours.distinctness)
         odds = _odds(by_colour, by_place, place.changed | ~outside, cube, window)
         hand = connected(odds > 0, window, cube.outline, cube.evidence, place, by_colour)
-        self._learn(view, cube, hand, odds, outside, place.changed, whole)
+        self._learn(view, cube, hand, odds, outside, place, whole)
         if self._frames < MANY_FRAMES or hand is None:
             self._learn_strip(image, window)
         if hand is None:
@@ -269,7 +275,7 @@ class HandFinder:
 
     def _learn_first(self, view: _View, cube: _CubePart, outside: Flags) -> None:
         """Learn colours before anything of a hand or its surroundings is known."""
-        if np.count_nonzero(cube.evidence) > MIN_LEARNED_PX:
+        if cube.shows_hand:
             self._colours.learn_hand(view.colours[view.window.cube_box], cube.evidence)
         if not self._colours.knows_behind:
             self._colours.learn_behind(view.colours, outside)  # a hand is only little of it
@@ -281,7 +287,7 @@ class HandFinder:
         hand: Image | None,
         odds: Floats,
         outside: Flags,
-        changed: Flags,
+        place: Place,
         whole: bool,
     ) -> None:
         """Learn the colours of the hand where it is sure, and what is behind it."""
@@ -290,31 +296,20 @@ class HandFinder:
         if hand is None:
             self._colours.lose_hand()
         elif its_turn:
-            sure = self._covered(view, hand.view(bool) & changed & (odds > SURE_ODDS))
-            if np.count_nonzero(cube.evidence) <= MIN_LEARNED_PX < np.count_nonzero(sure):
+            sure = hand.view(bool) & place.changed & (odds > SURE_ODDS)
+            before = colours(self._background.lab(view.window.box, sure))
+            recoloured = place.recoloured[sure]
+            sure[sure] = self._colours.covered(view.colours[sure], before, recoloured)
+            if np.count_nonzero(sure) > MIN_LEARNED_PX and not cube.shows_hand:
                 self._colours.see_hand(view.colours[sure])
             sure[view.window.cube_box] |= cube.evidence
             if np.count_nonzero(sure) > MIN_LEARNED_PX:
                 self._colours.learn_hand(view.colours, sure)
         if whole or self._frames % LEARNING_FRAMES == LEARNING_FRAMES // 2:
             free = outside if hand is None else outside & (cv2.dilate(hand, WIDE) == 0)
-            self._background.learn(view.lab, view.window.box, free, changed)
+            self._background.learn(view.lab, view.window.box, free, place.changed)
             if whole:
-                self._colours.learn_behind(view.colours, free & ~changed)
-
-    def _covered(self, view: _View, where: Flags) -> Flags:
-        """Return which of some pixels a hand may have covered, (h, w).
-
-        Others are less like the hand than what was there before: a hand has left them, which was
-        there when the background was learned.
-        """
-        if not self._colours.knows_hand:
-            return where
-        before = colours(self._background.lab(view.window.box, where))
-        covered = np.zeros(where.shape, bool)
-        odds = self._colours.odds
-        covered[where] = odds(view.colours[where]) > odds(before) - MIN_DIFFERENCE
-        return covered
+                self._colours.learn_behind(view.colours, free & ~place.changed)
 
     def _learn_strip(self, image: Image, window: Window) -> None:
         """Learn a strip of the whole image: the cube may come there."""
@@ -329,16 +324,18 @@ class HandFinder:
         self._background.learn_first(lab(shrunk(part, scale)), np.s_[top:bottom, :columns], free)
 
 
-def _credible(by_place: Floats, by_colour: Floats, distinctness: float) -> Floats:
+def _credible(place: Place, by_colour: Floats, distinctness: float) -> Floats:
     """Return what the place speaks for a hand, less where nothing near has its colours, (h, w).
 
     The more its colours tell the hand from the desk, the less can it have those of the desk: then
-    what has changed is a shadow, or desk in the place of something that was moved.
+    what has changed is a shadow, or desk in the place of something that was moved. What has become
+    of another colour is no shadow, but may be a sleeve.
     """
     low, high = FAMILIAR_ODDS
     near = cv2.dilate(cv2.blur(by_colour, (3, 3)), SMALL)
     lack = np.minimum(np.maximum((np.float32(high) - near) / np.float32(high - low), 0), 1)
-    return np.asarray(by_place - np.float32(distinctness) * lack * np.maximum(by_place, 0))
+    lack *= np.float32(distinctness) * ~place.recoloured
+    return np.asarray(place.odds - lack * np.maximum(place.odds, 0))
 
 
 def _odds(

@@ -10,6 +10,7 @@ the pen in the hand are not scored.
 import argparse
 import json
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 
 import cv2
@@ -70,8 +71,8 @@ class DodecahedronHands(HandFinder):
 
 def hand_on(number: int) -> tuple[Flags, Flags]:
     """Return where the hand is on a photograph, and what of it is scored, (H, W) each."""
-    picture, outlines = photograph(number), json.loads(OUTLINES.read_text())[str(number)]
-    loose, unscored = (_filled(outlines[name], picture) for name in ("hand", "unscored"))
+    picture = photograph(number)
+    loose, unscored = (_filled(_outlines()[number][name], picture) for name in ("hand", "unscored"))
     square = np.ones((2 * LOOSENESS_PX + 1,) * 2, np.uint8)
     loose = np.asarray(cv2.dilate(loose, square), np.uint8)
     marks = np.where(loose, cv2.GC_PR_FGD, cv2.GC_BGD).astype(np.uint8)
@@ -85,6 +86,11 @@ def hand_on(number: int) -> tuple[Flags, Flags]:
     return np.asarray(opened > 0), np.asarray(unscored == 0)
 
 
+@cache
+def _outlines() -> dict[int, dict[str, list[list[list[int]]]]]:
+    return {int(number): each for number, each in json.loads(OUTLINES.read_text()).items()}
+
+
 def _filled(outlines: list[list[list[int]]], picture: Image) -> Image:
     filled = np.zeros(picture.shape[:2], np.uint8)
     for outline in outlines:
@@ -92,18 +98,21 @@ def _filled(outlines: list[list[list[int]]], picture: Image) -> Image:
     return filled
 
 
-def covers() -> dict[int, tuple[Floats, Flags]]:
+def covers(shuffle: int | None) -> dict[int, tuple[Floats, Flags]]:
     """Return the cover on each outlined photograph, (H, W) 0…1, and where hands are looked for."""
     body, noise, found = body_model()[0], np.random.default_rng(1), {}
-    finder, outlined = DodecahedronHands(body), json.loads(OUTLINES.read_text())
-    for number in range(len(paths())):
+    order = np.arange(len(paths()))
+    if shuffle is not None:
+        np.random.default_rng(shuffle).shuffle(order)
+    finder = DodecahedronHands(body)
+    for time, number in enumerate(order.tolist()):
         picture, state = photograph(number), _state(body, number)
         for frame in range(FRAMES):
             grain = noise.normal(0.0, NOISE, picture.shape).astype(np.int16)
             shown = np.asarray(cv2.add(picture, grain, dtype=cv2.CV_8U), np.uint8)
-            timestamp = (FRAMES * number + frame) / RATE_HZ
+            timestamp = (FRAMES * time + frame) / RATE_HZ
             mask = finder.update(shown, replace(state, timestamp=timestamp))
-        if str(number) in outlined and state.camera_from_cube is not None:
+        if number in _outlines() and state.camera_from_cube is not None:
             region = np.zeros(picture.shape[:2], bool)
             region[finder.region(state.camera_from_cube)] = True
             found[number] = covered(mask, picture.shape), region
@@ -129,13 +138,14 @@ def main() -> None:
     """Print the score of each photograph, and draw both outlines."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("-o", "--output", type=Path, help="picture with found and true outlines")
+    parser.add_argument("--shuffle", type=int, help="seed of another order, in which all jumps")
     given = parser.parse_args()
     if not paths():
         raise SystemExit("the photographs are not on this machine")
     table = Table("photograph", "IoU", "found", "besides", "tuned on")
     groups: dict[bool, list[Score]] = {True: [], False: []}
     tiles = []
-    for number, (cover, region) in covers().items():
+    for number, (cover, region) in sorted(covers(given.shuffle).items()):
         hand, scored = hand_on(number)
         one, tuned = score(cover, hand, scored & region), number in TUNED_ON
         groups[tuned].append(one)

@@ -10,7 +10,7 @@ from rich.console import Console
 
 from tests.bench.photographs.dodecahedron import DICTIONARY, paths, photograph
 from tests.bench.photographs.marker_corners import Array, Picture, opencv_detector
-from tracking.appearance.patches import LINEAR_FROM_SRGB
+from tracking.appearance.colour_space import LINEAR_FROM_SRGB
 
 SIDE_PX = 80
 """Side of a marker as it is looked at."""

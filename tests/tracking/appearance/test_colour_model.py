@@ -78,3 +78,12 @@ def test_nothing_is_distinct_before_a_hand_is_known():
     model.learn_behind(colours(patch(220.0, 2.0, 12.0)), EVERYWHERE)
     model.odds(colours(patch(150.0, 18.0, 24.0)))
     assert model.distinctness == 0.0
+
+
+@pytest.mark.parametrize("recoloured", [False, True])
+def test_what_moves_with_a_distinct_hand_is_its_shadow_or_has_become_of_another_colour(recoloured):
+    desk = patch(220.0, 2.0, 12.0)
+    model = learned(patch(150.0, 18.0, 24.0), desk)
+    now, before = (colours(np.asarray(light * desk, np.float32)).ravel() for light in (0.7, 1.0))
+    covered = model.covered(now, before, np.full(now.shape, recoloured))
+    assert (covered.mean() > 0.9) == recoloured
