@@ -82,7 +82,9 @@ class BlurSearch:
         """Refine an alignment on the edges; where those are not smeared they must be found."""
         extent = self._footprint.blur_extent(aligned.blur_motion)
         if extent < MAX_EDGE_BLUR_CELLS:
-            found = self._edges.search(patch, aligned.camera_from_cube, aligned.blur_motion)
+            found = self._edges.search(
+                patch, aligned.camera_from_cube, lambda _: aligned.blur_motion
+            )
             if found is not None or extent < VISIBLE_EDGE_BLUR_CELLS:
                 return found
         at_rest, per_cell = COVARIANCE_FACTORS

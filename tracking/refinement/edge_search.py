@@ -11,7 +11,12 @@ from tracking.geometry.arrays import Array
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.refinement.candidate import Candidate
-from tracking.refinement.edges.edge_refinement import EdgeRefinement, EdgeRefiner
+from tracking.refinement.edges.edge_refinement import (
+    BlurMotion,
+    EdgeRefinement,
+    EdgeRefiner,
+    at_rest,
+)
 from tracking.refinement.footprint import Footprint
 
 MIN_EDGE_SUPPORT, MIN_EDGE_SUPPORT_WITH_MARKERS = 0.55, 0.25
@@ -71,7 +76,7 @@ class EdgeSearch:
         self._footprint = Footprint(cube, projection)
 
     def match(
-        self, patch: Patch, start: Array, blur_motion: Array | None = None
+        self, patch: Patch, start: Array, blur_motion: BlurMotion = at_rest
     ) -> EdgeMatch | None:
         """Refine a pose as `EdgeRefiner.refine` does, and tell whether it is the cube's."""
         found = self._refiner.refine(patch, start, blur_motion)
@@ -80,12 +85,12 @@ class EdgeSearch:
         reading = CellReading({})
         if found.support >= MIN_EDGE_SUPPORT_WITH_MARKERS:
             reading = self._reader.read(patch, found.camera_from_cube)
-        covariance = self._inflate_covariance(found, blur_motion)
+        covariance = self._inflate_covariance(found)
         rigid = self._is_rigid(found)
         return EdgeMatch(found, covariance, reading, rigid, rigid and _prove(found, reading))
 
     def search(
-        self, patch: Patch, start: Array, blur_motion: Array | None = None
+        self, patch: Patch, start: Array, blur_motion: BlurMotion = at_rest
     ) -> Candidate | None:
         """Refine a pose as `match` does; None where the edges do not prove that it is the cube."""
         match = self.match(patch, start, blur_motion)
@@ -114,10 +119,10 @@ class EdgeSearch:
         face = self._faces.names.index(candidate.faces[0])
         return self._faces.mirrored(candidate.camera_from_cube, face)
 
-    def _inflate_covariance(self, found: EdgeRefinement, blur_motion: Array | None) -> Array:
+    def _inflate_covariance(self, found: EdgeRefinement) -> Array:
         """Covariance of a refined pose, (6, 6), with the errors that all edges have in common."""
         pose = found.camera_from_cube
-        extent = 0.0 if blur_motion is None else self._footprint.blur_extent(blur_motion)
+        extent = self._footprint.blur_extent(found.edges.profiles.blur_motion)
         half_edge = self._footprint.half_edge
         pixel = self._footprint.metres_per_pixel(pose)
         side, size, tilt = np.array(COMMON_ERROR_PX) * pixel

@@ -71,21 +71,25 @@ class LocalTracker:
     def _by_edges(
         self, patch: Patch, track: Track, prediction: Prediction, camera: CameraModel
     ) -> Candidate | None:
-        """Refine on the edges; once more where the cube moves otherwise than expected."""
-        expected = prediction.velocity * camera.exposure
-        if self._footprint.blur_extent(expected) >= MAX_EDGE_BLUR_CELLS:
+        """Refine on the edges; once more where the cube moves otherwise than was assumed."""
+        last = track.poses[-1].covariance
+
+        def blur_motion(pose: Array, covariance: Array = last) -> Array:
+            return track.motion(pose, covariance, prediction.timestamp)[0] * camera.exposure
+
+        start = prediction.camera_from_cube
+        if self._footprint.blur_extent(blur_motion(start)) >= MAX_EDGE_BLUR_CELLS:
             return None
-        found = self._edges.search(patch, prediction.camera_from_cube, expected)
-        if found is None:
+        found = self._edges.search(patch, start, blur_motion)
+        if found is None or found.edges is None:
             return None
-        pose = found.camera_from_cube
-        velocity = track.motion(pose, found.covariance, prediction.timestamp)[0]
-        measured = velocity * camera.exposure
+        pose, assumed = found.camera_from_cube, found.edges.profiles.blur_motion
+        measured = blur_motion(pose, found.covariance)
         if self._footprint.blur_extent(measured) > MAX_EDGE_BLUR_CELLS:
             return None
-        if self._footprint.blur_extent(measured - expected) < MAX_MOTION_SURPRISE_CELLS:
+        if self._footprint.blur_extent(measured - assumed) < MAX_MOTION_SURPRISE_CELLS:
             return found
-        return self._edges.search(patch, pose, measured) or found
+        return self._edges.search(patch, pose, lambda _: measured) or found
 
     def _by_blur(
         self, patch: Patch, track: Track, prediction: Prediction, camera: CameraModel

@@ -5,6 +5,7 @@ expected position; the correction is the pose delta that brings all edges into p
 idea is RAPiD's (Harris and Stennett, 1990); the profile fit, the bloom and the covariance are ours.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,6 +38,14 @@ MAX_SHIFT_PX, MAX_PLACEMENTS = 0.7, 3
 
 CONVERGED_PX = 0.04
 """The profiles are measured again while edges move by more than this."""
+
+BlurMotion = Callable[[Array], Array]
+"""How a cube at a pose, (4, 4), moves during the exposure: a pose delta, (6,)."""
+
+
+def at_rest(_: Array) -> Array:
+    """Return the `BlurMotion` of a cube at rest."""
+    return np.zeros(6)
 
 
 @dataclass(frozen=True)
@@ -85,17 +94,16 @@ class EdgeRefiner:
         self._parts: dict[tuple[int, ...], EdgeModel] = {}
 
     def refine(
-        self, patch: Patch, start: Array, blur_motion: Array | None = None
+        self, patch: Patch, start: Array, blur_motion: BlurMotion = at_rest
     ) -> EdgeRefinement | None:
         """Refine a pose, (4, 4), that is right to about half a cell in the image.
 
-        `blur_motion` is the pose delta of the cube during the exposure, (6,), or None for a cube at
-        rest. None where too few edges are in view or found, or where they do not agree.
+        None where too few edges are in view or found, or where they do not agree.
         """
         current = start
         found, widths, k1 = None, STEPS_PX, 0.0
         for _ in range(MAX_PLACEMENTS):
-            profiles = self._profiles(patch, current, blur_motion, k1)
+            profiles = self._profiles(patch, current, blur_motion(current), k1)
             step = _fit_repeatedly(patch, profiles, widths) if profiles else None
             if profiles is None or step is None:
                 return None
@@ -107,7 +115,7 @@ class EdgeRefiner:
         return self._summary(*found) if found else None
 
     def _profiles(
-        self, patch: Patch, pose: Array, blur_motion: Array | None, k1: float
+        self, patch: Patch, pose: Array, blur_motion: Array, k1: float
     ) -> EdgeProfiles | None:
         facing = self._faces.facing(pose, MIN_FACING_COSINE)
         if facing not in self._parts:

@@ -62,8 +62,11 @@ class EdgeProfiles:
     reach: Array
     """Half the length of each profile, (N,) [px]."""
 
+    blur_motion: Array
+    """How the cube moved during the exposure, as a pose delta, (6,)."""
+
     blur: Array
-    """How far each edge moved along its normal during the exposure, (N,) [px]."""
+    """How far that moved each edge along its normal, (N,) [px]."""
 
     @cached_property
     def face(self) -> Indices:
@@ -117,13 +120,12 @@ def place_profiles(
     projection: Projection,
     camera_from_cube: Array,
     patch: Patch,
-    blur_motion: Array | None,
+    blur_motion: Array,
     k1: float = 0.0,
 ) -> EdgeProfiles | None:
     """Place profiles across the edges in view of a cube at a pose, as far as a patch shows them.
 
-    `blur_motion` is as in `EdgeRefiner.refine`, `k1` as in `EdgeProfiles`. None where the cube is
-    too close.
+    `blur_motion` and `k1` are as in `EdgeProfiles`. None where the cube is too close.
     """
     rotation, origin = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
     rotated = rotation @ model.points.T
@@ -145,7 +147,7 @@ def place_profiles(
     cell = np.abs(cell)
     by_point = normals[0] * jacobian[0] + normals[1] * jacobian[1]
     slopes = np.concatenate([by_point, se3.cross(rotated.T, by_point.T).T])
-    blur = np.zeros(len(cell)) if blur_motion is None else np.abs(blur_motion @ slopes)
+    blur = np.abs(blur_motion @ slopes)
     reach = np.minimum(np.maximum(REACH_PX, 0.75 * blur + 2), cell / 2)
     good = (cell > MIN_CELL_PX) & (patch.border_distance(pixels) > reach + 1) & (blur < cell)
     good &= model.to_end * length > END_CLEARANCE_PX
@@ -160,6 +162,7 @@ def place_profiles(
         None if bends is None else (normals * bends.T[:, found]).sum(axis=0),
         k1,
         reach[found],
+        blur_motion,
         blur[found],
     )
 
