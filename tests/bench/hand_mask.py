@@ -9,7 +9,7 @@ frames in which the hand holds the cube. The poses are the tracker's own.
 import argparse
 import sys
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import cv2
@@ -60,16 +60,17 @@ def covered(mask: HandMask | None, shape: tuple[int, ...]) -> Floats:
     return found
 
 
-def measure(name: str, skin: str, scenes: int, folder: Path | None, begin: int) -> Result:
-    """Show all scenes of one hand, from a frame on; "" for none."""
+def measure(name: str, skin: str, given: argparse.Namespace) -> Result:
+    """Show all scenes of one hand, "" for none, with the options of the command line."""
     cube, result = CubeModel.load("locomotion"), Result()
     markers = cv2.aruco.ArucoDetector(cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50))
-    for number, (azimuth, gradient, defocus) in enumerate(VIEWS[:scenes]):
+    for number, (azimuth, gradient, defocus) in enumerate(VIEWS[: given.scenes]):
         view = HandView(skin or "000000", azimuth, number + 1, gradient, defocus, hand=bool(skin))
+        view = replace(view, exposure=given.exposure, warmth=given.warmth)
         scene = HandScene(view, cube)
         tracker, finder = CubeTracker(cube, scene.intrinsics), HandFinder(cube, scene.intrinsics)
         result.scores.append([])
-        for index in range(begin, scene.count):
+        for index in range(given.begin, scene.count):
             frame, truth = scene.frame(index)
             state = tracker.update(frame)
             start = time.perf_counter()
@@ -87,8 +88,10 @@ def measure(name: str, skin: str, scenes: int, folder: Path | None, begin: int) 
             if scene.state(index).grip > 0.99 and skin:
                 both = float(np.maximum(found, true).sum())
                 result.scores[-1].append(float(np.minimum(found, true).sum()) / max(both, 1e-6))
-                if folder and index % round(RATE_HZ) == 0:
-                    write(folder / f"{name} {number} {index}.png", frame.image[box], found, true)
+                if given.output and index % round(RATE_HZ) == 0:
+                    write(
+                        given.output / f"{name} {number} {index}.png", frame.image[box], found, true
+                    )
     return result
 
 
@@ -110,13 +113,17 @@ def main() -> None:
     parser.add_argument(
         "--begin", type=int, default=0, help="first frame; from 22 on, the hand is there"
     )
-    arguments = parser.parse_args()
+    parser.add_argument(
+        "--exposure", type=float, default=0.0, help="change of the camera's as the hand comes"
+    )
+    parser.add_argument("--warmth", type=float, default=0.0, help="the same of its white balance")
+    given = parser.parse_args()
     table = Table("hand", "IoU", "of each scene", "worst frame", "ms", "× markers", "false cover")
     means, times, false = {}, [], 0
     for name, skin in ({"none": ""} | SKINS | GLOVES).items():
-        if arguments.only and name not in arguments.only:
+        if given.only and name not in given.only:
             continue
-        found = measure(name, skin, arguments.scenes, arguments.output, arguments.begin)
+        found = measure(name, skin, given)
         times += found.times
         false = max(false, *found.false_covers, 0)
         row = ["", "", ""]

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
+from tracking.appearance.colour_space import LINEAR_FROM_SRGB
 from tracking.cube.model import CubeModel
 from tracking.geometry import se3
 from tracking.geometry.arrays import Array, Floats, Image
@@ -67,6 +68,13 @@ class HandView:
     hand: bool = True
     """Whether there is a hand at all."""
 
+    exposure: float = 0.0
+    """How much more light the camera lets in as the hand comes, as a share: automatic exposure."""
+
+    warmth: float = 0.0
+    """How much redder and less blue its picture becomes then, as a share: automatic white
+    balance."""
+
 
 class HandScene:
     """A cube that a hand takes, turns and slides."""
@@ -104,10 +112,21 @@ class HandScene:
         states = [self._choreography.at(time + float(shift)) for shift in shifts]
         poses = [self._posed(state) for state in states]
         image = self._renderer.draw(states, poses, index, False)
+        grip, view = self.state(index).grip, self.view
+        if view.exposure or view.warmth:
+            gains = 1 + grip * (view.exposure + view.warmth * np.array([-1, 0, 1]))
+            image = np.asarray(cv2.LUT(image, _brightened(gains)), np.uint8)
         return Frame(image, time, index), self._renderer.covered
 
     def _posed(self, state: SceneState) -> Array:
         return np.asarray(self.camera_from_table @ state.table_from_cube)
+
+
+def _brightened(gains: Array) -> Image:
+    """Return what each value of blue, green and red becomes, (1, 256, 3)."""
+    light = np.minimum(LINEAR_FROM_SRGB[:, None] * gains, 1.0)
+    values = np.interp(light, LINEAR_FROM_SRGB, np.arange(256.0))
+    return np.asarray(np.rint(values), np.uint8)[None]
 
 
 class _HandRenderer(ExposureRenderer):

@@ -1,6 +1,7 @@
 """What is behind the hand: a picture of the desk, learned where no hand is."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -35,7 +36,14 @@ SQUARE, SMALL, WIDE = (5, 5), np.ones((3, 3), np.uint8), np.ones((9, 9), np.uint
 """A square in which light on the same thing changes little [px]; a pixel and its neighbours."""
 
 SPARSE = np.s_[::5, ::5]
-"""Pixels by which noise and white balance are estimated."""
+"""Pixels by which noise, exposure and white balance are estimated."""
+
+GAIN_TOLERANCE, STEP_TOLERANCE = 0.02, 0.004
+"""Change of L + 16 as a share, and of chroma as a share of L + 16, that noise alone makes."""
+
+MIN_SAMPLES, MAX_SAME, MIN_CHANGED = 30, 0.12, 0.35
+"""Pixels that tell whether the camera has changed; most of them that still look as before then,
+and least that have changed alike, as shares."""
 
 GRID_PX = 3
 """Distance of the pixels by which the part of a window is found that differs [px]."""
@@ -149,6 +157,24 @@ class Background:
             age = np.asarray(cv2.resize(self._age, (width, height)), np.uint8)
             self._age = age * (unknown == 0)
 
+    def camera_change(self, lab: Floats, box: Box) -> Floats | None:
+        """Return what undoes a change of exposure and white balance, (3, 3); None without one.
+
+        It multiplies `lab`, which is as in `compare`. Where the camera has changed, nothing looks
+        as before, and most differs alike; a hand or a shadow leaves some of the desk as it was.
+        """
+        known = self._age[box][SPARSE] > 0
+        if np.count_nonzero(known) < MIN_SAMPLES:
+            return None
+        light, a, b = lab[:, *SPARSE][:, known]
+        mean, mean_a, mean_b = self._mean[:, *box][:, *SPARSE][:, known]
+        changes = light / mean, a / light - mean_a / mean, b / light - mean_b / mean
+        gain, step_a, step_b = usual = [quantile(change, 0.5) for change in changes]
+        if _share(changes, (1.0, 0.0, 0.0)) > MAX_SAME or _share(changes, usual) < MIN_CHANGED:
+            return None
+        balanced = np.array([[1, 0, 0], [-step_a, 1, 0], [-step_b, 0, 1]], np.float32)
+        return balanced / np.float32(gain)
+
     def compare(self, lab: Floats, box: Box, outside: Flags, whole: bool) -> Place:
         """Compare a window of the picture with the background.
 
@@ -161,8 +187,8 @@ class Background:
         outside
             Pixels outside the cube.
         whole
-            Whether that is enough to measure noise, white balance, texture and trust, which keep
-            until it is again.
+            Whether that is enough to measure noise, texture and trust, which keep until it is
+            again.
         """
         light, a, b = lab
         (mean, mean_a, mean_b), age = self._mean[:, box[0], box[1]], self._age[box]
@@ -175,11 +201,6 @@ class Background:
             return Place(odds, none, np.zeros_like(light), none, (light, mean))
         gain = light / mean
         off_a, off_b = a - gain * mean_a, b - gain * mean_b
-        if whole:  # the camera's white balance drifts
-            for off, drifted in zip((off_a, off_b), self._mean[1:], strict=True):
-                drift = quantile(off[SPARSE][some], 0.5)
-                off -= drift
-                drifted += drift
         # What is large at a pixel and around it is neither noise nor the blur of its neighbour.
         off = cv2.magnitude(off_a, off_b)
         chroma = cv2.min(off, cv2.magnitude(cv2.blur(off_a, (3, 3)), cv2.blur(off_b, (3, 3))))
@@ -278,6 +299,15 @@ class Background:
     def _learn(self, lab: Floats, box: Box, steps: Floats) -> None:
         for plane, mean in zip(lab, self._mean[:, box[0], box[1]], strict=True):
             mean += (plane - mean) * steps
+
+
+def _share(changes: Sequence[Floats], change: Sequence[float]) -> float:
+    """Return the share of pixels that have changed by that gain and those steps of chroma."""
+    alike = np.ones(len(changes[0]), bool)
+    tolerances = GAIN_TOLERANCE, STEP_TOLERANCE, STEP_TOLERANCE
+    for each, usual, tolerance in zip(changes, change, tolerances, strict=True):
+        alike &= np.abs(each - np.float32(usual)) < tolerance
+    return np.count_nonzero(alike) / len(alike)
 
 
 def _grown(first: int, count: int) -> slice:

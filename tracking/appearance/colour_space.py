@@ -32,12 +32,13 @@ LAB_FROM_ROOTS = (
 """L + 16, a and b from the roots of blue, green and red, as if they were those of X, Y and Z."""
 
 
-def lab(image: Image) -> Floats:
+def lab(image: Image, from_roots: Floats = LAB_FROM_ROOTS) -> Floats:
     """Return L + 16 of CIELab in bytes, a and b of a picture, (h, w, 3) BGR → (3, h, w), nearly.
 
     They are exact for grey, and a few units off for strong colours. Light scales all three by one
-    factor. OpenCV's conversion takes twice the time, and rounds.
+    factor. OpenCV's conversion takes twice the time, and rounds. Another matrix `from_roots`
+    undoes what the camera has changed.
     """
     planes = np.empty((3, *image.shape[:2]), np.float32)
-    cv2.split(cv2.transform(cv2.LUT(image, ROOT_FROM_SRGB), LAB_FROM_ROOTS), list(planes))
+    cv2.split(cv2.transform(cv2.LUT(image, ROOT_FROM_SRGB), from_roots), list(planes))
     return planes

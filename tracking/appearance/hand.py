@@ -15,7 +15,7 @@ from tracking.appearance.colour_model import (
     Colours,
     colours,
 )
-from tracking.appearance.colour_space import lab
+from tracking.appearance.colour_space import LAB_FROM_ROOTS, lab
 from tracking.appearance.face_check import FaceCheck
 from tracking.appearance.face_pattern import FacePattern
 from tracking.appearance.hand_edge import ODDS_RANGE, soft_cover
@@ -156,6 +156,7 @@ class HandFinder:
         self._background = Background()
         self._colours = ColourModel()
         self._stillness = Stillness()
+        self._from_roots = LAB_FROM_ROOTS
         self._strip = self._frames = 0
         self._last: HandMask | None = None
         self._seen, self._pose = -np.inf, np.eye(4)
@@ -182,7 +183,7 @@ class HandFinder:
             self._background.match_size(columns, rows)
             whole = self._frames < MANY_FRAMES or self._frames % WHOLE_FRAMES == 0
             if not whole:
-                sparse = lab(np.ascontiguousarray(small[::GRID_PX, ::GRID_PX]))
+                sparse = self._lab(np.ascontiguousarray(small[::GRID_PX, ::GRID_PX]))
                 part = self._background.differing(sparse, window.box, window.cube_box)
                 window, small = window.part(part), small[part]
             self._last = self._found(image, pose, window, small, whole)
@@ -202,11 +203,19 @@ class HandFinder:
         right, down = (int(step) for step in now - before)
         return self._last.moved(right, down, self._projection.size)
 
+    def _lab(self, image: Image) -> Floats:
+        """Return the planes of `lab` as the camera showed them at first."""
+        return lab(image, self._from_roots)
+
     def _found(
         self, image: Image, pose: Array, window: Window, small: Image, whole: bool
     ) -> HandMask | None:
         """Find the hand in the window, or in the part of it where something differs."""
-        planes = lab(small)
+        planes = self._lab(small)
+        change = self._background.camera_change(planes, window.box) if whole else None
+        if change is not None:
+            self._from_roots = change @ self._from_roots
+            planes = self._lab(small)
         view = _View(window, planes, colours(planes))
         by_colour = self._colours.odds(view.colours)
         cube = self._cube_part(view, by_colour, pose)
@@ -321,7 +330,9 @@ class HandFinder:
         free = np.ones((bottom - top, columns), bool)
         first, last = max(window.top - top, 0), max(window.top + window.height - top, 0)
         free[first:last, window.left : window.left + window.width] = False
-        self._background.learn_first(lab(shrunk(part, scale)), np.s_[top:bottom, :columns], free)
+        self._background.learn_first(
+            self._lab(shrunk(part, scale)), np.s_[top:bottom, :columns], free
+        )
 
 
 def _credible(place: Place, by_colour: Floats, distinctness: float) -> Floats:

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from tracking.appearance.background import GRID_PX, MARGIN_PX, Background
 from tracking.appearance.window import Window
@@ -26,9 +28,7 @@ def outside() -> np.ndarray:
     return flags
 
 
-@pytest.fixture
-def background() -> Background:
-    """One that has seen the desk for long."""
+def seen_for_long() -> Background:
     made, free = Background(), outside()
     made.match_size(200, 160)
     for _ in range(10):
@@ -36,6 +36,12 @@ def background() -> Background:
         made.learn(desk(), BOX, free, ~free)
     made.learn(desk(), BOX, ~free, ~free)
     return made
+
+
+@pytest.fixture
+def background() -> Background:
+    """One that has seen the desk for long."""
+    return seen_for_long()
 
 
 def differing(background: Background, picture: np.ndarray) -> tuple[slice, slice]:
@@ -91,3 +97,29 @@ def test_a_part_of_a_window_shows_the_same_of_the_image():
     assert part.cube_box == np.s_[10:40, 30:60]
     assert np.allclose(part.quads + (part.left, part.top), quads + (window.left, window.top))
     assert np.allclose(part.cube_quads(), window.cube_quads())
+
+
+@given(
+    gain=st.one_of(st.floats(0.6, 0.95), st.floats(1.05, 1.5)),
+    steps=st.tuples(st.floats(-0.05, 0.05), st.floats(-0.05, 0.05)),
+)
+def test_a_change_of_the_camera_is_undone(gain, steps):
+    picture = gain * desk()
+    picture[1:] += np.array(steps)[:, None, None] * picture[0]
+    picture[:, 40:80, 60:] = 90  # a hand
+    change = seen_for_long().camera_change(picture.astype(np.float32), BOX)
+    assert change is not None
+    undone = np.tensordot(change, picture, 1)
+    assert np.abs(undone - desk())[:, :40].mean() < 0.5
+
+
+def test_a_large_hand_is_no_change_of_the_camera(background):
+    picture = desk()
+    picture[:, 30:] *= np.float32(0.4)
+    assert background.camera_change(picture, BOX) is None
+
+
+def test_a_desk_that_was_not_seen_tells_no_change_of_the_camera():
+    never = Background()
+    never.match_size(200, 160)
+    assert never.camera_change(desk(), BOX) is None

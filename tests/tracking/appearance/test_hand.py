@@ -110,6 +110,12 @@ def test_the_sleeve_of_a_hand_that_is_there_from_the_beginning_is_found_when_it_
     assert overlap_in(view, 42, begin=22) > 0.8
 
 
+@pytest.mark.parametrize(("exposure", "warmth"), [(-0.5, 0.0), (0.4, 0.0), (-0.2, 0.08)])
+def test_a_camera_that_reacts_to_the_hand_does_not_hide_it(exposure, warmth):
+    view = HandView(SKINS["Monk 02"], azimuth_deg=-60, seed=2, exposure=exposure, warmth=warmth)
+    assert overlap_in(view, 32) > 0.94
+
+
 def test_a_shadow_on_a_face_is_no_finger():
     pose, finder = held(), HandFinder(CUBE, WIDE)
     light = scene((CUBE, pose), camera=WIDE)
