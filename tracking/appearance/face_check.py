@@ -119,7 +119,7 @@ class FaceCheck:
             cv2.blur(chroma - paper * tint - ink * of_ink, (3, 3))
             for chroma, tint, of_ink in zip(lab[1:], self._tint, self._ink, strict=True)
         )
-        hand_a, hand_b = (float(np.median(off[evidence])) for off in (a, b))
+        hand_a, hand_b = (quantile(off[evidence], 0.5) for off in (a, b))
         square = hand_a * hand_a + hand_b * hand_b
         if square < MIN_CHROMA_OFF**2:
             return none, none
