@@ -15,11 +15,11 @@ XYZ_FROM_BGR = np.array(
 )
 """CIE XYZ of linear blue, green and red (IEC 61966-2-1)."""
 
-DARK = (6 / 29) ** 3
+MAX_STRAIGHT_LIGHT = (6 / 29) ** 3
 """Linear light below which CIELab takes a straight line for the cube root."""
 
 ROOT_FROM_SRGB = np.where(
-    LINEAR_FROM_SRGB > DARK,
+    LINEAR_FROM_SRGB > MAX_STRAIGHT_LIGHT,
     np.cbrt(LINEAR_FROM_SRGB),
     LINEAR_FROM_SRGB * ((29 / 6) ** 2 / 3) + 4 / 29,
 ).astype(np.float32)
