@@ -45,8 +45,8 @@ MAX_PRINT_SHARE, MIN_HAND_SHARE = 0.4, 0.6
 them, it is not told."""
 
 NEAR, MIN_SPREAD, MIN_CONTRAST = (7, 7), 0.03, 0.45
-"""A square in which print is looked for [px], the least variance of ink in it that can tell, and
-how much darker than the mean ink must be than paper, to be seen."""
+"""A square in which print is looked for [px], the least variance of the share of ink in it that
+can tell, and how much darker ink must be than paper there, as a share of the mean light."""
 
 SMALL = np.ones((3, 3), np.uint8)
 """The neighbours of a pixel."""
@@ -174,7 +174,7 @@ def _off(a: Floats, b: Floats, tolerance: float) -> Flags:
 
 
 def _visible(light: Floats, ink: Image) -> Flags:
-    """Return where the print is seen: ink is as much darker than the paper beside it, (h, w)."""
+    """Return where the print is seen: there, ink is darker than the paper beside it, (h, w)."""
     share = ink * np.float32(1 / 255)
     mean_light, mean_ink = cv2.blur(light, NEAR), cv2.blur(share, NEAR)
     falls = mean_light * mean_ink - cv2.blur(light * share, NEAR)
