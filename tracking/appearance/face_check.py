@@ -83,8 +83,10 @@ class FaceCheck:
         all_paper = inner & no_ink & plain
         if self._frames % LEARNING_FRAMES == 0:
             visible = _visible(light, seen.ink)
-            self._learn_tint(lab, all_paper & visible)
-            self._learn_ink(lab, all_ink & (light < DARK) & visible)
+            self._tint = _followed(self._tint, lab[1:] / light, all_paper & visible)
+            # On photographs, ink is often bluish.
+            inks = lab[1:].clip(-MAX_INK_CHROMA, MAX_INK_CHROMA)
+            self._ink = _followed(self._ink, inks, all_ink & (light < DARK) & visible)
         if self._tint is None:
             return np.zeros(cube.shape, bool)
         self._frames += 1
@@ -127,22 +129,6 @@ class FaceCheck:
         plain = doubtful & ~seen.icon
         return plain & (share > MIN_HAND_SHARE), plain & (share < MAX_PRINT_SHARE)
 
-    def _learn_tint(self, lab: Floats, paper: Flags) -> None:
-        """Learn the chroma of paper per L + 16."""
-        if np.count_nonzero(paper) < 4 * MIN_PIXELS:
-            return
-        light = lab[0][paper]
-        now = np.array([quantile(plane[paper] / light, 0.5) for plane in lab[1:]], np.float32)
-        self._tint = now if self._tint is None else self._tint + TINT_STEP * (now - self._tint)
-
-    def _learn_ink(self, lab: Floats, dark: Flags) -> None:
-        """Learn the chroma of ink: on photographs it is often bluish."""
-        if np.count_nonzero(dark) < 4 * MIN_PIXELS:
-            return
-        now = np.array([quantile(plane[dark], 0.5) for plane in lab[1:]], np.float32)
-        now = now.clip(-MAX_INK_CHROMA, MAX_INK_CHROMA)
-        self._ink = now if self._ink is None else self._ink + TINT_STEP * (now - self._ink)
-
     def _levels(
         self, light: Floats, seen: SeenPattern, paper: Flags, ink: Flags
     ) -> tuple[Floats, Floats]:
@@ -171,6 +157,17 @@ class FaceCheck:
 def _off(a: Floats, b: Floats, tolerance: float) -> Flags:
     """Return where a chroma is larger than a tolerance."""
     return np.asarray(a * a + b * b > tolerance**2)
+
+
+def _followed(known: Floats | None, chroma: Floats, where: Flags) -> Floats | None:
+    """Return what is known of the chroma of paper or ink, (2,), after one more look at it.
+
+    `chroma` is a and b, (2, h, w). Too few pixels change nothing.
+    """
+    if np.count_nonzero(where) < 4 * MIN_PIXELS:
+        return known
+    now = np.array([quantile(plane[where], 0.5) for plane in chroma], np.float32)
+    return now if known is None else np.asarray(known + TINT_STEP * (now - known))
 
 
 def _visible(light: Floats, ink: Image) -> Flags:
