@@ -1,14 +1,14 @@
 """Paths painted on the table: discs, a ring, and dashes between them.
 
-They are painted into an image of the table when they change; in each picture, it is bent and
-blended in memory.
+They are painted into an image of the table when they change, which is bent when they or the camera
+have moved. Every picture is blended with it in memory.
 """
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,7 +16,7 @@ from characters.rendering.hidden_table import hidden_table
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.passes.shadows import DISPLAY_GAMMA
 from characters.rendering.passes.table_image import TableImage
-from characters.rendering.projection import NEAR_M
+from characters.rendering.projection import NEAR_M, Rectangle
 from characters.rendering.resources import FrameResources
 from characters.rendering.scene import Cover, FloorPath
 from characters.skeleton.pose import Array
@@ -46,15 +46,81 @@ KEPT_PATHS = 8
 class FloorPathPass(RenderPass):
     """Paints the floor paths on the table."""
 
+    def __init__(self) -> None:
+        self._seen: dict[int, _SeenPaint] = {}
+
     def composite(self, frame: FrameResources, cover: Cover | None) -> None:
         """Paint the paths, except where real cubes or a hand hide them."""
-        for path in frame.scene.floor:
+        for number, path in enumerate(frame.scene.floor):
             points = np.asarray(path.points, float).reshape(-1, 2)
             points = points[np.isfinite(points).all(axis=1)]
             if len(points):
                 texel = _texel(frame, points)
                 image = _painted(points.tobytes(), path.closed, path.highlight, texel)
-                _blend(frame, cover, image, path)
+                seen = self._seen.get(number)
+                if seen is None or not seen.is_of(image, frame):
+                    seen = self._seen[number] = _seen_paint(image, frame)
+                seen.blend(frame, cover, path)
+
+
+@dataclass(frozen=True)
+class _SeenPaint:
+    """The paint of a path as one camera sees it, while nothing hides it."""
+
+    image: TableImage
+    """The paint on the table."""
+
+    camera: bytes
+    """Where it was seen from."""
+
+    area: Rectangle | None
+    """The area of the picture around it."""
+
+    places: NDArray[np.int32]
+    """Rows and columns in the area of the pixels that it covers, (2, n): few of all."""
+
+    share: NDArray[np.float32]
+    """The share of each of these pixels that it covers, (n,)."""
+
+    def is_of(self, image: TableImage, frame: FrameResources) -> bool:
+        """Return whether it is this paint, seen by the camera of this frame."""
+        return self.image is image and self.camera == _camera(frame)
+
+    def blend(self, frame: FrameResources, cover: Cover | None, path: FloorPath) -> None:
+        """Blend it, lit as the table is, with the picture."""
+        if self.area is None or not len(self.share):
+            return
+        place, share = tuple(self.places), self.share
+        hidden = hidden_table(frame.hidden_by_cubes, cover, self.area)
+        if hidden is not None:
+            share = share * (1.0 - hidden[place] / np.float32(255.0))
+        light = np.asarray(path.color, float) ** DISPLAY_GAMMA * frame.light.white
+        paint = 255.0 * np.clip(light[::-1], 0.0, 1.0) ** (1.0 / DISPLAY_GAMMA)
+        part = frame.picture[self.area.slices]
+        before = part[place]
+        part[place] = np.rint(
+            before + PAINT_OPACITY * share[:, None] * (paint.astype(np.float32) - before)
+        )
+
+
+def _seen_paint(image: TableImage, frame: FrameResources) -> _SeenPaint:
+    """Return how the camera of a frame sees the paint of a path."""
+    area, share = frame.area_of(image.corners), np.zeros((0, 0), np.uint8)
+    if area is not None:
+        share = image.in_picture(frame, area, beyond=0)
+    places = np.stack(np.nonzero(share))
+    return _SeenPaint(
+        image,
+        _camera(frame),
+        area,
+        places.astype(np.int32),
+        share[tuple(places)] / np.float32(255.0),
+    )
+
+
+def _camera(frame: FrameResources) -> bytes:
+    """Return what the place of the table in the picture depends on."""
+    return frame.camera_matrix.tobytes() + frame.camera_from_table.tobytes()
 
 
 def _texel(frame: FrameResources, points: Array) -> float:
@@ -66,26 +132,6 @@ def _texel(frame: FrameResources, points: Array) -> float:
     depth = max(float((points @ row[[0, 2]]).min() + row[3]), NEAR_M)
     coarsest = float(np.ptp(points, axis=0).max()) / MAX_SIDE_TEXELS
     return 2.0 ** round(math.log2(max(depth / float(frame.camera_matrix[1, 1]), coarsest)))
-
-
-def _blend(frame: FrameResources, cover: Cover | None, image: TableImage, path: FloorPath) -> None:
-    """Blend the paint of a path, lit as the table is, with the picture."""
-    area = frame.area_of(image.corners)
-    if area is None:
-        return
-    share = image.in_picture(frame, area, beyond=0)
-    hidden = hidden_table(frame.hidden_by_cubes, cover, area)
-    if hidden is not None:
-        share = np.asarray(cv2.multiply(share, cv2.bitwise_not(hidden), scale=1 / 255), np.uint8)
-    if not cv2.countNonZero(share):
-        return
-    columns, rows = cv2.findNonZero(share).reshape(-1, 2).T  # few of all pixels
-    light = np.asarray(path.color, float) ** DISPLAY_GAMMA * frame.light.white
-    paint = np.clip(light[::-1], 0.0, 1.0) ** (1.0 / DISPLAY_GAMMA)
-    opacity = (PAINT_OPACITY / 255.0 * share[rows, columns])[:, None]
-    part = frame.picture[area.slices]
-    before = part[rows, columns]
-    part[rows, columns] = np.rint(before + opacity * (255.0 * paint - before))
 
 
 @lru_cache(maxsize=KEPT_PATHS)

@@ -78,6 +78,18 @@ def test_only_the_area_around_the_character_changes(stage, view, pawn):
     assert columns.max() < 260
 
 
+def test_a_path_is_seen_from_where_the_camera_is_now(ctx, stage, view):
+    moved = view.camera_from_table.copy()
+    moved[:3, 3] += (0.02, -0.01, 0.05)
+    changed = replace(LOOP, highlight=5)
+    for camera_from_table, path in ((moved, LOOP), (view.camera_from_table, changed)):
+        stage.draw(view, [], [LOOP])
+        now = replace(view, camera_from_table=camera_from_table)
+        fresh = Stage(ctx, (320, 180))
+        assert np.array_equal(stage.draw(now, [], [path]), fresh.draw(now, [], [path]))
+        fresh.release()
+
+
 def test_the_cube_hides_pawn_shadow_and_path(stage, view, pawn, cube):
     actor = pawn.posed(at=(-0.05, 0.0))
     free = stage.draw(view, [actor], [LOOP]).astype(int)
