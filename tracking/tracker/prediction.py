@@ -1,6 +1,7 @@
 """The track of one cube: its last trusted poses, its velocity, and where it should be now."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -130,15 +131,28 @@ class Track:
         if elapsed > MAX_PREDICTION_S:
             return still, still
         now = se3.delta(last.camera_from_cube, camera_from_cube) / elapsed
-        earlier = self.poses[-2] if len(self.poses) > 1 else None
-        before = last.timestamp - earlier.timestamp if earlier else 0.0
-        if earlier is None or not 0 < before <= MAX_PREDICTION_S:
+        if self._last_step is None:
             return now, still
-        mean = se3.delta(earlier.camera_from_cube, last.camera_from_cube) / before
+        before, mean, variances_before = self._last_step
         span = (elapsed + before) / 2
         acceleration = (now - mean) / span
-        variances = (np.diag(covariance) + np.diag(last.covariance)) / elapsed**2
-        variances += (np.diag(earlier.covariance) + np.diag(last.covariance)) / before**2
-        noise = NOISE_FACTOR * variances / span**2
+        variances = (covariance.diagonal() + last.covariance.diagonal()) / elapsed**2
+        noise = NOISE_FACTOR * (variances + variances_before) / span**2
         acceleration *= MAX_ACCELERATION_SHARE * acceleration**2 / (acceleration**2 + noise)
         return now + acceleration * elapsed / 2, acceleration
+
+    @cached_property
+    def _last_step(self) -> tuple[float, Array, Array] | None:
+        """The time between the last two poses [s], the mean velocity and its variances, (6,) each.
+
+        None where there are no two, or the pause is too long.
+        """
+        if len(self.poses) < 2:
+            return None
+        earlier, last = self.poses[-2:]
+        elapsed = last.timestamp - earlier.timestamp
+        if not 0 < elapsed <= MAX_PREDICTION_S:
+            return None
+        mean = se3.delta(earlier.camera_from_cube, last.camera_from_cube) / elapsed
+        variances = earlier.covariance.diagonal() + last.covariance.diagonal()
+        return elapsed, mean, variances / elapsed**2

@@ -10,7 +10,10 @@ from tracking.cube.model import CubeModel
 from tracking.geometry import se3
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
+from tracking.refinement.edges import edge_refinement
+from tracking.refinement.edges.edge_fit import fit_edges
 from tracking.refinement.edges.edge_refinement import EdgeRefiner
+from tracking.refinement.edges.profiles import EdgeProfiles, measure_profiles
 from tracking.synthetic import open_synthetic
 
 Array = NDArray[np.float64]
@@ -73,3 +76,48 @@ def test_an_image_without_edges_gives_no_pose(
     assert refiner.refine(Patch(np.full_like(patch.grey, 120), 0, 0), truth) is None
     behind = se3.pose(truth[:3, :3], -truth[:3, 3])
     assert refiner.refine(patch, behind) is None
+
+
+def upright_profiles(reach: float) -> EdgeProfiles:
+    """Profiles across an upright line through x = 20, black to its left."""
+    count = 10
+    rows = np.arange(5.0, 5.0 + count)
+    return EdgeProfiles(
+        model=EdgeModel.of(CubeModel.load("locomotion")),
+        numbers=np.arange(count),
+        pixels=np.stack([np.full(count, 20.0), rows], axis=1),
+        normals=np.tile([1.0, 0.0], (count, 1)),
+        slopes=np.zeros((count, 6)),
+        bends=None,
+        k1=0.0,
+        reach=np.full(count, reach),
+        blur_motion=np.zeros(6),
+        blur=np.zeros(count),
+    )
+
+
+@pytest.mark.parametrize("reach", [1.4, 2.0, 3.5])
+@pytest.mark.parametrize("width_px", [edge_refinement.NARROW_PX, edge_refinement.WIDE_PX])
+@pytest.mark.parametrize("offset", [-0.3, 0.1, 0.6])
+def test_an_edge_is_as_far_off_as_it_is_in_small_cells_and_with_wide_steps(
+    reach: float, width_px: float, offset: float
+) -> None:
+    across = np.tanh((np.arange(40.0) - 20.0 - offset) / 0.87)
+    image = np.tile(120.0 + 80.0 * across, (20, 1)).astype(np.float32)
+    found = measure_profiles(Patch(image, 0, 0), upright_profiles(reach), np.zeros(10), width_px)
+    assert found.offset == pytest.approx(np.full(10, offset), rel=0.12)
+
+
+def test_a_cube_at_rest_is_measured_once(
+    scene: tuple[EdgeRefiner, Patch, Array], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    refiner, patch, truth = scene
+    widths = []
+
+    def counted(patch, profiles, shifts, width_px, steps=3):
+        widths.append(width_px)
+        return fit_edges(patch, profiles, shifts, width_px, steps)
+
+    monkeypatch.setattr(edge_refinement, "fit_edges", counted)
+    assert refiner.refine(patch, truth) is not None
+    assert widths == [edge_refinement.NARROW_PX]

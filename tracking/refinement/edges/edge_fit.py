@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.geometry.arrays import Array, Flags, Indices
+from tracking.geometry.arrays import Array, Flags, Indices, run_starts
 from tracking.geometry.image_region import Patch
 from tracking.geometry.robust_statistics import quantile, tukey_weight
 from tracking.refinement.edges.profiles import EdgeMeasurements, EdgeProfiles, measure_profiles
@@ -83,20 +83,21 @@ class FittedEdges:
 
 
 def fit_edges(
-    patch: Patch, profiles: EdgeProfiles, shifts: Array | None, blur: float
+    patch: Patch, profiles: EdgeProfiles, shifts: Array, width_px: float, steps: int = 3
 ) -> EdgeFit | None:
     """Measure all profiles, and solve for pose delta, blooms and k1 with robust weights.
 
     `shifts` is how far along their normals the edges have moved since the profiles were placed,
-    (N,) [px], `blur` the width of an edge at rest [px]. None where too few edges are visible.
+    (N,) [px], `width_px` as in `measure_profiles`, `steps` how often the weights are found. None
+    where too few edges are visible.
     """
-    measured = measure_profiles(patch, profiles, 0.0 if shifts is None else shifts, blur)
+    measured = measure_profiles(patch, profiles, shifts, width_px)
     good = _is_printed(profiles, measured)
     good &= np.abs(measured.offset) < profiles.reach
     strong = np.flatnonzero(good)
     if len(strong) < MIN_EDGE_POINTS:
         return None
-    offset = (measured.offset if shifts is None else measured.offset + shifts)[strong]
+    offset = (measured.offset + shifts)[strong]
     columns = profiles.equations[:, strong]
     unknowns = len(columns)
     prior, pull = PRIOR_INFORMATION[:unknowns, :unknowns], np.zeros(unknowns)
@@ -104,7 +105,7 @@ def fit_edges(
         pull[8] = -prior[8, 8] * profiles.k1
     information = measured.information[strong]
     weights, robust = information, np.ones(len(strong))
-    for _ in range(2 if shifts is None else 3):
+    for _ in range(steps):
         weighted = columns * weights
         normal = np.asarray(weighted @ columns.T + prior, np.float64)
         solution = np.asarray(np.linalg.solve(normal, weighted @ offset + pull), np.float64)
@@ -137,7 +138,7 @@ def covariance(fit: EdgeFit, lines: Indices, pixels: Array) -> Array:
     ascending, (M,), and `pixels` its position, (M, 2) [px].
     """
     inverse = np.asarray(np.linalg.inv(fit.normal), np.float64)
-    starts = np.flatnonzero(np.diff(lines, prepend=-1))
+    starts = run_starts(lines)
     count = len(starts)
     weighted = fit.rows * fit.weights[:, None]
     scores = np.add.reduceat(weighted * fit.residual[:, None], starts) @ inverse

@@ -14,7 +14,7 @@ from tracking.cube.edges import EdgeModel
 from tracking.cube.faces import FacePlanes
 from tracking.cube.model import CubeModel
 from tracking.geometry import se3
-from tracking.geometry.arrays import Array, Indices
+from tracking.geometry.arrays import Array, Indices, run_starts
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.geometry.robust_statistics import quantile
@@ -30,14 +30,18 @@ from tracking.refinement.edges.profiles import EdgeMeasurements, EdgeProfiles, p
 MIN_FACING_COSINE = 0.15
 """Cosine of the viewing angle below which the edges of a face are too foreshortened to help."""
 
-STEPS_PX: tuple[float, ...] = (2.0, 1.0)
-"""Widths of the fitted step: first and last."""
+WIDE_PX, NARROW_PX = 2.0, 1.0
+"""Widths of the fitted step: a wide one finds edges that are farther off, a narrow one is exact."""
 
 MAX_SHIFT_PX, MAX_PLACEMENTS = 0.7, 3
 """The profiles are placed again where an edge moves by more than this, but only so often."""
 
-CONVERGED_PX = 0.04
-"""The profiles are measured again while edges move by more than this."""
+CONVERGED_PX, MAX_FITS = 0.12, 3
+"""The profiles are measured again where an edge moved by more than this, as a step leaves some
+hundredths of it; but only so often."""
+
+REST_BLUR_PX = 0.03
+"""A cube whose edges are blurred by less than this is expected to rest."""
 
 BlurMotion = Callable[[Array], Array]
 """How a cube at a pose, (4, 4), moves during the exposure: a pose delta, (6,)."""
@@ -101,13 +105,13 @@ class EdgeRefiner:
         None where too few edges are in view or found, or where they do not agree.
         """
         current = start
-        found, widths, k1 = None, STEPS_PX, 0.0
+        found, k1 = None, 0.0
         for _ in range(MAX_PLACEMENTS):
             profiles = self._profiles(patch, current, blur_motion(current), k1)
-            step = _fit_repeatedly(patch, profiles, widths) if profiles else None
+            step = _fit_repeatedly(patch, profiles, wide=found is None) if profiles else None
             if profiles is None or step is None:
                 return None
-            found, widths = (current, profiles, step), STEPS_PX[1:]
+            found = current, profiles, step
             if np.abs(profiles.shifts(step.solution)).max() < MAX_SHIFT_PX:
                 break
             current = se3.moved(current, step.solution[:6])
@@ -156,7 +160,7 @@ class EdgeRefiner:
 
 def _sharpness(measured: EdgeMeasurements, kept: Indices, lines: Indices) -> tuple[float, float]:
     """Return `sharpness_ratio` and `sharpness` of the lines."""
-    starts = np.flatnonzero(np.diff(lines, prepend=-1))
+    starts = run_starts(lines)
     rise = np.add.reduceat(measured.rise[kept], starts)
     fitted = np.add.reduceat(measured.fitted[kept], starts)
     sharpness = rise / np.maximum(fitted, 1e-9)
@@ -164,23 +168,29 @@ def _sharpness(measured: EdgeMeasurements, kept: Indices, lines: Indices) -> tup
     return ratio, quantile(sharpness, 0.5)
 
 
-def _fit_repeatedly(
-    patch: Patch, profiles: EdgeProfiles, widths: tuple[float, ...]
-) -> EdgeFit | None:
+def _fit_repeatedly(patch: Patch, profiles: EdgeProfiles, wide: bool) -> EdgeFit | None:
     """Fit until the edges stay in place: the profiles follow them, the geometry stays.
 
-    Where the first, wide step moves them so far that they are placed again, it is the only one.
+    Where a first, wide step moves them so far that they are placed again, it is the only one. A
+    cube at rest needs none.
     """
-    shifts: Array | None = None
-    step: EdgeFit | None = None
-    for width in (*widths, *STEPS_PX[1:] * 2):
-        step = fit_edges(patch, profiles, shifts, width)
+    shifts = np.zeros(len(profiles.numbers))
+    if wide and profiles.blur.max() < REST_BLUR_PX:
+        step = fit_edges(patch, profiles, shifts, NARROW_PX)
+        if step is not None and np.abs(profiles.shifts(step.solution)).max() < CONVERGED_PX:
+            return step
+    if wide:
+        step = fit_edges(patch, profiles, shifts, WIDE_PX, steps=2)
+        if step is None:
+            return None
+        shifts = profiles.shifts(step.solution)
+        if np.abs(shifts).max() > MAX_SHIFT_PX:
+            return step
+    for _ in range(MAX_FITS):
+        step = fit_edges(patch, profiles, shifts, NARROW_PX)
         if step is None:
             return None
         before, shifts = shifts, profiles.shifts(step.solution)
-        if width == STEPS_PX[0]:
-            if np.abs(shifts).max() > MAX_SHIFT_PX:
-                break
-        elif before is not None and np.abs(shifts - before).max() < CONVERGED_PX:
+        if np.abs(shifts - before).max() < CONVERGED_PX:
             break
     return step

@@ -8,7 +8,7 @@ import numpy as np
 
 from tracking.cube.edges import EdgeModel
 from tracking.geometry import se3
-from tracking.geometry.arrays import Array, Floats, Indices
+from tracking.geometry.arrays import Array, Floats, Indices, run_starts
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import MIN_DEPTH, Projection
 
@@ -26,6 +26,18 @@ TAPS_PER_PROFILE = 9
 
 MODEL_ERROR_PX = 0.04
 """Error of a single edge position that is not noise: neighbouring cells, sampling."""
+
+EDGE_WIDTH_PX, RAMP_WIDTH = 0.87, 0.35
+"""Width of the smooth step that is closest to an edge of a cube at rest in a sharp image, and to a
+motion-blurred edge, which is a ramp, as a share of its length."""
+
+MAX_WIDTH = 0.45
+"""Width of a fitted step, as a share of the reach, at most."""
+
+WIDE_EXPONENT, GAIN_LOSS = 0.6, 0.11
+"""A step that is wider than the edge finds it too far off, by their ratio to this power, and a
+narrower one too near, by their ratio. An offset as large as the step is wide is found too small by
+this share besides. Computed for smooth steps; both are right to a tenth."""
 
 UNIT_TAPS = np.linspace(-1, 1, TAPS_PER_PROFILE, dtype=np.float32)[:, None]
 """Where those are, as shares of the reach, (taps, 1)."""
@@ -76,8 +88,7 @@ class EdgeProfiles:
     @cached_property
     def face_runs(self) -> list[slice]:
         """The points of each face, which follow each other."""
-        ends = np.flatnonzero(self.face[1:] != self.face[:-1]) + 1
-        bounds = [0, *ends.tolist(), len(self.face)]
+        bounds = [*run_starts(self.face).tolist(), len(self.face)]
         return [slice(start, end) for start, end in pairwise(bounds)]
 
     @cached_property
@@ -168,14 +179,15 @@ def place_profiles(
 
 
 def measure_profiles(
-    patch: Patch, profiles: EdgeProfiles, shifts: Array | float, blur: float
+    patch: Patch, profiles: EdgeProfiles, shifts: Array, width_px: float
 ) -> EdgeMeasurements:
     """Fit a blurred step to the image across each edge point.
 
     The model a + b·S(u/σ) − b·δ·s(u/σ)/σ, with S a smooth step and s its derivative, is linear in
     a, b and b·δ. Its parts are orthogonal after centring, so no iteration and no matrix is needed.
-    Offsets count from profiles moved by `shifts` along their normals, (N,) [px]. `blur` is the
-    width of an edge at rest [px].
+    Offsets count from profiles moved by `shifts` along their normals, (N,) [px]. `width_px` is the
+    width of the step where the cube rests: a wide one finds edges that are farther off. What the
+    widths of step and edge do to the offset is undone, so that one measurement is nearly enough.
     """
     taps = UNIT_TAPS * profiles.reach.astype(np.float32)
     x, y = (
@@ -185,23 +197,25 @@ def measure_profiles(
         )
     )
     values = patch.sample_local(x, y)
-    # A motion-blurred edge is a ramp; a smooth step of 0.35 of its length is closest to it.
-    wide = np.sqrt(blur**2 + (0.35 * profiles.blur) ** 2)
-    width = np.minimum(wide, profiles.reach * 0.45).astype(np.float32)
+    ramp = (RAMP_WIDTH * profiles.blur) ** 2
+    width = np.minimum(np.sqrt(width_px**2 + ramp), MAX_WIDTH * profiles.reach).astype(np.float32)
     step = np.tanh(taps / width) / 2
     slope = (0.25 - step * step) * (2 / width)
     slope -= slope.mean(axis=0)
     contrast = _dot(step, values) / _dot(step, step)
     energy = _dot(slope, slope)
-    shifted = -_dot(slope, values) / energy
     safe = np.where(np.abs(contrast) > 1, contrast, 1)
+    wider = width / np.sqrt(EDGE_WIDTH_PX**2 + ramp)
+    gain = np.minimum(wider, wider**WIDE_EXPONENT)
+    offset = -_dot(slope, values) / energy / safe
+    offset *= (1 + GAIN_LOSS * (offset / width) ** 2) / gain
     # Two grey levels of noise; its true size follows from the residuals.
-    variance = 4 / (safe * safe * energy) + MODEL_ERROR_PX**2
+    variance = (4 / (safe * safe * energy) + MODEL_ERROR_PX**2) / (gain * gain)
     half = TAPS_PER_PROFILE // 2
     rise = (values[half + 1] - values[half - 1]).astype(np.float64)
     fitted = contrast * (step[half + 1] - step[half - 1])
     level = values.mean(axis=0).astype(np.float64)
-    return EdgeMeasurements(shifted / safe, contrast, level, 1 / variance, rise, fitted)
+    return EdgeMeasurements(offset, contrast, level, 1 / variance, rise, fitted)
 
 
 def _dot(a: Floats, b: Floats) -> Array:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.geometry.arrays import Array, Flags, Indices
+from tracking.geometry.arrays import Array, Flags, Indices, run_starts
 from tracking.geometry.robust_statistics import quantile
 
 MAX_RESIDUAL_SIGMAS, MIN_CUT_SHARE = 2.0, 0.25
@@ -95,7 +95,7 @@ class PhotometricFit:
         """Covariance of pose and others, (6 + K, 6 + K), with each block as one measurement."""
         inverse, end = np.linalg.inv(self._with(prior)), 6 + len(prior)
         order = np.argsort(self.samples.block, kind="stable")
-        starts = np.flatnonzero(np.diff(self.samples.block[order], prepend=-1))
+        starts = run_starts(self.samples.block[order])
         weighted = self.rows.T * (self.weights * self.residual)
         scores = np.add.reduceat(weighted[:, order], starts, axis=1).T @ inverse[:, :end]
         count, used = len(starts), self.rows.shape[1] / 2
