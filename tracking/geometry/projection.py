@@ -21,14 +21,11 @@ class Projection:
         self.matrix = np.asarray(intrinsics.matrix, np.float64)
         self.distortion = np.asarray(intrinsics.distortion, np.float64).ravel()
         self.size = intrinsics.size
+        self.claims_no_distortion = not np.any(self.distortion)
+        """Whether the lens was never measured, for hardly any bends nothing."""
         coefficients = [*self.distortion.tolist(), *[0.0] * 8][:8]
         self._k1, self._k2, self._p1, self._p2, self._k3, *self._divisor = coefficients
         (self._fx, _, self._cx), (_, self._fy, self._cy) = self.matrix[:2].tolist()
-
-    @property
-    def claims_no_distortion(self) -> bool:
-        """Whether the lens was never measured, for hardly any bends nothing."""
-        return not np.any(self.distortion)
 
     def project(self, points: Array) -> Array:
         """Project points of the camera frame, (N, 3) [m] → (N, 2) [px].

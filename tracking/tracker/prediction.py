@@ -102,7 +102,8 @@ class Track:
         if not 0 <= ahead <= MAX_PREDICTION_S:
             return None
         accelerated = min(ahead, MAX_ACCELERATION_S)
-        delta = last.velocity * ahead + last.acceleration * (accelerated**2 / 2)
+        delta = last.velocity * ahead
+        delta += last.acceleration * (accelerated * (ahead - accelerated / 2))
         spread = np.repeat(HAND_ACCELERATION, 3) * ahead**2 / 2
         return Prediction(
             se3.moved(last.camera_from_cube, delta),

@@ -236,3 +236,12 @@ def test_predicting_changes_nothing(tracker: CubeTracker) -> None:
     for time in (0.08, 5.0, 0.2):
         tracker.predict(time)
     assert repr(tracker.predict(0.1)) == before
+
+
+@pytest.mark.parametrize("ahead", [0.03, 0.1, 0.19])
+def test_the_predicted_velocity_is_that_of_the_predicted_poses(ahead: float) -> None:
+    start = TrackedPose(START, np.zeros(6), EXACT, 0.0, np.array([8.0, 0, 0, 0, 20.0, 0]))
+    track = Track((start,))
+    before, after = (predict(track, ahead + step) for step in (-1e-5, 1e-5))
+    moved = se3.delta(before.camera_from_cube, after.camera_from_cube) / 2e-5
+    np.testing.assert_allclose(predict(track, ahead).velocity, moved, atol=1e-3)
