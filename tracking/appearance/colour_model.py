@@ -47,7 +47,9 @@ Colours = NDArray[np.uint16]
 def colours(lab: Floats) -> Colours:
     """Return the bin of each pixel; `lab` is L + 16, a and b of CIELab in bytes, (3, …)."""
     light, a, b = lab
-    bins: Colours = (light * np.float32(1 / LIGHTNESS_STEP)).astype(np.uint16)
+    # The camera may have let in less light since: white is lighter than 255 then.
+    step = np.minimum(light * np.float32(1 / LIGHTNESS_STEP), LAB_BINS[2] - 1)
+    bins: Colours = step.astype(np.uint16)
     for chroma, count, places in ((a, LAB_BINS[0], LAB_BINS[1] * LAB_BINS[2]), (b, *LAB_BINS[1:])):
         share = np.float32(1 / CHROMA_STEP) * chroma / light + np.float32(count // 2)
         bins += share.clip(0, count - 1).astype(np.uint16) * np.uint16(places)
