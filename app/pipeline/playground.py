@@ -216,10 +216,12 @@ class Playground:
     def restore(self, checkpoint: Checkpoint) -> None:
         """Go on as after the frame at which a checkpoint was made.
 
-        The scenario, the cube and the character must be the same as then.
+        The scenario, the cube and the character must be the same as then. What the drawing follows
+        is measured anew: light, hand and softness of a later time are not those of this one.
         """
         for name, value in checkpoint.content().items():
             setattr(self, name, value)
+        self._renderer.play(self.cube)
 
     def adjust(self, settings: ScenarioSettings, look: str) -> None:
         """Play on with other settings, as far as the scenario can be adjusted."""
