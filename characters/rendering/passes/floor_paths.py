@@ -7,7 +7,6 @@ have moved. Every picture is blended with it in memory.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,39 +35,37 @@ CLEARANCE_M = 0.006
 PAINT_OPACITY = 0.82
 """Share of the table that paint hides."""
 
-MAX_SIDE_TEXELS = 2048
-"""Longest side of an image of paths; texels are larger where paths reach further."""
-
-KEPT_PATHS = 8
-"""Images that are kept for the next picture."""
+MAX_SIDE_TEXELS, RIM_TEXELS = 2048, 4
+"""Longest side of an image of paths, and its empty rim; texels are larger where paths reach
+further."""
 
 
 class FloorPathPass(RenderPass):
     """Paints the floor paths on the table."""
 
     def __init__(self) -> None:
-        self._seen: dict[int, _SeenPaint] = {}
+        self._kept: list[_SeenPaint] = []
 
     def composite(self, frame: FrameResources, cover: Cover | None) -> None:
         """Paint the paths, except where real cubes or a hand hide them."""
-        for number, path in enumerate(frame.scene.floor):
-            points = np.asarray(path.points, float).reshape(-1, 2)
-            points = points[np.isfinite(points).all(axis=1)]
-            if len(points):
-                texel = _texel(frame, points)
-                image = _painted(points.tobytes(), path.closed, path.highlight, texel)
-                seen = self._seen.get(number)
-                if seen is None or not seen.is_of(image, frame):
-                    seen = self._seen[number] = _seen_paint(image, frame)
-                seen.blend(frame, cover, path)
+        floor = frame.scene.floor
+        before = [*self._kept, *[None] * len(floor)]
+        self._kept = [
+            _seen_paint(path, frame, last) for path, last in zip(floor, before, strict=False)
+        ]
+        for seen, path in zip(self._kept, floor, strict=True):
+            seen.blend(frame, cover, path)
 
 
 @dataclass(frozen=True)
 class _SeenPaint:
     """The paint of a path as one camera sees it, while nothing hides it."""
 
-    image: TableImage
-    """The paint on the table."""
+    key: tuple[object, ...]
+    """What the paint depends on."""
+
+    image: TableImage | None
+    """The paint on the table; None without a point."""
 
     camera: bytes
     """Where it was seen from."""
@@ -81,10 +78,6 @@ class _SeenPaint:
 
     share: NDArray[np.float32]
     """The share of each of these pixels that it covers, (n,)."""
-
-    def is_of(self, image: TableImage, frame: FrameResources) -> bool:
-        """Return whether it is this paint, seen by the camera of this frame."""
-        return self.image is image and self.camera == _camera(frame)
 
     def blend(self, frame: FrameResources, cover: Cover | None, path: FloorPath) -> None:
         """Blend it, lit as the table is, with the picture."""
@@ -103,24 +96,28 @@ class _SeenPaint:
         )
 
 
-def _seen_paint(image: TableImage, frame: FrameResources) -> _SeenPaint:
-    """Return how the camera of a frame sees the paint of a path."""
-    area, share = frame.area_of(image.corners), np.zeros((0, 0), np.uint8)
-    if area is not None:
+def _seen_paint(path: FloorPath, frame: FrameResources, last: _SeenPaint | None) -> _SeenPaint:
+    """Return how the camera of a frame sees the paint of a path; `last` is the one before."""
+    points = np.asarray(path.points, float).reshape(-1, 2)
+    finite = np.isfinite(points).all(axis=1)
+    places = points[finite]
+    texel = _texel(frame, places) if len(places) else 0.0
+    key = points.tobytes(), path.closed, path.highlight, texel
+    camera = frame.camera_matrix.tobytes() + frame.camera_from_table.tobytes()
+    if last is not None and last.key == key:
+        if last.camera == camera:
+            return last
+        image = last.image
+    else:
+        numbers = np.flatnonzero(finite)
+        image = _painted(places, path.closed, numbers == path.highlight, texel) if texel else None
+    area = None if image is None else frame.area_of(image.corners)
+    share = np.zeros((0, 0), np.uint8)
+    if image is not None and area is not None:
         share = image.in_picture(frame, area, beyond=0)
-    places = np.stack(np.nonzero(share))
-    return _SeenPaint(
-        image,
-        _camera(frame),
-        area,
-        places.astype(np.int32),
-        share[tuple(places)] / np.float32(255.0),
-    )
-
-
-def _camera(frame: FrameResources) -> bytes:
-    """Return what the place of the table in the picture depends on."""
-    return frame.camera_matrix.tobytes() + frame.camera_from_table.tobytes()
+    pixels = np.stack(np.nonzero(share))
+    share_of_pixels = share[tuple(pixels)] / np.float32(255.0)
+    return _SeenPaint(key, image, camera, area, pixels.astype(np.int32), share_of_pixels)
 
 
 def _texel(frame: FrameResources, points: Array) -> float:
@@ -130,19 +127,19 @@ def _texel(frame: FrameResources, points: Array) -> float:
     """
     row = frame.camera_from_table[2]
     depth = max(float((points @ row[[0, 2]]).min() + row[3]), NEAR_M)
-    coarsest = float(np.ptp(points, axis=0).max()) / MAX_SIDE_TEXELS
-    return 2.0 ** round(math.log2(max(depth / float(frame.camera_matrix[1, 1]), coarsest)))
+    exponent = round(math.log2(depth / float(frame.camera_matrix[1, 1])))
+    side = float(np.ptp(points, axis=0).max()) + 2.0 * RING_RADII_M[1]
+    return 2.0 ** max(exponent, math.ceil(math.log2(side / (MAX_SIDE_TEXELS - 2 * RIM_TEXELS))))
 
 
-@lru_cache(maxsize=KEPT_PATHS)
-def _painted(points: bytes, closed: bool, highlight: int | None, texel: float) -> TableImage:
-    """Return the share of each texel that paint covers; `points` are finite, (n, 2) float64 [m]."""
-    places = np.frombuffer(points).reshape(-1, 2)
-    highlighted = np.arange(len(places)) == (-1 if highlight is None else highlight)
+def _painted(
+    places: Array, closed: bool, highlighted: NDArray[np.bool_], texel: float
+) -> TableImage:
+    """Return the share of each texel that paint covers; `places` are finite, (n, 2) [m]."""
     capsules = _discs(places, highlighted)
     if texel < DASH_M:  # else dashes are not seen, and may be many
         capsules = np.concatenate([capsules, *_dashes(places, closed, highlighted)])
-    reach = RING_RADII_M[1] + 3.0 * texel
+    reach = RING_RADII_M[1] + (RIM_TEXELS - 1) * texel
     corner = np.floor((places.min(axis=0) - reach) / texel) * texel
     columns, rows = np.ceil((places.max(axis=0) + reach - corner) / texel).astype(int).tolist()
     pixels = np.zeros((rows, columns), np.uint8)
