@@ -96,7 +96,7 @@ class Surroundings:
     def cover(self, frame: Frame, state: CubeState) -> Cover | None:
         """Return the hand in front of the cube; call it once for each frame."""
         found = None if self._hand is None else self._hand.update(frame.image, state)
-        return None if found is None else Cover(found.x, found.y, found.cover, found.distance)
+        return None if found is None else Cover(found.x, found.y, found.cover, found.behind)
 
     def _measured_light(
         self, frame: Frame, state: CubeState, controls: CubeControls

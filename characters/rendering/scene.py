@@ -49,8 +49,8 @@ class Cover:
     share: NDArray[np.uint8]
     """Share of each pixel that is covered, (height, width), 0…255."""
 
-    distance: float
-    """Of the surface behind it from the camera, along its axis [m]."""
+    behind: Array
+    """A point of the nearest surface behind it, in the camera's frame, (3,) [m]."""
 
     @property
     def area(self) -> Rectangle:

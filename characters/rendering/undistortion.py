@@ -143,7 +143,7 @@ class Undistorter:
             cv2.INTER_LINEAR,
             borderMode=cv2.BORDER_CONSTANT,
         )
-        return Cover(area.x, area.y, np.asarray(share, np.uint8), cover.distance)
+        return Cover(area.x, area.y, np.asarray(share, np.uint8), cover.behind)
 
     def _area_in_picture(self, x: int, y: int, width: int, height: int) -> Rectangle:
         """Return the area of the picture around a rectangle of the last view's frame."""
@@ -211,7 +211,7 @@ def _cropped(cover: Cover) -> Cover:
     """Return the part of a cover that covers anything."""
     x, y, width, height = cv2.boundingRect(cover.share) if cover.share.size else (0, 0, 0, 0)
     share = np.ascontiguousarray(cover.share[y : y + height, x : x + width])
-    return Cover(cover.x + x, cover.y + y, share, cover.distance)
+    return Cover(cover.x + x, cover.y + y, share, cover.behind)
 
 
 def _camera_key(view: View) -> tuple[bytes, ...]:

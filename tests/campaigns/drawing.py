@@ -99,7 +99,7 @@ def draw(context: moderngl.Context, seconds: float, report_s: float) -> Iterator
         stage.draw(
             replace(
                 view,
-                cover=Cover(500, 200, np.full((90, 80), 128, np.uint8), 0.5),
+                cover=Cover(500, 200, np.full((90, 80), 128, np.uint8), np.array([0.0, 0.0, 0.5])),
                 focus=Focus(0.6, 0.6, 0.01 * rng.random()),
             ),
             [_placed(actor, rng) for actor in shown],

@@ -81,8 +81,8 @@ class FacePattern:
         ink, icon, face = (np.asarray(channel, np.uint8) for channel in cv2.split(shown))
         return SeenPattern(tuple(number + 1 for number in facing), face, ink, icon > 0)
 
-    def distance(self, camera_from_cube: Array, face: Image, origin: Array, scale: float) -> float:
-        """Return the least distance along the camera's axis of some pixels of faces [m].
+    def nearest(self, camera_from_cube: Array, face: Image, origin: Array, scale: float) -> Array:
+        """Return the nearest point along the camera's axis in some pixels of faces, (3,) [m].
 
         `face` is that of `SeenPattern`, 0 where a pixel does not count, one at least does; `origin`
         is the upper left corner of its part in the image, (2,) [px], of the pixel and not its
@@ -99,7 +99,10 @@ class FacePattern:
         slopes[:, :2] *= scale / focal
         rows, columns = np.nonzero(face)
         along, down, at_first = slopes[face[rows, columns] - 1].T
-        return float(1 / (along * columns + down * rows + at_first).max())
+        inverse = along * columns + down * rows + at_first
+        best = int(inverse.argmax())
+        right, below = (first + scale * np.array([columns[best], rows[best]])) / focal
+        return np.asarray(np.array([right, below, 1.0]) / inverse[best], np.float64)
 
 
 def _print(cube: CubeModel, face: Face, number: int) -> Image:

@@ -80,9 +80,9 @@ class HandMask:
     cover: NDArray[np.uint8]
     """Share of each pixel that the hand covers, 0…255, (height, width)."""
 
-    distance: float
-    """Distance of the nearest surface of the cube that the hand hides, along the camera's axis [m]:
-    the hand is nearer. That of the cube's centre where the hand hides no face."""
+    behind: Array
+    """The nearest point of the cube that the hand hides, in the camera's frame, (3,) [m]: the hand
+    is nearer. The cube's centre where the hand hides no face."""
 
     def moved(self, right: int, down: int, size: tuple[int, int]) -> "HandMask | None":
         """Return what is in an image of a width and height [px] after a move by some pixels."""
@@ -132,8 +132,8 @@ class _CubePart:
     told: Flags
     """Pixels that look like print, but have the chroma of the hand, (h, w)."""
 
-    distance: float
-    """That of a `HandMask` [m]."""
+    behind: Array
+    """As in `HandMask`, (3,) [m]."""
 
     @cached_property
     def shows_hand(self) -> bool:
@@ -175,7 +175,7 @@ class HandFinder:
         self._seen, self._pose = state.timestamp, pose
         window = self._windows.window(pose)
         if window is None:
-            self._last = None
+            self._last, self._stillness = None, Stillness()
             return None
         small = shrunk(image[window.image_box], window.scale)
         if self._frames < MANY_FRAMES or not self._stillness.is_still(window, small):
@@ -240,7 +240,7 @@ class HandFinder:
             self._learn_strip(image, window)
         if hand is None:
             return None
-        return HandMask(*soft_cover(hand, odds, place.difference, window), cube.distance)
+        return HandMask(*soft_cover(hand, odds, place.difference, window), cube.behind)
 
     def _cube_part(self, view: _View, by_colour: Floats, pose: Array) -> _CubePart:
         window, (rows, columns) = view.window, view.window.cube_box
@@ -252,17 +252,17 @@ class HandFinder:
         seen = self._pattern.seen(pose, quads, size)
         part = view.lab[:, rows, columns]
         evidence = self._faces.disagreement(part, seen, like_hand, window.edge)
-        distance = float(pose[2, 3])
+        behind = pose[:3, 3]
         if evidence.any():
             corner = np.array([window.left + columns.start, window.top + rows.start], np.float64)
             scale = window.scale
-            distance = self._pattern.distance(pose, seen.face * evidence, corner * scale, scale)
+            behind = self._pattern.nearest(pose, seen.face * evidence, corner * scale, scale)
         inner = cv2.erode(seen.face, SMALL) > 0
         slanted = (seen.face == 0) & outline.view(bool)
         doubtful = inner & ~evidence & like_hand
         told, bare = self._faces.told_by_chroma(part, seen, evidence, doubtful)
         doubtful &= ~(told | bare)
-        return _CubePart(outline, inner, slanted, evidence, doubtful, told, distance)
+        return _CubePart(outline, inner, slanted, evidence, doubtful, told, behind)
 
     def _without_uncovered(self, place: Place, view: _View, by_colour: Floats) -> Place:
         """Forget the background where it was a hand, which has gone: at a session's beginning."""

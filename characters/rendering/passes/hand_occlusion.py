@@ -1,18 +1,25 @@
 """The hand that holds the cube, in front of the characters behind it."""
 
 import moderngl
+import numpy as np
 
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
+from characters.rendering.projection import NEAR_M
 from characters.rendering.resources import FrameResources
 from characters.rendering.scene import Cover
 from characters.rendering.share_texture import ShareTexture
+from characters.skeleton.pose import Array
 
 COVER_UNIT = 7
 """Texture unit of the cover."""
 
 HAND_DEPTH_M = 0.05
 """Depth of a hand in front of the cube that it holds: what is nearer still stands before it."""
+
+MIN_SLOPE = 0.35
+"""Cosine of the angle between the camera's axis and the table, below which the camera looks down on
+a hand and a character: the higher one is in front. Above, it is the one that stands nearer."""
 
 
 class HandOcclusionPass(RenderPass):
@@ -36,7 +43,9 @@ class HandOcclusionPass(RenderPass):
         left, top = shared.x - layer.area.x, shared.y - layer.area.y
         size = layer.area.width, layer.area.height, layer.area.width, layer.area.height
         ends = left, top, left + shared.width, top + shared.height
-        clip = layer.clip_from_camera[2:] @ [0.0, 0.0, cover.distance - HAND_DEPTH_M, 1.0]
+        to_clip = layer.clip_from_camera
+        ray_from_clip = np.linalg.inv(to_clip[[0, 1, 3], :3])
+        front = _front(frame.camera_from_table[:3, 1], cover.behind)
         self._texture.write(cover.share).use(COVER_UNIT)
         set_uniforms(
             self._program,
@@ -44,7 +53,7 @@ class HandOcclusionPass(RenderPass):
             cover_corner=(cover.area.x - layer.area.x, cover.area.y - layer.area.y),
             cover_size=(cover.area.width, cover.area.height),
             clip_area=[2.0 * end / side - 1.0 for end, side in zip(ends, size, strict=True)],
-            depth=float(clip[0] / clip[1]),
+            depth=[0.0, 0.0, to_clip[2, 2]] + to_clip[2, 3] * front @ ray_from_clip,
             fineness=float(layer.target.fineness),
         )
         framebuffer.depth_mask = False
@@ -54,3 +63,16 @@ class HandOcclusionPass(RenderPass):
         self._rectangle.render(moderngl.TRIANGLE_STRIP, vertices=4)
         framebuffer.depth_mask = True
         framebuffer.use()
+
+
+def _front(up: Array, behind: Array) -> Array:
+    """Return the plane in front of a hand, (3,) [1/m]: a point is on it if its product is 1.
+
+    It is upright, so that it is in front or behind of all of a character that stands. `up` is the
+    normal of the table, and `behind` a point behind the hand, (3,) [m] in the camera's frame.
+    """
+    axis = np.array([0.0, 0.0, 1.0])
+    away = axis - up[2] * up
+    slope = float(np.linalg.norm(away))
+    away = axis if slope < MIN_SLOPE else away / slope
+    return np.asarray(away / max(float(away @ behind) - HAND_DEPTH_M, NEAR_M))

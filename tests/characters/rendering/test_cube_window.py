@@ -259,7 +259,8 @@ def test_a_nearer_closed_cube_hides_an_open_one(stage, view, opened, pawn):
 def test_a_hand_in_front_hides_room_and_character(stage, view, opened, pawn):
     box = opened()
     column = round(float(pixels(view, box, [[0.0, 0.0, 0.0]])[0, 0]))
-    hand = Cover(column - 15, 0, np.full((180, 30), 255, np.uint8), 0.4)
+    behind = 0.85 * box.camera_from_box[:3, 3]
+    hand = Cover(column - 15, 0, np.full((180, 30), 255, np.uint8), behind)
     shown = replace(view, occluders=(box,), cover=hand)
     picture = stage.draw(shown, [resident(pawn, view, box)])
     inside = np.s_[:, column - 14 : column + 14]

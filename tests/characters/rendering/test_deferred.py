@@ -52,7 +52,7 @@ def test_lit_later_the_picture_is_the_same(stage, deferred, view, pawn, cube, ch
 
 
 def test_the_hand_hides_what_is_lit_later(deferred, view, pawn):
-    cover = Cover(150, 0, np.full((180, 60), 255, np.uint8), 0.3)
+    cover = Cover(150, 0, np.full((180, 60), 255, np.uint8), np.array([0.0, 0.0, 0.3]))
     hidden = deferred.draw(replace(view, cover=cover), [pawn.posed()])
     assert np.array_equal(hidden[:, 151:209], view.image[:, 151:209])
 

@@ -62,7 +62,7 @@ def test_a_cube_behind_the_camera_is_clipped_at_the_near_plane():
 def test_a_cube_and_a_hand_hide_the_table_independently_of_each_other():
     box = box_at((0, 0, 0), (0.0, 0.0, 0.5))
     place = Rectangle(110, 60, 100, 60)
-    cover = Cover(155, 70, np.full((40, 90), 128, np.uint8), 0.5)
+    cover = Cover(155, 70, np.full((40, 90), 128, np.uint8), np.array([0.0, 0.0, 0.5]))
     cube = place, hidden_by_cube(box, MATRIX, place)
     hidden = hidden_table([cube], cover, PART)
     assert hidden is not None

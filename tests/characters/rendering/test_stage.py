@@ -19,6 +19,7 @@ from characters.rendering import (
     Stage,
     View,
 )
+from characters.rendering.passes.hand_occlusion import HAND_DEPTH_M
 from characters.rendering.passes.render_pass import RenderPass
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -110,7 +111,7 @@ def test_a_pawn_in_front_of_the_cube_is_not_hidden(stage, view, pawn, cube):
 
 def band(distance, share=255):
     """A cover of some columns right of the middle, from top to bottom."""
-    return Cover(150, 0, np.full((180, 60), share, np.uint8), distance)
+    return Cover(150, 0, np.full((180, 60), share, np.uint8), np.array([0.0, 0.0, distance]))
 
 
 def test_a_hand_hides_pawn_shadow_and_path(stage, view, pawn):
@@ -139,7 +140,7 @@ def test_the_hand_is_looked_for_in_every_frame(stage, view, pawn):
 def test_a_path_behind_the_hand_is_not_seen(stage, view):
     behind = replace(LOOP, points=np.array([[0.03, 0.0], [0.04, 0.03]]))
     assert not np.array_equal(stage.draw(view, [], [behind]), view.image)
-    whole = Cover(0, 0, np.full((180, 320), 255, np.uint8), 0.3)
+    whole = Cover(0, 0, np.full((180, 320), 255, np.uint8), np.array([0.0, 0.0, 0.3]))
     hidden = stage.draw(replace(view, cover=whole), [], [behind])
     assert np.array_equal(hidden, view.image)
 
@@ -172,7 +173,7 @@ def test_a_pawn_in_front_of_the_hand_is_not_hidden(stage, view, pawn):
 def test_an_empty_cover_changes_nothing_wherever_it_is(stage, view, pawn, corner):
     free = stage.draw(view, [pawn.posed()], [LOOP])
     x, y = corner
-    empty = Cover(x, y, np.zeros((50, 60), np.uint8), 0.3)
+    empty = Cover(x, y, np.zeros((50, 60), np.uint8), np.array([0.0, 0.0, 0.3]))
     assert np.array_equal(stage.draw(replace(view, cover=empty), [pawn.posed()], [LOOP]), free)
 
 
@@ -281,7 +282,7 @@ def test_five_hundred_pictures_leak_no_memory(ctx, view, pawn, cube):
     def draw(frames):
         for frame in range(frames):
             share = np.full((20 + frame % 60, 30), 255, np.uint8)
-            seen = replace(small, cover=Cover(frame % 300, 60, share, 0.3))
+            seen = replace(small, cover=Cover(frame % 300, 60, share, np.array([0.0, 0.0, 0.3])))
             stage.draw(seen, [pawn.posed(0.01 * frame, at=(0.0004 * frame - 0.1, 0.0))], [LOOP])
         gc.collect()
 
@@ -352,3 +353,22 @@ def test_reduced_quality_is_coarser_but_the_same_picture(stage, view, pawn):
     assert (difference > 60).mean() < 0.002
     stage.quality = QUALITIES["full"]
     assert np.array_equal(stage.draw(view, [pawn.posed()]), full)
+
+
+def test_a_point_that_is_nowhere_leaves_the_highlight_where_it_is(stage, view):
+    points = np.array([[0.0, 0.0], [0.05, 0.02], [-0.05, 0.04]])
+    gap = np.insert(points, 1, np.nan, axis=0)
+    given = stage.draw(view, [], [replace(LOOP, points=points, highlight=2)])
+    found = stage.draw(view, [], [replace(LOOP, points=gap, highlight=3)])
+    assert np.array_equal(found, given)
+
+
+@pytest.mark.parametrize("behind_m, hidden", [(-0.03, True), (0.15, False)])
+def test_a_hand_is_before_or_behind_all_of_a_pawn(stage, view, pawn, behind_m, hidden):
+    """However it leans: its head is nearer along the camera's axis than its foot."""
+    free = stage.draw(view, [pawn.posed()]).astype(int)
+    red = free[..., 2] - free[..., 1] > 60
+    beside = view.camera_from_table @ [0.3, 0.0, HAND_DEPTH_M - behind_m, 1.0]
+    whole = Cover(0, 0, np.full((180, 320), 255, np.uint8), beside[:3])
+    seen = stage.draw(replace(view, cover=whole), [pawn.posed()])
+    assert np.array_equal(seen[red], view.image[red] if hidden else free[red])

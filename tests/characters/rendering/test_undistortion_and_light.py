@@ -121,7 +121,9 @@ def test_a_frame_that_cannot_be_drawn_is_refused_when_it_is_drawn(view):
 def test_a_cover_lies_on_the_same_pixels_as_the_picture(view, distortion, size):
     frame = np.zeros((180, 320, 3), np.uint8)
     cv2.circle(frame, (250, 140), 20, (255, 255, 255), -1, cv2.LINE_AA)
-    cover = Cover(220, 110, np.ascontiguousarray(frame[110:175, 220:290, 0]), 0.5)
+    cover = Cover(
+        220, 110, np.ascontiguousarray(frame[110:175, 220:290, 0]), np.array([0.0, 0.0, 0.5])
+    )
     undistorter = Undistorter(size)
     picture = undistorter.undistort(replace(view, image=frame, distortion=distortion))
     found = undistorter.cover_in_picture(cover)
@@ -137,12 +139,14 @@ def test_an_empty_rim_of_a_cover_is_left_out(view):
     share[40:50, 60:80] = 255
     undistorter = Undistorter(SIZE)
     undistorter.undistort(view)
-    found = undistorter.cover_in_picture(Cover(100, 50, share, 0.5))
+    found = undistorter.cover_in_picture(Cover(100, 50, share, np.array([0.0, 0.0, 0.5])))
     assert found is not None
     assert found.share.shape[0] < 20
     assert found.share.shape[1] < 30
     assert (found.share[90 - found.y, 160 - found.x], found.share[0, 0]) == (255, 0)
-    assert undistorter.cover_in_picture(Cover(100, 50, 0 * share, 0.5)) is None
+    assert (
+        undistorter.cover_in_picture(Cover(100, 50, 0 * share, np.array([0.0, 0.0, 0.5]))) is None
+    )
 
 
 def test_a_low_light_is_raised_so_that_shadows_stay_short(view):

@@ -75,7 +75,8 @@ def test_the_hand_is_nearer_than_what_it_hides(film):
         mask = finder.update(picture, state_at(pose))
     assert mask is not None
     centre = pose[2, 3]
-    assert centre - CUBE.edge < mask.distance <= centre
+    assert centre - CUBE.edge < mask.behind[2] <= centre
+    assert np.linalg.norm(mask.behind - pose[:3, 3]) < CUBE.edge
 
 
 def test_a_cube_without_a_hand_is_not_covered():
@@ -280,15 +281,15 @@ def test_dark_fingers_on_ink_are_told_by_their_chroma():
 
 
 def test_a_held_hand_moves_with_the_cube():
-    mask = HandMask(100, 50, np.arange(12, dtype=np.uint8).reshape(3, 4), 0.5)
+    mask = HandMask(100, 50, np.arange(12, dtype=np.uint8).reshape(3, 4), np.array([0.0, 0.0, 0.5]))
     moved = mask.moved(5, -2, (1280, 720))
     assert moved is not None
-    assert (moved.x, moved.y, moved.distance) == (105, 48, 0.5)
+    assert (moved.x, moved.y, moved.behind[2]) == (105, 48, 0.5)
     np.testing.assert_array_equal(moved.cover, mask.cover)
 
 
 def test_a_held_hand_is_cut_off_at_the_border_of_the_image():
-    mask = HandMask(100, 50, np.arange(12, dtype=np.uint8).reshape(3, 4), 0.5)
+    mask = HandMask(100, 50, np.arange(12, dtype=np.uint8).reshape(3, 4), np.array([0.0, 0.0, 0.5]))
     moved = mask.moved(-101, 668, (1280, 720))
     assert moved is not None
     assert (moved.x, moved.y) == (0, 718)
@@ -307,3 +308,14 @@ def test_a_hand_is_where_the_lost_cube_is_expected(film):
     assert mask is not None
     assert lost is not None
     assert lost.x - mask.x == pytest.approx(0.1 * intrinsics.matrix[0, 0], rel=0.1)
+
+
+def test_a_hand_is_found_again_at_once_after_a_pose_at_the_lens(film):
+    intrinsics, pictures = film
+    finder = HandFinder(CUBE, intrinsics)
+    for picture, pose in pictures:
+        finder.update(picture, state_at(pose))
+    at_lens = pose.copy()
+    at_lens[2, 3] = 0.01
+    assert finder.update(picture, state_at(at_lens)) is None
+    assert finder.update(picture, state_at(pose)) is not None
