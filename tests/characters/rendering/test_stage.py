@@ -363,7 +363,7 @@ def test_a_point_that_is_nowhere_leaves_the_highlight_where_it_is(stage, view):
     assert np.array_equal(found, given)
 
 
-@pytest.mark.parametrize("behind_m, hidden", [(-0.03, True), (0.15, False)])
+@pytest.mark.parametrize(("behind_m", "hidden"), [(-0.03, True), (0.15, False)])
 def test_a_hand_is_before_or_behind_all_of_a_pawn(stage, view, pawn, behind_m, hidden):
     """However it leans: its head is nearer along the camera's axis than its foot."""
     free = stage.draw(view, [pawn.posed()]).astype(int)
