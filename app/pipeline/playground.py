@@ -217,7 +217,7 @@ class Playground:
         """Go on as after the frame at which a checkpoint was made.
 
         The scenario, the cube and the character must be the same as then. What the drawing follows
-        is measured anew: light, hand and softness of a later time are not those of this one.
+        is measured again: light, hand and softness of a later time are not those of this one.
         """
         for name, value in checkpoint.content().items():
             setattr(self, name, value)
