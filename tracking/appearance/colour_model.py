@@ -47,7 +47,7 @@ Colours = NDArray[np.uint16]
 def colours(lab: Floats) -> Colours:
     """Return the bin of each pixel; `lab` is L + 16, a and b of CIELab in bytes, (3, …)."""
     light, a, b = lab
-    # The camera may have let in less light since: white is lighter than 255 then.
+    # Once the camera lets in less light than at first, what is white has more than the lightest.
     step = np.minimum(light * np.float32(1 / LIGHTNESS_STEP), LAB_BINS[2] - 1)
     bins: Colours = step.astype(np.uint16)
     for chroma, count, places in ((a, LAB_BINS[0], LAB_BINS[1] * LAB_BINS[2]), (b, *LAB_BINS[1:])):

@@ -7,6 +7,7 @@ have moved. Every picture is blended with it in memory.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain, repeat
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,17 +45,18 @@ class FloorPathPass(RenderPass):
     """Paints the floor paths on the table."""
 
     def __init__(self) -> None:
-        self._kept: list[_SeenPaint] = []
+        self._kept: list[_SeenPaint | None] = []
 
     def composite(self, frame: FrameResources, cover: Cover | None) -> None:
         """Paint the paths, except where real cubes or a hand hide them."""
         floor = frame.scene.floor
-        before = [*self._kept, *[None] * len(floor)]
         self._kept = [
-            _seen_paint(path, frame, last) for path, last in zip(floor, before, strict=False)
+            _seen_paint(path, frame, last)
+            for path, last in zip(floor, chain(self._kept, repeat(None)), strict=False)
         ]
         for seen, path in zip(self._kept, floor, strict=True):
-            seen.blend(frame, cover, path)
+            if seen is not None:
+                seen.blend(frame, cover, path)
 
 
 @dataclass(frozen=True)
@@ -64,8 +66,8 @@ class _SeenPaint:
     key: tuple[object, ...]
     """What the paint depends on."""
 
-    image: TableImage | None
-    """The paint on the table; None without a point."""
+    image: TableImage
+    """The paint on the table."""
 
     camera: bytes
     """Where it was seen from."""
@@ -96,24 +98,29 @@ class _SeenPaint:
         )
 
 
-def _seen_paint(path: FloorPath, frame: FrameResources, last: _SeenPaint | None) -> _SeenPaint:
-    """Return how the camera of a frame sees the paint of a path; `last` is the one before."""
+def _seen_paint(
+    path: FloorPath, frame: FrameResources, last: _SeenPaint | None
+) -> _SeenPaint | None:
+    """Return how the camera of a frame sees the paint of a path; None without a point.
+
+    `last` is the one before: it is the same, or at least its image is, while nothing has changed.
+    """
     points = np.asarray(path.points, float).reshape(-1, 2)
-    finite = np.isfinite(points).all(axis=1)
-    places = points[finite]
-    texel = _texel(frame, places) if len(places) else 0.0
+    numbers = np.flatnonzero(np.isfinite(points).all(axis=1))
+    if not len(numbers):
+        return None
+    places = points[numbers]
+    texel = _texel(frame, places)
     key = points.tobytes(), path.closed, path.highlight, texel
     camera = frame.camera_matrix.tobytes() + frame.camera_from_table.tobytes()
-    if last is not None and last.key == key:
-        if last.camera == camera:
-            return last
-        image = last.image
-    else:
-        numbers = np.flatnonzero(finite)
-        image = _painted(places, path.closed, numbers == path.highlight, texel) if texel else None
-    area = None if image is None else frame.area_of(image.corners)
-    share = np.zeros((0, 0), np.uint8)
-    if image is not None and area is not None:
+    known = last if last is not None and last.key == key else None
+    if known is not None and known.camera == camera:
+        return known
+    image = (
+        known.image if known else _painted(places, path.closed, numbers == path.highlight, texel)
+    )
+    area, share = frame.area_of(image.corners), np.zeros((0, 0), np.uint8)
+    if area is not None:
         share = image.in_picture(frame, area, beyond=0)
     pixels = np.stack(np.nonzero(share))
     share_of_pixels = share[tuple(pixels)] / np.float32(255.0)

@@ -46,6 +46,8 @@ class HandOcclusionPass(RenderPass):
         to_clip = layer.clip_from_camera
         ray_from_clip = np.linalg.inv(to_clip[[0, 1, 3], :3])
         front = _front(frame.camera_from_table[:3, 1], cover.behind)
+        depth = to_clip[2, 3] * front @ ray_from_clip
+        depth[2] += to_clip[2, 2]
         self._texture.write(cover.share).use(COVER_UNIT)
         set_uniforms(
             self._program,
@@ -53,7 +55,7 @@ class HandOcclusionPass(RenderPass):
             cover_corner=(cover.area.x - layer.area.x, cover.area.y - layer.area.y),
             cover_size=(cover.area.width, cover.area.height),
             clip_area=[2.0 * end / side - 1.0 for end, side in zip(ends, size, strict=True)],
-            depth=[0.0, 0.0, to_clip[2, 2]] + to_clip[2, 3] * front @ ray_from_clip,
+            depth=depth,
             fineness=float(layer.target.fineness),
         )
         framebuffer.depth_mask = False
@@ -68,7 +70,7 @@ class HandOcclusionPass(RenderPass):
 def _front(up: Array, behind: Array) -> Array:
     """Return the plane in front of a hand, (3,) [1/m]: a point is on it if its product is 1.
 
-    It is upright, so that it is in front or behind of all of a character that stands. `up` is the
+    It is upright, so that all of a character that stands is on one side of it. `up` is the
     normal of the table, and `behind` a point behind the hand, (3,) [m] in the camera's frame.
     """
     axis = np.array([0.0, 0.0, 1.0])
