@@ -12,6 +12,7 @@ from app.errors import AppError
 from characters.rendering import Box, Cover, Focus, MeasuredLight, Softness, View
 from tracking import CubeControls, CubeModel, CubeState, Frame, Intrinsics
 from tracking.appearance.hand import HandFinder
+from tracking.appearance.hand_mask import EDGE_SLOPE
 from tracking.appearance.light import LightMeter
 from tracking.appearance.picture_quality import QualityMeter
 
@@ -96,7 +97,9 @@ class Surroundings:
     def cover(self, frame: Frame, state: CubeState) -> Cover | None:
         """Return the hand in front of the cube; call it once for each frame."""
         found = None if self._hand is None else self._hand.update(frame.image, state)
-        return None if found is None else Cover(found.x, found.y, found.cover, found.behind)
+        if found is None:
+            return None
+        return Cover(found.x, found.y, found.share, found.behind, found.scale, EDGE_SLOPE)
 
     def _measured_light(
         self, frame: Frame, state: CubeState, controls: CubeControls

@@ -6,13 +6,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from characters.rendering.hand_cover import PictureCover
 from characters.rendering.projection import Rectangle
-from characters.rendering.scene import Cover
 
 
 def hidden_table(
     cubes: Sequence[tuple[Rectangle, NDArray[np.uint8]]],
-    cover: Cover | None,
+    cover: PictureCover | None,
     area: Rectangle,
 ) -> NDArray[np.uint8] | None:
     """Return the share of each pixel of a region that is hidden, or None where nothing is.
@@ -37,7 +37,7 @@ def hidden_table(
             hidden = _joined(hidden, share[shared.within(place).slices], shared, area)
     shared = None if cover is None else cover.area.intersection(area)
     if cover is not None and shared is not None:
-        part = cover.share[shared.within(cover.area).slices]
+        part = cover.share_in(shared)
         hidden = _joined(hidden, part, shared, area)
     return hidden
 

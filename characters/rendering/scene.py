@@ -41,22 +41,29 @@ class Cover:
     """What is in front of a real cube, as the hand that holds it. It hides what is behind it."""
 
     x: int
-    """First column of `share` in the camera's frame [px]."""
+    """First column of the camera's frame that `share` is of [px]."""
 
     y: int
     """First row [px]."""
 
     share: NDArray[np.uint8]
-    """Share of each pixel that is covered, (height, width), 0…255."""
+    """Share of each square of pixels that is covered, (height, width), 0…255."""
 
     behind: Array
     """A point of the nearest surface behind it, in the camera's frame, (3,) [m]."""
+
+    scale: int = 1
+    """Side of these squares [px]."""
+
+    slope: float = 1.0
+    """How steeply the share of a pixel rises where half is covered, relative to what is
+    interpolated between squares: an edge is sharper than they are large."""
 
     @property
     def area(self) -> Rectangle:
         """Where it is in the frame."""
         height, width = self.share.shape
-        return Rectangle(self.x, self.y, width, height)
+        return Rectangle(self.x, self.y, self.scale * width, self.scale * height)
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
+from characters.rendering.hand_cover import Maps, PictureCover, cropped
 from characters.rendering.projection import Rectangle, is_pinhole, usable_distortion
 from characters.rendering.scene import Cover, View
 from characters.skeleton.pose import Array
@@ -32,7 +33,7 @@ class Undistorter:
     def __init__(self, size: tuple[int, int]) -> None:
         self._size = size
         self._camera_key: tuple[bytes, ...] = ()
-        self._maps: tuple[NDArray[np.float32], NDArray[np.float32]] | None = None
+        self._maps: Maps | None = None
         self._bgra = np.empty((0, 0, 4), np.uint8)
         self._undistorted_bgra = np.empty((size[1], size[0], 4), np.uint8)
         self._matrix = np.eye(3)
@@ -109,9 +110,7 @@ class Undistorter:
         self.matrix_of(view)
         return self._undistorted(view, self._maps)
 
-    def _undistorted(
-        self, view: View, maps: tuple[NDArray[np.float32], NDArray[np.float32]] | None
-    ) -> Image:
+    def _undistorted(self, view: View, maps: Maps | None) -> Image:
         """Return the same, of a view that has an image, by the maps of its camera."""
         image = view.image
         assert image is not None
@@ -119,35 +118,23 @@ class Undistorter:
             return self._fitted(image, (image.shape[1], image.shape[0]))
         return image.copy() if maps is None else self._remapped(image, *maps)
 
-    def cover_in_picture(self, cover: Cover) -> Cover | None:
+    def cover_in_picture(self, cover: Cover) -> PictureCover | None:
         """Return the cover of the last view's frame as it is in the picture, or None outside of it.
 
         It has an empty rim, so that it ends softly.
         """
-        cover = _cropped(cover)
-        height, width = cover.share.shape
-        if not height or not width:
+        cover = cropped(cover)
+        if not cover.share.size:
             return None
-        around = self._area_in_picture(cover.x, cover.y, width, height)
+        around = self._area_in_picture(cover.area)
         area = around.intersection(Rectangle(0, 0, *self._size))
         if area is None:
             return None
-        if self._maps is None:
-            rows, columns = np.mgrid[area.slices].astype(np.float32)
-        else:
-            columns, rows = (each[area.slices] for each in self._maps)
-        share = cv2.remap(
-            cover.share,
-            columns - np.float32(cover.x),
-            rows - np.float32(cover.y),
-            cv2.INTER_LINEAR,
-            borderMode=cv2.BORDER_CONSTANT,
-        )
-        return Cover(area.x, area.y, np.asarray(share, np.uint8), cover.behind)
+        return PictureCover(area, cover, self._maps)
 
-    def _area_in_picture(self, x: int, y: int, width: int, height: int) -> Rectangle:
+    def _area_in_picture(self, part: Rectangle) -> Rectangle:
         """Return the area of the picture around a rectangle of the last view's frame."""
-        columns, rows = x + width * _RIM[:, 0], y + height * _RIM[:, 1]
+        columns, rows = part.x + part.width * _RIM[:, 0], part.y + part.height * _RIM[:, 1]
         points = np.stack([columns, rows], axis=1)[:, None]
         if self._maps is not None:
             points = cv2.undistortPoints(points, *self._lens, P=self._matrix)
@@ -174,7 +161,7 @@ class Undistorter:
 
     def _make_maps(
         self, matrix: Array, distortion: Array, frame_size: tuple[int, int]
-    ) -> tuple[Array, tuple[NDArray[np.float32], NDArray[np.float32]] | None]:
+    ) -> tuple[Array, Maps | None]:
         """Return the picture's matrix and, if it needs any, the maps from it to the frame."""
         if not distortion.any() and frame_size == self._size:
             return matrix, None
@@ -205,13 +192,6 @@ class Undistorter:
             rows = (top + (bottom - top) * share).round().astype(np.uint8)
             self._backdrop = np.ascontiguousarray(np.broadcast_to(rows, (height, width, 3)))
         return self._backdrop.copy()
-
-
-def _cropped(cover: Cover) -> Cover:
-    """Return the part of a cover that covers anything."""
-    x, y, width, height = cv2.boundingRect(cover.share) if cover.share.size else (0, 0, 0, 0)
-    share = np.ascontiguousarray(cover.share[y : y + height, x : x + width])
-    return Cover(cover.x + x, cover.y + y, share, cover.behind)
 
 
 def _camera_key(view: View) -> tuple[bytes, ...]:

@@ -1,7 +1,8 @@
 """How well the hand at the cube is found: `python -m tests.bench.hand_mask [-o FOLDER]`.
 
 Hands of ten skin tones and three gloves take, turn and carry a cube in synthetic pictures. The mask
-is compared with the true cover, in `HandFinder.region`: two edges of the cube around its bounds.
+is compared with the true cover, in `HandFinder.region`, two edges of the cube around its bounds,
+and in the whole picture, with the arm.
 The score is the sum of the lesser over the sum of the greater cover of all pixels (soft IoU), by
 frames in which the hand holds the cube. The poses are the tracker's own.
 """
@@ -17,8 +18,12 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from characters.rendering.hand_cover import PictureCover
+from characters.rendering.projection import Rectangle
+from characters.rendering.scene import Cover
 from tests.bench.hand_scenes import GLOVES, RATE_HZ, SKINS, HandScene, HandView
-from tracking.appearance.hand import HandFinder, HandMask
+from tracking.appearance.hand import HandFinder
+from tracking.appearance.hand_mask import EDGE_SLOPE, HandMask
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Floats, Image
 from tracking.tracker.tracker import CubeTracker
@@ -41,6 +46,9 @@ class Result:
     scores: list[list[float]] = field(default_factory=list)
     """IoU of each frame of each scene."""
 
+    whole_scores: list[float] = field(default_factory=list)
+    """IoU of each frame in the whole picture."""
+
     times: list[float] = field(default_factory=list)
     """Time of `HandFinder.update` [ms]."""
 
@@ -52,12 +60,18 @@ class Result:
 
 
 def covered(mask: HandMask | None, shape: tuple[int, ...]) -> Floats:
-    """Return the cover in the whole image, (H, W) 0…1."""
-    found = np.zeros(shape[:2], np.float32)
-    if mask is not None:
-        height, width = mask.cover.shape
-        found[mask.y : mask.y + height, mask.x : mask.x + width] = mask.cover / np.float32(255)
-    return found
+    """Return the cover in the whole image, (H, W) 0…1, as it is drawn."""
+    if mask is None:
+        return np.zeros(shape[:2], np.float32)
+    cover = Cover(mask.x, mask.y, mask.share, mask.behind, mask.scale, EDGE_SLOPE)
+    whole = Rectangle(0, 0, shape[1], shape[0])
+    return np.float32(1 / 255) * PictureCover(whole, cover, None).share_in(whole)
+
+
+def overlap(found: Floats, true: Floats) -> float:
+    """Return the soft IoU of two covers."""
+    both = float(np.maximum(found, true).sum())
+    return float(np.minimum(found, true).sum()) / max(both, 1e-6)
 
 
 def measure(name: str, skin: str, given: argparse.Namespace) -> Result:
@@ -82,12 +96,13 @@ def measure(name: str, skin: str, given: argparse.Namespace) -> Result:
             box = finder.region(scene.truth(index))
             if box is None:
                 continue
-            found, true = covered(mask, truth.shape)[box], truth[box]
+            whole = covered(mask, truth.shape)
+            found, true = whole[box], truth[box]
             if not true.any():
                 result.false_covers.append(round(255 * float(found.max())))
             if scene.state(index).grip > 0.99 and skin:
-                both = float(np.maximum(found, true).sum())
-                result.scores[-1].append(float(np.minimum(found, true).sum()) / max(both, 1e-6))
+                result.scores[-1].append(overlap(found, true))
+                result.whole_scores.append(overlap(whole, truth))
                 if given.output and index % round(RATE_HZ) == 0:
                     write(
                         given.output / f"{name} {number} {index}.png", frame.image[box], found, true
@@ -118,7 +133,16 @@ def main() -> None:
     )
     parser.add_argument("--warmth", type=float, default=0.0, help="the same of its white balance")
     given = parser.parse_args()
-    table = Table("hand", "IoU", "of each scene", "worst frame", "ms", "× markers", "false cover")
+    columns = (
+        "IoU",
+        "of each scene",
+        "worst frame",
+        "with the arm",
+        "ms",
+        "× markers",
+        "false cover",
+    )
+    table = Table("hand", *columns)
     means, times, false = {}, [], 0
     for name, skin in ({"none": ""} | SKINS | GLOVES).items():
         if given.only and name not in given.only:
@@ -126,12 +150,13 @@ def main() -> None:
         found = measure(name, skin, given)
         times += found.times
         false = max(false, *found.false_covers, 0)
-        row = ["", "", ""]
+        row = [""] * 4
         if skin:
             scenes = [float(np.mean(scores)) for scores in found.scores]
             means[name] = float(np.mean(scenes))
             worst = min(min(scores) for scores in found.scores)
             row = [f"{means[name]:.3f}", " ".join(f"{s:.2f}" for s in scenes), f"{worst:.2f}"]
+            row.append(f"{np.mean(found.whole_scores):.3f}")
         cost = float(np.median(found.times))
         row += [f"{cost:.2f}", f"{cost / float(np.median(found.marker_times)):.2f}"]
         table.add_row(

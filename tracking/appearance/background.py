@@ -45,14 +45,18 @@ MIN_SAMPLES, MAX_SAME, MIN_CHANGED = 30, 0.12, 0.35
 """Pixels that tell whether the camera has changed; most of them that still look as before then,
 and least that have changed alike, as shares."""
 
-GRID_PX = 3
-"""Distance of the pixels by which the part of a window is found that differs [px]."""
+GRID_PX, MIDDLES = 3, slice(1, None, 3)
+"""Side of the squares of pixels of which the middle is a sample: by these are found the part of a
+window that differs, and the arm [px]; and where the middles are."""
 
 MIN_CHANGE = 5.0
 """Change of lightness or chroma from which on a pixel of that grid differs [CIELab bytes]."""
 
-MARGIN_PX = 10
-"""What is added around that part: filters reach so far [px]."""
+SAMPLE_NOISE = 2.0
+"""How much more noise a sample has than a pixel of the window."""
+
+MARGIN_PX = 6
+"""What is added around that part [px]: beyond it is nothing that differs."""
 
 RECOLOURED_SHARE = 0.2
 """Change of chroma from which on a shadow is out of the question, as a share of L + 16."""
@@ -131,6 +135,7 @@ class Background:
 
     def __init__(self) -> None:
         self._mean: Floats = np.zeros((3, 0, 0), np.float32)
+        self._sampled_mean = self._mean
         self._age: Image = np.zeros((0, 0), np.uint8)
         self._texture: Floats = np.zeros((0, 0), np.float32)
         self._lit_anew: Flags = np.zeros((0, 0), bool)
@@ -156,6 +161,9 @@ class Background:
             unknown = cv2.resize((self._age == 0).astype(np.float32), (width, height))
             age = np.asarray(cv2.resize(self._age, (width, height)), np.uint8)
             self._age = age * (unknown == 0)
+        else:
+            return
+        self._sampled_mean = self._mean[:, MIDDLES, MIDDLES].copy()
 
     def camera_change(self, lab: Floats, box: Box) -> Floats | None:
         """Return what undoes a change of exposure and white balance, (3, 3); None without one.
@@ -236,27 +244,35 @@ class Background:
         recoloured = off > np.float32(RECOLOURED_SHARE) * light
         return Place(odds, (odds > 0) & ~lit, difference, recoloured, (light, mean))
 
-    def differing(self, lab: Floats, box: Box, start: Box) -> Box:
+    def differing(self, lab: Floats, samples: Box, start: Box) -> Box:
         """Return the rows and columns with all that differs from the background around a part.
 
         Parameters
         ----------
         lab
-            Every `GRID_PX`th row and column of what `compare` takes.
-        box
-            Rows and columns of the window.
+            Samples of what `compare` takes: the middle of each square of `GRID_PX` pixels.
+        samples
+            Rows and columns of those of the window.
         start
             Rows and columns in the window of that part: the cube.
         """
-        means = self._mean[:, box[0], box[1]][:, ::GRID_PX, ::GRID_PX]
-        flags = np.abs(lab - means).max(axis=0) > MIN_CHANGE
-        flags |= self._age[box][::GRID_PX, ::GRID_PX] == 0
+        flags = np.abs(lab - self._sampled_mean[:, *samples]).max(axis=0) > MIN_CHANGE
+        flags |= self._age[MIDDLES, MIDDLES][samples] == 0
         rows, columns = (slice(side.start // GRID_PX, side.stop // GRID_PX + 1) for side in start)
         flags[rows, columns] = True
         near = cv2.dilate(flags.view(np.uint8), SMALL)
         _, labels, stats, _ = cv2.connectedComponentsWithStats(near)
         left, top, width, height, _ = stats[labels[rows.start, columns.start]].tolist()
         return _grown(top, height), _grown(left, width)
+
+    def changed_samples(self, lab: Floats, samples: Box) -> Flags:
+        """Return which samples look like something else, and not as in a shadow, (h, w)."""
+        mean, mean_a, mean_b = self._sampled_mean[:, *samples]
+        gain = lab[0] / mean
+        off = cv2.magnitude(lab[1] - gain * mean_a, lab[2] - gain * mean_b)
+        limit = SAMPLE_NOISE * CHROMA_LIMIT * self._noise[0] + SHADE_CHROMA * np.abs(gain - 1)
+        changed = (off > limit) | (gain < MIN_GAIN) | (gain > MAX_GAIN)
+        return np.asarray(changed & (self._age[MIDDLES, MIDDLES][samples] > 0))
 
     def learn(self, lab: Floats, box: Box, free: Flags, changed: Flags) -> None:
         """Learn the pixels of a window that are free of cube and hand."""
@@ -299,6 +315,12 @@ class Background:
     def _learn(self, lab: Floats, box: Box, steps: Floats) -> None:
         for plane, mean in zip(lab, self._mean[:, box[0], box[1]], strict=True):
             mean += (plane - mean) * steps
+        ends = (side.indices(count) for side, count in zip(box, self._age.shape, strict=True))
+        rows, columns = (
+            slice((low + 1) // GRID_PX, (high + 1) // GRID_PX) for low, high, _ in ends
+        )
+        middles = self._mean[:, MIDDLES, MIDDLES]
+        self._sampled_mean[:, rows, columns] = middles[:, rows, columns]
 
 
 def _share(changes: Sequence[Floats], change: Sequence[float]) -> float:

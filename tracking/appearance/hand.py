@@ -5,9 +5,9 @@ from functools import cached_property
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-from tracking.appearance.background import GRID_PX, UNKNOWN, Background, Box, Place
+from tracking.appearance.arm import arm_samples, with_arm
+from tracking.appearance.background import UNKNOWN, Background, Box, Place
 from tracking.appearance.colour_model import (
     MAX_ODDS,
     MIN_DIFFERENCE,
@@ -19,8 +19,9 @@ from tracking.appearance.colour_space import LAB_FROM_ROOTS, lab
 from tracking.appearance.face_check import FaceCheck
 from tracking.appearance.face_pattern import FacePattern
 from tracking.appearance.hand_edge import ODDS_RANGE, soft_cover
+from tracking.appearance.hand_mask import HandMask
 from tracking.appearance.hand_shape import connected, filled
-from tracking.appearance.window import Stillness, Window, WindowFinder, shrunk
+from tracking.appearance.window import Stillness, Window, WindowFinder, sampled, shrunk
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Flags, Floats, Image
 from tracking.geometry.intrinsics import Intrinsics
@@ -65,35 +66,6 @@ hand."""
 
 SMALL, WIDE = np.ones((3, 3), np.uint8), np.ones((5, 5), np.uint8)
 """A pixel with its neighbours."""
-
-
-@dataclass(frozen=True)
-class HandMask:
-    """What the hand covers of the image near the cube."""
-
-    x: int
-    """First column of the cover in the camera's frame [px]."""
-
-    y: int
-    """First row of the cover in the camera's frame [px]."""
-
-    cover: NDArray[np.uint8]
-    """Share of each pixel that the hand covers, 0…255, (height, width)."""
-
-    behind: Array
-    """The nearest point of the cube that the hand hides, in the camera's frame, (3,) [m]: the hand
-    is nearer. The cube's centre where the hand hides no face."""
-
-    def moved(self, right: int, down: int, size: tuple[int, int]) -> "HandMask | None":
-        """Return what is in an image of a width and height [px] after a move by some pixels."""
-        height, width = self.cover.shape
-        left, top = self.x + right, self.y + down
-        columns = range(max(left, 0), min(left + width, size[0]))
-        rows = range(max(top, 0), min(top + height, size[1]))
-        if not (columns and rows):
-            return None
-        part = np.s_[rows.start - top : rows.stop - top, columns.start - left : columns.stop - left]
-        return replace(self, x=columns.start, y=rows.start, cover=self.cover[part])
 
 
 @dataclass(frozen=True)
@@ -158,6 +130,7 @@ class HandFinder:
         self._stillness = Stillness()
         self._from_roots = LAB_FROM_ROOTS
         self._strip = self._frames = 0
+        self._hidden = np.zeros(3)  # the point behind the hand, in the cube's frame [m]
         self._last: HandMask | None = None
         self._seen, self._pose = -np.inf, np.eye(4)
 
@@ -177,16 +150,18 @@ class HandFinder:
         if window is None:
             self._last, self._stillness = None, Stillness()
             return None
-        small = shrunk(image[window.image_box], window.scale)
-        if self._frames < MANY_FRAMES or not self._stillness.is_still(window, small):
+        samples = sampled(image, window.scale, window.samples)
+        if self._frames < MANY_FRAMES or not self._stillness.is_still(window, samples):
             columns, rows = (side // window.scale for side in self._projection.size)
             self._background.match_size(columns, rows)
-            whole = self._frames < MANY_FRAMES or self._frames % WHOLE_FRAMES == 0
+            whole, part = self._frames < MANY_FRAMES or self._frames % WHOLE_FRAMES == 0, window
             if not whole:
-                sparse = self._lab(np.ascontiguousarray(small[::GRID_PX, ::GRID_PX]))
-                part = self._background.differing(sparse, window.box, window.cube_box)
-                window, small = window.part(part), small[part]
-            self._last = self._found(image, pose, window, small, whole)
+                planes = self._lab(samples)
+                part = window.part(
+                    self._background.differing(planes, window.samples, window.cube_box)
+                )
+            hand = self._found(image, pose, part, whole)
+            self._last = None if hand is None else self._with_arm(image, window, hand)
         return self._last
 
     def region(self, camera_from_cube: Array) -> Box | None:
@@ -201,16 +176,22 @@ class HandFinder:
         centres = np.stack([self._pose[:3, 3], pose[:3, 3]])
         before, now = np.rint(self._projection.project(centres))
         right, down = (int(step) for step in now - before)
-        return self._last.moved(right, down, self._projection.size)
+        return self._last.moved(right, down)
+
+    def _with_arm(self, image: Image, window: Window, hand: HandMask) -> HandMask:
+        """Return a hand that was found in a window together with its arm beyond that."""
+        samples = arm_samples(window, self._projection.size)
+        planes = self._lab(sampled(image, window.scale, samples))
+        changed = self._background.changed_samples(planes, samples)
+        return with_arm(hand, changed, samples, window)
 
     def _lab(self, image: Image) -> Floats:
         """Return the planes of `lab` as the camera showed them at first."""
         return lab(image, self._from_roots)
 
-    def _found(
-        self, image: Image, pose: Array, window: Window, small: Image, whole: bool
-    ) -> HandMask | None:
+    def _found(self, image: Image, pose: Array, window: Window, whole: bool) -> HandMask | None:
         """Find the hand in the window, or in the part of it where something differs."""
+        small = shrunk(image[window.image_box], window.scale)
         planes = self._lab(small)
         change = self._background.camera_change(planes, window.box) if whole else None
         if change is not None:
@@ -240,7 +221,9 @@ class HandFinder:
             self._learn_strip(image, window)
         if hand is None:
             return None
-        return HandMask(*soft_cover(hand, odds, place.difference, window), cube.behind)
+        left, top, share = soft_cover(hand, odds, place.difference, window)
+        x, y = (window.left + left) * window.scale, (window.top + top) * window.scale
+        return HandMask(x, y, share, window.scale, cube.behind)
 
     def _cube_part(self, view: _View, by_colour: Floats, pose: Array) -> _CubePart:
         window, (rows, columns) = view.window, view.window.cube_box
@@ -252,11 +235,14 @@ class HandFinder:
         seen = self._pattern.seen(pose, quads, size)
         part = view.lab[:, rows, columns]
         evidence = self._faces.disagreement(part, seen, like_hand, window.edge)
-        behind = pose[:3, 3]
-        if evidence.any():
+        if not evidence.any():
+            self._hidden = np.zeros(3)
+        elif self._frames % LEARNING_FRAMES == 0 or not self._hidden.any():
             corner = np.array([window.left + columns.start, window.top + rows.start], np.float64)
             scale = window.scale
-            behind = self._pattern.nearest(pose, seen.face * evidence, corner * scale, scale)
+            nearest = self._pattern.nearest(pose, seen.face * evidence, corner * scale, scale)
+            self._hidden = (nearest - pose[:3, 3]) @ pose[:3, :3]
+        behind = pose[:3, :3] @ self._hidden + pose[:3, 3]
         inner = cv2.erode(seen.face, SMALL) > 0
         slanted = (seen.face == 0) & outline.view(bool)
         doubtful = inner & ~evidence & like_hand
@@ -344,7 +330,7 @@ def _credible(place: Place, by_colour: Floats, distinctness: float) -> Floats:
     """
     low, high = FAMILIAR_ODDS
     near = cv2.dilate(cv2.blur(by_colour, (3, 3)), SMALL)
-    lack = np.minimum(np.maximum((np.float32(high) - near) / np.float32(high - low), 0), 1)
+    lack = ((np.float32(high) - near) / np.float32(high - low)).clip(0, 1)
     lack *= np.float32(distinctness) * ~place.recoloured
     return np.asarray(place.odds - lack * np.maximum(place.odds, 0))
 
@@ -361,7 +347,7 @@ def _odds(
     part[cube.slanted] += SLANTED_EVIDENCE
     part[cube.inner] = -ODDS_RANGE
     part[cube.evidence | cube.told] = ODDS_RANGE
-    odds = np.minimum(np.maximum(odds, -ODDS_RANGE), ODDS_RANGE)
+    odds = odds.clip(-ODDS_RANGE, ODDS_RANGE)
     smooth = np.asarray(cv2.GaussianBlur(odds, (5, 5), 1.0), np.float32)
     part = smooth[window.cube_box]
     part[filled(part, cube.inner, cube.doubtful, window.edge)] = 0.5 * ODDS_RANGE

@@ -14,13 +14,6 @@ MIN_CONTRAST, CONTRAST_WEIGHT = 15.0, 0.6
 """Least difference of hand and desk by which the share is measured [CIELab bytes]; and the weight
 of that, beside the share by odds."""
 
-EDGE_LEVELS = 90.0
-"""Range of shares, whose whole range is 255, over which the cover rises from 0 to 255: pixels of
-the window are larger than those of the image."""
-
-COVER = np.clip((np.arange(256) - 128) * (255 / EDGE_LEVELS) + 128, 0, 255).astype(np.uint8)
-"""Cover for the share at full resolution."""
-
 SMALL, WIDE = np.ones((3, 3), np.uint8), np.ones((5, 5), np.uint8)
 """A pixel with its neighbours."""
 
@@ -28,7 +21,7 @@ SMALL, WIDE = np.ones((3, 3), np.uint8), np.ones((5, 5), np.uint8)
 def soft_cover(
     hand: Image, odds: Floats, difference: Floats, window: Window
 ) -> tuple[int, int, Image]:
-    """Return the cover of the pixels of the image, 0…255, after its first column and row.
+    """Return the cover of a part of the window, 0…255, after its first column and row.
 
     A pixel at the edge mixes hand and desk: it differs by a share of what a whole one does.
 
@@ -55,7 +48,4 @@ def soft_cover(
     weight = np.float32(CONTRAST_WEIGHT) * ((difference > 0) & (contrast > MIN_CONTRAST))
     share += weight * ((difference - least) / np.maximum(contrast, 1) - share)
     level = cv2.convertScaleAbs(np.maximum(np.maximum(share, 0) * near, core), None, 255)
-    size = ((right - left) * window.scale, (bottom - top) * window.scale)
-    large = cv2.resize(level, size, interpolation=cv2.INTER_LINEAR)
-    x, y = (window.left + left) * window.scale, (window.top + top) * window.scale
-    return x, y, np.asarray(cv2.LUT(large, COVER), np.uint8)
+    return left, top, np.asarray(level, np.uint8)

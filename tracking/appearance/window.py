@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from tracking.appearance.background import Box
+from tracking.appearance.background import GRID_PX, Box
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Image
 from tracking.geometry.projection import MIN_DEPTH, Projection
@@ -24,7 +24,6 @@ MARGIN_PX = 7
 MIN_SIDE_PX = 8
 """Least side of a window [px of it]."""
 
-
 STILL_FRAMES = 7
 """Frames in turn that are not looked at while a window shows the same."""
 
@@ -38,10 +37,10 @@ class Window:
     """A part of the image at working resolution."""
 
     left: int
-    """First column [px of the window]."""
+    """First column [px of the window]: a multiple of `GRID_PX` where it is no part of another."""
 
     top: int
-    """First row [px of the window]."""
+    """First row [px of the window], likewise."""
 
     width: int
     """Number of columns."""
@@ -65,6 +64,12 @@ class Window:
     def box(self) -> Box:
         """Rows and columns in an image of the working resolution."""
         return np.s_[self.top : self.top + self.height, self.left : self.left + self.width]
+
+    @property
+    def samples(self) -> Box:
+        """Rows and columns of the samples whose squares are in it, see `sampled`."""
+        rows, columns = (slice(side.start // GRID_PX, side.stop // GRID_PX) for side in self.box)
+        return rows, columns
 
     @property
     def image_box(self) -> Box:
@@ -129,7 +134,7 @@ class WindowFinder:
         )
         ranges = []
         for low, high, first, last, side in zip(*bounds, self._projection.size, strict=True):
-            start = max(math.floor((low - reach) / scale), 0)
+            start = max(math.floor((low - reach) / scale) // GRID_PX * GRID_PX, 0)
             length = min(math.ceil((high + reach) / scale), side // scale) - start
             if length < MIN_SIDE_PX:
                 return None
@@ -152,7 +157,7 @@ class Stillness:
     def is_still(self, window: Window, picture: Image) -> bool:
         """Return True for at most `STILL_FRAMES` in turn; False means that it is looked at now.
 
-        `picture` is the window at working resolution, (h, w, 3) BGR.
+        `picture` is the window in samples, (h, w, 3) BGR.
         """
         self._frames += 1
         if self._frames <= STILL_FRAMES and self._is_same(window, picture):
@@ -167,7 +172,18 @@ class Stillness:
         if np.abs(last.quads - window.quads).max() > STILL_PX:
             return False
         changed = np.count_nonzero(cv2.absdiff(picture, self._picture) > STILL_LEVELS)
-        return bool(changed < MIN_CHANGE_EDGES2 * window.edge**2)
+        return bool(changed < MIN_CHANGE_EDGES2 * (window.edge / GRID_PX) ** 2)
+
+
+def sampled(image: Image, scale: int, samples: Box) -> Image:
+    """Return the middles of some squares of `GRID_PX` pixels at working resolution, (h, w, 3) BGR.
+
+    `samples` counts rows and columns of such squares, which are in the image.
+    """
+    step, (rows, columns) = GRID_PX * scale, samples
+    part = image[step * rows.start : step * rows.stop, step * columns.start : step * columns.stop]
+    size = columns.stop - columns.start, rows.stop - rows.start
+    return np.asarray(cv2.resize(part, size, interpolation=cv2.INTER_LINEAR), np.uint8)
 
 
 def shrunk(image: Image, scale: int) -> Image:

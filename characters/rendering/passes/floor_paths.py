@@ -12,13 +12,14 @@ from itertools import chain, repeat
 import numpy as np
 from numpy.typing import NDArray
 
+from characters.rendering.hand_cover import PictureCover
 from characters.rendering.hidden_table import hidden_table
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.passes.shadows import DISPLAY_GAMMA
 from characters.rendering.passes.table_image import TableImage
 from characters.rendering.projection import NEAR_M, Rectangle
 from characters.rendering.resources import FrameResources
-from characters.rendering.scene import Cover, FloorPath
+from characters.rendering.scene import FloorPath
 from characters.skeleton.pose import Array
 
 POINT_RADIUS_M, HIGHLIGHT_RADIUS_M = 0.005, 0.0075
@@ -47,7 +48,7 @@ class FloorPathPass(RenderPass):
     def __init__(self) -> None:
         self._kept: list[_SeenPaint | None] = []
 
-    def composite(self, frame: FrameResources, cover: Cover | None) -> None:
+    def composite(self, frame: FrameResources, cover: PictureCover | None) -> None:
         """Paint the paths, except where real cubes or a hand hide them."""
         floor = frame.scene.floor
         self._kept = [
@@ -81,7 +82,7 @@ class _SeenPaint:
     share: NDArray[np.float32]
     """The share of each of these pixels that it covers, (n,)."""
 
-    def blend(self, frame: FrameResources, cover: Cover | None, path: FloorPath) -> None:
+    def blend(self, frame: FrameResources, cover: PictureCover | None, path: FloorPath) -> None:
         """Blend it, lit as the table is, with the picture."""
         if self.area is None or not len(self.share):
             return

@@ -3,11 +3,11 @@
 import moderngl
 import numpy as np
 
+from characters.rendering.hand_cover import PictureCover
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.projection import NEAR_M
 from characters.rendering.resources import FrameResources
-from characters.rendering.scene import Cover
 from characters.rendering.share_texture import ShareTexture
 from characters.skeleton.pose import Array
 
@@ -31,7 +31,7 @@ class HandOcclusionPass(RenderPass):
         self._texture = ShareTexture(context)
         self.owned = (self._rectangle, self._texture)
 
-    def composite(self, frame: FrameResources, cover: Cover | None) -> None:
+    def composite(self, frame: FrameResources, cover: PictureCover | None) -> None:
         """Clear the character layer behind the hand."""
         layer = frame.layer
         if layer is None or cover is None:
@@ -48,12 +48,12 @@ class HandOcclusionPass(RenderPass):
         front = _front(frame.camera_from_table[:3, 1], cover.behind)
         depth = to_clip[2, 3] * front @ ray_from_clip
         depth[2] += to_clip[2, 2]
-        self._texture.write(cover.share).use(COVER_UNIT)
+        self._texture.write(cover.share_in(shared)).use(COVER_UNIT)
         set_uniforms(
             self._program,
             cover=COVER_UNIT,
-            cover_corner=(cover.area.x - layer.area.x, cover.area.y - layer.area.y),
-            cover_size=(cover.area.width, cover.area.height),
+            cover_corner=(left, top),
+            cover_size=(shared.width, shared.height),
             clip_area=[2.0 * end / side - 1.0 for end, side in zip(ends, size, strict=True)],
             depth=depth,
             fineness=float(layer.target.fineness),

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import Protocol
 
+from characters.rendering.hand_cover import PictureCover
 from characters.rendering.resources import CharacterLayer, FrameResources
-from characters.rendering.scene import Cover
 
 
 class Releasable(Protocol):
@@ -35,7 +35,7 @@ class RenderPass:
         The driver is at work on it already while the hand is found.
         """
 
-    def composite(self, frame: FrameResources, cover: Cover | None) -> None:
+    def composite(self, frame: FrameResources, cover: PictureCover | None) -> None:
         """Change the picture of the frame, in place; `cover` is the hand.
 
         The picture is in memory: a software driver takes several times as long as OpenCV to change

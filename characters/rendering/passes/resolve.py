@@ -9,10 +9,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from characters.rendering.hand_cover import PictureCover
 from characters.rendering.haze import hazy
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.resources import FrameResources
-from characters.rendering.scene import Cover
 
 Image = NDArray[np.uint8]
 
@@ -39,7 +39,7 @@ class ResolvePass(RenderPass):
         self._tiled = self._grain  # again and again, as far as a layer was large
         self._pictures = 0
 
-    def composite(self, frame: FrameResources, cover: Cover | None) -> None:
+    def composite(self, frame: FrameResources, cover: PictureCover | None) -> None:
         """Blend the characters over the picture."""
         layer, softness = frame.layer, frame.softness
         if layer is None:

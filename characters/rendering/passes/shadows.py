@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.rendering.geometry.character_cache import CharacterInstance
+from characters.rendering.hand_cover import PictureCover
 from characters.rendering.light import Light
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.passes.table_factors import darken
 from characters.rendering.passes.table_image import TableImage
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.resources import CharacterLayer, FrameResources
-from characters.rendering.scene import Cover
 from characters.rendering.target import read_bytes
 from characters.skeleton.pose import Array
 
@@ -76,7 +76,7 @@ class ShadowPass(RenderPass):
         for shadow in self._maps[: self._count]:
             shadow.read_back()
 
-    def composite(self, frame: FrameResources, cover: Cover | None) -> None:
+    def composite(self, frame: FrameResources, cover: PictureCover | None) -> None:
         """Darken the table, except where real cubes or a hand hide it."""
         if self._count:
             for factors in self._table_factors():

@@ -3,17 +3,17 @@
 import cv2
 import numpy as np
 
+from characters.rendering.hand_cover import PictureCover
 from characters.rendering.haze import darkened
 from characters.rendering.hidden_table import hidden_table
 from characters.rendering.passes.table_image import TableImage
 from characters.rendering.resources import FrameResources
-from characters.rendering.scene import Cover
 
 UNSEEN_LEVEL = 254
 """Least factor, of 255, that is not seen where a shadow ends."""
 
 
-def darken(frame: FrameResources, cover: Cover | None, factors: TableImage) -> None:
+def darken(frame: FrameResources, cover: PictureCover | None, factors: TableImage) -> None:
     """Multiply the table in the picture of a frame, except where real cubes or a hand hide it.
 
     `factors` are those of sRGB values, BGR, 255 for 1; beyond them, all light is left.

@@ -6,5 +6,6 @@ uniform vec2 cover_size;    // [px]
 float covered(vec2 pixel) {
     vec2 at = pixel - cover_corner;
     if (any(lessThan(at, vec2(0.0))) || any(greaterThan(at, cover_size))) return 0.0;
-    return texture(cover, at / vec2(textureSize(cover, 0))).r;
+    // Beyond its last row and column are texels of covers before.
+    return texture(cover, clamp(at, vec2(0.5), cover_size - 0.5) / vec2(textureSize(cover, 0))).r;
 }

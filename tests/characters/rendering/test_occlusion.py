@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from characters.rendering import Box
+from characters.rendering.hand_cover import PictureCover
 from characters.rendering.hidden_table import hidden_table
 from characters.rendering.occlusion import UNIT_CUBE, hidden_by_cube
 from characters.rendering.projection import Rectangle
@@ -64,7 +65,8 @@ def test_a_cube_and_a_hand_hide_the_table_independently_of_each_other():
     place = Rectangle(110, 60, 100, 60)
     cover = Cover(155, 70, np.full((40, 90), 128, np.uint8), np.array([0.0, 0.0, 0.5]))
     cube = place, hidden_by_cube(box, MATRIX, place)
-    hidden = hidden_table([cube], cover, PART)
+    hand = PictureCover(cover.area, cover, None)
+    hidden = hidden_table([cube], hand, PART)
     assert hidden is not None
     of_cube = mask(box)
     assert hidden[69, 110] == 255  # on the cube, beside the hand
@@ -74,4 +76,4 @@ def test_a_cube_and_a_hand_hide_the_table_independently_of_each_other():
     assert (hidden[only_hand] == 128).all()
     assert hidden[5, 5] == 0
     assert hidden_table([], None, PART) is None
-    assert hidden_table([cube], cover, Rectangle(0, 0, 20, 20)) is None
+    assert hidden_table([cube], hand, Rectangle(0, 0, 20, 20)) is None

@@ -129,7 +129,7 @@ def test_a_cover_lies_on_the_same_pixels_as_the_picture(view, distortion, size):
     found = undistorter.cover_in_picture(cover)
     assert found is not None
     shown: NDArray[np.uint8] = np.zeros_like(picture[..., 0])
-    shown[found.y :, found.x :][: found.share.shape[0], : found.share.shape[1]] = found.share
+    shown[found.area.slices] = found.share_in(found.area)
     assert shown.max() == 255
     assert np.abs(shown.astype(int) - picture[..., 0]).max() <= 2
 
@@ -141,9 +141,10 @@ def test_an_empty_rim_of_a_cover_is_left_out(view):
     undistorter.undistort(view)
     found = undistorter.cover_in_picture(Cover(100, 50, share, np.array([0.0, 0.0, 0.5])))
     assert found is not None
-    assert found.share.shape[0] < 20
-    assert found.share.shape[1] < 30
-    assert (found.share[90 - found.y, 160 - found.x], found.share[0, 0]) == (255, 0)
+    assert found.area.height < 20
+    assert found.area.width < 30
+    share = found.share_in(found.area)
+    assert (share[90 - found.area.y, 160 - found.area.x], share[0, 0]) == (255, 0)
     assert (
         undistorter.cover_in_picture(Cover(100, 50, 0 * share, np.array([0.0, 0.0, 0.5]))) is None
     )

@@ -5,12 +5,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracking.appearance.background import GRID_PX, MARGIN_PX, Background
+from tracking.appearance.background import GRID_PX, MARGIN_PX, MIDDLES, Background
 from tracking.appearance.window import Window
 
 HEIGHT, WIDTH = 120, 150
-BOX = np.s_[10 : 10 + HEIGHT, 20 : 20 + WIDTH]
+BOX = np.s_[9 : 9 + HEIGHT, 21 : 21 + WIDTH]
 """A window in a background of 160 x 200 pixels."""
+
+SAMPLES = np.s_[3 : 3 + HEIGHT // GRID_PX, 7 : 7 + WIDTH // GRID_PX]
+"""Those of the window."""
 
 CUBE = np.s_[50:80, 60:90]
 """Where the cube is in it."""
@@ -45,7 +48,7 @@ def background() -> Background:
 
 
 def differing(background: Background, picture: np.ndarray) -> tuple[slice, slice]:
-    return background.differing(picture[:, ::GRID_PX, ::GRID_PX], BOX, CUBE)
+    return background.differing(picture[:, MIDDLES, MIDDLES], SAMPLES, CUBE)
 
 
 def test_the_differing_part_of_a_still_desk_is_around_the_cube(background):
@@ -71,7 +74,7 @@ def test_a_desk_that_was_never_seen_differs(background):
 
 
 def test_noise_measured_in_a_whole_window_is_kept_for_its_parts(background):
-    part = np.s_[10 : 10 + 90, 20 : 20 + 100]
+    part = np.s_[9 : 9 + 90, 21 : 21 + 100]
     picture, free = desk()[:, :90, :100], outside()[:90, :100]
     picture[0, :50, :40] += 60
     place = background.compare(picture, part, free, whole=False)

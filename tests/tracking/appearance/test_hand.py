@@ -7,9 +7,11 @@ import cv2
 import numpy as np
 import pytest
 
+from tests.bench.hand_mask import covered, overlap
 from tests.bench.hand_scenes import GLOVES, SKINS, HandScene, HandView
 from tests.tracking.drawn import WIDE, held, photograph, scene
-from tracking.appearance.hand import MANY_FRAMES, HandFinder, HandMask
+from tracking.appearance.hand import MANY_FRAMES, HandFinder
+from tracking.appearance.hand_mask import HandMask
 from tracking.appearance.window import STILL_FRAMES, Stillness, WindowFinder
 from tracking.cube.model import CubeModel
 from tracking.geometry.intrinsics import Intrinsics
@@ -17,6 +19,9 @@ from tracking.geometry.projection import Projection
 from tracking.geometry.state import CubeState
 
 CUBE = CubeModel.load("locomotion")
+
+SHAPE = 720, 1280
+"""Of the pictures, (height, width) [px]."""
 
 
 def state_at(pose, visible=True) -> CubeState:
@@ -39,21 +44,10 @@ def shown(
     return mask, truth, region
 
 
-def covered(mask: HandMask) -> np.ndarray:
-    found = np.zeros((720, 1280))
-    height, width = mask.cover.shape
-    found[mask.y : mask.y + height, mask.x : mask.x + width] = mask.cover / 255
-    return found
-
-
-def overlap(found: np.ndarray, truth: np.ndarray) -> float:
-    return float(np.minimum(found, truth).sum() / np.maximum(found, truth).sum())
-
-
 def overlap_in(view: HandView, frames: int, begin: int = 0) -> float:
     """That of the last of some frames, 0 if no hand was found there."""
     mask, truth, region = shown(view, frames, begin)
-    return overlap(covered(mask)[region], truth[region]) if mask else 0.0
+    return overlap(covered(mask, SHAPE)[region], truth[region]) if mask else 0.0
 
 
 @pytest.fixture(scope="module")
@@ -98,7 +92,7 @@ def test_a_hand_of_another_colour_is_found_after_the_first():
     assert mask is not None
     region = finder.region(made.truth(30))
     assert region is not None
-    assert overlap(covered(mask)[region], truth[region]) > 0.6
+    assert overlap(covered(mask, SHAPE)[region], truth[region]) > 0.6
 
 
 def test_fingers_on_the_cube_from_the_beginning_are_not_taken_for_its_paper():
@@ -140,7 +134,7 @@ def test_a_still_picture_does_not_flicker():
         frame, _ = made.frame(index)
         finder.update(frame.image, state_at(made.truth(index)))
     masks = [finder.update(frame.image, state_at(made.truth(24))) for _ in range(6)]
-    covers = [covered(mask) for mask in masks if mask is not None]
+    covers = [covered(mask, SHAPE) for mask in masks if mask is not None]
     assert len(covers) == 6
     change = [np.abs(a - b).sum() for a, b in itertools.pairwise(covers)]
     assert max(change[2:]) < 0.01 * covers[-1].sum()
@@ -160,7 +154,7 @@ def test_a_finger_on_a_face_is_found_in_the_first_picture():
     picture[210:300, 626:656] = (96, 124, 168)  # over its upper corner of the cube
     mask = finder.update(picture, state_at(pose))
     assert mask is not None
-    found = covered(mask)
+    found = covered(mask, SHAPE)
     assert found[250:294, 632:650].mean() > 0.6
     found[200:312, 614:668] = 0
     assert not found.any()
@@ -240,7 +234,7 @@ def test_a_hand_that_was_there_from_the_beginning_leaves_no_ghost():
     view = HandView("eadaba", azimuth_deg=-60, seed=2, gradient=0.3)
     mask, truth, region = shown(view, frames=45, begin=30)
     assert mask is not None
-    found = covered(mask)[region]
+    found = covered(mask, SHAPE)[region]
     assert np.maximum(found - truth[region], 0).sum() < 0.1 * truth[region].sum()
     assert overlap(found, truth[region]) > 0.8
 
@@ -272,7 +266,7 @@ def test_what_the_first_hand_hides_for_a_moment_is_not_taken_for_a_hand_later():
     for _ in range(4):
         mask = finder.update(holding, state_at(pose))
     assert mask is not None
-    assert not covered(mask)[150:184, 664:690].any()
+    assert not covered(mask, SHAPE)[150:184, 664:690].any()
 
 
 def test_dark_fingers_on_ink_are_told_by_their_chroma():
@@ -281,20 +275,17 @@ def test_dark_fingers_on_ink_are_told_by_their_chroma():
 
 
 def test_a_held_hand_moves_with_the_cube():
-    mask = HandMask(100, 50, np.arange(12, dtype=np.uint8).reshape(3, 4), np.array([0.0, 0.0, 0.5]))
-    moved = mask.moved(5, -2, (1280, 720))
-    assert moved is not None
-    assert (moved.x, moved.y, moved.behind[2]) == (105, 48, 0.5)
-    np.testing.assert_array_equal(moved.cover, mask.cover)
+    share = np.arange(12, dtype=np.uint8).reshape(3, 4)
+    moved = HandMask(100, 50, share, 3, np.array([0.0, 0.0, 0.5])).moved(5, -2)
+    assert (moved.x, moved.y, moved.scale, moved.behind[2]) == (105, 48, 3, 0.5)
+    np.testing.assert_array_equal(moved.share, share)
 
 
-def test_a_held_hand_is_cut_off_at_the_border_of_the_image():
-    mask = HandMask(100, 50, np.arange(12, dtype=np.uint8).reshape(3, 4), np.array([0.0, 0.0, 0.5]))
-    moved = mask.moved(-101, 668, (1280, 720))
-    assert moved is not None
-    assert (moved.x, moved.y) == (0, 718)
-    np.testing.assert_array_equal(moved.cover, mask.cover[:2, 1:])
-    assert mask.moved(-104, 0, (1280, 720)) is None
+@pytest.mark.parametrize("x", [-103, 1279, 5000])
+def test_a_held_hand_may_leave_the_image(x):
+    found = covered(HandMask(x, 718, np.full((40, 50), 255, np.uint8), 3, np.zeros(3)), SHAPE)
+    assert found[:719].max(initial=0) < 1
+    assert (found.max() > 0.9) == (x < 1280)
 
 
 def test_a_hand_is_where_the_lost_cube_is_expected(film):

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from tests.bench.hand_mask import covered
 from tracking.appearance.hand_edge import ODDS_RANGE, soft_cover
+from tracking.appearance.hand_mask import HandMask
 from tracking.appearance.window import Window
 
 SIDE, SCALE, EDGE = 40, 3, 20.3
@@ -29,8 +31,8 @@ def test_the_edge_is_where_the_hand_ends(hand, light, grown):
     mask = np.zeros((SIDE, SIDE), np.uint8)
     mask[5:35, : 20 + grown] = 1
     odds = np.where(mask, np.float32(ODDS_RANGE), np.float32(-ODDS_RANGE))
-    x, y, cover = soft_cover(mask, odds, difference(hand, (160, 8, 30), light), window)
-    row = cover[20 * SCALE - y].astype(float)
-    half = x + np.count_nonzero(row > 127)
-    assert abs(half - EDGE * SCALE) < 2
+    left, top, share = soft_cover(mask, odds, difference(hand, (160, 8, 30), light), window)
+    found = HandMask(SCALE * left, SCALE * top, share, SCALE, np.zeros(3))
+    row = 255 * covered(found, (SCALE * SIDE, SCALE * SIDE))[20 * SCALE]
+    assert abs(np.count_nonzero(row > 127) - EDGE * SCALE) < 2
     assert np.count_nonzero((row > 10) & (row < 245)) <= 2 * SCALE

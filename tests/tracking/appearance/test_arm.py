@@ -1,0 +1,112 @@
+"""The arm is covered to the border of the picture, and what is no arm is not."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.bench.hand_mask import covered, overlap
+from tests.bench.hand_scenes import SKINS, HandScene, HandView
+from tests.tracking.appearance.test_hand import CUBE, state_at
+from tracking.appearance.arm import ARM_UP_EDGES, MAX_WIDTH_EDGES, arm_samples, with_arm
+from tracking.appearance.background import GRID_PX
+from tracking.appearance.hand import HandFinder
+from tracking.appearance.hand_mask import HandMask
+from tracking.appearance.window import Window
+
+SCALE, EDGE = 3, 30.0
+"""Pixels of the image for each of the window, and the cube's edge [px of the window]."""
+
+SIZE = 1280, 721
+"""Of the image, (width, height) [px]."""
+
+WINDOW = Window(150, 60, 120, 90, SCALE, EDGE, np.zeros((6, 4, 2)), np.s_[30:60, 40:70])
+
+
+def hand(box: tuple[slice, slice] = np.s_[20:60, 80:120]) -> HandMask:
+    """A hand in some rows and columns of the window, at its right border."""
+    share = np.zeros((WINDOW.height, WINDOW.width), np.uint8)
+    share[box] = 255
+    return HandMask(SCALE * WINDOW.left, SCALE * WINDOW.top, share, SCALE, np.zeros(3))
+
+
+def found(changed: np.ndarray) -> np.ndarray:
+    """What is covered of an image in which some pixels of the working resolution have changed."""
+    samples = arm_samples(WINDOW, SIZE)
+    middles = changed[1::GRID_PX, 1::GRID_PX][samples]
+    return covered(with_arm(hand(), middles, samples, WINDOW), SIZE[::-1])
+
+
+def image() -> np.ndarray:
+    return np.zeros((SIZE[1] // SCALE, SIZE[0] // SCALE), bool)
+
+
+def at(row: int, column: int) -> tuple[int, int]:
+    """A pixel of the image at one of the working resolution."""
+    return SCALE * row, SCALE * column
+
+
+@pytest.mark.parametrize(
+    ("azimuth", "skin"), [(10, "Monk 03"), (-60, "Monk 09"), (-165, "Monk 03")]
+)
+def test_an_arm_is_covered_to_the_border_of_the_picture(azimuth, skin):
+    made = HandScene(HandView(SKINS[skin], azimuth, seed=2, defocus=0.6), CUBE)
+    finder = HandFinder(CUBE, made.intrinsics)
+    for index in range(27):
+        frame, truth = made.frame(index)
+        mask = finder.update(frame.image, state_at(made.truth(index)))
+    assert overlap(covered(mask, truth.shape), truth) > 0.93
+
+
+def test_what_is_connected_to_the_hand_is_its_arm():
+    changed = image()
+    changed[80:115, 240:] = True
+    changed[10:30, 300:320] = True  # something else
+    cover = found(changed)
+    assert cover[at(97, 400)] == cover[at(97, 271)] == cover[720 - 425, 1276] == 1.0
+    assert cover[at(75, 400)] == cover[at(120, 400)] == cover[at(20, 310)] == 0.0
+
+
+def test_specks_at_a_hand_are_no_arm():
+    changed = image()
+    changed[80:84, 268:300] = True  # one sample wide
+    assert not found(changed)[:, SCALE * 276 :].any()
+
+
+def test_a_body_behind_the_arm_hides_nothing():
+    changed, wide = image(), round(MAX_WIDTH_EDGES * EDGE) + 3 * GRID_PX
+    changed[80:115, 240:320] = True
+    changed[60 : 60 + wide, 320 : 320 + wide] = True
+    cover = found(changed)
+    assert cover[at(97, 300)] == 1.0
+    assert not cover[:, SCALE * 330 :].any()
+
+
+def test_an_arm_is_not_followed_far_up():
+    changed = image()
+    changed[:80, 250:280] = True
+    changed[80:115, 240:280] = True
+    up = (WINDOW.top - round(ARM_UP_EDGES * EDGE)) * SCALE
+    assert not found(changed)[: max(up - 2 * SCALE, 0)].any()
+
+
+@given(st.integers(3, 80), st.integers(3, 110), st.integers(1, 40), st.integers(1, 40))
+def test_a_hand_without_an_arm_stays_as_it_is(top, left, height, width):
+    alone = hand(np.s_[top : top + height, left : left + width])
+    samples = arm_samples(WINDOW, SIZE)
+    nothing = np.zeros([side.stop - side.start for side in samples], bool)
+    same = covered(with_arm(alone, nothing, samples, WINDOW), SIZE[::-1])
+    inner = np.s_[: SCALE * (WINDOW.top + 84), : SCALE * (WINDOW.left + 114)]
+    np.testing.assert_array_equal(same[inner], covered(alone, SIZE[::-1])[inner])
+
+
+@pytest.mark.parametrize("corner", [(0, 0), (306, 150), (306, 0)])
+def test_a_window_at_the_border_of_the_image_keeps_its_hand(corner):
+    left, top = corner
+    window = Window(left, top, 120, 90, SCALE, EDGE, np.zeros((6, 4, 2)), np.s_[30:60, 40:70])
+    share = np.full((90, 120), 255, np.uint8)
+    mask = HandMask(SCALE * left, SCALE * top, share, SCALE, np.zeros(3))
+    samples = arm_samples(window, SIZE)
+    nothing = np.zeros([side.stop - side.start for side in samples], bool)
+    cover = covered(with_arm(mask, nothing, samples, window), SIZE[::-1])
+    assert cover[at(top + 2, left + 2)] == cover[at(top + 87, left + 117)] == 1.0

@@ -1,0 +1,99 @@
+"""The arm behind a hand, beyond the window in which the hand is looked for: in coarse samples."""
+
+import cv2
+import numpy as np
+
+from tracking.appearance.background import GRID_PX, MIDDLES, Box
+from tracking.appearance.hand_mask import HandMask
+from tracking.appearance.window import Window
+from tracking.geometry.arrays import Flags, Image
+
+ARM_EDGES, ARM_UP_EDGES = 12.0, 3.0
+"""How far beyond the window the arm is looked for, and how far upwards [apparent edges of the
+cube]: there it goes away from the camera, and its owner sits behind all that is on the table."""
+
+MAX_WIDTH_EDGES = 3.0
+"""Most width of an arm; what is wider is a body, behind all that stands on the table [edges]."""
+
+HALF_SHARE = 127
+"""Share above which a sample is of the hand, 0…255."""
+
+ARM_SHARE = np.uint8(225)
+"""Share of a sample in the arm, 0…255: at its edge, less than half of a sample that has changed is
+covered, on average."""
+
+SMALL = np.ones((3, 3), np.uint8)
+"""A sample with its neighbours."""
+
+
+def arm_samples(window: Window, size: tuple[int, int]) -> Box:
+    """Return rows and columns of the samples in which the arm is looked for.
+
+    Parameters
+    ----------
+    window
+        Where the hand is looked for.
+    size
+        Of the image, (width, height) [px].
+    """
+    reach, up = (round(edges * window.edge / GRID_PX) for edges in (ARM_EDGES, ARM_UP_EDGES))
+    rows, columns = (
+        slice(max(side.start - before, 0), min(side.stop + reach, end // (GRID_PX * window.scale)))
+        for side, before, end in zip(window.samples, (up, reach), size[::-1], strict=True)
+    )
+    return rows, columns
+
+
+def with_arm(hand: HandMask, changed: Flags, samples: Box, window: Window) -> HandMask:
+    """Return what a hand covers together with its arm: what has changed and is connected to it.
+
+    Parameters
+    ----------
+    hand
+        What was found in a window.
+    changed
+        Samples that look like something else than the desk, (h, w).
+    samples
+        Their rows and columns.
+    window
+        Where the hand was looked for.
+    """
+    first_row, first_column = (GRID_PX * side.start for side in samples)
+    rows, columns = (
+        slice(side.start - first.start, side.stop - first.start)
+        for side, first in zip(window.samples, samples, strict=True)
+    )
+    inside = rows, columns
+    # Less than a sample may be left of the image.
+    share = np.zeros([GRID_PX * side + GRID_PX - 1 for side in changed.shape], np.uint8)
+    top, left = hand.y // hand.scale - first_row, hand.x // hand.scale - first_column
+    height, width = hand.share.shape
+    share[top : top + height, left : left + width] = hand.share
+    flags = changed.view(np.uint8).copy()
+    flags[inside] = share[MIDDLES, MIDDLES][inside] > HALF_SHARE
+    arm = ARM_SHARE * _arm(flags, inside, round(MAX_WIDTH_EDGES * window.edge / GRID_PX) | 1)
+    soft = cv2.resize(arm, None, fx=GRID_PX, fy=GRID_PX, interpolation=cv2.INTER_LINEAR)
+    soft = cv2.copyMakeBorder(soft, 0, GRID_PX - 1, 0, GRID_PX - 1, cv2.BORDER_REPLICATE)
+    rows, columns = (slice(GRID_PX * side.start, GRID_PX * side.stop) for side in inside)
+    soft[rows, columns] = share[rows, columns]
+    x, y = first_column * hand.scale, first_row * hand.scale
+    return HandMask(x, y, np.asarray(soft, np.uint8), hand.scale, hand.behind)
+
+
+def _arm(flags: Image, inside: Box, side: int) -> Image:
+    """Return hand and arm: what is connected to the hand, is no speck and not as wide as a body.
+
+    `side` is the most width of an arm, odd [samples].
+    """
+    for operation in (cv2.MORPH_OPEN, cv2.MORPH_CLOSE):
+        flags = np.asarray(cv2.morphologyEx(flags, operation, SMALL), np.uint8)
+    count, labels = cv2.connectedComponents(flags)
+    kept = np.zeros(count, np.uint8)
+    kept[labels[inside]] = 1
+    kept[0] = 0
+    arm = np.asarray(kept[labels], np.uint8)
+    if np.count_nonzero(arm) > side**2:
+        body = cv2.morphologyEx(arm, cv2.MORPH_OPEN, np.ones((side, side), np.uint8)) > 0
+        body[inside] = False
+        arm[body] = 0
+    return arm
