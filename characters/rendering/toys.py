@@ -153,7 +153,9 @@ def _round(color: tuple[float, float, float], *profile: tuple[float, float]) -> 
 def _ball(color: tuple[float, float, float]) -> _Part:
     """Return a sphere of radius 1."""
     angles = np.linspace(-np.pi / 2, np.pi / 2, 13)
-    return _turned(np.stack([np.cos(angles), np.sin(angles)], axis=1), color, sphere=True)
+    radius = np.cos(angles)
+    radius[[0, -1]] = 0.0  # not 1e-16: each pole is one point
+    return _turned(np.stack([radius, np.sin(angles)], axis=1), color, sphere=True)
 
 
 def _turned(profile: Array, color: tuple[float, float, float], *, sphere: bool = False) -> _Part:
@@ -172,9 +174,8 @@ def _turned(profile: Array, color: tuple[float, float, float], *, sphere: bool =
     ring, side = (each.ravel() for each in np.mgrid[: len(profile) - 1, :_SIDES])
     here, there = ring * _SIDES + side, ring * _SIDES + (side + 1) % _SIDES
     up, across_up = here + _SIDES, there + _SIDES
-    triangles = np.concatenate(
-        [np.stack([here, there, across_up], 1), np.stack([here, across_up, up], 1)]
-    )
+    lower, upper = np.stack([here, there, across_up], 1), np.stack([here, across_up, up], 1)
+    triangles = np.concatenate([lower[radius[ring] > 0], upper[radius[ring + 1] > 0]])
     return _Part(around(radius, height), around(*across.T), triangles, color)
 
 

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from characters.rendering.geometry.places import connected, places_of
 from characters.rendering.geometry.quadrics import (
     Floats,
     Indices,
@@ -53,7 +54,7 @@ def collapsed_levels(
     Parameters
     ----------
     positions
-        (vertices, 3) [m]. Vertices at one position, as along a seam of colours, move together.
+        (vertices, 3) [m]. Vertices at one place, as along a seam of colours, move together.
     features
         What else must be kept, (vertices, features), scaled so that an error of it counts as much
         as a distance of the same length [m].
@@ -74,14 +75,13 @@ def collapsed_levels(
 
 
 class _Mesh:
-    """Triangles that become fewer; a place is a set of vertices at one position."""
+    """Triangles that become fewer; a place is a set of vertices, see `places_of`."""
 
     def __init__(
         self, positions: NDArray[np.float32], features: Floats, triangles: Indices
     ) -> None:
         self._positions = positions.astype(float) - positions.mean(axis=0, dtype=float)
-        _, place = np.unique(positions, axis=0, return_inverse=True)
-        self._place = place.reshape(-1).astype(np.intp)
+        self._place = places_of(positions)
         self._terms = error_terms(self._positions, features)
         self.standing: Indices = np.arange(len(positions))
         """The vertex that stands for each vertex, (vertices,)."""
@@ -210,7 +210,7 @@ def _thickness(corners: Floats, triangles: Indices, count: int) -> Floats:
     It is three times the volume over the area: the radius of a sphere, and nearly 0 for a patch
     that lies on another part.
     """
-    parts = _connected(triangles, count)
+    parts = connected(triangles, count)
     part = parts[triangles[:, 0]]
     area = np.bincount(part, 0.5 * np.linalg.norm(triangle_normals(corners), axis=1), count)
     sums = [np.bincount(part, column, count) for column in corners.mean(axis=1).T]
@@ -218,17 +218,3 @@ def _thickness(corners: Floats, triangles: Indices, count: int) -> Floats:
     corners = corners - (np.stack(sums, axis=1) / number[:, None])[part][:, None]
     volume = np.bincount(part, np.linalg.det(corners) / 6.0, count)
     return np.asarray((3.0 * np.abs(volume) / np.maximum(area, 1e-20))[parts])
-
-
-def _connected(triangles: Indices, count: int) -> Indices:
-    """Return the lowest place of the connected part of each place, (count,)."""
-    lowest = np.arange(count)
-    while True:
-        least = lowest[triangles].min(axis=1)
-        following = lowest.copy()
-        for corner in triangles.T:
-            np.minimum.at(following, lowest[corner], least)
-        following = following[following]
-        if (following == lowest).all():
-            return lowest
-        lowest = following

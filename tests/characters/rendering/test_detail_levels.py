@@ -4,13 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
 from characters import Character
 from characters.rendering import QUALITIES
 from characters.rendering.geometry.character_cache import PictureFineness
 from characters.rendering.geometry.detail_levels import DetailLevel, chosen_level, with_levels
 from characters.rendering.geometry.edge_collapse import Tolerance, collapsed_levels
+from characters.rendering.geometry.places import CELL_SHARE, connected, places_of
 from characters.rendering.geometry.vertices import CharacterVertices
+from characters.rendering.toys import TOYS, toy
 from tests.bench.detail import compared
 
 FINE_AND_COARSE = (Tolerance(0.01), Tolerance(0.05))
@@ -30,10 +35,11 @@ def ball(center=(0.0, 0.0, 0.0), radius=1.0, rows=32):
 
 
 def open_edges(places, triangles):
-    """Return how many edges of the surface belong to one triangle only."""
+    """Return the places of the edges of the surface that belong to one triangle only, (n, 2)."""
     edges = places[np.stack([triangles, np.roll(triangles, -1, axis=1)], -1).reshape(-1, 2)]
-    _, uses = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
-    return int(np.count_nonzero(uses == 1))
+    edges = np.sort(edges[edges[:, 0] != edges[:, 1]], axis=1)
+    edges, uses = np.unique(edges, axis=0, return_counts=True)
+    return edges[uses == 1]
 
 
 def left(triangles, stand):
@@ -73,10 +79,43 @@ def test_a_seam_of_two_colours_does_not_tear():
     places = places.ravel()
     coarse = left(split, stand)
     assert len(coarse) < 0.6 * len(split)
-    assert open_edges(places, coarse) <= open_edges(places, split)  # the rims of the poles
+    # There are the rims of the poles.
+    assert len(open_edges(places, coarse)) <= len(open_edges(places, split))
     of_low = coarse[:, 0] >= len(positions)
     assert (coarse[of_low] >= len(positions)).all()
     assert (coarse[~of_low] < len(positions)).all()
+
+
+def test_a_seam_whose_sides_are_rounded_differently_does_not_tear():
+    positions, triangles = ball()
+    low = positions[triangles].mean(axis=1) @ [0.5, 0.7, 0.5] < 0.1
+    split = np.where(low[:, None], triangles + len(positions), triangles)
+    noise = np.random.default_rng(1).uniform(-1e-6, 1e-6, positions.shape)
+    both = np.concatenate([positions, positions + noise]).astype(np.float32)
+    (stand,) = collapsed_levels(both, np.zeros((len(both), 0)), split, [Tolerance(0.03)])
+    places = np.tile(np.arange(len(positions)), 2)
+    coarse = left(split, stand)
+    assert len(coarse) < 0.6 * len(split)
+    rims = open_edges(places, split)  # of the poles
+    assert np.isin(open_edges(places, coarse), rims).all()
+
+
+@given(
+    arrays(np.float32, (20, 3), elements=st.floats(-1.0, 1.0, width=32)),
+    arrays(float, (20, 3), elements=st.floats(-1.0, 1.0)),
+)
+def test_near_vertices_are_at_one_place_wherever_they_are(positions, steps):
+    positions[:2] = [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]
+    near = np.clip(positions + 0.2 * (2.0 * CELL_SHARE) * steps, -1.0, 1.0).astype(np.float32)
+    place = places_of(np.concatenate([positions, near]))
+    assert np.array_equal(place[:20], place[20:])
+
+
+def test_the_ends_of_a_short_edge_are_two_places():
+    positions = np.zeros((1000, 3), np.float32)
+    positions[:-1, 1] = np.arange(999) * 1.5 * CELL_SHARE
+    positions[-1] = 1.0
+    assert places_of(positions).tolist() == np.argsort(np.argsort(positions[:, 1])).tolist()
 
 
 def test_what_joints_or_morphs_move_apart_stays():
@@ -179,6 +218,23 @@ def test_a_joint_without_a_bind_pose_hinders_nothing(human):
     flat = replace(mesh, inverse_bind=0.0 * mesh.inverse_bind)
     _, levels = with_levels(CharacterVertices.of([flat]))
     assert len(levels[-1].indices) < len(levels[0].indices)
+
+
+@pytest.mark.parametrize("name", [*Character.bundled(), "flower"])
+def test_a_part_that_is_closed_is_closed_in_all_levels(name):
+    meshes = toy(name).meshes if name in TOYS else Character.load(name).meshes
+    vertices, levels = with_levels(CharacterVertices.of(meshes))
+    positions = np.round(vertices.positions / (1e-6 * np.ptp(vertices.positions)))
+    _, places = np.unique(positions, axis=0, return_inverse=True)
+    places = places.ravel()
+    triangles = [level.indices.reshape(-1, 3) for level in levels]
+    parts = connected(places[triangles[0]], len(places))
+    of_open = np.unique(parts[open_edges(places, triangles[0])])
+    assert len(levels) > 1
+    assert len(of_open) < len(np.unique(parts[places]))
+    for coarse in triangles[1:]:
+        torn = parts[open_edges(places, coarse)]
+        assert np.isin(torn, of_open).all()
 
 
 def test_a_small_model_has_one_level(pawn):
