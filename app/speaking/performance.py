@@ -13,7 +13,7 @@ from app.pipeline.spoken_line import SpokenLine
 from app.sound import SAMPLE_RATE
 from app.sound.session_sound import at_sample_rate
 from app.ui.canvas import PICTURE_HEIGHT
-from app.ui.cards.subtitles import draw_subtitle, subtitle
+from app.ui.cards.subtitles import draw_subtitle, subtitle, subtitle_place
 from app.ui.video_file import VideoFile
 from characters import Animator, Character, CharacterCommand, Clip, Pose, RootDelta
 from characters.control.command import SpeechIntent
@@ -104,7 +104,8 @@ def put_subtitle(picture: NDArray[np.uint8], speech: SpeechIntent, now: float) -
     if said:
         height, width = picture.shape[:2]
         scale = height / PICTURE_HEIGHT
-        draw_subtitle(said, width / scale, scale, beside=0.0).blend_over(picture)
+        canvas = draw_subtitle(said, width / scale, scale)
+        canvas.card(*subtitle_place(canvas.size, width / scale)).blend_over(picture)
 
 
 def write_video(

@@ -1,4 +1,8 @@
-"""Where cards lie: in the corners of the picture that hide neither cube, hand nor character."""
+"""Where cards lie: in the corners of the picture that hide neither cube, hand nor character.
+
+They never lie over each other, nor over the hint above them. In a narrow picture, a card at the top
+is below the hint, and one at the bottom leaves no room beside it.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -13,8 +17,15 @@ from app.ui.canvas import PICTURE_HEIGHT
 Corner = Literal["bottom right", "bottom left", "top right", "top left"]
 CORNERS: tuple[Corner, ...] = ("bottom right", "bottom left", "top right", "top left")
 
-CARD_MARGIN = 24.0
-"""Distance of a card from the edges of the picture."""
+CARD_MARGIN, CARD_GAP = 24.0, 12.0
+"""Distance of a card from the edges of the picture, and least distance between two cards."""
+
+HINT_TOP, HINT_HEIGHT = 22.0, 48.0
+"""Top edge and height of the hint, which lies in the middle."""
+
+HINT_ROOM = 624.0
+"""Width that is kept free for the hint, so that no card moves when its words change: in a picture
+of 16:9, the action's card has room beside it."""
 
 SMOOTHING_S, MIN_STAY_S = 0.5, 2.0
 """Time constant of how much of a card hides something, and how long it stays in a corner."""
@@ -24,18 +35,37 @@ STAY_ADVANTAGE, FREE_ADVANTAGE = 0.1, 0.05
 from which it drives another card."""
 
 
-def card_place(
-    corner: Corner, size: tuple[float, float], picture_width: float
-) -> tuple[float, float]:
-    """Return the top left corner of a card of a size, in units of the canvas.
+def card_box(corner: Corner, size: tuple[float, float], picture_width: float) -> Rect:
+    """Return the left, top, right and bottom edge of a card of a size, in units of the canvas.
 
-    >>> card_place("bottom right", (300.0, 100.0), 1280.0)
-    (956.0, 596.0)
+    >>> card_box("bottom right", (300.0, 100.0), 1280.0)
+    (956.0, 596.0, 1256.0, 696.0)
+    >>> card_box("top right", (200.0, 300.0), 1280.0)
+    (1056.0, 24.0, 1256.0, 324.0)
+    >>> card_box("top left", (200.0, 300.0), 405.0)  # below the hint
+    (24.0, 82.0, 224.0, 382.0)
     """
     width, height = size
     x = CARD_MARGIN if corner.endswith("left") else picture_width - width - CARD_MARGIN
-    y = CARD_MARGIN if corner.startswith("top") else PICTURE_HEIGHT - height - CARD_MARGIN
-    return x, y
+    if corner.startswith("bottom"):
+        y = PICTURE_HEIGHT - height - CARD_MARGIN
+    elif CARD_MARGIN + width + CARD_GAP <= (picture_width - HINT_ROOM) / 2:
+        y = CARD_MARGIN
+    else:
+        y = HINT_TOP + HINT_HEIGHT + CARD_GAP
+    return x, y, x + width, y + height
+
+
+def are_apart(box: Rect, others: Sequence[Rect]) -> bool:
+    """Return whether a card has `CARD_GAP` to all others."""
+    left, top, right, bottom = box
+    return all(
+        right + CARD_GAP <= other_left
+        or other_right + CARD_GAP <= left
+        or bottom + CARD_GAP <= other_top
+        or other_bottom + CARD_GAP <= top
+        for other_left, other_top, other_right, other_bottom in others
+    )
 
 
 @dataclass
@@ -43,6 +73,7 @@ class _Placed:
     """A card with its history."""
 
     corner: Corner
+    size: tuple[float, float]
     since: float = -np.inf
     hidden: NDArray[np.float64] = field(default_factory=lambda: np.zeros(len(CORNERS)))
     """Share of the card that would hide something in each corner, smoothed."""
@@ -74,45 +105,56 @@ class CardLayout:
         elapsed = 0.0 if self._now is None else max(now - self._now, 0.0)
         fresh = 1.0 if self._now is None else 1 - np.exp(-elapsed / SMOOTHING_S)
         self._now = now
-        taken: list[Corner] = []
+        placed: list[Rect] = []
         for home, size in cards.items():
-            card = self._cards.setdefault(home, _Placed(home))
-            hidden = [
-                _hidden_share((*card_place(corner, size, picture_width), *size), subjects)
-                for corner in CORNERS
-            ]
+            card = self._cards.setdefault(home, _Placed(home, size))
+            card.size = size
+            boxes = {corner: card_box(corner, size, picture_width) for corner in CORNERS}
+            hidden = [_hidden_share(box, subjects) for box in boxes.values()]
             card.hidden += fresh * (np.array(hidden) - card.hidden)
-            others = [each.corner for each in self._cards.values() if each is not card]
-            _move(card, taken, others, now)
-            taken.append(card.corner)
+            others = [
+                card_box(each.corner, each.size, picture_width)
+                for each in self._cards.values()
+                if each is not card
+            ]
+            _move(card, boxes, placed, others, now)
+            placed.append(boxes[card.corner])
         return {home: card.corner for home, card in self._cards.items() if home in cards}
 
 
-def _move(card: _Placed, taken: Sequence[Corner], others: Sequence[Corner], now: float) -> None:
-    """Move a card to the best corner that is not taken, unless it has just moved.
+def _move(
+    card: _Placed,
+    boxes: dict[Corner, Rect],
+    placed: Sequence[Rect],
+    others: Sequence[Rect],
+    now: float,
+) -> None:
+    """Move a card to the best corner beside those that are placed, unless it has just moved.
 
-    `others` are the corners of the other cards, of which those that are not taken can move.
+    `boxes` is where it would lie, and `others` where the other cards do, of which those that are
+    not placed can move.
     """
     costs = {
         corner: hidden
         - STAY_ADVANTAGE * (corner == card.corner)
-        - FREE_ADVANTAGE * (corner not in others)
+        - FREE_ADVANTAGE * are_apart(boxes[corner], others)
         for corner, hidden in zip(CORNERS, card.hidden.tolist(), strict=True)
-        if corner not in taken
+        if are_apart(boxes[corner], placed)
     }
-    best = min(costs, key=lambda corner: costs[corner])
-    if best != card.corner and (card.corner in taken or now - card.since >= MIN_STAY_S):
+    best = min(costs, key=lambda corner: costs[corner], default=card.corner)
+    if best != card.corner and (card.corner not in costs or now - card.since >= MIN_STAY_S):
         card.corner, card.since = best, now
 
 
-def _hidden_share(card: tuple[float, float, float, float], subjects: Sequence[Rect]) -> float:
+def _hidden_share(card: Rect, subjects: Sequence[Rect]) -> float:
     """Return the largest share of a subject or of the card that lies in both, 0…1."""
-    x, y, width, height = card
+    card_left, card_top, card_right, card_bottom = card
+    area = (card_right - card_left) * (card_bottom - card_top)
     shares = [0.0]
     for left, top, right, bottom in subjects:
-        wide = min(x + width, right) - max(x, left)
-        high = min(y + height, bottom) - max(y, top)
+        wide = min(card_right, right) - max(card_left, left)
+        high = min(card_bottom, bottom) - max(card_top, top)
         if wide > 0 and high > 0:
-            smaller = min(width * height, max((right - left) * (bottom - top), 1.0))
+            smaller = min(area, max((right - left) * (bottom - top), 1.0))
             shares.append(wide * high / smaller)
     return min(max(shares), 1.0)

@@ -9,9 +9,18 @@ from numpy.typing import NDArray
 
 from app.pipeline.step import RobotView, Step
 from app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
-from app.ui.cards.layout import CardLayout, Corner, card_place
+from app.ui.cards.layout import (
+    CARD_GAP,
+    CARD_MARGIN,
+    HINT_HEIGHT,
+    HINT_ROOM,
+    HINT_TOP,
+    CardLayout,
+    Corner,
+    card_box,
+)
 from app.ui.cards.robot_face import draw_face
-from app.ui.cards.subtitles import draw_subtitle, subtitle
+from app.ui.cards.subtitles import draw_subtitle, subtitle, subtitle_place, subtitle_room
 from app.ui.cards.virtual_robot import VirtualRobot
 from app.ui.notice import Notice
 from app.ui.palette import ACTION_COLORS, ANGRY, INK, PAPER, QUIET, RULE, Color, between, mood_color
@@ -36,6 +45,10 @@ VIRTUAL_ROBOT_TEXT_Y = VIRTUAL_ROBOT_SIDE + VIRTUAL_ROBOT_FRAME + 4.0
 
 VIRTUAL_ROBOT_CARD_WIDTH = VIRTUAL_ROBOT_SIDE + 2 * VIRTUAL_ROBOT_FRAME
 VIRTUAL_ROBOT_CARD_HEIGHT = VIRTUAL_ROBOT_TEXT_Y + 106
+MIN_VIRTUAL_ROBOT_WIDTH = 2 * CARD_MARGIN + VIRTUAL_ROBOT_CARD_WIDTH + CARD_GAP + ACTION_CARD_WIDTH
+"""Width of the narrowest picture with the virtual robot, beside the action: in an upright one, so
+high a card would hide the cube wherever it lies."""
+
 VIRTUAL_ROBOT_BAR = ((VIRTUAL_ROBOT_CARD_WIDTH - 156.0) / 2, VIRTUAL_ROBOT_TEXT_Y + 65, 156.0)
 """Left end, height on the card, and length of the bar of its mood."""
 
@@ -52,16 +65,14 @@ def overlay(
 ) -> NDArray[np.uint8]:
     """Return the picture (H, W, 3) with all cards blended over it, in place.
 
-    Without a real robot, the virtual robot shows the mood; without both, a drawn face does.
-    `layout` remembers where the cards were in the pictures before; None for a single picture.
+    Without a real robot, the virtual robot shows the mood; without both, or in a narrow picture, a
+    drawn face does. `layout` remembers where the cards were in the pictures before; None for a
+    single picture.
     """
     scale = picture.shape[0] / PICTURE_HEIGHT
     width = picture.shape[1] / scale
     _hint(step.outcome.hint, width, scale).blend_over(picture)
-    said = subtitle(step.command.speech, step.frame.timestamp)
-    if said:
-        draw_subtitle(said, width, scale).blend_over(picture)
-    if virtual_robot is None or robot.real:
+    if virtual_robot is None or robot.real or width < MIN_VIRTUAL_ROBOT_WIDTH:
         mood = _robot(robot, scale)
     else:
         mood = _virtual_robot(robot, virtual_robot.portrait(step.emotion), scale)
@@ -74,9 +85,15 @@ def overlay(
         for left, top, right, bottom in step.subjects
     ]
     corners = (layout or CardLayout()).update(sizes, subjects, width, step.frame.timestamp)
+    boxes = []
     for home, corner in corners.items():
-        place = card_place(corner, sizes[home], width)
-        cards[home].card(*place).blend_over(picture)
+        boxes.append(card_box(corner, sizes[home], width))
+        cards[home].card(*boxes[-1][:2]).blend_over(picture)
+    said = subtitle(step.command.speech, step.frame.timestamp)
+    if said:
+        room = subtitle_room(width, max(card_width for card_width, _ in sizes.values()))
+        canvas = draw_subtitle(said, room, scale)
+        canvas.card(*subtitle_place(canvas.size, width, boxes)).blend_over(picture)
     return picture
 
 
@@ -107,11 +124,12 @@ def _notice(notice: Notice, width: float, scale: float) -> Card:
 
 @lru_cache(maxsize=16)
 def _hint(words: str, width: float, scale: float) -> Card:
-    size = min(24.0, 24.0 * (width - 100) / text_width(words, 24))  # a cube's name may be long
+    room = min(width - 44, HINT_ROOM) - 56
+    size = min(24.0, 24.0 * room / text_width(words, 24))  # a cube's name may be long
     card_width = text_width(words, size) + 56
-    canvas = Canvas(card_width, 48, scale)
+    canvas = Canvas(card_width, HINT_HEIGHT, scale)
     canvas.text(card_width / 2, 32.5, words, size, INK, "middle")
-    return canvas.card((width - card_width) / 2, 22)
+    return canvas.card((width - card_width) / 2, HINT_TOP)
 
 
 def _action(step: Step, scale: float) -> Canvas:

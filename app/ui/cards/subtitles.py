@@ -1,8 +1,11 @@
 """Subtitles: the part of a line that is being said."""
 
+from collections.abc import Sequence
 from functools import lru_cache
 
-from app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, can_be_written, text_width
+from app.pipeline.step import Rect
+from app.ui.canvas import PICTURE_HEIGHT, Canvas, can_be_written, text_width
+from app.ui.cards.layout import CARD_GAP, CARD_MARGIN, are_apart
 from app.ui.palette import INK
 from characters.control.command import SpeechIntent
 from characters.speech.speech import Utterance
@@ -10,15 +13,17 @@ from characters.speech.speech import Utterance
 SIZE, LINE_HEIGHT = 24.0, 32.0
 """Height of the letters, and distance between the lines."""
 
+MIN_SIZE = 8.0
+"""Height of the smallest letters, for words that need very many lines."""
+
+MAX_HEIGHT = 184.0
+"""Height that hint and cards leave free where they lie above each other, in a narrow picture."""
+
 MAX_LETTERS = 76
 """Letters that are shown at one time: two or three lines."""
 
-SIDE_CARDS_WIDTH = 336.0
-"""Width that is left free on both sides for the cards in the corners."""
-
-MIN_WIDTH = 300.0
-
-BOTTOM_MARGIN = 24.0
+MIN_WIDTH = 240.0
+"""Least width between the cards in the corners: with less, a subtitle lies above them."""
 
 
 def subtitle(speech: SpeechIntent | None, now: float) -> str:
@@ -60,28 +65,59 @@ def parts(utterance: Utterance) -> tuple[tuple[float, str], ...]:
     )
 
 
-@lru_cache(maxsize=8)
-def draw_subtitle(words: str, width: float, scale: float, beside: float = SIDE_CARDS_WIDTH) -> Card:
-    """Return the card of a subtitle at the bottom of a picture of this width.
+def subtitle_room(picture_width: float, card_width: float) -> float:
+    """Return the width of the widest subtitle, with the widest card in the corners beside it.
 
-    So much room is left free on both sides, `beside`.
+    >>> subtitle_room(1280.0, 292.0), subtitle_room(405.0, 292.0)
+    (624.0, 357.0)
     """
-    room = max(width - 2 * beside, MIN_WIDTH)
+    between = picture_width - 2 * (CARD_MARGIN + card_width + CARD_GAP)
+    return between if between >= MIN_WIDTH else picture_width - 2 * CARD_MARGIN
+
+
+@lru_cache(maxsize=8)
+def draw_subtitle(words: str, room: float, scale: float) -> Canvas:
+    """Return the card of a subtitle that is at most as wide as its room, if its words are not."""
+    size = SIZE
     lines = wrapped(words, room - 40)
-    card_width = max(text_width(line, SIZE) for line in lines) + 40
-    height = LINE_HEIGHT * len(lines) + 18
-    canvas = Canvas(card_width, height, scale)
+    while size > MIN_SIZE and (
+        LINE_HEIGHT * len(lines) * size / SIZE + 18 > MAX_HEIGHT
+        or max(text_width(line, size) for line in lines) > room - 40
+    ):
+        size -= 2
+        lines = wrapped(words, room - 40, size)
+    line_height = LINE_HEIGHT * size / SIZE
+    card_width = max(text_width(line, size) for line in lines) + 40
+    canvas = Canvas(card_width, line_height * len(lines) + 18, scale)
     for number, line in enumerate(lines):
-        canvas.text(card_width / 2, 32 + number * LINE_HEIGHT, line, SIZE, INK, "middle")
-    return canvas.card((width - card_width) / 2, PICTURE_HEIGHT - height - BOTTOM_MARGIN)
+        canvas.text(card_width / 2, (number + 1) * line_height, line, size, INK, "middle")
+    return canvas
 
 
-def wrapped(words: str, width: float) -> list[str]:
+def subtitle_place(
+    size: tuple[float, float], picture_width: float, cards: Sequence[Rect] = ()
+) -> tuple[float, float]:
+    """Return the top left corner of a subtitle: at the bottom, above the cards in its way.
+
+    >>> subtitle_place((300.0, 50.0), 405.0)
+    (52.5, 646.0)
+    >>> subtitle_place((300.0, 50.0), 405.0, [(24.0, 588.0, 316.0, 696.0)])
+    (52.5, 526.0)
+    """
+    width, height = size
+    x, y = (picture_width - width) / 2, PICTURE_HEIGHT - height - CARD_MARGIN
+    for card in sorted(cards, key=lambda card: card[3], reverse=True):
+        if not are_apart((x, y, x + width, y + height), [card]):
+            y = card[1] - CARD_GAP - height
+    return x, y
+
+
+def wrapped(words: str, width: float, size: float = SIZE) -> list[str]:
     """Return words in lines of at most this width; a longer word has a line of its own."""
     lines = [""]
     for word in words.split():
         longer = f"{lines[-1]} {word}".strip()
-        if lines[-1] and text_width(longer, SIZE) > width:
+        if lines[-1] and text_width(longer, size) > width:
             lines.append(word)
         else:
             lines[-1] = longer

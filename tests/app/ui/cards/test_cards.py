@@ -1,13 +1,21 @@
 """Cards are drawn in two steps: what stays, kept, and what moves, each time."""
 
 from dataclasses import replace
+from itertools import combinations
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
+from hypothesis import example, given
+from hypothesis import strategies as st
 
 from app.pipeline.step import RobotView
-from app.ui.cards.layout import CARD_MARGIN
-from app.ui.cards.overlay import CARD_HEIGHT, overlay
+from app.ui.canvas import Card
+from app.ui.cards.layout import CARD_MARGIN, CardLayout
+from app.ui.cards.overlay import CARD_HEIGHT, overlay, virtual_robot_side
 from characters import ActionIntent, LocomotionIntent
+from characters.control.command import SpeechIntent
+from characters.speech.speech import Utterance
 
 
 def test_what_was_drawn_before_leaves_nothing_on_the_cards(a_step):
@@ -49,3 +57,68 @@ def test_a_character_that_stands_is_called_idle_in_every_scenario(a_step):
 def test_an_action_without_an_icon_has_a_card_with_its_name(a_step):
     wave, idle = card_titles(a_step, "wave", "idle")
     assert (wave != idle).any()
+
+
+texts = st.lists(st.text("iamWé", min_size=1, max_size=12), max_size=20).map(
+    lambda words: " ".join(words)[:76]
+)
+corners = st.tuples(st.floats(-0.1, 0.9), st.floats(-0.1, 0.9))
+FOLLOW = "Move the cube: I follow you"
+
+
+def test_cards_never_lie_over_each_other(a_step, monkeypatch):
+    step, drawn = a_step(None), []
+
+    def note(card, picture):
+        height, width = card.opacity.shape
+        drawn.append((card.x, card.y, card.x + width, card.y + height))
+
+    monkeypatch.setattr(Card, "blend_over", note)
+
+    @given(
+        st.integers(120, 1080),
+        st.floats(0.45, 2.4),
+        texts,
+        texts,
+        st.booleans(),
+        st.lists(corners, min_size=1, max_size=4),
+    )
+    @example(720, 404 / 720, FOLLOW, "", False, [(0.2, 0.4)])
+    @example(240, 4 / 3, FOLLOW, "I am walking to the place that you show me", True, [(0.8, 0.8)])
+    def check(height, aspect, hint, said, is_real, subjects):
+        picture = np.broadcast_to(np.uint8(0), (height, round(aspect * height), 3))
+        side = virtual_robot_side(height)
+        virtual: Any = SimpleNamespace(portrait=lambda _: np.zeros((side, side, 3), np.uint8))
+        robot, layout = RobotView("ready", 0.0, "neutral", is_real), CardLayout()
+        speech = SpeechIntent(Utterance(said, "en", 1.0), 0.0)
+        outcome = replace(step.outcome, hint=hint, command=replace(step.command, speech=speech))
+        for number, share in enumerate(subjects):
+            left, top = np.multiply(share, picture.shape[1::-1]).tolist()
+            shown = replace(
+                step,
+                frame=replace(step.frame, timestamp=3.0 * number),
+                controls=replace(step.controls, camera_from_table=np.eye(4)),
+                outcome=outcome,
+                subjects=((left, top, left + 0.3 * height, top + 0.3 * height),),
+            )
+            drawn.clear()
+            overlay(picture, shown, robot, virtual, layout)
+            assert len(drawn) == 3 + bool(said)
+            for a, b in combinations(drawn, 2):
+                assert a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] or b[3] <= a[1]
+            assert all(y >= 0 and bottom <= height for _, y, _, bottom in drawn)
+
+    check()
+
+
+def test_cards_leave_the_middle_of_an_upright_picture_free(a_step):
+    step = a_step(None)
+    subject = (66.0, 276.0, 349.0, 535.0)  # the cube and a hand at it
+    step = replace(
+        step, controls=replace(step.controls, camera_from_table=np.eye(4)), subjects=(subject,)
+    )
+    picture = np.zeros((720, 404, 3), np.uint8)
+    virtual: Any = SimpleNamespace(portrait=lambda _: np.zeros((180, 180, 3), np.uint8))
+    overlay(picture, step, RobotView("ready", 0.0, "neutral"), virtual)
+    assert picture.any()
+    assert not picture[276:535].any()

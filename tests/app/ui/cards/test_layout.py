@@ -8,7 +8,7 @@ from app.pipeline.playground import Playground
 from app.running.opening import intrinsics_for
 from app.session.bundled import bundled
 from app.session.replay_inputs import read_replay_inputs
-from app.ui.cards.layout import MIN_STAY_S, CardLayout, Corner, card_place
+from app.ui.cards.layout import MIN_STAY_S, CardLayout, Corner, card_box
 from tracking import open_source
 
 CARDS: dict[Corner, tuple[float, float]] = {
@@ -62,9 +62,9 @@ def test_cards_do_not_flicker():
 
 
 def overlaps(corner, size, subjects):
-    x, y = card_place(corner, size, WIDTH)
+    x, y, end, low = card_box(corner, size, WIDTH)
     return any(
-        left < x + size[0] and right > x and top < y + size[1] and bottom > y
+        left < end and right > x and top < low and bottom > y
         for left, top, right, bottom in subjects
     )
 
