@@ -18,6 +18,7 @@ from app.behaving.voice import ThreadedSource
 from app.commands.output import OverwriteOption, chosen_output
 from app.commands.session.play import VoiceOption
 from app.commands.session.preference_options import emotion_of, size_of
+from app.counted import counted
 from app.errors import AppError
 from app.output_path import check_output
 from app.speaking.performance import View
@@ -204,7 +205,7 @@ def _report(console: Console, path: Path, done: BehaviourRecording, problem: str
     blocks = sum(isinstance(e, BlockProgress) and e.sync == "end" for e in done.feedback)
     console.print(
         f"[bold]{escape(str(path))}[/] is written: {done.clip.duration:.1f} s, "
-        f"{blocks} block{'s' if blocks != 1 else ''}",
+        f"{counted(blocks, 'block')}",
         soft_wrap=True,
     )
 

@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from app.commands.session.play import DEFAULT_CAMERA, CubeOption
+from app.counted import counted
 from app.errors import AppError
 from app.output_path import check_output
 from app.pipeline.other_cube import scenario_for
@@ -172,7 +173,7 @@ def _report_check(
         f"[bold {color}]{word}[/]  {escape(str(path))}: focal length "
         f"{100 * verdict.focal_change:+.2f} % (± {200 * verdict.focal_spread:.2f} %), middle "
         f"{x:+.1f} {y:+.1f} px, edges off by {verdict.residual:.3f} px "
-        f"(at best {verdict.best_residual:.3f} px), from {verdict.views} views"
+        f"(at best {verdict.best_residual:.3f} px), from {counted(verdict.views, 'view')}"
     )
     if verdict.degraded:
         console.print(f"Calibrate again: [cyan]cubeling calibrate -o {_quoted(path)}[/]")

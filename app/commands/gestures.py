@@ -15,6 +15,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from app.commands.output import OverwriteOption, chosen_output
+from app.counted import counted
 from characters import Character
 from characters.control.controllers.recordings import read_motions
 from characters.model.stick_figure import stick_figure
@@ -130,8 +131,8 @@ def describe(console: Console, library: GestureLibrary) -> None:
     console.print(rows)
     graph = GestureGraph.of(library)
     console.print(
-        f"Threshold {graph.threshold:g}: {len(graph.nodes) + 1} nodes with strokes alone and rest, "
-        f"{graph.branching:.1f} branches each",
+        f"Threshold {graph.threshold:g}: {counted(len(graph.nodes) + 1, 'node')} with strokes "
+        f"alone and rest, {graph.branching:.1f} branches each",
         highlight=False,
     )
 

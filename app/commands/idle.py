@@ -20,6 +20,7 @@ from app.commands.output import (
     chosen_output,
     needs_matplotlib,
 )
+from app.counted import counted
 from characters import Character
 from characters.control.controllers.recordings import read_motions
 from characters.retargeting.root import with_root_joint
@@ -139,7 +140,7 @@ def describe(console: Console, person: Person) -> None:
     spread = database.space.variances
     explained = spread[:COMPONENTS].sum() / max(spread.sum(), 1e-12)
     console.print(
-        f"Recorded for {length:.1f} s, with {len(database.shifts)} balance shifts; "
+        f"Recorded for {length:.1f} s, with {counted(len(database.shifts), 'balance shift')}; "
         f"{COMPONENTS} components hold {explained:.1%} of the postures",
         highlight=False,
     )

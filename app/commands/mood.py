@@ -16,6 +16,7 @@ from app.commands.output import (
     chosen_output,
     needs_matplotlib,
 )
+from app.counted import counted
 from app.errors import AppError
 from app.moods import read_history, read_robot_traces, replay_with, write_table
 
@@ -97,7 +98,9 @@ def table(
         track = replay_with(history, Personality.load(personality))
     rows = write_table(output, history, track, read_robot_traces(session))
     Console().print(
-        f"[bold]{escape(str(output))}[/] has {rows} rows", soft_wrap=True, highlight=False
+        f"[bold]{escape(str(output))}[/] has {counted(rows, 'row')}",
+        soft_wrap=True,
+        highlight=False,
     )
 
 

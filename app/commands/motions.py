@@ -17,6 +17,7 @@ from app.commands.output import (
     chosen_output,
     needs_matplotlib,
 )
+from app.counted import counted
 from app.errors import AppError
 from app.motion_graphs.recordings import clip_names, gather
 from app.motion_graphs.tables import make_tables
@@ -186,7 +187,7 @@ def describe(console: Console, stored: StoredGraph) -> None:
     library = stored.library
     whole, parts = standard_graph(stored), part_graphs(stored)
     console.print(
-        f"{len(library.names)} clips, {len(library):,} frames at {library.rate:g} Hz "
+        f"{counted(len(library.names), 'clip')}, {len(library):,} frames at {library.rate:g} Hz "
         f"({len(library) / library.rate:.1f} s), compared by {stored.distance}",
         highlight=False,
     )

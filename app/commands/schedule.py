@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from app.commands.output import OverwriteOption, chosen_output
+from app.counted import counted
 from app.errors import AppError
 from app.ui.video_file import VIDEO_FORMATS, VideoFile
 from characters import Character, CharacterError, Clip
@@ -81,7 +82,7 @@ def schedule(
     clip = bake(found, rate, length, file.stem)
     _writer(target)(clip, body, target)
     Console(highlight=False).print(
-        f"[bold]{escape(str(target))}[/] is written: {len(clip)} frames, {length:.2f} s",
+        f"[bold]{escape(str(target))}[/] is written: {counted(len(clip), 'frame')}, {length:.2f} s",
         soft_wrap=True,
     )
 

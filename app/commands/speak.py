@@ -12,6 +12,7 @@ from affect import Emotion
 from app.commands.output import OverwriteOption, chosen_output
 from app.commands.session.play import VoiceOption
 from app.commands.session.preference_options import emotion_of, size_of
+from app.counted import counted
 from app.errors import AppError
 from app.output_path import check_output
 from app.pipeline.spoken_line import SpokenLine
@@ -208,7 +209,7 @@ def speak(
                 )
     console.print(
         f"[bold]{escape(str(target))}[/] is written: {speech.duration:.1f} s of speech, "
-        f"{len(utterance.words)} words, {len(utterance.accents)} accents",
+        f"{counted(len(utterance.words), 'word')}, {counted(len(utterance.accents), 'accent')}",
         soft_wrap=True,
     )
 

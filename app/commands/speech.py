@@ -18,6 +18,7 @@ from app.commands.output import (
     chosen_output,
     needs_matplotlib,
 )
+from app.counted import counted
 from app.errors import AppError
 from characters import Character, CharacterError
 from characters.control.speech_profile import DEFAULT_PROFILE
@@ -137,8 +138,8 @@ def align(
     speech = aligned(read_speech(file), said, lang, console, sphinx=sphinx)
     write_textgrid(target, textgrid_of(speech))
     console.print(
-        f"[bold]{escape(str(target))}[/] is written: {len(speech.words)} words,"
-        f" {sum(bool(phone.symbol) for phone in speech.phones)} phones",
+        f"[bold]{escape(str(target))}[/] is written: {counted(len(speech.words), 'word')}, "
+        f"{counted(sum(bool(phone.symbol) for phone in speech.phones), 'phone')}",
         soft_wrap=True,
         highlight=False,
     )

@@ -6,6 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
+from app.counted import counted
 from app.errors import AppError
 from app.latency.flips import FlipDetector
 from app.latency.pattern import PatternReader, Picture, draw_pattern
@@ -109,7 +110,7 @@ class LatencySession:
             return
         if ended_by_user:
             raise AppError(
-                f"stopped after {count} flips of the pattern; at least {MIN_FLIPS} count"
+                f"stopped after {counted(count, 'flip')} of the pattern; at least {MIN_FLIPS} count"
             )
         if not self._ever_seen:
             raise AppError(
@@ -118,7 +119,7 @@ class LatencySession:
                 "screen sees it in a hand mirror"
             )
         raise AppError(
-            f"only {count} flips of the pattern were seen, and none in the last "
+            f"the camera saw only {counted(count, 'flip')} of the pattern, and none in the last "
             f"{PATIENCE_S:.0f} s: hold the camera still, and dim the room if the screen is pale"
         )
 

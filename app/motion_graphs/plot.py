@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
+from app.counted import counted
 from app.moods.colors import BORDER_COLOR, CURVE_STYLES, SECONDARY_COLOR, TEXT_COLOR
 from app.moods.plot import write_figure
 from app.moods.plot_layout import MATPLOTLIB_STYLE, printable
@@ -68,7 +69,7 @@ def _draw_distances(figure: Figure, axes: Axes, stored: StoredGraph, graph: Moti
         marker=".",
         markersize=2.2,
         color=JUMP_COLOR,
-        label=f"{graph.jumps} jumps",
+        label=counted(graph.jumps, "jump"),
     )
     for start in library.starts[1:-1].tolist():
         axes.axhline(start, color=BORDER_COLOR, linewidth=0.5)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from app.counted import counted
 from app.motion_graphs.printed import CRITICAL, TABLE_3_2, TABLE_3_3, TABLE_3_4
 from characters.errors import CharacterError
 from characters.skeleton.pose import Array
@@ -71,7 +72,8 @@ def make_tables(
     """
     if len(library.names) != 4:
         raise CharacterError(
-            f"{len(library.names)} clips: give four, a walk, a run, long steps and a slow walk"
+            f"{counted(len(library.names), 'clip')}: give four, a walk, a run, long steps and a "
+            "slow walk"
         )
     progress("critical thresholds")
     whole = Comparison(library, EdgeCosts())

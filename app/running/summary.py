@@ -9,6 +9,7 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
+from app.counted import counted
 from app.pipeline.step import RobotView, Step
 from app.ui.literal_text import literal_text
 from robot import LogLine, RobotError
@@ -131,9 +132,10 @@ class Summary:
         table.add_column()
         duration = self.duration
         median, slow = self.frame_ms()
-        table.add_row("played", f"{self.frames} frames, {duration:.1f} s")
+        table.add_row("played", f"{counted(self.frames, 'frame')}, {duration:.1f} s")
         if self.left_out:
-            table.add_row("left out", f"{self.left_out} frames, to keep up with the recording")
+            left_out = counted(self.left_out, "frame")
+            table.add_row("left out", f"{left_out}, to keep up with the recording")
         if len(self.scenarios) > 1:
             table.add_row("scenarios", _timeline(self.scenarios, duration))
         table.add_row("cube found", f"in {100 * self.tracking_rate:.1f} % of the frames")

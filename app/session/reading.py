@@ -15,6 +15,7 @@ from mcap.records import Chunk, DataEnd, Metadata
 from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
+from app.counted import counted
 from app.errors import AppError
 from app.pipeline.spoken_line import SpokenLine
 from app.session.encoding import (
@@ -83,8 +84,8 @@ def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:
         if not frames:
             raise AppError(f"the session '{path}' was cut off before its first frame was whole")
         raise AppError(
-            f"the session '{path}' was cut off: {frames} frames ({seconds:.1f} s) are whole; "
-            "add --salvage to play those"
+            f"the session '{path}' was cut off: {counted(frames, 'frame')} ({seconds:.1f} s) "
+            "can be played with --salvage"
         )
     try:
         with path.open("rb") as file:

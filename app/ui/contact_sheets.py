@@ -10,6 +10,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from app.counted import counted
 from app.errors import AppError
 from app.output_path import whole_file
 from app.ui.canvas import Canvas, text_width
@@ -96,7 +97,7 @@ def frame_sheet(title: str, frames: Sequence[tuple[str, Image]]) -> Image:
     """Return pictures of a session in rows, each with its caption."""
     pictures = [_captioned(picture, caption) for caption, picture in frames]
     rows = side_by_side(pictures, min(FRAME_COLUMNS, len(pictures)))
-    return _sheet(title, f"{len(frames)} pictures", [rows])
+    return _sheet(title, counted(len(frames), "picture"), [rows])
 
 
 def standing_pose(character: Character) -> Pose:

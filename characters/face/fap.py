@@ -114,7 +114,7 @@ def read_faps(path: Path) -> FapTrack:
     rate, count = _header(path, filled[0][1] if filled else [])
     if len(filled) != 1 + 2 * count:
         raise CharacterError(
-            f"{path} has {(len(filled) - 1) // 2} frames and announces {count}: it is cut off"
+            f"{path} has {(len(filled) - 1) // 2} of {count} frames: it is cut off"
         )
     values = np.zeros((count, FAP_COUNT), np.int64)
     for frame in range(count):

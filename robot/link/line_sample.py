@@ -35,16 +35,14 @@ class LineSample:
         count = self._received_count
         if not count:
             return "nothing was received: is the robot switched on, and is this its port?"
+        received = "1 byte was received" if count == 1 else f"{count} bytes were received"
         if not any(self._received):
-            return (
-                f"{count} bytes were received, all of them zero: "
-                "is the plug in, and is the speed right?"
-            )
+            return f"{received}, nothing but zeros: is the plug in, and is the speed right?"
         if self._received in self._sent:
             return (
                 "only an echo of what was sent: is a robot at the other end, and is its echo off?"
             )
         return (
-            f"{count} bytes were received, but no answer is among them: "
+            f"{received}, but no answer: "
             "is the speed right, and does the robot speak this protocol?"
         )

@@ -163,3 +163,14 @@ def nanoseconds_of(seconds: float) -> int:
 def seconds_of(nanoseconds: int) -> float:
     """Return a time in seconds, the inverse of `nanoseconds_of`."""
     return nanoseconds / 1_000_000_000
+
+
+def readable_frames(count: int) -> str:
+    """Return what could be read of a damaged file, in words.
+
+    >>> readable_frames(0), readable_frames(1), readable_frames(2)
+    ('no frame could be read', 'one frame could be read', 'its first 2 frames could be read')
+    """
+    if count == 0:
+        return "no frame could be read"
+    return f"its first {count} frames could be read" if count > 1 else "one frame could be read"

@@ -9,7 +9,7 @@ import numpy as np
 
 from tracking.errors import TrackingError
 from tracking.geometry.frame import Frame
-from tracking.sources.base import StoredFrames, Timeline
+from tracking.sources.base import StoredFrames, Timeline, readable_frames
 from tracking.sources.decoding import BrokenFileError, EncodedImage, decode
 from tracking.sources.device import Clock
 from tracking.sources.mcap_camera import IMAGE_TOPIC, CameraChannels
@@ -78,7 +78,9 @@ class SessionSource(StoredFrames):
                 index, self._index = self._index, self._index + 1
                 yield Frame(image, stamp, index, encoded.data, encoded.encoding)
         except BrokenFileError as broken:
-            raise TrackingError(f"{self._where} {broken}: {_readable(self._index)}") from broken
+            raise TrackingError(
+                f"{self._where} {broken}: {readable_frames(self._index)}"
+            ) from broken
 
     def _queued(self) -> Iterator[EncodedImage]:
         """Yield the images that are decoded only for those after them, then the others."""
@@ -112,9 +114,3 @@ def _nominal_rate(images: Iterator[EncodedImage]) -> tuple[float, Iterator[Encod
     steps = np.diff([encoded.timestamp for encoded in peeked])
     step = float(np.median(steps)) if len(steps) else 0.0
     return (round(1 / step, 3) if step > 0 else 30.0), all_images()
-
-
-def _readable(count: int) -> str:
-    if count == 0:
-        return "no frame could be read"
-    return f"its first {count} frames could be read" if count > 1 else "one frame could be read"

@@ -8,7 +8,7 @@ from av.container import InputContainer
 
 from tracking.errors import TrackingError
 from tracking.geometry.frame import Frame
-from tracking.sources.base import StoredFrames, Timeline
+from tracking.sources.base import StoredFrames, Timeline, readable_frames
 from tracking.sources.decoding import bgr_of
 from tracking.sources.device import Clock
 
@@ -63,9 +63,9 @@ class VideoSource(StoredFrames):
                 yield Frame(bgr_of(picture), timeline.stamp(seconds), count)
                 count += 1
         except av.FFmpegError as error:
+            read = readable_frames(count)
             raise TrackingError(
-                f"the video '{self._path}' is damaged ({_reason(error)}): "
-                f"its first {count} frames could be read"
+                f"the video '{self._path}' is damaged ({_reason(error)}): {read}"
             ) from error
 
 

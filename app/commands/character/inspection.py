@@ -15,6 +15,7 @@ from rich.progress import Progress
 from rich.table import Table
 from rich.tree import Tree
 
+from app.counted import counted
 from app.errors import AppError
 from app.ui.contact_sheets import CLIP_COLUMNS, TURNTABLE_COLUMNS, ContactSheets, save
 from characters import Character, CharacterWarning, Skeleton, load_motion
@@ -134,10 +135,10 @@ def _print(console: Console, inspection: Inspection) -> None:
     character, stats = inspection.character, inspection.stats
     console.print(f"[bold]{escape(character.name)}[/], {character.anatomy.kind}", highlight=False)
     console.print(
-        f"{stats.height:.3g} m tall, {_count(stats.joints, 'joint')}, "
-        f"{_count(stats.meshes, 'mesh', 'meshes')}, {stats.vertices:,} vertices, "
-        f"{stats.triangles:,} triangles, {_count(stats.materials, 'material')}, "
-        f"{_count(stats.textures, 'texture')}",
+        f"{stats.height:.3g} m tall, {counted(stats.joints, 'joint')}, "
+        f"{counted(stats.meshes, 'mesh', 'meshes')}, {stats.vertices:,} vertices, "
+        f"{stats.triangles:,} triangles, {counted(stats.materials, 'material')}, "
+        f"{counted(stats.textures, 'texture')}",
         highlight=False,
     )
     if stats.morphs:
@@ -150,10 +151,6 @@ def _print(console: Console, inspection: Inspection) -> None:
     for problem in inspection.problems:
         console.print("[yellow]![/]", end=" ")
         console.print(problem, markup=False, highlight=False, soft_wrap=True)
-
-
-def _count(number: int, one: str, many: str = "") -> str:
-    return f"{number:,} {one if number == 1 else many or one + 's'}"
 
 
 def _tree(character: Character) -> Tree:

@@ -94,12 +94,13 @@ def verdict(report: ConformanceReport) -> Text:
         conclusion = ("It conforms.", "bold green")
         if run < total:
             conclusion = ("It passes these, which is not the whole verdict.", "bold yellow")
+    were = "was" if run == 1 else "were"
     cut = f" The other checks were skipped: {report.cut_short}." if report.cut_short else ""
     return Text.assemble(
         literal_text(f"{welcome.name} ({welcome.firmware})"),
         f", version {welcome.version}: ",
         f"{numbers} in {report.seconds:.0f} s. ",
-        f"Only {run} of {total} checks were run. " if run < total else "",
+        f"Only {run} of {total} checks {were} run. " if run < total else "",
         conclusion,
         cut,
     )

@@ -14,6 +14,7 @@ from rich.text import Text
 
 from affect import Emotion
 from app.commands.robot.trials import Trial, trials_of
+from app.counted import counted
 from app.ui.literal_text import literal_text
 from robot import Robot, RobotError, Telemetry, connect
 
@@ -81,8 +82,8 @@ def _describe(robot: Robot) -> Text:
     contents = "; ".join(f"{name} {', '.join(words)}" for name, words in lists if words)
     name = literal_text(catalogue.name)
     name.stylize("bold")
-    joints = len(catalogue.joints)
-    rest = literal_text(f" ({catalogue.firmware}), {joints} joints; {contents}".rstrip("; "))
+    joints = counted(len(catalogue.joints), "joint")
+    rest = literal_text(f" ({catalogue.firmware}), {joints}; {contents}".rstrip("; "))
     moodless = "\nIt has no moods: its emotions, motions and sounds are tried."
     return Text.assemble(name, rest, "" if catalogue.moods else moodless)
 

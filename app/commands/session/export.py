@@ -54,7 +54,7 @@ def export(
     rows = write_tables(exported, output)
     console = Console(highlight=False, soft_wrap=True)
     for name, count in rows.items():
-        console.print(f"{name:10} {count:8} rows")
+        console.print(f"{name:10} {count:8} {'row' if count == 1 else 'rows'}")
     console.print(f"[bold]{escape(str(output))}[/] holds the tables as .csv and .jsonl")
 
 

@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+from app.counted import counted
 from app.errors import AppError
 from app.pipeline.step import Step
 from app.preferences import PreferenceStore
@@ -108,7 +109,8 @@ def report_recording(path: Path, console: Console) -> None:
         return
     size = path.stat().st_size / 1e6
     console.print(
-        f"Recorded to [bold]{name}[/]: {info.duration:.1f} s, {info.frames} frames, {size:.1f} MB. "
+        f"Recorded to [bold]{name}[/]: {info.duration:.1f} s, {counted(info.frames, 'frame')}, "
+        f"{size:.1f} MB. "
         f"Play it again: [cyan]{replay}[/]",
         soft_wrap=True,
     )

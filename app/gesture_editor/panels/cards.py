@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 
+from app.counted import counted
 from app.gesture_editor.editing.edits import change_place, gesture_name
 from app.gesture_editor.editing.state import (
     Action,
@@ -120,7 +121,7 @@ def _library(state: EditorState) -> list[Widget]:
     def choose(state: EditorState, name: str) -> EditorState:
         return unless_unsaved(state, Open(name))
 
-    more = f"{len(names)} gestures" if len(names) <= MAX_NAMES else f"the first {MAX_NAMES}"
+    more = f"the first {MAX_NAMES}" if len(names) > MAX_NAMES else counted(len(names), "gesture")
     return [
         *widgets,
         TextField(

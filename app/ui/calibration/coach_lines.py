@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
+from app.counted import counted
 from app.errors import AppError
 from app.output_path import whole_file
 from app.ui.calibration.coach import draw_coverage, words_of
@@ -44,7 +45,7 @@ class CoachLines:
         ):
             return
         self._last = new, timestamp
-        share = f"{100 * advice.coverage.progress:3.0f} %  {advice.views:2d} views"
+        share = f"{100 * advice.coverage.progress:3.0f} %  {counted(advice.views, 'view'):>8}"
         self._console.print(f"[dim]{share}[/]  {new}", highlight=False)
 
 

@@ -12,7 +12,7 @@ from characters.errors import CharacterError
 from characters.formats.loading import MotionOptions, Performance
 from characters.formats.mocap.asf import AcclaimSkeleton, load_skeleton
 from characters.formats.mocap.axes_and_units import metric_performance
-from characters.formats.mocap.text import CUT_OFF, TextFile, parse_numbers, quoted
+from characters.formats.mocap.text import CUT_OFF, TextFile, numbers, parse_numbers, quoted
 from characters.motion.clip import Clip
 from characters.skeleton.pose import Array
 
@@ -186,8 +186,8 @@ def _row(file: TextFile, body: AcclaimSkeleton, frame: _Frame, first: _Frame) ->
         part = body.columns[name]
         if len(words) != part.stop - part.start:
             problem = (
-                f"{quoted(name)} has {len(words)} numbers, but {part.stop - part.start} degrees "
-                f"of freedom in {body.path.name}"
+                f"{quoted(name)} has {numbers(len(words))} instead of {part.stop - part.start}, "
+                f"its degrees of freedom in {body.path.name}"
             )
             raise file.error(line, problem, "give the .asf of the same performer, or export again")
         row[part] = [file.number(line, word) for word in words]

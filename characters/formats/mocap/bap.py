@@ -127,7 +127,7 @@ def read_baps(path: Path) -> BapTrack:
     filled = [(number, words) for number, words in lines if words]
     rate, count = _header(file, filled[0][1] if filled else [])
     if len(filled) != 1 + 2 * count:
-        raise file.error(filled[-1][0], f"{(len(filled) - 1) // 2} frames of {count}", CUT_OFF)
+        raise file.error(filled[-1][0], f"{(len(filled) - 1) // 2} of {count} frames", CUT_OFF)
     file.check_size(BAP_COUNT, count)
     values = np.zeros((count, BAP_COUNT), np.int64)
     for frame in range(count):

@@ -15,7 +15,7 @@ from characters.errors import CharacterError
 from characters.formats.loading import MotionOptions, Performance
 from characters.formats.mocap.axes_and_units import metric_performance
 from characters.formats.mocap.channels import AxisChannel, ChannelLayout
-from characters.formats.mocap.text import CUT_OFF, TextFile, parse_numbers, quoted
+from characters.formats.mocap.text import CUT_OFF, TextFile, numbers, parse_numbers, quoted
 from characters.motion.clip import Clip
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose, Skeleton
@@ -207,7 +207,7 @@ def _motion(file: TextFile, start: int, width: int) -> tuple[float, Array, tuple
         values = np.array([[file.number(line, word) for word in row] for line, row in read])
     notes: tuple[str, ...] = ()
     if len(rows) > stated:
-        notes = (f"{stated:.0f} frames stated, {len(rows)} found: all are read",)
+        notes = (f"{len(rows)} frames found, {stated:.0f} stated: all are read",)
     return _nominal_rate(1.0 / frame_time), values.reshape(-1, width), notes
 
 
@@ -222,7 +222,7 @@ def _rows(
             rows.append(row)
             row_lines.append(line + 1)
         elif row:
-            problem = f"frame {len(rows) + 1} has {len(row)} numbers for {width} channels"
+            problem = f"frame {len(rows) + 1} has {numbers(len(row))} for {width} channels"
             raise file.error(line + 1, problem, "the file is cut off or edited: export it again")
     return rows, row_lines
 

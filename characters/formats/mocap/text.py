@@ -60,7 +60,7 @@ class TextFile:
     def vector(self, line: int, words: list[str], name: str) -> Array:
         """Return three finite numbers, or refuse the line."""
         if len(words) != 3:
-            problem = f"{name} has {len(words)} numbers"
+            problem = f"{name} has {numbers(len(words))}"
             raise self.error(line, problem, "give three, or export the file again")
         return np.array([self.number(line, word) for word in words])
 
@@ -86,3 +86,12 @@ def parse_numbers(words: Iterable[str]) -> Array | None:
 def quoted(word: str) -> str:
     """Return a word of a file, shortened and quoted for a message of one line."""
     return repr(word if len(word) <= 40 else word[:37] + "...")
+
+
+def numbers(count: int) -> str:
+    """Return how many numbers there are, in words.
+
+    >>> numbers(1), numbers(2)
+    ('1 number', '2 numbers')
+    """
+    return "1 number" if count == 1 else f"{count} numbers"

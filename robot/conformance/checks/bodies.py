@@ -55,7 +55,7 @@ def short_body_skipped(probe: Probe) -> None:
     """A body that is shorter than its message was at first is skipped."""
     probe.open_session()
     for length in (1, 2):
-        probe.expect_no_reply(encode_frame(b"\x03\x21"[:length]), f"a body of {length} bytes")
+        probe.expect_no_reply(encode_frame(b"\x03\x21"[:length]), f"a {length}-byte body")
     for message in _HOST_MESSAGES:
         spec = spec_of(type(message))
         for length in range(3, spec.size):
@@ -71,14 +71,14 @@ def longer_body_used(probe: Probe) -> None:
     for more in (1, 4, 40):
         count = probe.next_beat()
         probe.write(_extended(m.Beat(count), probe, more))
-        probe.expect(m.State, f"a BEAT with {more} bytes more", beat=count)
+        probe.expect(m.State, f"a BEAT with a {more}-byte extension", beat=count)
         number = probe.next_number()
         probe.write(_extended(m.Express(number, 0.0, 0.0), probe, more))
-        what = f"an EXPRESS with {more} bytes more"
+        what = f"an EXPRESS with a {more}-byte extension"
         probe.expect(m.Ack, what, number=number, result=m.RESULT_TAKEN)
         probe.next_session()
         probe.write(_extended(m.Hello(2, probe.host), probe, more))
-        probe.expect(m.Welcome, f"a HELLO with {more} bytes more")
+        probe.expect(m.Welcome, f"a HELLO with a {more}-byte extension")
 
 
 @BODIES.must

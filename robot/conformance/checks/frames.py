@@ -48,9 +48,9 @@ def half_a_frame_before_a_frame(probe: Probe) -> None:
     half = probe.frame(m.Beat(probe.next_beat()))
     for length in range(1, len(half)):
         probe.write(half[:length])
-        probe.beat(f"the first {length} bytes of a frame")
+        probe.beat(f"a frame cut off after byte {length}")
         probe.write(half[length:])
-        probe.beat(f"a frame without its first {length} bytes")
+        probe.beat(f"the rest of a frame after byte {length}")
 
 
 @FRAMES.must
@@ -109,7 +109,7 @@ def wrong_cobs_dropped(probe: Probe) -> None:
         count = probe.next_beat()
         encoded = bytearray(pack(m.Beat(count), probe.session))
         encoded.insert(0, len(encoded) + 1 + excess)
-        probe.expect_no_reply(_with_check(bytes(encoded)), f"a COBS run {excess} bytes too long")
+        probe.expect_no_reply(_with_check(bytes(encoded)), f"a COBS run too long by {excess}")
         _expect_not_answered(probe, count, "a frame with wrong COBS")
 
 

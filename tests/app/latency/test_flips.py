@@ -60,7 +60,7 @@ def test_a_camera_that_repeats_one_picture_of_the_pattern_is_no_measurement(monk
     clock, screen, source = opened()
     seen = source._seen
     monkeypatch.setattr(source, "_seen", lambda number: seen(0))
-    with pytest.raises(AppError, match="only 0 flips of the pattern were seen"):
+    with pytest.raises(AppError, match="the camera saw only 0 flips of the pattern"):
         LatencySession(source, 10, 1, clock).run(screen)
 
 

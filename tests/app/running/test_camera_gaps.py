@@ -163,3 +163,12 @@ def test_a_session_that_ends_before_its_first_frame_has_a_summary():
     with console.capture() as capture:
         console.print(Summary("follow", interrupted=True))
     assert "0 frames" in capture.get()
+
+
+def test_the_summary_of_one_frame_is_in_the_singular():
+    console = Console(width=140)
+    with console.capture() as capture:
+        console.print(Summary("follow", frames=1, left_out=1))
+    shown = capture.get()
+    assert "1 frame, 0.0 s" in shown
+    assert "1 frame, to keep up" in shown

@@ -19,8 +19,9 @@ from tests.characters.formats.mutated_text import mutated
         (
             "leg 30 0 0",
             "leg 30 0",
-            r"line 10: 'leg' has 2 numbers, but 3 degrees of freedom in hopper",
+            r"line 10: 'leg' has 2 numbers instead of 3, its degrees of freedom in hopper",
         ),
+        ("leg 30 0 0", "leg 30", r"line 10: 'leg' has 1 number instead of 3"),
         ("leg 0 0 0", "leg 0 0 0 0", r"line 6: 'leg' has 4 numbers"),
         ("leg 30 0 0", "arm 30 0 0", r"line 10: hopper\.asf has no bone 'arm'"),
         ("leg 30 0 0", "leg 30 nan 0", "line 10: 'nan' is out of range"),

@@ -132,7 +132,7 @@ FLAGS = " ".join(["1"] + ["0"] * (BAP_COUNT - 1))
     [
         ("", "line 1: not a version"),
         ("2.1 x 0 1\n", "line 1: not a version"),
-        ("2.1 x 25 2\n" + FLAGS + "\n0 5\n", "1 frames of 2"),
+        ("2.1 x 25 2\n" + FLAGS + "\n0 5\n", "1 of 2 frames"),
         ("2.1 x 25 1\n1 0 1\n0 5\n", "line 2: not 296 flags"),
         ("2.1 x 25 1\n" + FLAGS + "\n0\n", "line 3: not one value"),
         ("2.1 x 25 1\n" + FLAGS + "\n0 many\n", "line 3: expected a number"),

@@ -48,7 +48,7 @@ def test_a_good_robot_at_a_real_port_conforms(conform, tmp_path):
 def test_a_few_checks_are_not_the_whole_verdict(conform, tmp_path):
     code, out, _ = conform("sim", *only("frames in one"), "--json", "found.json")
     assert code == 0
-    assert f"1 ok in 0 s. Only 1 of {len(all_checks())} checks were run." in out
+    assert f"1 ok in 0 s. Only 1 of {len(all_checks())} checks was run." in out
     assert "It passes these, which is not the whole verdict." in out
     assert "It conforms" not in out
     found = json.loads((tmp_path / "found.json").read_text())

@@ -281,8 +281,8 @@ class Monotonous(Simulator):
     ("data", "says"),
     [
         (b"", "nothing was received: is the robot switched on"),
-        (b"\0", r"\d+ bytes were received, all of them zero"),
-        (b"ready>\r\n", r"\d+ bytes were received, but no answer is among them"),
+        (b"\0", r"\d+ bytes were received, nothing but zeros"),
+        (b"ready>\r\n", r"\d+ bytes were received, but no answer"),
     ],
     ids=["silence", "zeros", "noise"],
 )
