@@ -29,8 +29,9 @@ TEXTURE_DETAIL = 0.1
 """How much detail changes where the camera sways by a fraction of a pixel, per deviation of the
 background's texture: that of a keyboard is large, and that of skin or wood is small."""
 
-MAX_NOISE_RATIO = 3.0
-"""Most noise that is believed, relative to the least."""
+CONSTANT, MAX_NOISE_RATIO = 0.2, 5.0
+"""Deviation below which a pixel is constant, as clipped white and repeated blocks of a video are,
+and most noise that is believed, relative to the least."""
 
 SQUARE, SMALL, WIDE = (5, 5), np.ones((3, 3), np.uint8), np.ones((9, 9), np.uint8)
 """A square in which light on the same thing changes little [px]; a pixel and its neighbours."""
@@ -51,6 +52,9 @@ window that differs, and the arm [px]; and where the middles are."""
 
 MIN_CHANGE = 5.0
 """Change of lightness or chroma from which on a pixel of that grid differs [CIELab bytes]."""
+
+MIN_ARM_SAMPLES = 20
+"""Least samples that differ of what comes from outside the window and may be an arm."""
 
 SAMPLE_NOISE = 2.0
 """How much more noise a sample has than a pixel of the window."""
@@ -245,7 +249,7 @@ class Background:
         return Place(odds, (odds > 0) & ~lit, difference, recoloured, (light, mean))
 
     def differing(self, lab: Floats, samples: Box, start: Box) -> Box:
-        """Return the rows and columns with all that differs from the background around a part.
+        """Return the rows and columns with what differs around a part, or comes from outside.
 
         Parameters
         ----------
@@ -262,8 +266,15 @@ class Background:
         flags[rows, columns] = True
         near = cv2.dilate(flags.view(np.uint8), SMALL)
         _, labels, stats, _ = cv2.connectedComponentsWithStats(near)
-        left, top, width, height, _ = stats[labels[rows.start, columns.start]].tolist()
-        return _grown(top, height), _grown(left, width)
+        left, top, width, height, area = stats.T
+        right, bottom = left + width, top + height
+        at_border = (left == 0) | (top == 0) | (right == near.shape[1]) | (bottom == near.shape[0])
+        chosen = at_border & (area > MIN_ARM_SAMPLES)
+        chosen[0], chosen[labels[rows.start, columns.start]] = False, True
+        return (
+            _grown(int(top[chosen].min()), int(bottom[chosen].max())),
+            _grown(int(left[chosen].min()), int(right[chosen].max())),
+        )
 
     def changed_samples(self, lab: Floats, samples: Box) -> Flags:
         """Return which samples look like something else, and not as in a shadow, (h, w)."""
@@ -332,10 +343,9 @@ def _share(changes: Sequence[Floats], change: Sequence[float]) -> float:
     return np.count_nonzero(alike) / len(alike)
 
 
-def _grown(first: int, count: int) -> slice:
-    """Return the pixels of some rows or columns of the grid, and those around."""
-    low, high = first * GRID_PX - MARGIN_PX, (first + count) * GRID_PX + MARGIN_PX
-    return slice(max(low, 0), high)
+def _grown(first: int, stop: int) -> slice:
+    """Return the pixels of some rows or columns of samples, and those around."""
+    return slice(max(first * GRID_PX - MARGIN_PX, 0), stop * GRID_PX + MARGIN_PX)
 
 
 def _roughness(gain: Floats, known: Flags, lit: Flags) -> Floats:
@@ -362,5 +372,8 @@ def _texture(light: Floats) -> Floats:
 
 
 def _noise(deviations: Floats, least: float) -> float:
-    """Return the deviation that noise makes, by the pixels that look most as before."""
-    return min(max(quantile(deviations, 0.4), least), MAX_NOISE_RATIO * least)
+    """Return the deviation that noise makes, by the half that looks most as before."""
+    noisy = deviations[deviations > CONSTANT * least]
+    if len(noisy) < MIN_SAMPLES:
+        return least
+    return min(max(quantile(noisy, 0.5), least), MAX_NOISE_RATIO * least)

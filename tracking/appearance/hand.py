@@ -129,7 +129,7 @@ class HandFinder:
         self._colours = ColourModel()
         self._stillness = Stillness()
         self._from_roots = LAB_FROM_ROOTS
-        self._strip = self._frames = 0
+        self._strip = self._frames = self._since_whole = 0
         self._hidden = np.zeros(3)  # the point behind the hand, in the cube's frame [m]
         self._last: HandMask | None = None
         self._seen, self._pose = -np.inf, np.eye(4)
@@ -150,16 +150,20 @@ class HandFinder:
         if window is None:
             self._last, self._stillness = None, Stillness()
             return None
+        self._since_whole += 1
         samples = sampled(image, window.scale, window.samples)
         if self._frames < MANY_FRAMES or not self._stillness.is_still(window, samples):
             columns, rows = (side // window.scale for side in self._projection.size)
             self._background.match_size(columns, rows)
-            whole, part = self._frames < MANY_FRAMES or self._frames % WHOLE_FRAMES == 0, window
+            early = self._frames < MANY_FRAMES
+            whole, part = early or self._since_whole >= WHOLE_FRAMES, window
             if not whole:
                 planes = self._lab(samples)
                 part = window.part(
                     self._background.differing(planes, window.samples, window.cube_box)
                 )
+            else:
+                self._since_whole = 0
             hand = self._found(image, pose, part, whole)
             self._last = None if hand is None else self._with_arm(image, window, hand)
         return self._last

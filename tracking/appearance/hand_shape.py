@@ -51,6 +51,9 @@ def connected(
 ) -> Image | None:
     """Choose the components that hold evidence, or that touch the cube and reach away.
 
+    Without any, a hand has let go of the cube or is about to take it: what comes from outside the
+    window and has its colours.
+
     Parameters
     ----------
     flags
@@ -72,24 +75,33 @@ def connected(
     labels = np.asarray(cv2.convertScaleAbs(labels32), np.uint8)
     beside = cv2.dilate(outline, WIDE, iterations=3).view(bool)
     square, by_cube = window.edge**2, labels[window.cube_box]
+    large = np.bincount(labels.ravel(), minlength=256) > MIN_AREA_EDGES2 * square
+    touching = np.bincount(by_cube[beside], minlength=256) > MIN_TOUCH_EDGES2 * square
+    large[0] = False
     keep = np.zeros(256, bool)
     keep[by_cube[evidence]] = True
-    touching = np.bincount(by_cube[beside], minlength=256) > MIN_TOUCH_EDGES2 * square
-    touching[0] = False
-    for label in np.flatnonzero(touching & ~keep).tolist():
+    for label in np.flatnonzero(touching & large & ~keep).tolist():
         part = labels == label
-        area = np.count_nonzero(part)
-        colour = by_colour[part].mean()
-        reaches = area > np.count_nonzero(part[_within_reach(window)])
-        keep[label] = (
-            area > MIN_AREA_EDGES2 * square
-            and (reaches or colour > SURE_COLOUR_ODDS)
-            and np.count_nonzero(part & (place.odds > 0)) > MIN_CHANGED_SHARE * area
-            and colour > MIN_COLOUR_ODDS
-            and place.likeness(part) < MAX_LIKENESS
-        )
+        reaches = np.count_nonzero(part) > np.count_nonzero(part[_within_reach(window)])
+        least = MIN_COLOUR_ODDS if reaches else SURE_COLOUR_ODDS
+        keep[label] = _like_hand(part, place, by_colour, least)
+    if not keep[1:].any():
+        from_outside = np.zeros(256, bool)
+        for side in (labels[0], labels[-1], labels[:, 0], labels[:, -1]):
+            from_outside[side] = True
+        for label in np.flatnonzero(from_outside & large).tolist():
+            keep[label] = _like_hand(labels == label, place, by_colour, SURE_COLOUR_ODDS)
     keep[[0, 255]] = False
     return np.asarray(cv2.LUT(labels, keep.view(np.uint8)), np.uint8) if keep.any() else None
+
+
+def _like_hand(part: Flags, place: Place, by_colour: Floats, least: float) -> bool:
+    """Return whether a component may be a hand; `least` is what its colours speak for one."""
+    return bool(
+        np.count_nonzero(part & (place.odds > 0)) > MIN_CHANGED_SHARE * np.count_nonzero(part)
+        and by_colour[part].mean() > least
+        and place.likeness(part) < MAX_LIKENESS
+    )
 
 
 def _within_reach(window: Window) -> tuple[slice, slice]:

@@ -126,3 +126,16 @@ def test_a_desk_that_was_not_seen_tells_no_change_of_the_camera():
     never = Background()
     never.match_size(200, 160)
     assert never.camera_change(desk(), BOX) is None
+
+
+def test_noise_is_measured_where_the_picture_is_not_clipped():
+    noise, free = np.random.default_rng(3), outside()
+    made = Background()
+    made.match_size(200, 160)
+    for _ in range(12):
+        picture = desk()
+        blocks = noise.normal(0, 0.6, (2, HEIGHT // 10, (WIDTH - 100) // 10))
+        picture[1:, :, 100:] += blocks.repeat(10, axis=1).repeat(10, axis=2)
+        place = made.compare(picture, BOX, free, whole=True)
+        made.learn(picture, BOX, free, place.changed)
+    assert np.count_nonzero(place.changed) < 0.005 * place.changed.size

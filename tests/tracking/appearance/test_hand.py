@@ -7,6 +7,8 @@ import cv2
 import numpy as np
 import pytest
 
+from app.running.opening import intrinsics_for
+from app.session.bundled import bundled
 from tests.bench.hand_mask import covered, overlap
 from tests.bench.hand_scenes import GLOVES, SKINS, HandScene, HandView
 from tests.tracking.drawn import WIDE, held, photograph, scene
@@ -17,6 +19,8 @@ from tracking.cube.model import CubeModel
 from tracking.geometry.intrinsics import Intrinsics
 from tracking.geometry.projection import Projection
 from tracking.geometry.state import CubeState
+from tracking.sources import open_source
+from tracking.tracker.tracker import CubeTracker
 
 CUBE = CubeModel.load("locomotion")
 
@@ -84,15 +88,13 @@ def test_a_cube_without_a_hand_is_not_covered():
 def test_a_hand_of_another_colour_is_found_after_the_first():
     skins = GLOVES["yellow rubber"], SKINS["Monk 06"]  # the second is as the desk
     scenes = [HandScene(HandView(skin, -120, seed=3, defocus=1.2), CUBE) for skin in skins]
-    finder, mask = HandFinder(CUBE, scenes[0].intrinsics), None
-    for made in scenes:
-        for index in range(31):
-            frame, truth = made.frame(index)
-            mask = finder.update(frame.image, state_at(made.truth(index)))
-    assert mask is not None
-    region = finder.region(made.truth(30))
-    assert region is not None
-    assert overlap(covered(mask, SHAPE)[region], truth[region]) > 0.6
+    finder, scores = HandFinder(CUBE, scenes[0].intrinsics), []
+    for made, index in itertools.product(scenes, range(31)):
+        frame, truth = made.frame(index)
+        mask = finder.update(frame.image, state_at(made.truth(index)))
+        region = finder.region(made.truth(index))
+        scores.append(overlap(covered(mask, SHAPE)[region], truth[region]))
+    assert np.median(scores[-10:]) > 0.65
 
 
 def test_fingers_on_the_cube_from_the_beginning_are_not_taken_for_its_paper():
@@ -310,3 +312,25 @@ def test_a_hand_is_found_again_at_once_after_a_pose_at_the_lens(film):
     at_lens[2, 3] = 0.01
     assert finder.update(picture, state_at(at_lens)) is None
     assert finder.update(picture, state_at(pose)) is not None
+
+
+def test_a_hand_that_lets_go_is_in_front_until_it_has_left_the_surroundings():
+    made = HandScene(HandView(SKINS["Monk 03"], azimuth_deg=-120, seed=3), CUBE)
+    finder, scores = HandFinder(CUBE, made.intrinsics), []
+    for index in [*range(28), *range(27, 17, -1)]:
+        frame, truth = made.frame(index)
+        mask = finder.update(frame.image, state_at(made.truth(index)))
+        region = finder.region(made.truth(index))
+        scores.append(overlap(covered(mask, SHAPE)[region], truth[region]))
+    assert made.state(19).grip < 0.6
+    assert scores[-2] > 0.5
+    assert mask is None
+
+
+def test_a_picture_that_is_mostly_clipped_shows_no_hand():
+    with open_source(str(bundled("follow"))) as source:
+        intrinsics = intrinsics_for(source.intrinsics, source.size)
+        tracker, finder = CubeTracker(CUBE, intrinsics), HandFinder(CUBE, intrinsics)
+        for frame in itertools.islice(source, 58):  # the hand comes later
+            bright = np.asarray(cv2.convertScaleAbs(frame.image, alpha=1.6), np.uint8)
+            assert finder.update(bright, tracker.update(frame)) is None
