@@ -40,7 +40,7 @@ class Window:
     """First column [px of the window]: a multiple of `GRID_PX` where it is no part of another."""
 
     top: int
-    """First row [px of the window], likewise."""
+    """First row [px of the window]: also a multiple."""
 
     width: int
     """Number of columns."""
