@@ -12,7 +12,7 @@ from app.errors import AppError
 from characters.rendering import Box, Cover, Focus, MeasuredLight, Softness, View
 from tracking import CubeControls, CubeModel, CubeState, Frame, Intrinsics
 from tracking.appearance.hand import HandFinder
-from tracking.appearance.hand_mask import EDGE_SLOPE
+from tracking.appearance.hand_mask import EDGE_SLOPE, HandMask
 from tracking.appearance.light import LightMeter
 from tracking.appearance.picture_quality import QualityMeter
 
@@ -97,9 +97,7 @@ class Surroundings:
     def cover(self, frame: Frame, state: CubeState) -> Cover | None:
         """Return the hand in front of the cube; call it once for each frame."""
         found = None if self._hand is None else self._hand.update(frame.image, state)
-        if found is None:
-            return None
-        return Cover(found.x, found.y, found.share, found.behind, found.scale, EDGE_SLOPE)
+        return None if found is None else cover_of(found)
 
     def _measured_light(
         self, frame: Frame, state: CubeState, controls: CubeControls
@@ -118,6 +116,11 @@ class Surroundings:
         if found is None:
             return None
         return Softness(found.blur, found.noise, found.haze, found.paper)
+
+
+def cover_of(hand: HandMask) -> Cover:
+    """Return a hand that was found, as the drawing takes it."""
+    return Cover(hand.x, hand.y, hand.share, hand.behind, hand.scale, EDGE_SLOPE)
 
 
 class Autofocus:

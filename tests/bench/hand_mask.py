@@ -18,12 +18,12 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from app.pipeline.surroundings import cover_of
 from characters.rendering.hand_cover import PictureCover
 from characters.rendering.projection import Rectangle
-from characters.rendering.scene import Cover
 from tests.bench.hand_scenes import GLOVES, RATE_HZ, SKINS, HandScene, HandView
 from tracking.appearance.hand import HandFinder
-from tracking.appearance.hand_mask import EDGE_SLOPE, HandMask
+from tracking.appearance.hand_mask import HandMask
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Floats, Image
 from tracking.tracker.tracker import CubeTracker
@@ -63,9 +63,8 @@ def covered(mask: HandMask | None, shape: tuple[int, ...]) -> Floats:
     """Return the cover in the whole image, (H, W) 0…1, as it is drawn."""
     if mask is None:
         return np.zeros(shape[:2], np.float32)
-    cover = Cover(mask.x, mask.y, mask.share, mask.behind, mask.scale, EDGE_SLOPE)
     whole = Rectangle(0, 0, shape[1], shape[0])
-    return np.float32(1 / 255) * PictureCover(whole, cover, None).share_in(whole)
+    return np.float32(1 / 255) * PictureCover(whole, cover_of(mask), None).share_in(whole)
 
 
 def overlap(found: Floats, true: Floats) -> float:

@@ -139,7 +139,7 @@ class Background:
 
     def __init__(self) -> None:
         self._mean: Floats = np.zeros((3, 0, 0), np.float32)
-        self._sampled_mean = self._mean
+        self._sampled_mean = self._mean  # the samples of it, side by side: they are read faster
         self._age: Image = np.zeros((0, 0), np.uint8)
         self._texture: Floats = np.zeros((0, 0), np.float32)
         self._lit_anew: Flags = np.zeros((0, 0), bool)
@@ -219,8 +219,7 @@ class Background:
         gain -= 1
         shade = np.abs(gain)
         chroma_noise, detail_noise = self._noise
-        lit = chroma < CHROMA_LIMIT * chroma_noise + SHADE_CHROMA * shade
-        lit &= (gain > MIN_GAIN - 1) & (gain < MAX_GAIN - 1)
+        lit = _is_lit(chroma, gain, shade, chroma_noise)
         # Noise of the lightness is the same in bright and in dark places, so that of the gain not.
         rough = mean * _roughness(gain, known, lit)
         if whole:
@@ -281,9 +280,9 @@ class Background:
         mean, mean_a, mean_b = self._sampled_mean[:, *samples]
         gain = lab[0] / mean
         off = cv2.magnitude(lab[1] - gain * mean_a, lab[2] - gain * mean_b)
-        limit = SAMPLE_NOISE * CHROMA_LIMIT * self._noise[0] + SHADE_CHROMA * np.abs(gain - 1)
-        changed = (off > limit) | (gain < MIN_GAIN) | (gain > MAX_GAIN)
-        return np.asarray(changed & (self._age[MIDDLES, MIDDLES][samples] > 0))
+        gain -= 1
+        lit = _is_lit(off, gain, np.abs(gain), SAMPLE_NOISE * self._noise[0])
+        return np.asarray(~lit & (self._age[MIDDLES, MIDDLES][samples] > 0))
 
     def learn(self, lab: Floats, box: Box, free: Flags, changed: Flags) -> None:
         """Learn the pixels of a window that are free of cube and hand."""
@@ -341,6 +340,17 @@ def _share(changes: Sequence[Floats], change: Sequence[float]) -> float:
     for each, usual, tolerance in zip(changes, change, tolerances, strict=True):
         alike &= np.abs(each - np.float32(usual)) < tolerance
     return np.count_nonzero(alike) / len(alike)
+
+
+def _is_lit(chroma: Floats, change: Floats, shade: Floats, noise: float) -> Flags:
+    """Return where other light and noise alone may have made what differs.
+
+    `chroma` is how far that is off, `change` that of the gain, `shade` its size, and `noise` that
+    of the chroma.
+    """
+    lit = chroma < CHROMA_LIMIT * noise + SHADE_CHROMA * shade
+    lit &= (change > MIN_GAIN - 1) & (change < MAX_GAIN - 1)
+    return np.asarray(lit)
 
 
 def _grown(first: int, stop: int) -> slice:

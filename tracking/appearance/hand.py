@@ -152,18 +152,16 @@ class HandFinder:
             return None
         self._since_whole += 1
         samples = sampled(image, window.scale, window.samples)
-        if self._frames < MANY_FRAMES or not self._stillness.is_still(window, samples):
+        early = self._frames < MANY_FRAMES
+        if early or not self._stillness.is_still(window, samples):
             columns, rows = (side // window.scale for side in self._projection.size)
             self._background.match_size(columns, rows)
-            early = self._frames < MANY_FRAMES
             whole, part = early or self._since_whole >= WHOLE_FRAMES, window
-            if not whole:
-                planes = self._lab(samples)
-                part = window.part(
-                    self._background.differing(planes, window.samples, window.cube_box)
-                )
-            else:
+            if whole:
                 self._since_whole = 0
+            else:
+                planes, cube = self._lab(samples), window.cube_box
+                part = window.part(self._background.differing(planes, window.samples, cube))
             hand = self._found(image, pose, part, whole)
             self._last = None if hand is None else self._with_arm(image, window, hand)
         return self._last

@@ -1,5 +1,7 @@
 """The arm is covered to the border of the picture, and what is no arm is not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -30,11 +32,12 @@ def hand(box: tuple[slice, slice] = np.s_[20:60, 80:120]) -> HandMask:
     return HandMask(SCALE * WINDOW.left, SCALE * WINDOW.top, share, SCALE, np.zeros(3))
 
 
-def found(changed: np.ndarray) -> np.ndarray:
+def found(changed: np.ndarray, window: Window = WINDOW) -> np.ndarray:
     """What is covered of an image in which some pixels of the working resolution have changed."""
-    samples = arm_samples(WINDOW, SIZE)
+    samples = arm_samples(window, SIZE)
     middles = changed[1::GRID_PX, 1::GRID_PX][samples]
-    return covered(with_arm(hand(), middles, samples, WINDOW), SIZE[::-1])
+    placed = replace(hand(), x=SCALE * window.left, y=SCALE * window.top)
+    return covered(with_arm(placed, middles, samples, window), SIZE[::-1])
 
 
 def image() -> np.ndarray:
@@ -83,11 +86,11 @@ def test_a_body_behind_the_arm_hides_nothing():
 
 
 def test_an_arm_is_not_followed_far_up():
-    changed = image()
-    changed[:80, 250:280] = True
-    changed[80:115, 240:280] = True
-    up = (WINDOW.top - round(ARM_UP_EDGES * EDGE)) * SCALE
-    assert not found(changed)[: max(up - 2 * SCALE, 0)].any()
+    window, changed = replace(WINDOW, top=150), image()
+    changed[:190, 240:300] = True  # beside the window, from the hand to the upper border
+    cover, end = found(changed, window), window.top - round(ARM_UP_EDGES * EDGE)
+    assert cover[at(end + 6, 285)] == 1.0
+    assert not cover[: SCALE * (end - 1)].any()
 
 
 @given(st.integers(3, 80), st.integers(3, 110), st.integers(1, 40), st.integers(1, 40))
