@@ -96,10 +96,11 @@ class Light:
 class LightEstimator:
     """Tracks the exposure and the colour of the light from picture to picture.
 
-    A real cube of white paper in the picture is the best light meter. Without one, the illuminant
-    is the Minkowski mean of the picture, between grey world and brightest patch (Finlayson and
-    Trezzi, "Shades of gray and colour constancy", 2004, with p = 6), drawn towards the value that
-    automatic exposure gives to white. The result depends only on the sequence of pictures.
+    A real cube of white paper in the picture is the best light meter. Before there is one, the
+    illuminant is the Minkowski mean of the picture, between grey world and brightest patch
+    (Finlayson and Trezzi, "Shades of gray and colour constancy", 2004, with p = 6), drawn towards
+    the value that automatic exposure gives to white; afterwards, the light changes as that mean
+    does. The result depends only on the sequence of pictures.
     """
 
     MINKOWSKI_P = 6.0
@@ -113,6 +114,9 @@ class LightEstimator:
     PAPER_ALBEDO = 0.82
     """Albedo of printing paper."""
 
+    MIN_PAPER = 0.005
+    """Luminance below which what is seen there is no paper in the light."""
+
     PICTURE_CAST_SHARE = 0.45
     """Share of the picture's colour cast that is ascribed to the light, not to the surfaces."""
 
@@ -122,13 +126,15 @@ class LightEstimator:
     SMOOTHING_SHARE = 0.08
     """Share of the way to the new estimate in each picture: half of it after eight pictures."""
 
-    LUMINANCE_RANGE = (0.25, 1.1)
-    """Limits of the light's luminance, so that a character is neither too dark nor burnt out."""
+    LUMINANCE_RANGE = (0.02, 1.1)
+    """Limits of the light's luminance: a character is as dark as a room in which the cube can be
+    seen, and not burnt out."""
 
     def __init__(self) -> None:
         self._white: Array | None = None
         self._ground: Array | None = None
         self._seen_white, self._seen_ground = np.ones(3), np.ones(3)
+        self._metered: tuple[Array, NDArray[np.uint8]] | None = None  # white, and the picture then
         self._pictures = 0
         self._measured: Light | None = None
         self._share = 0.0  # of the measured light
@@ -175,10 +181,14 @@ class LightEstimator:
         """Estimate the light in a picture, in which white paper has a colour if some was found."""
         step = max(1, picture.shape[1] // 64)
         samples = picture[step // 2 :: step, step // 2 :: step, ::-1].reshape(-1, 3)
-        if paper is None:
-            white = self._white_from_picture(samples)
-        else:
+        if paper is not None and float(paper @ LUMA_WEIGHTS) > self.MIN_PAPER:
             white = _reduce_cast(paper / self.PAPER_ALBEDO, self.PAPER_CAST_SHARE)
+            self._metered = white, samples
+        elif self._metered is not None:
+            metered, then = self._metered
+            white = metered * self._minkowski_mean(samples) / self._minkowski_mean(then)
+        else:
+            white = self._white_from_picture(samples)
         white = np.maximum(white, 1e-3)
         luminance = white @ LUMA_WEIGHTS
         self._seen_white = white * np.clip(luminance, *self.LUMINANCE_RANGE) / luminance
@@ -201,14 +211,18 @@ class LightEstimator:
         return replace(light, key=share * light.key, sky=share * light.sky)
 
     def _white_from_picture(self, samples: NDArray[np.uint8]) -> Array:
-        """Return the colour of a white sheet, estimated from pixels (n, 3) RGB of all the picture.
+        """Return the colour of a white sheet, estimated from pixels (n, 3) RGB of the picture."""
+        bright = self._minkowski_mean(samples) / self.BRIGHT_ALBEDO
+        gain = float(np.sqrt(self.EXPOSED_WHITE / float(bright @ LUMA_WEIGHTS)))
+        return _reduce_cast(bright, self.PICTURE_CAST_SHARE) * gain
+
+    def _minkowski_mean(self, samples: NDArray[np.uint8]) -> Array:
+        """Return the Minkowski mean of pixels, (n, 3) → (3,), in linear light, and not 0.
 
         Two hundred and fifty-six powers take less time than those of all samples.
         """
-        bright = self._POWERS[samples].mean(axis=0) ** (1 / self.MINKOWSKI_P)
-        bright = bright / self.BRIGHT_ALBEDO
-        gain = float(np.sqrt(self.EXPOSED_WHITE / max(float(bright @ LUMA_WEIGHTS), 1e-6)))
-        return _reduce_cast(bright, self.PICTURE_CAST_SHARE) * gain
+        mean = self._POWERS[samples].mean(axis=0) ** (1 / self.MINKOWSKI_P)
+        return np.asarray(np.maximum(mean, 1e-4))
 
 
 def paper_color(view: View) -> Array | None:

@@ -78,9 +78,10 @@ def test_a_blurred_pawn_keeps_its_light(lens, view, pawn):
 
 @pytest.fixture
 def room(view, cube):
-    """Return a view of an open cube before a black picture."""
-    opened = replace(cube, opening=1.0)
-    return replace(view, image=np.zeros_like(view.image), occluders=(opened,))
+    """Return a view of an open cube before a picture that is black, but for a lamp above."""
+    opened, image = replace(cube, opening=1.0), np.zeros_like(view.image)
+    image[:8] = 200
+    return replace(view, image=image, occluders=(opened,))
 
 
 def test_the_blur_of_what_is_behind_a_cube_does_not_cover_it(lens, room, pawn):

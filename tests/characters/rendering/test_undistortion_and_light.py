@@ -174,7 +174,34 @@ def test_a_darker_and_redder_picture_gives_a_darker_and_redder_light(view):
     dim = LightEstimator().update(image)
     assert (dim.white < bright.white).all()
     assert dim.white[0] > dim.white[1] > dim.white[2]
-    assert (LightEstimator().update(np.zeros_like(image)).white > 0.1).all()
+    assert (LightEstimator().update(np.zeros_like(image)).white > 0.01).all()
+
+
+@pytest.mark.parametrize("is_measured", [False, True])
+def test_a_character_is_as_dark_as_the_paper_in_a_dark_room(view, is_measured):
+    room, dim = np.full((180, 320, 3), 20, np.uint8), 0.04
+    measured = MeasuredLight(
+        view.camera_from_table[:3, 1], np.full(3, dim / 2), np.full(3, dim / 2)
+    )
+    estimate = LightEstimator()
+    paper = np.full(3, dim * estimate.PAPER_ALBEDO)
+    for _ in range(150):
+        known = measured if is_measured else None
+        light = estimate.update(room, lambda: paper, known, view.camera_from_table)
+    assert light.white == pytest.approx(dim, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("after", "change"), [(60, 1.0), (30, LINEAR_FROM_SRGB[30] / LINEAR_FROM_SRGB[60])]
+)
+def test_a_hidden_cube_changes_the_light_only_as_the_picture_changes(view, after, change):
+    estimate, paper = LightEstimator(), np.full(3, 0.2)
+    seen, hidden = (np.full((180, 320, 3), level, np.uint8) for level in (60, after))
+    for _ in range(150):
+        before = estimate.update(seen, lambda: paper).white
+    for _ in range(150):
+        light = estimate.update(hidden, lambda: None).white
+    assert light == pytest.approx(change * before, rel=0.01)
 
 
 def test_the_light_changes_slowly(view):
