@@ -41,6 +41,10 @@ MAX_SIDE_TEXELS, RIM_TEXELS = 2048, 4
 """Longest side of an image of paths, and its empty rim; texels are larger where paths reach
 further."""
 
+SAME_PX = 0.05
+"""Paint is not bent again while no corner of its image has moved further [px]: the table trembles
+less than that where the cube that shows it rests."""
+
 
 class FloorPathPass(RenderPass):
     """Paints the floor paths on the table."""
@@ -70,8 +74,8 @@ class _SeenPaint:
     image: TableImage
     """The paint on the table."""
 
-    camera: bytes
-    """Where it was seen from."""
+    corners: Array | None
+    """Where the corners of the image were in the picture, (4, 2) [px]; None if some were not."""
 
     area: Rectangle | None
     """The area of the picture around it."""
@@ -113,19 +117,26 @@ def _seen_paint(
     places = points[numbers]
     texel = _texel(frame, places)
     key = points.tobytes(), path.closed, path.highlight, texel
-    camera = frame.camera_matrix.tobytes() + frame.camera_from_table.tobytes()
     known = last if last is not None and last.key == key else None
-    if known is not None and known.camera == camera:
-        return known
     image = (
         known.image if known else _painted(places, path.closed, numbers == path.highlight, texel)
     )
+    corners = frame.pixels_of(image.corners)
+    if known is not None and _are_same(corners, known.corners):
+        return known
     area, share = frame.area_of(image.corners), np.zeros((0, 0), np.uint8)
     if area is not None:
         share = image.in_picture(frame, area, beyond=0)
     pixels = np.stack(np.nonzero(share))
     share_of_pixels = share[tuple(pixels)] / np.float32(255.0)
-    return _SeenPaint(key, image, camera, area, pixels.astype(np.int32), share_of_pixels)
+    return _SeenPaint(key, image, corners, area, pixels.astype(np.int32), share_of_pixels)
+
+
+def _are_same(corners: Array | None, before: Array | None) -> bool:
+    """Return whether the camera sees paint where it saw it before."""
+    if corners is None or before is None:
+        return False
+    return bool(np.abs(corners - before).max() < SAME_PX)
 
 
 def _texel(frame: FrameResources, points: Array) -> float:

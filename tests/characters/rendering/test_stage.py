@@ -21,6 +21,7 @@ from characters.rendering import (
 )
 from characters.rendering.passes.hand_occlusion import HAND_DEPTH_M
 from characters.rendering.passes.render_pass import RenderPass
+from characters.rendering.passes.table_image import TableImage
 
 GOLDEN = Path(__file__).parent / "golden"
 LOOP = FloorPath(
@@ -89,6 +90,22 @@ def test_a_path_is_seen_from_where_the_camera_is_now(ctx, stage, view):
         fresh = Stage(ctx, (320, 180))
         assert np.array_equal(stage.draw(now, [], [path]), fresh.draw(now, [], [path]))
         fresh.release()
+
+
+def test_a_path_is_bent_again_only_when_it_is_seen_to_move(stage, view, monkeypatch):
+    bent = []
+    in_picture = TableImage.in_picture
+    monkeypatch.setattr(
+        TableImage,
+        "in_picture",
+        lambda *given, **named: bent.append(1) or in_picture(*given, **named),
+    )
+    path = FloorPath(((-0.05, 0.0), (0.05, 0.02)))
+    for right_m, times in ((0.0, 1), (1e-6, 1), (2e-6, 1), (1e-3, 2), (1e-3, 2)):
+        moved = view.camera_from_table.copy()
+        moved[0, 3] += right_m
+        stage.draw(replace(view, camera_from_table=moved), [], [path])
+        assert len(bent) == times
 
 
 def test_the_cube_hides_pawn_shadow_and_path(stage, view, pawn, cube):
