@@ -62,20 +62,21 @@ class SkinnedPoints:
     ) -> None:
         self._count = len(positions)
         blocks = -(-self._count // BLOCK_POINTS)
-        self._weights = np.zeros((blocks * BLOCK_POINTS, rows), np.float32)
-        np.add.at(self._weights, (np.arange(self._count)[:, None], joints), weights)
-        self._factors = np.zeros((blocks * BLOCK_POINTS, rows, 4), np.float32)
+        by_row = np.zeros((rows, blocks * BLOCK_POINTS), np.float32)
+        np.add.at(by_row, (joints, np.arange(self._count)[:, None]), weights)
+        by_block = by_row.reshape(rows, blocks, BLOCK_POINTS).transpose(1, 0, 2)
+        self._weights = np.ascontiguousarray(by_block)
+        self._positions = np.ones((4, blocks * BLOCK_POINTS), np.float32)
         self.move(np.arange(self._count), positions)
 
     def move(self, which: NDArray[np.intp], positions: NDArray[np.float32]) -> None:
         """Give other positions (k, 3) to some of the points, (k,)."""
-        weights = self._weights[which, :, None]
-        self._factors[which, :, :3] = weights * positions[:, None]
-        self._factors[which, :, 3:] = weights
+        self._positions[:3, which] = positions.T
 
     def skinned(self, palette: NDArray[np.float32]) -> NDArray[np.float64]:
         """Return the points, (n, 3), moved by a palette (rows, 3, 4) without last rows."""
-        columns = palette.transpose(0, 2, 1).reshape(-1, 3)
         # The threads of one large product would wait for each other on a busy machine.
-        factors = self._factors.reshape(-1, BLOCK_POINTS, len(columns))
-        return (factors @ columns).reshape(-1, 3)[: self._count].astype(float)
+        matrices = palette.reshape(-1, 12).T @ self._weights
+        by_point = matrices.transpose(1, 0, 2).reshape(3, 4, -1)
+        points = (by_point * self._positions).sum(axis=1)
+        return np.asarray(points[:, : self._count].T, float)
