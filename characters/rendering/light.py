@@ -38,7 +38,7 @@ LINEAR_FROM_SRGB = np.where(
 SAMPLES_PER_SIDE = 12
 """Sample points along each side of a cube's face."""
 
-PICTURES_PER_LOOK = 2
+PICTURES_PER_LOOK = 4
 """Only one picture of so many is looked at."""
 
 PAPER_QUANTILE = 0.9
