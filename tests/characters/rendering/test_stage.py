@@ -95,12 +95,13 @@ def test_a_path_is_seen_from_where_the_camera_is_now(ctx, stage, view):
 def test_a_path_is_bent_again_only_when_it_is_seen_to_move(stage, view, monkeypatch):
     bent = []
     in_picture = TableImage.in_picture
-    monkeypatch.setattr(
-        TableImage,
-        "in_picture",
-        lambda *given, **named: bent.append(1) or in_picture(*given, **named),
-    )
-    path = FloorPath(((-0.05, 0.0), (0.05, 0.02)))
+
+    def counted(*given, **named):
+        bent.append(given)
+        return in_picture(*given, **named)
+
+    monkeypatch.setattr(TableImage, "in_picture", counted)
+    path = FloorPath(np.array([(-0.05, 0.0), (0.05, 0.02)]))
     for right_m, times in ((0.0, 1), (1e-6, 1), (2e-6, 1), (1e-3, 2), (1e-3, 2)):
         moved = view.camera_from_table.copy()
         moved[0, 3] += right_m

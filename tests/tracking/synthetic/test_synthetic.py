@@ -180,6 +180,14 @@ def test_the_cube_is_always_in_the_image() -> None:
         assert (pixels < np.array(source.size) - 60).all()
 
 
+def test_a_sleeve_ends_at_the_border_of_the_image() -> None:
+    """The lens bends its far end, which is not seen, into the image."""
+    image = open_synthetic("sketch").frame(290).image.astype(int)
+    rows = (image[..., 0] > image[..., 2] + 20).sum(axis=0)
+    assert rows[1200] > 150
+    assert rows[-1] > 0.9 * rows[1200]
+
+
 def test_motion_blur_is_centred_on_the_true_pose() -> None:
     """The shutter is centred on the frame's time: blur moves no edge to one side."""
     still = open_synthetic(f"sweep?{CLEAN}&speed=1")
