@@ -5,6 +5,7 @@ import numpy as np
 
 from tracking.appearance.background import GRID_PX, MIDDLES, Box
 from tracking.appearance.hand_mask import HandMask
+from tracking.appearance.structuring_elements import SQUARE_3
 from tracking.appearance.window import Window
 from tracking.geometry.arrays import Flags, Image
 
@@ -21,9 +22,6 @@ HALF_SHARE = 127
 ARM_SHARE = np.uint8(225)
 """Share of a sample in the arm, 0…255: at its edge, less than half of a sample that has changed is
 covered, on average."""
-
-SMALL = np.ones((3, 3), np.uint8)
-"""A sample with its neighbours."""
 
 
 def arm_samples(window: Window, size: tuple[int, int]) -> Box:
@@ -86,7 +84,7 @@ def _arm(flags: Image, inside: Box, side: int) -> Image:
     `side` is the most width of an arm, odd [samples].
     """
     for operation in (cv2.MORPH_OPEN, cv2.MORPH_CLOSE):
-        flags = np.asarray(cv2.morphologyEx(flags, operation, SMALL), np.uint8)
+        flags = np.asarray(cv2.morphologyEx(flags, operation, SQUARE_3), np.uint8)
     count, labels = cv2.connectedComponents(flags)
     kept = np.zeros(count, np.uint8)
     kept[labels[inside]] = 1

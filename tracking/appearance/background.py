@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from tracking.appearance.structuring_elements import SQUARE_3, SQUARE_9
 from tracking.geometry.arrays import Flags, Floats, Image
 from tracking.geometry.robust_statistics import quantile
 
@@ -33,8 +34,9 @@ CONSTANT, MAX_NOISE_RATIO = 0.2, 5.0
 """Deviation below which a pixel is constant, as clipped white and repeated blocks of a video are,
 and most noise that is believed, relative to the least."""
 
-SQUARE, SMALL, WIDE = (5, 5), np.ones((3, 3), np.uint8), np.ones((9, 9), np.uint8)
-"""A square in which light on the same thing changes little [px]; a pixel and its neighbours."""
+EVEN_LIGHT_PX = (5, 5)
+"""Sides of a square in which light on the same thing changes little [px]: what differs in it is the
+detail of that thing."""
 
 SPARSE = np.s_[::5, ::5]
 """Pixels by which noise, exposure and white balance are estimated."""
@@ -129,7 +131,7 @@ class Place:
         It is the correlation, and near 0 for a hand. A textured thing that has moved by less than
         a pixel looks like something else at most pixels, and yet is much like itself.
         """
-        now, before = ((light - cv2.blur(light, (5, 5)))[where] for light in self.lights)
+        now, before = ((light - cv2.blur(light, EVEN_LIGHT_PX))[where] for light in self.lights)
         norm = math.sqrt(float(now @ now) * float(before @ before))
         return float(now @ before) / max(norm, 1e-6)
 
@@ -263,7 +265,7 @@ class Background:
         flags |= self._age[MIDDLES, MIDDLES][samples] == 0
         rows, columns = (slice(side.start // GRID_PX, side.stop // GRID_PX + 1) for side in start)
         flags[rows, columns] = True
-        near = cv2.dilate(flags.view(np.uint8), SMALL)
+        near = cv2.dilate(flags.view(np.uint8), SQUARE_3)
         _, labels, stats, _ = cv2.connectedComponentsWithStats(near)
         left, top, width, height, area = stats.T
         right, bottom = left + width, top + height
@@ -366,19 +368,19 @@ def _roughness(gain: Floats, known: Flags, lit: Flags) -> Floats:
     """
     counts = known & lit
     weight = counts.astype(np.float32)
-    share = cv2.blur(weight, SQUARE) + np.float32(1e-3)
+    share = cv2.blur(weight, EVEN_LIGHT_PX) + np.float32(1e-3)
     gain = gain * weight
-    detail = gain - cv2.blur(gain, SQUARE) / share
+    detail = gain - cv2.blur(gain, EVEN_LIGHT_PX) / share
     detail *= weight
-    deviation = cv2.blur(detail * detail, SQUARE) / share
+    deviation = cv2.blur(detail * detail, EVEN_LIGHT_PX) / share
     deviation += known ^ counts
-    return np.asarray(cv2.sqrt(cv2.erode(deviation, WIDE)), np.float32)
+    return np.asarray(cv2.sqrt(cv2.erode(deviation, SQUARE_9)), np.float32)
 
 
 def _texture(light: Floats) -> Floats:
     """Return the deviation from the mean of a square, (h, w)."""
-    detail = light - cv2.blur(light, SQUARE)
-    return np.asarray(cv2.sqrt(cv2.blur(detail * detail, SQUARE)), np.float32)
+    detail = light - cv2.blur(light, EVEN_LIGHT_PX)
+    return np.asarray(cv2.sqrt(cv2.blur(detail * detail, EVEN_LIGHT_PX)), np.float32)
 
 
 def _noise(deviations: Floats, least: float) -> float:

@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 
 from tracking.appearance.face_pattern import SeenPattern
+from tracking.appearance.structuring_elements import SQUARE_2, SQUARE_3
 from tracking.geometry.arrays import Flags, Floats, Image
 from tracking.geometry.robust_statistics import quantile
 
@@ -48,9 +49,6 @@ NEAR, MIN_SPREAD, MIN_CONTRAST = (7, 7), 0.03, 0.45
 """A square in which print is looked for [px], the least variance of the share of ink in it that
 can tell, and how much darker ink must be than paper there, as a share of the mean light."""
 
-SMALL = np.ones((3, 3), np.uint8)
-"""The neighbours of a pixel."""
-
 
 class FaceCheck:
     """Compares faces with their print; learns the tint of the light on paper."""
@@ -76,9 +74,9 @@ class FaceCheck:
             Apparent edge of the cube [px].
         """
         light, a, b = lab
-        most, least = cv2.dilate(seen.ink, SMALL), cv2.erode(seen.ink, SMALL)
+        most, least = cv2.dilate(seen.ink, SQUARE_3), cv2.erode(seen.ink, SQUARE_3)
         cube = np.asarray(seen.face > 0, np.uint8)
-        inner, plain = cv2.erode(cube, SMALL) > 0, ~seen.icon
+        inner, plain = cv2.erode(cube, SQUARE_3) > 0, ~seen.icon
         no_ink, all_ink = most < NO_INK, inner & (least > ALL_INK)
         all_paper = inner & no_ink & plain
         if self._frames % LEARNING_FRAMES == 0:
@@ -99,7 +97,7 @@ class FaceCheck:
         found = light > MAX_SHADE * (white - contrast * least) + LIGHTNESS_TOLERANCE
         found |= light < MIN_SHADE * (white - contrast * most) - 0.5 * LIGHTNESS_TOLERANCE
         found = (found | coloured) & inner
-        opened = cv2.morphologyEx(found.view(np.uint8), cv2.MORPH_OPEN, SMALL[:2, :2])
+        opened = cv2.morphologyEx(found.view(np.uint8), cv2.MORPH_OPEN, SQUARE_2)
         return _from_outside(np.asarray(opened), like_hand, cube, edge * edge)
 
     def told_by_chroma(
@@ -187,7 +185,7 @@ def _from_outside(flags: Image, like_hand: Flags, cube: Image, square: float) ->
     found = flags > 0
     if not found.any():
         return found
-    rim = cv2.erode(cube, SMALL, iterations=3) == 0
+    rim = cv2.erode(cube, SQUARE_3, iterations=3) == 0
     through = found | like_hand
     count, labels = cv2.connectedComponents(through.view(np.uint8))
     keep = np.bincount(labels[found], minlength=count) >= MIN_EVIDENCE_EDGES2 * square

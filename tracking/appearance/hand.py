@@ -21,6 +21,7 @@ from tracking.appearance.face_pattern import FacePattern
 from tracking.appearance.hand_edge import ODDS_RANGE, soft_cover
 from tracking.appearance.hand_mask import HandMask
 from tracking.appearance.hand_shape import connected, filled
+from tracking.appearance.structuring_elements import SQUARE_3, SQUARE_5
 from tracking.appearance.window import Stillness, Window, WindowFinder, sampled, shrunk
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Flags, Floats, Image
@@ -63,9 +64,6 @@ so many of them learns from that."""
 IMAGE_STRIPS = 9
 """Parts of the image of which one a frame is learned as background, at first, and while there is no
 hand."""
-
-SMALL, WIDE = np.ones((3, 3), np.uint8), np.ones((5, 5), np.uint8)
-"""A pixel with its neighbours."""
 
 
 @dataclass(frozen=True)
@@ -205,7 +203,7 @@ class HandFinder:
         if cube.shows_hand:
             self._colours.see_hand(view.colours[window.cube_box][cube.evidence])
         outside = np.ones(by_colour.shape, bool)
-        outside[window.cube_box] = cv2.dilate(cube.outline, SMALL) == 0
+        outside[window.cube_box] = cv2.dilate(cube.outline, SQUARE_3) == 0
         place = self._background.compare(view.lab, window.box, outside, whole)
         if not self._background.steady:
             self._background.forget()
@@ -245,7 +243,7 @@ class HandFinder:
             nearest = self._pattern.nearest(pose, seen.face * evidence, corner * scale, scale)
             self._hidden = (nearest - pose[:3, 3]) @ pose[:3, :3]
         behind = pose[:3, :3] @ self._hidden + pose[:3, 3]
-        inner = cv2.erode(seen.face, SMALL) > 0
+        inner = cv2.erode(seen.face, SQUARE_3) > 0
         slanted = (seen.face == 0) & outline.view(bool)
         doubtful = inner & ~evidence & like_hand
         told, bare = self._faces.told_by_chroma(part, seen, evidence, doubtful)
@@ -303,7 +301,7 @@ class HandFinder:
             if np.count_nonzero(sure) > MIN_LEARNED_PX:
                 self._colours.learn_hand(view.colours, sure)
         if whole or self._frames % LEARNING_FRAMES == LEARNING_FRAMES // 2:
-            free = outside if hand is None else outside & (cv2.dilate(hand, WIDE) == 0)
+            free = outside if hand is None else outside & (cv2.dilate(hand, SQUARE_5) == 0)
             self._background.learn(view.lab, view.window.box, free, place.changed)
             if whole:
                 self._colours.learn_behind(view.colours, free & ~place.changed)
@@ -331,7 +329,7 @@ def _credible(place: Place, by_colour: Floats, distinctness: float) -> Floats:
     of another colour is no shadow, but may be a sleeve.
     """
     low, high = FAMILIAR_ODDS
-    near = cv2.dilate(cv2.blur(by_colour, (3, 3)), SMALL)
+    near = cv2.dilate(cv2.blur(by_colour, (3, 3)), SQUARE_3)
     lack = ((np.float32(high) - near) / np.float32(high - low)).clip(0, 1)
     lack *= np.float32(distinctness) * ~place.recoloured
     return np.asarray(place.odds - lack * np.maximum(place.odds, 0))

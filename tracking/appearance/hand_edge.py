@@ -3,6 +3,7 @@
 import cv2
 import numpy as np
 
+from tracking.appearance.structuring_elements import SQUARE_3, SQUARE_5
 from tracking.appearance.window import Window
 from tracking.geometry.arrays import Floats, Image
 
@@ -13,9 +14,6 @@ on what is hand and what is not, and not on how sure that is."""
 MIN_CONTRAST, CONTRAST_WEIGHT = 15.0, 0.6
 """Least difference of hand and desk by which the share is measured [CIELab bytes]; and the weight
 of that, beside the share by odds."""
-
-SMALL, WIDE = np.ones((3, 3), np.uint8), np.ones((5, 5), np.uint8)
-"""A pixel with its neighbours."""
 
 
 def soft_cover(
@@ -40,10 +38,10 @@ def soft_cover(
     left, right = max(left - 2, 0), min(left + width + 2, window.width)
     top, bottom = max(top - 2, 0), min(top + height + 2, window.height)
     part = np.s_[top:bottom, left:right]
-    core, near = (np.asarray(of(hand[part], SMALL), np.uint8) for of in (cv2.erode, cv2.dilate))
+    core, near = (np.asarray(of(hand[part], SQUARE_3), np.uint8) for of in (cv2.erode, cv2.dilate))
     share = odds[part] * np.float32(0.5 / ODDS_RANGE) + np.float32(0.5)
     difference = difference[part]
-    least, most = (cv2.erode(difference, WIDE), cv2.dilate(difference, WIDE))
+    least, most = (cv2.erode(difference, SQUARE_5), cv2.dilate(difference, SQUARE_5))
     contrast = most - least
     weight = np.float32(CONTRAST_WEIGHT) * ((difference > 0) & (contrast > MIN_CONTRAST))
     share += weight * ((difference - least) / np.maximum(contrast, 1) - share)

@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 
 from tracking.appearance.background import Place
+from tracking.appearance.structuring_elements import SQUARE_3, SQUARE_5
 from tracking.appearance.window import Window
 from tracking.geometry.arrays import Flags, Floats, Image
 
@@ -27,9 +28,6 @@ a keyboard that the camera's movement has shifted by a fraction of a pixel at le
 MIN_COLOUR_ODDS = -1.0
 """Least of what its colours speak for a hand on average: about 0 for skin in the colour of the
 desk, below -1.5 for a desk that shows where something else was."""
-
-SMALL, WIDE = np.ones((3, 3), np.uint8), np.ones((5, 5), np.uint8)
-"""A pixel with its neighbours."""
 
 
 def filled(odds: Floats, inner: Flags, doubtful: Flags, edge: float) -> Flags:
@@ -67,13 +65,13 @@ def connected(
     by_colour
         What colours speak for a hand, (h, w).
     """
-    hand = cv2.morphologyEx(flags.view(np.uint8), cv2.MORPH_OPEN, SMALL)
-    hand = cv2.morphologyEx(hand, cv2.MORPH_CLOSE, WIDE)
+    hand = cv2.morphologyEx(flags.view(np.uint8), cv2.MORPH_OPEN, SQUARE_3)
+    hand = cv2.morphologyEx(hand, cv2.MORPH_CLOSE, SQUARE_5)
     count, labels32 = cv2.connectedComponents(hand)
     if count == 1:
         return None
     labels = np.asarray(cv2.convertScaleAbs(labels32), np.uint8)
-    beside = cv2.dilate(outline, WIDE, iterations=3).view(bool)
+    beside = cv2.dilate(outline, SQUARE_5, iterations=3).view(bool)
     square, by_cube = window.edge**2, labels[window.cube_box]
     large = np.bincount(labels.ravel(), minlength=256) > MIN_AREA_EDGES2 * square
     touching = np.bincount(by_cube[beside], minlength=256) > MIN_TOUCH_EDGES2 * square
