@@ -128,6 +128,7 @@ class HandFinder:
         self._stillness = Stillness()
         self._from_roots = LAB_FROM_ROOTS
         self._strip = self._frames = self._since_whole = 0
+        self._scale = 0  # of the last window
         self._hidden = np.zeros(3)  # the point behind the hand, in the cube's frame [m]
         self._last: HandMask | None = None
         self._seen, self._pose = -np.inf, np.eye(4)
@@ -144,10 +145,11 @@ class HandFinder:
         if pose is None or not state.visible:
             return self._held(pose) if state.timestamp - self._seen < HELD_S else None
         self._seen, self._pose = state.timestamp, pose
-        window = self._windows.window(pose)
+        window = self._windows.window(pose, self._scale)
         if window is None:
             self._last, self._stillness = None, Stillness()
             return None
+        self._scale = window.scale
         self._since_whole += 1
         samples = sampled(image, window.scale, window.samples)
         early = self._frames < MANY_FRAMES
@@ -166,7 +168,7 @@ class HandFinder:
 
     def region(self, camera_from_cube: Array) -> Box | None:
         """Rows and columns of the image in which the hand is looked for at a pose of the cube."""
-        window = self._windows.window(camera_from_cube)
+        window = self._windows.window(camera_from_cube, self._scale)
         return window.image_box if window else None
 
     def _held(self, pose: Array | None) -> HandMask | None:

@@ -113,19 +113,21 @@ class WindowFinder:
         signs = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
         corners = np.array(signs, np.float64) * cube.edge / 2
         self._points = np.concatenate([corners, prints.reshape(-1, 3)])
-        self._scale = 0
 
-    def window(self, camera_from_cube: Array) -> Window | None:
-        """Return the window at a pose, (4, 4); None where the cube is hardly in the picture."""
+    def window(self, camera_from_cube: Array, scale: int = 0) -> Window | None:
+        """Return the window at a pose, (4, 4); None where the cube is hardly in the picture.
+
+        `scale` is that of the window before, which is kept as long as it suits; 0 without one.
+        """
         points = self._points @ camera_from_cube[:3, :3].T + camera_from_cube[:3, 3]
         if points[:, 2].min() < MIN_DEPTH:
             return None
         pixels = self._projection.project(points)
         depth = float(camera_from_cube[2, 3])
         edge = self._edge * float(self._projection.matrix[0, 0]) / depth
-        if not self._scale or not MIN_EDGE_PX < edge / self._scale < MAX_EDGE_PX:
-            self._scale = max(1, round(edge / WORKING_EDGE_PX))
-        scale, reach = self._scale, REACH_EDGES * edge
+        if not scale or not MIN_EDGE_PX < edge / scale < MAX_EDGE_PX:
+            scale = max(1, round(edge / WORKING_EDGE_PX))
+        reach = REACH_EDGES * edge
         quads = (pixels[8:] + 0.5) / scale - 0.5
         bounds = (
             each.tolist()
