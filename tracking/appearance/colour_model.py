@@ -20,6 +20,9 @@ MEMORY_PER_PICTURE = 0.96
 MIN_LEARNED, MANY_LEARNED = 40, 6000
 """Pixels of a hand from which on its colours are known, and known well."""
 
+MIN_SHOWN_PX = 8
+"""Pixels of a hand above which one picture of it shows its colours."""
+
 MIN_DENSITY = 1e-4
 """Density of a colour that was never seen."""
 

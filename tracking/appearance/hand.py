@@ -1,7 +1,6 @@
 """The hand in front of the cube, as a soft mask."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import cv2
 import numpy as np
@@ -11,12 +10,13 @@ from tracking.appearance.background import UNKNOWN, Background, Box, Place
 from tracking.appearance.colour_model import (
     MAX_ODDS,
     MIN_DIFFERENCE,
+    MIN_SHOWN_PX,
     ColourModel,
     Colours,
     colours,
 )
 from tracking.appearance.colour_space import LAB_FROM_ROOTS, lab
-from tracking.appearance.face_check import FaceCheck
+from tracking.appearance.cube_part import CubeCheck, CubePart
 from tracking.appearance.face_pattern import FacePattern
 from tracking.appearance.hand_edge import ODDS_RANGE, soft_cover
 from tracking.appearance.hand_mask import HandMask
@@ -36,15 +36,9 @@ nothing, as logarithm of odds."""
 SURE_ODDS = 1.2
 """The same for a pixel whose colour is learned as that of the hand."""
 
-DOUBTFUL_ODDS = 1.6
-"""What the colour of print must speak for a hand, so that it may be one: a dark finger on ink."""
-
 FAMILIAR_ODDS = -0.5, 0.5
 """What the colours near it speak for a hand, from which on what has changed may be one at all, and
 without doubt; a colour that was never seen speaks neither for nor against it."""
-
-MIN_LEARNED_PX = 8
-"""Pixels of a hand above which its colours are learned."""
 
 HELD_S = 0.15
 """Time for which the hand before is kept after the cube is lost: the hand may hide it [s]."""
@@ -80,37 +74,6 @@ class _View:
     """The same as the bins of a histogram, (h, w)."""
 
 
-@dataclass(frozen=True)
-class _CubePart:
-    """What the cube's part of a window shows."""
-
-    outline: Image
-    """The whole cube, (h, w) of the window's `cube_box`."""
-
-    inner: Flags
-    """Pixels inside of a face that tells something, (h, w)."""
-
-    slanted: Flags
-    """Pixels of the cube whose face tells nothing, (h, w)."""
-
-    evidence: Flags
-    """Pixels that do not look like their print, (h, w)."""
-
-    doubtful: Flags
-    """Pixels that look like print, and like the hand, and are not told by their chroma, (h, w)."""
-
-    told: Flags
-    """Pixels that look like print, but have the chroma of the hand, (h, w)."""
-
-    behind: Array
-    """As in `HandMask`, (3,) [m]."""
-
-    @cached_property
-    def shows_hand(self) -> bool:
-        """Whether there is enough evidence to learn the colours of the hand."""
-        return bool(np.count_nonzero(self.evidence) > MIN_LEARNED_PX)
-
-
 class HandFinder:
     """Finds the hand in front of one cube seen by one camera.
 
@@ -122,14 +85,13 @@ class HandFinder:
         self._projection = Projection(intrinsics)
         self._pattern = FacePattern(cube, self._projection)
         self._windows = WindowFinder(cube, self._projection, self._pattern.corners)
-        self._faces = FaceCheck()
+        self._cube = CubeCheck(self._pattern)
         self._background = Background()
         self._colours = ColourModel()
         self._stillness = Stillness()
         self._from_roots = LAB_FROM_ROOTS
         self._strip = self._frames = self._since_whole = 0
         self._scale = 0  # of the last window
-        self._hidden = np.zeros(3)  # the point behind the hand, in the cube's frame [m]
         self._last: HandMask | None = None
         self._seen, self._pose = -np.inf, np.eye(4)
 
@@ -201,24 +163,23 @@ class HandFinder:
             planes = self._lab(small)
         view = _View(window, planes, colours(planes))
         by_colour = self._colours.odds(view.colours)
-        cube = self._cube_part(view, by_colour, pose)
+        nearest_anew = self._frames % LEARNING_FRAMES == 0
+        cube = self._cube.part(window, pose, view.lab, by_colour, nearest_anew)
         if cube.shows_hand:
             self._colours.see_hand(view.colours[window.cube_box][cube.evidence])
-        outside = np.ones(by_colour.shape, bool)
-        outside[window.cube_box] = cv2.dilate(cube.outline, SQUARE_3) == 0
-        place = self._background.compare(view.lab, window.box, outside, whole)
+        place = self._background.compare(view.lab, window.box, cube.outside, whole)
         if not self._background.steady:
             self._background.forget()
             self._frames = 0
         if not (self._colours.knows_hand and self._colours.knows_behind):
-            self._learn_first(view, cube, outside)
+            self._learn_first(view, cube)
             by_colour = self._colours.odds(view.colours)
         if whole:
             place = self._without_uncovered(place, view, by_colour)
         by_place = _credible(place, by_colour, self._colours.distinctness)
-        odds = _odds(by_colour, by_place, place.changed | ~outside, cube, window)
-        hand = connected(odds > 0, window, cube.outline, cube.evidence, place, by_colour)
-        self._learn(view, cube, hand, odds, outside, place, whole)
+        odds = _odds(by_colour, by_place, place.changed | ~cube.outside, cube, window)
+        hand = connected(odds > 0, window, cube, place, by_colour)
+        self._learn(view, cube, hand, odds, place, whole)
         if self._frames < MANY_FRAMES or hand is None:
             self._learn_strip(image, window)
         if hand is None:
@@ -226,31 +187,6 @@ class HandFinder:
         left, top, share = soft_cover(hand, odds, place.difference, window)
         x, y = (window.left + left) * window.scale, (window.top + top) * window.scale
         return HandMask(x, y, share, window.scale, cube.behind)
-
-    def _cube_part(self, view: _View, by_colour: Floats, pose: Array) -> _CubePart:
-        window, (rows, columns) = view.window, view.window.cube_box
-        quads, size = window.cube_quads(), (columns.stop - columns.start, rows.stop - rows.start)
-        outline = np.zeros(size[::-1], np.uint8)
-        hull = cv2.convexHull(np.rint(quads.reshape(-1, 2) * 16).astype(np.int32))
-        cv2.fillConvexPoly(outline, hull, 1, shift=4)
-        like_hand = by_colour[rows, columns] > DOUBTFUL_ODDS
-        seen = self._pattern.seen(pose, quads, size)
-        part = view.lab[:, rows, columns]
-        evidence = self._faces.disagreement(part, seen, like_hand, window.edge)
-        if not evidence.any():
-            self._hidden = np.zeros(3)
-        elif self._frames % LEARNING_FRAMES == 0 or not self._hidden.any():
-            corner = np.array([window.left + columns.start, window.top + rows.start], np.float64)
-            scale = window.scale
-            nearest = self._pattern.nearest(pose, seen.face * evidence, corner * scale, scale)
-            self._hidden = (nearest - pose[:3, 3]) @ pose[:3, :3]
-        behind = pose[:3, :3] @ self._hidden + pose[:3, 3]
-        inner = cv2.erode(seen.face, SQUARE_3) > 0
-        slanted = (seen.face == 0) & outline.view(bool)
-        doubtful = inner & ~evidence & like_hand
-        told, bare = self._faces.told_by_chroma(part, seen, evidence, doubtful)
-        doubtful &= ~(told | bare)
-        return _CubePart(outline, inner, slanted, evidence, doubtful, told, behind)
 
     def _without_uncovered(self, place: Place, view: _View, by_colour: Floats) -> Place:
         """Forget the background where it was a hand, which has gone: at a session's beginning."""
@@ -270,20 +206,19 @@ class HandFinder:
         odds[uncovered] = UNKNOWN
         return replace(place, odds=odds, changed=place.changed & ~uncovered)
 
-    def _learn_first(self, view: _View, cube: _CubePart, outside: Flags) -> None:
+    def _learn_first(self, view: _View, cube: CubePart) -> None:
         """Learn colours before anything of a hand or its surroundings is known."""
         if cube.shows_hand:
             self._colours.learn_hand(view.colours[view.window.cube_box], cube.evidence)
         if not self._colours.knows_behind:
-            self._colours.learn_behind(view.colours, outside)  # a hand is only little of it
+            self._colours.learn_behind(view.colours, cube.outside)  # a hand is only little of it
 
     def _learn(
         self,
         view: _View,
-        cube: _CubePart,
+        cube: CubePart,
         hand: Image | None,
         odds: Floats,
-        outside: Flags,
         place: Place,
         whole: bool,
     ) -> None:
@@ -297,13 +232,15 @@ class HandFinder:
             before = colours(self._background.lab(view.window.box, sure))
             recoloured = place.recoloured[sure]
             sure[sure] = self._colours.covered(view.colours[sure], before, recoloured)
-            if np.count_nonzero(sure) > MIN_LEARNED_PX and not cube.shows_hand:
+            if np.count_nonzero(sure) > MIN_SHOWN_PX and not cube.shows_hand:
                 self._colours.see_hand(view.colours[sure])
             sure[view.window.cube_box] |= cube.evidence
-            if np.count_nonzero(sure) > MIN_LEARNED_PX:
+            if np.count_nonzero(sure) > MIN_SHOWN_PX:
                 self._colours.learn_hand(view.colours, sure)
         if whole or self._frames % LEARNING_FRAMES == LEARNING_FRAMES // 2:
-            free = outside if hand is None else outside & (cv2.dilate(hand, SQUARE_5) == 0)
+            free = (
+                cube.outside if hand is None else cube.outside & (cv2.dilate(hand, SQUARE_5) == 0)
+            )
             self._background.learn(view.lab, view.window.box, free, place.changed)
             if whole:
                 self._colours.learn_behind(view.colours, free & ~place.changed)
@@ -338,7 +275,7 @@ def _credible(place: Place, by_colour: Floats, distinctness: float) -> Floats:
 
 
 def _odds(
-    by_colour: Floats, by_place: Floats, halved: Flags, cube: _CubePart, window: Window
+    by_colour: Floats, by_place: Floats, halved: Flags, cube: CubePart, window: Window
 ) -> Floats:
     """Return what all speaks for a hand, (h, w): smooth, but sure where the cube is not hidden.
 

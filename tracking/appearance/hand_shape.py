@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 
 from tracking.appearance.background import Place
+from tracking.appearance.cube_part import CubePart
 from tracking.appearance.structuring_elements import SQUARE_3, SQUARE_5
 from tracking.appearance.window import Window
 from tracking.geometry.arrays import Flags, Floats, Image
@@ -42,8 +43,7 @@ def filled(odds: Floats, inner: Flags, doubtful: Flags, edge: float) -> Flags:
 def connected(
     flags: Flags,
     window: Window,
-    outline: Image,
-    evidence: Flags,
+    cube: CubePart,
     place: Place,
     by_colour: Floats,
 ) -> Image | None:
@@ -58,8 +58,8 @@ def connected(
         What may be one, (h, w).
     window
         Where that is.
-    outline, evidence
-        The whole cube, and what of it is hidden, in the window's `cube_box`.
+    cube
+        The cube there.
     place
         How the window looks compared with the desk.
     by_colour
@@ -71,13 +71,13 @@ def connected(
     if count == 1:
         return None
     labels = np.asarray(cv2.convertScaleAbs(labels32), np.uint8)
-    beside = cv2.dilate(outline, SQUARE_5, iterations=3).view(bool)
+    beside = cv2.dilate(cube.outline, SQUARE_5, iterations=3).view(bool)
     square, by_cube = window.edge**2, labels[window.cube_box]
     large = np.bincount(labels.ravel(), minlength=256) > MIN_AREA_EDGES2 * square
     touching = np.bincount(by_cube[beside], minlength=256) > MIN_TOUCH_EDGES2 * square
     large[0] = False
     keep = np.zeros(256, bool)
-    keep[by_cube[evidence]] = True
+    keep[by_cube[cube.evidence]] = True
     for label in np.flatnonzero(touching & large & ~keep).tolist():
         part = labels == label
         reaches = np.count_nonzero(part) > np.count_nonzero(part[_within_reach(window)])
