@@ -18,27 +18,20 @@ from tracking.appearance.colour_model import (
 from tracking.appearance.colour_space import LAB_FROM_ROOTS, lab
 from tracking.appearance.cube_part import CubeCheck, CubePart
 from tracking.appearance.face_pattern import FacePattern
-from tracking.appearance.hand_edge import ODDS_RANGE, soft_cover
+from tracking.appearance.hand_edge import soft_cover
 from tracking.appearance.hand_mask import HandMask
-from tracking.appearance.hand_shape import connected, filled
-from tracking.appearance.structuring_elements import SQUARE_3, SQUARE_5
+from tracking.appearance.hand_odds import hand_odds
+from tracking.appearance.hand_shape import connected
+from tracking.appearance.structuring_elements import SQUARE_5
 from tracking.appearance.window import Stillness, Window, WindowFinder, sampled, shrunk
 from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Array, Flags, Floats, Image
+from tracking.geometry.arrays import Array, Floats, Image
 from tracking.geometry.intrinsics import Intrinsics
 from tracking.geometry.projection import MIN_DEPTH, Projection
 from tracking.geometry.state import CubeState
 
-SLANTED_EVIDENCE = -1.0
-"""What a face speaks for a hand that the camera sees at so small an angle that its print tells
-nothing, as logarithm of odds."""
-
 SURE_ODDS = 1.2
-"""The same for a pixel whose colour is learned as that of the hand."""
-
-FAMILIAR_ODDS = -0.5, 0.5
-"""What the colours near it speak for a hand, from which on what has changed may be one at all, and
-without doubt; a colour that was never seen speaks neither for nor against it."""
+"""What all speaks for a hand where its colours are learned, as logarithm of odds."""
 
 HELD_S = 0.15
 """Time for which the hand before is kept after the cube is lost: the hand may hide it [s]."""
@@ -176,8 +169,7 @@ class HandFinder:
             by_colour = self._colours.odds(view.colours)
         if whole:
             place = self._without_uncovered(place, view, by_colour)
-        by_place = _credible(place, by_colour, self._colours.distinctness)
-        odds = _odds(by_colour, by_place, place.changed | ~cube.outside, cube, window)
+        odds = hand_odds(window, cube, place, by_colour, self._colours.distinctness)
         hand = connected(odds > 0, window, cube, place, by_colour)
         self._learn(view, cube, hand, odds, place, whole)
         if self._frames < MANY_FRAMES or hand is None:
@@ -258,36 +250,3 @@ class HandFinder:
         self._background.learn_first(
             self._lab(shrunk(part, scale)), np.s_[top:bottom, :columns], free
         )
-
-
-def _credible(place: Place, by_colour: Floats, distinctness: float) -> Floats:
-    """Return what the place speaks for a hand, less where nothing near has its colours, (h, w).
-
-    The more its colours tell the hand from the desk, the less can it have those of the desk: then
-    what has changed is a shadow, or desk in the place of something that was moved. What has become
-    of another colour is no shadow, but may be a sleeve.
-    """
-    low, high = FAMILIAR_ODDS
-    near = cv2.dilate(cv2.blur(by_colour, (3, 3)), SQUARE_3)
-    lack = ((np.float32(high) - near) / np.float32(high - low)).clip(0, 1)
-    lack *= np.float32(distinctness) * ~place.recoloured
-    return np.asarray(place.odds - lack * np.maximum(place.odds, 0))
-
-
-def _odds(
-    by_colour: Floats, by_place: Floats, halved: Flags, cube: CubePart, window: Window
-) -> Floats:
-    """Return what all speaks for a hand, (h, w): smooth, but sure where the cube is not hidden.
-
-    Where the place tells, or paper and ink are near (`halved`), colours tell half.
-    """
-    odds = by_colour * (np.float32(1) - np.float32(0.5) * halved) + by_place
-    part = odds[window.cube_box]
-    part[cube.slanted] += SLANTED_EVIDENCE
-    part[cube.inner] = -ODDS_RANGE
-    part[cube.evidence | cube.told] = ODDS_RANGE
-    odds = odds.clip(-ODDS_RANGE, ODDS_RANGE)
-    smooth = np.asarray(cv2.GaussianBlur(odds, (5, 5), 1.0), np.float32)
-    part = smooth[window.cube_box]
-    part[filled(part, cube.inner, cube.doubtful, window.edge)] = 0.5 * ODDS_RANGE
-    return smooth
