@@ -25,7 +25,7 @@ from tracking.appearance.hand_shape import connected
 from tracking.appearance.structuring_elements import SQUARE_5
 from tracking.appearance.window import Stillness, Window, WindowFinder, sampled, shrunk
 from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Array, Floats, Image
+from tracking.geometry.arrays import Array, Flags, Floats, Image
 from tracking.geometry.intrinsics import Intrinsics
 from tracking.geometry.projection import MIN_DEPTH, Projection
 from tracking.geometry.state import CubeState
@@ -41,12 +41,13 @@ MAX_HAND_AGE = 15
 what changes it is the first hand."""
 
 MANY_FRAMES = 20
-"""Frames of a session's beginning, in which all is looked at and learned each time."""
+"""Frames at a session's beginning, and after the camera was moved, in which all is looked at and
+learned each time."""
 
 WHOLE_FRAMES, LEARNING_FRAMES = 8, 4
 """Later, one of so many frames looks at the whole window and at what changes slowly: noise, the
 colours behind the hand, what it has uncovered; the others look where something differs, and one of
-so many of them learns from that."""
+so many of them learns the hand there, and another the desk."""
 
 IMAGE_STRIPS = 9
 """Parts of the image of which one a frame is learned as background, at first, and while there is no
@@ -65,6 +66,9 @@ class _View:
 
     colours: Colours
     """The same as the bins of a histogram, (h, w)."""
+
+    whole: bool
+    """Whether it is all of the window around the cube, so that what changes slowly is measured."""
 
 
 class HandFinder:
@@ -107,17 +111,13 @@ class HandFinder:
         self._scale = window.scale
         self._since_whole += 1
         samples = sampled(image, window.scale, window.samples)
-        early = self._frames < MANY_FRAMES
-        if early or not self._stillness.is_still(window, samples):
+        if self._is_early or not self._stillness.is_still(window, samples):
             columns, rows = (side // window.scale for side in self._projection.size)
             self._background.match_size(columns, rows)
-            whole, part = early or self._since_whole >= WHOLE_FRAMES, window
-            if whole:
-                self._since_whole = 0
-            else:
-                planes, cube = self._lab(samples), window.cube_box
-                part = window.part(self._background.differing(planes, window.samples, cube))
-            hand = self._found(image, pose, part, whole)
+            view = self._view(image, window, samples)
+            hand = self._found(view, pose)
+            if self._is_early or hand is None:
+                self._learn_strip(image, view.window)
             self._last = None if hand is None else self._with_arm(image, window, hand)
         return self._last
 
@@ -125,6 +125,11 @@ class HandFinder:
         """Rows and columns of the image in which the hand is looked for at a pose of the cube."""
         window = self._windows.window(camera_from_cube, self._scale)
         return window.image_box if window else None
+
+    @property
+    def _is_early(self) -> bool:
+        """Whether so few frames were seen from the camera's place that all is looked at."""
+        return self._frames < MANY_FRAMES
 
     def _held(self, pose: Array | None) -> HandMask | None:
         """Return the hand before, moved with the cube to a pose where it is expected."""
@@ -146,34 +151,41 @@ class HandFinder:
         """Return the planes of `lab` as the camera showed them at first."""
         return lab(image, self._from_roots)
 
-    def _found(self, image: Image, pose: Array, window: Window, whole: bool) -> HandMask | None:
-        """Find the hand in the window, or in the part of it where something differs."""
+    def _view(self, image: Image, window: Window, samples: Image) -> _View:
+        """Look at the window, or at the part of it where something differs, as `samples` tell."""
+        whole = self._is_early or self._since_whole >= WHOLE_FRAMES
+        if whole:
+            self._since_whole = 0
+        else:
+            planes, cube = self._lab(samples), window.cube_box
+            window = window.part(self._background.differing(planes, window.samples, cube))
         small = shrunk(image[window.image_box], window.scale)
         planes = self._lab(small)
         change = self._background.camera_change(planes, window.box) if whole else None
         if change is not None:
             self._from_roots = change @ self._from_roots
             planes = self._lab(small)
-        view = _View(window, planes, colours(planes))
-        by_colour = self._colours.odds(view.colours)
+        return _View(window, planes, colours(planes), whole)
+
+    def _found(self, view: _View, pose: Array) -> HandMask | None:
+        """Find the hand in what is looked at, and learn from it."""
+        window, by_colour = view.window, self._colours.odds(view.colours)
         nearest_anew = self._frames % LEARNING_FRAMES == 0
         cube = self._cube.part(window, pose, view.lab, by_colour, nearest_anew)
         if cube.shows_hand:
             self._colours.see_hand(view.colours[window.cube_box][cube.evidence])
-        place = self._background.compare(view.lab, window.box, cube.outside, whole)
+        place = self._background.compare(view.lab, window.box, cube.outside, view.whole)
         if not self._background.steady:
             self._background.forget()
             self._frames = 0
         if not (self._colours.knows_hand and self._colours.knows_behind):
             self._learn_first(view, cube)
             by_colour = self._colours.odds(view.colours)
-        if whole:
+        if view.whole:
             place = self._without_uncovered(place, view, by_colour)
         odds = hand_odds(window, cube, place, by_colour, self._colours.distinctness)
         hand = connected(odds > 0, window, cube, place, by_colour)
-        self._learn(view, cube, hand, odds, place, whole)
-        if self._frames < MANY_FRAMES or hand is None:
-            self._learn_strip(image, window)
+        self._learn(view, cube, place, odds, hand)
         if hand is None:
             return None
         left, top, share = soft_cover(hand, odds, place.difference, window)
@@ -181,7 +193,7 @@ class HandFinder:
         return HandMask(x, y, share, window.scale, cube.behind)
 
     def _without_uncovered(self, place: Place, view: _View, by_colour: Floats) -> Place:
-        """Forget the background where it was a hand, which has gone: at a session's beginning."""
+        """Forget the background where it was a hand, there from the beginning, which has gone."""
         box = view.window.box
         doubtful = place.changed & (by_colour < MAX_ODDS - MIN_DIFFERENCE)
         if not self._colours.knows_hand:
@@ -206,36 +218,36 @@ class HandFinder:
             self._colours.learn_behind(view.colours, cube.outside)  # a hand is only little of it
 
     def _learn(
-        self,
-        view: _View,
-        cube: CubePart,
-        hand: Image | None,
-        odds: Floats,
-        place: Place,
-        whole: bool,
+        self, view: _View, cube: CubePart, place: Place, odds: Floats, hand: Image | None
     ) -> None:
-        """Learn the colours of the hand where it is sure, and what is behind it."""
+        """Learn the colours of the hand and what is behind it, each in its turn."""
         self._frames += 1
-        its_turn = whole or self._frames % LEARNING_FRAMES == 0 or self._colours.hand_is_new
+        turn, free = self._frames % LEARNING_FRAMES, cube.outside
         if hand is None:
             self._colours.lose_hand()
-        elif its_turn:
-            sure = hand.view(bool) & place.changed & (odds > SURE_ODDS)
-            before = colours(self._background.lab(view.window.box, sure))
-            recoloured = place.recoloured[sure]
-            sure[sure] = self._colours.covered(view.colours[sure], before, recoloured)
-            if np.count_nonzero(sure) > MIN_SHOWN_PX and not cube.shows_hand:
-                self._colours.see_hand(view.colours[sure])
-            sure[view.window.cube_box] |= cube.evidence
-            if np.count_nonzero(sure) > MIN_SHOWN_PX:
-                self._colours.learn_hand(view.colours, sure)
-        if whole or self._frames % LEARNING_FRAMES == LEARNING_FRAMES // 2:
-            free = (
-                cube.outside if hand is None else cube.outside & (cv2.dilate(hand, SQUARE_5) == 0)
-            )
-            self._background.learn(view.lab, view.window.box, free, place.changed)
-            if whole:
-                self._colours.learn_behind(view.colours, free & ~place.changed)
+        elif view.whole or turn == 0 or self._colours.hand_is_new:
+            self._learn_hand(view, cube, place, hand.view(bool) & (odds > SURE_ODDS))
+        if view.whole or turn == LEARNING_FRAMES // 2:
+            if hand is not None:
+                free = free & (cv2.dilate(hand, SQUARE_5) == 0)
+            self._learn_desk(view, place, free)
+
+    def _learn_hand(self, view: _View, cube: CubePart, place: Place, sure: Flags) -> None:
+        """Learn the colours of the hand where it is `sure`, (h, w), and was not before."""
+        sure = sure & place.changed
+        before = colours(self._background.lab(view.window.box, sure))
+        sure[sure] = self._colours.covered(view.colours[sure], before, place.recoloured[sure])
+        if np.count_nonzero(sure) > MIN_SHOWN_PX and not cube.shows_hand:
+            self._colours.see_hand(view.colours[sure])
+        sure[view.window.cube_box] |= cube.evidence
+        if np.count_nonzero(sure) > MIN_SHOWN_PX:
+            self._colours.learn_hand(view.colours, sure)
+
+    def _learn_desk(self, view: _View, place: Place, free: Flags) -> None:
+        """Learn the desk and its colours where it is `free` of cube and hand, (h, w)."""
+        self._background.learn(view.lab, view.window.box, free, place.changed)
+        if view.whole:
+            self._colours.learn_behind(view.colours, free & ~place.changed)
 
     def _learn_strip(self, image: Image, window: Window) -> None:
         """Learn a strip of the whole image: the cube may come there."""
