@@ -16,11 +16,11 @@ MIN_GAIN, MAX_GAIN = 0.45, 2.0
 shadow that comes or goes."""
 
 MIN_CHROMA_NOISE, MIN_DETAIL_NOISE = 0.25, 0.5
-"""Least deviation of chroma [CIELab], and of lightness [CIELab bytes] at one gain, that noise makes
-at working resolution."""
+"""Least noise that is believed at working resolution, in chroma [CIELab] and in the detail of
+lightness [CIELab bytes]: medians over the window."""
 
 CHROMA_LIMIT, DETAIL_LIMIT = 4.0, 1.4
-"""Deviations of noise from which on a pixel is something else."""
+"""Multiples of that noise from which on a pixel is something else."""
 
 SHADE_CHROMA, SHADE_DETAIL, EDGE_DETAIL = 10.0, 0.008, 0.05
 """How much chroma [CIELab] and detail of the gain change in a shadow, per change of the gain; and
@@ -31,8 +31,8 @@ TEXTURE_DETAIL = 0.1
 background's texture: that of a keyboard is large, and that of skin or wood is small."""
 
 CONSTANT, MAX_NOISE_RATIO = 0.2, 5.0
-"""Deviation below which a pixel is constant, as clipped white and repeated blocks of a video are,
-and most noise that is believed, relative to the least."""
+"""Change below which a pixel is constant, as clipped white and repeated blocks of a video are, and
+most noise that is believed, both relative to the least noise."""
 
 EVEN_LIGHT_PX = (5, 5)
 """Sides of a square in which light on the same thing changes little [px]: what differs in it is the
@@ -45,8 +45,8 @@ GAIN_TOLERANCE, STEP_TOLERANCE = 0.02, 0.004
 """Change of L + 16 as a share, and of chroma as a share of L + 16, that noise alone makes."""
 
 MIN_SAMPLES, MAX_SAME, MIN_CHANGED = 30, 0.12, 0.35
-"""Pixels that tell whether the camera has changed; most of them that still look as before then,
-and least that have changed alike, as shares."""
+"""Least of those pixels that tell noise, or whether the camera has changed; most of them that still
+look as before then, and least that have changed alike, as shares."""
 
 GRID_PX, MIDDLES = 3, slice(1, None, 3)
 """Side of the squares of pixels of which the middle is a sample: by these are found the part of a
@@ -56,37 +56,44 @@ MIN_CHANGE = 5.0
 """Change of lightness or chroma from which on a pixel of that grid differs [CIELab bytes]."""
 
 MIN_ARM_SAMPLES = 20
-"""Least samples that differ of what comes from outside the window and may be an arm."""
+"""Samples, with their neighbours, above which what differs and comes from outside the window may be
+an arm."""
 
 SAMPLE_NOISE = 2.0
-"""How much more noise a sample has than a pixel of the window."""
+"""Noise of a sample relative to that of a pixel of the window, which is the mean of several."""
 
 MARGIN_PX = 6
-"""What is added around that part [px]: beyond it is nothing that differs."""
+"""What is added around the part of a window that differs [px]."""
 
 RECOLOURED_SHARE = 0.2
 """Change of chroma from which on a shadow is out of the question, as a share of L + 16."""
 
 SAME_LIGHTNESS = 9.0
-"""Change of lightness below which a pixel looks as before [CIELab bytes]."""
+"""Change of lightness below which a pixel looks as before, if it is not something else [CIELab
+bytes]; and of chroma as well where it is seen seldom."""
 
 STEP, SHADED_STEP, CHANGED_STEP = 0.1, 0.02, 0.01
-"""Share of a frame in the background, where it looks as before and where it does not: what stays
-for a hundred frames belongs to it."""
+"""Share of one more picture in the background: at least, where it looks as before; where that was
+known for sure and is in other light; and where it is something else. It takes 10, 50 and 100
+pictures that are learned to change two thirds of the background."""
 
 UNCHANGED, CHANGED, SHADED, ROUGH, UNKNOWN = -3.0, 2.5, -1.2, 1.6, -0.4
 """What a pixel speaks for a hand, as the logarithm of odds; rough is what may be the edge of a
 shadow, or skin in the colour of the desk."""
 
 FULL_AGE = 6
-"""Frames after which a pixel is known for sure."""
+"""Frames for which a pixel must be known, to be known for sure."""
 
 SELDOM_FRAMES, MAX_AGE = 3, 40
-"""Frames that a pixel counts for outside the window, and how many are counted."""
+"""Frames that one picture counts for outside the window, where a pixel is seen seldom; and those
+from which on no more are counted."""
 
-MIN_KNOWN, LOST_SHARE, TRUSTED_SHARE = 0.2, 0.4, 0.6
-"""Share of a window that must be known; and of that, how much must look as before to trust the
-rest: less, and the camera was moved."""
+MIN_KNOWN, MIN_KNOWN_PX = 0.2, 200
+"""Least share of a window that must be known to compare it, and least pixels."""
+
+LOST_SHARE, TRUSTED_SHARE = 0.4, 0.6
+"""Share of the known pixels that look as before, up to which the camera was moved, and from which
+on the background is trusted wholly."""
 
 MAX_ARM_SHARE = 0.5
 """Most of a part of the image that an arm covers: more, and the light or the camera changed."""
@@ -117,7 +124,8 @@ class Place:
     """Pixels that look like something else, (h, w)."""
 
     difference: Floats
-    """How much it differs, in lightness and chroma, (h, w) [CIELab bytes], 0 where unknown."""
+    """How much it differs, in lightness and chroma, (h, w) [CIELab bytes], 0 where unknown and in
+    the cube."""
 
     recoloured: Flags
     """Pixels of another hue or saturation than before, which no shadow gives them, (h, w)."""
@@ -208,7 +216,7 @@ class Background:
         (mean, mean_a, mean_b), age = self._mean[:, box[0], box[1]], self._age[box]
         known = (age > 0) & outside
         some, total = known[SPARSE], np.count_nonzero(known) if whole else 0
-        if whole and (total < max(MIN_KNOWN * known.size, 200) or not some.any()):
+        if whole and (total < max(MIN_KNOWN * known.size, MIN_KNOWN_PX) or not some.any()):
             self._lit_anew, self._trust = np.zeros(age.shape, bool), 1.0
             odds = np.float32(UNKNOWN) * outside
             none = self._lit_anew
@@ -313,7 +321,7 @@ class Background:
         self._age[:], self._trust = 0, 1.0
 
     def age(self, box: Box) -> Image:
-        """Return the frames for which each pixel of a window is known, (h, w), up to `MAX_AGE`."""
+        """Return for how many frames each pixel of a window is known, (h, w): see `MAX_AGE`."""
         return self._age[box]
 
     def lab(self, box: Box, where: Flags) -> Floats:
