@@ -1,12 +1,12 @@
 """What is behind the hand: a picture of the desk, learned where no hand is."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 
+from tracking.appearance.camera_change import camera_change
 from tracking.appearance.structuring_elements import SQUARE_3, SQUARE_9
 from tracking.geometry.arrays import Flags, Floats, Image
 from tracking.geometry.robust_statistics import quantile
@@ -41,12 +41,8 @@ detail of that thing."""
 SPARSE = np.s_[::5, ::5]
 """Pixels by which noise, exposure and white balance are estimated."""
 
-GAIN_TOLERANCE, STEP_TOLERANCE = 0.02, 0.004
-"""Change of L + 16 as a share, and of chroma as a share of L + 16, that noise alone makes."""
-
-MIN_SAMPLES, MAX_SAME, MIN_CHANGED = 30, 0.12, 0.35
-"""Least of those pixels that tell noise, or whether the camera has changed; most of them that still
-look as before then, and least that have changed alike, as shares."""
+MIN_SAMPLES = 30
+"""Least of those pixels that tell noise."""
 
 GRID_PX, MIDDLES = 3, slice(1, None, 3)
 """Side of the squares of pixels of which the middle is a sample: by these are found the part of a
@@ -182,20 +178,11 @@ class Background:
     def camera_change(self, lab: Floats, box: Box) -> Floats | None:
         """Return what undoes a change of exposure and white balance, (3, 3); None without one.
 
-        It multiplies `lab`, which is as in `compare`. Where the camera has changed, nothing looks
-        as before, and most differs alike; a hand or a shadow leaves some of the desk as it was.
+        It multiplies `lab`, which is as in `compare`.
         """
         known = self._age[box][SPARSE] > 0
-        if np.count_nonzero(known) < MIN_SAMPLES:
-            return None
-        light, a, b = lab[:, *SPARSE][:, known]
-        mean, mean_a, mean_b = self._mean[:, *box][:, *SPARSE][:, known]
-        changes = light / mean, a / light - mean_a / mean, b / light - mean_b / mean
-        gain, step_a, step_b = usual = [quantile(change, 0.5) for change in changes]
-        if _share(changes, (1.0, 0.0, 0.0)) > MAX_SAME or _share(changes, usual) < MIN_CHANGED:
-            return None
-        balanced = np.array([[1, 0, 0], [-step_a, 1, 0], [-step_b, 0, 1]], np.float32)
-        return balanced / np.float32(gain)
+        now, before = lab[:, *SPARSE][:, known], self._mean[:, *box][:, *SPARSE][:, known]
+        return camera_change(now, before)
 
     def compare(self, lab: Floats, box: Box, outside: Flags, whole: bool) -> Place:
         """Compare a window of the picture with the background.
@@ -341,15 +328,6 @@ class Background:
         )
         middles = self._mean[:, MIDDLES, MIDDLES]
         self._sampled_mean[:, rows, columns] = middles[:, rows, columns]
-
-
-def _share(changes: Sequence[Floats], change: Sequence[float]) -> float:
-    """Return the share of pixels that have changed by that gain and those steps of chroma."""
-    alike = np.ones(len(changes[0]), bool)
-    tolerances = GAIN_TOLERANCE, STEP_TOLERANCE, STEP_TOLERANCE
-    for each, usual, tolerance in zip(changes, change, tolerances, strict=True):
-        alike &= np.abs(each - np.float32(usual)) < tolerance
-    return np.count_nonzero(alike) / len(alike)
 
 
 def _is_lit(chroma: Floats, change: Floats, shade: Floats, noise: float) -> Flags:
