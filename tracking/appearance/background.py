@@ -7,42 +7,24 @@ import cv2
 import numpy as np
 
 from tracking.appearance.camera_change import camera_change
-from tracking.appearance.structuring_elements import SQUARE_3, SQUARE_9
+from tracking.appearance.shading import (
+    DETAIL_LIMIT,
+    EDGE_DETAIL,
+    EVEN_LIGHT_PX,
+    MIN_CHROMA_NOISE,
+    MIN_DETAIL_NOISE,
+    SHADE_DETAIL,
+    TEXTURE_DETAIL,
+    may_be_light,
+    measured_noise,
+    roughness,
+    texture,
+)
+from tracking.appearance.structuring_elements import SQUARE_3
 from tracking.geometry.arrays import Flags, Floats, Image
-from tracking.geometry.robust_statistics import quantile
-
-MIN_GAIN, MAX_GAIN = 0.45, 2.0
-"""Least and most light on the background relative to the light before, as L + 16 of CIELab: a
-shadow that comes or goes."""
-
-MIN_CHROMA_NOISE, MIN_DETAIL_NOISE = 0.25, 0.5
-"""Least noise that is believed at working resolution, in chroma [CIELab] and in the detail of
-lightness [CIELab bytes]: medians over the window."""
-
-CHROMA_LIMIT, DETAIL_LIMIT = 4.0, 1.4
-"""Multiples of that noise from which on a pixel is something else."""
-
-SHADE_CHROMA, SHADE_DETAIL, EDGE_DETAIL = 10.0, 0.008, 0.05
-"""How much chroma [CIELab] and detail of the gain change in a shadow, per change of the gain; and
-how much of the latter at its edge."""
-
-TEXTURE_DETAIL = 0.1
-"""How much detail changes where the camera sways by a fraction of a pixel, per deviation of the
-background's texture: that of a keyboard is large, and that of skin or wood is small."""
-
-CONSTANT, MAX_NOISE_RATIO = 0.2, 5.0
-"""Change below which a pixel is constant, as clipped white and repeated blocks of a video are, and
-most noise that is believed, both relative to the least noise."""
-
-EVEN_LIGHT_PX = (5, 5)
-"""Sides of a square in which light on the same thing changes little [px]: what differs in it is the
-detail of that thing."""
 
 SPARSE = np.s_[::5, ::5]
 """Pixels by which noise, exposure and white balance are estimated."""
-
-MIN_SAMPLES = 30
-"""Least of those pixels that tell noise."""
 
 GRID_PX, MIDDLES = 3, slice(1, None, 3)
 """Side of the squares of pixels of which the middle is a sample: by these are found the part of a
@@ -148,8 +130,9 @@ class Background:
         self._sampled_mean = self._mean  # the samples of it, side by side: they are read faster
         self._age: Image = np.zeros((0, 0), np.uint8)
         self._texture: Floats = np.zeros((0, 0), np.float32)
-        self._lit_anew: Flags = np.zeros((0, 0), bool)
-        self._noise = MIN_CHROMA_NOISE, MIN_DETAIL_NOISE
+        # Where the last window that was compared is the background in other light.
+        self._relit: Flags = np.zeros((0, 0), bool)
+        self._chroma_noise, self._detail_noise = MIN_CHROMA_NOISE, MIN_DETAIL_NOISE
         self._trust = 1.0
 
     @property
@@ -200,13 +183,12 @@ class Background:
             again.
         """
         light, a, b = lab
-        (mean, mean_a, mean_b), age = self._mean[:, box[0], box[1]], self._age[box]
+        (mean, mean_a, mean_b), age = self._mean[:, *box], self._age[box]
         known = (age > 0) & outside
-        some, total = known[SPARSE], np.count_nonzero(known) if whole else 0
-        if whole and (total < max(MIN_KNOWN * known.size, MIN_KNOWN_PX) or not some.any()):
-            self._lit_anew, self._trust = np.zeros(age.shape, bool), 1.0
+        if whole and not _is_enough(known):
+            none = self._relit = np.zeros(age.shape, bool)
+            self._trust = 1.0
             odds = np.float32(UNKNOWN) * outside
-            none = self._lit_anew
             return Place(odds, none, np.zeros_like(light), none, (light, mean))
         gain = light / mean
         off_a, off_b = a - gain * mean_a, b - gain * mean_b
@@ -215,34 +197,38 @@ class Background:
         chroma = cv2.min(off, cv2.magnitude(cv2.blur(off_a, (3, 3)), cv2.blur(off_b, (3, 3))))
         gain -= 1
         shade = np.abs(gain)
-        chroma_noise, detail_noise = self._noise
-        lit = _is_lit(chroma, gain, shade, chroma_noise)
+        lit = may_be_light(chroma, gain, shade, self._chroma_noise)
         # Noise of the lightness is the same in bright and in dark places, so that of the gain not.
-        rough = mean * _roughness(gain, known, lit)
+        rough = mean * roughness(gain, known, lit)
         if whole:
-            noises = (chroma, MIN_CHROMA_NOISE), (rough, MIN_DETAIL_NOISE)
-            chroma_noise, detail_noise = (
-                _noise(values[SPARSE][some], least) for values, least in noises
-            )
-            self._noise = chroma_noise, detail_noise
-            self._texture[box] = TEXTURE_DETAIL * _texture(mean)
+            some = known[SPARSE]
+            self._chroma_noise = measured_noise(chroma[SPARSE][some], MIN_CHROMA_NOISE)
+            self._detail_noise = measured_noise(rough[SPARSE][some], MIN_DETAIL_NOISE)
+            self._texture[box] = TEXTURE_DETAIL * texture(mean)
         shade *= mean  # in lightness from here on
         rough -= self._texture[box]
-        lit &= rough < DETAIL_LIMIT * detail_noise + EDGE_DETAIL * shade
-        smooth = lit & (rough < DETAIL_LIMIT * detail_noise + SHADE_DETAIL * shade)
+        lit &= rough < DETAIL_LIMIT * self._detail_noise + EDGE_DETAIL * shade
+        smooth = lit & (rough < DETAIL_LIMIT * self._detail_noise + SHADE_DETAIL * shade)
         unchanged = smooth & (shade < SAME_LIGHTNESS)
         if whole:
-            same = np.count_nonzero(unchanged & known) / total
-            self._trust = min(max((same - LOST_SHARE) / (TRUSTED_SHARE - LOST_SHARE), 0.0), 1.0)
-        looks = (lit.view(np.uint8) + smooth + unchanged) * np.uint8(FULL_AGE + 1)
-        looks += np.minimum(age, FULL_AGE) * known
-        looks |= outside.view(np.uint8) - np.uint8(1)  # 255 in the cube
-        table = _NOT_TRUSTED + np.float32(self._trust) * _TRUST
-        odds = np.asarray(cv2.LUT(looks, table), np.float32)
-        self._lit_anew = lit & ~unchanged
+            self._trust = _trust(np.count_nonzero(unchanged & known) / np.count_nonzero(known))
+        looks = lit.view(np.uint8) + smooth + unchanged
+        odds = self._odds(looks, np.minimum(age, FULL_AGE) * known, outside)
+        self._relit = lit & ~unchanged
         difference = (shade + np.float32(2) * off) * known
         recoloured = off > np.float32(RECOLOURED_SHARE) * light
         return Place(odds, (odds > 0) & ~lit, difference, recoloured, (light, mean))
+
+    def _odds(self, looks: Image, age: Image, outside: Flags) -> Floats:
+        """Return what each pixel speaks for a hand, (h, w): logarithm of odds.
+
+        `looks` counts what is true of it: lit, smooth, unchanged; `age` is `FULL_AGE` at most.
+        """
+        looks = looks * np.uint8(FULL_AGE + 1)
+        looks += age
+        looks |= outside.view(np.uint8) - np.uint8(1)  # 255 in the cube
+        table = _NOT_TRUSTED + np.float32(self._trust) * _TRUST
+        return np.asarray(cv2.LUT(looks, table), np.float32)
 
     def differing(self, lab: Floats, samples: Box, start: Box) -> Box:
         """Return the rows and columns with what differs around a part, or comes from outside.
@@ -278,13 +264,13 @@ class Background:
         gain = lab[0] / mean
         off = cv2.magnitude(lab[1] - gain * mean_a, lab[2] - gain * mean_b)
         gain -= 1
-        lit = _is_lit(off, gain, np.abs(gain), SAMPLE_NOISE * self._noise[0])
+        lit = may_be_light(off, gain, np.abs(gain), SAMPLE_NOISE * self._chroma_noise)
         return np.asarray(~lit & (self._age[MIDDLES, MIDDLES][samples] > 0))
 
     def learn(self, lab: Floats, box: Box, free: Flags, changed: Flags) -> None:
         """Learn the pixels of a window that are free of cube and hand."""
         age = self._age[box]
-        shaded = self._lit_anew & (age > FULL_AGE)
+        shaded = self._relit & (age > FULL_AGE)
         looks = np.maximum(np.maximum(age, shaded * _SHADED), changed * _CHANGED)
         self._learn(lab, box, np.asarray(cv2.LUT(looks, _STEPS), np.float32) * free)
         age += free & (age < MAX_AGE)
@@ -296,7 +282,7 @@ class Background:
         """
         age = self._age[box]
         looks = age // np.uint8(SELDOM_FRAMES)
-        off = np.abs(lab - self._mean[:, box[0], box[1]]).max(axis=0) > SAME_LIGHTNESS
+        off = np.abs(lab - self._mean[:, *box]).max(axis=0) > SAME_LIGHTNESS
         off &= age >= FULL_AGE
         if np.count_nonzero(off) < MAX_ARM_SHARE * off.size:
             looks[off] = _CHANGED
@@ -313,14 +299,14 @@ class Background:
 
     def lab(self, box: Box, where: Flags) -> Floats:
         """Return L + 16, a and b of CIELab in bytes, of some pixels of a window, (3, n)."""
-        return self._mean[:, box[0], box[1]][:, where]
+        return self._mean[:, *box][:, where]
 
     def forget_some(self, box: Box, where: Flags) -> None:
         """Forget some pixels of a window: what was learned there was no background."""
         self._age[box][where] = 0
 
     def _learn(self, lab: Floats, box: Box, steps: Floats) -> None:
-        for plane, mean in zip(lab, self._mean[:, box[0], box[1]], strict=True):
+        for plane, mean in zip(lab, self._mean[:, *box], strict=True):
             mean += (plane - mean) * steps
         ends = (side.indices(count) for side, count in zip(box, self._age.shape, strict=True))
         rows, columns = (
@@ -330,48 +316,17 @@ class Background:
         self._sampled_mean[:, rows, columns] = middles[:, rows, columns]
 
 
-def _is_lit(chroma: Floats, change: Floats, shade: Floats, noise: float) -> Flags:
-    """Return where other light and noise alone may have made what differs.
+def _is_enough(known: Flags) -> bool:
+    """Return whether so much of a window is known that it can be compared."""
+    enough = np.count_nonzero(known) >= max(MIN_KNOWN * known.size, MIN_KNOWN_PX)
+    return bool(enough and known[SPARSE].any())
 
-    `chroma` is how far that is off, `change` that of the gain, `shade` its size, and `noise` that
-    of the chroma.
-    """
-    lit = chroma < CHROMA_LIMIT * noise + SHADE_CHROMA * shade
-    lit &= (change > MIN_GAIN - 1) & (change < MAX_GAIN - 1)
-    return np.asarray(lit)
+
+def _trust(same: float) -> float:
+    """Return how far the background is trusted, 0…1, if that share looks as before."""
+    return min(max((same - LOST_SHARE) / (TRUSTED_SHARE - LOST_SHARE), 0.0), 1.0)
 
 
 def _grown(first: int, stop: int) -> slice:
     """Return the pixels of some rows or columns of samples, and those around."""
     return slice(max(first * GRID_PX - MARGIN_PX, 0), stop * GRID_PX + MARGIN_PX)
-
-
-def _roughness(gain: Floats, known: Flags, lit: Flags) -> Floats:
-    """Return the least deviation from the mean of a square, of all around a pixel, (h, w).
-
-    A shadow keeps the texture of what it falls on, so there the gain is smooth. What is not known,
-    or not lit, is in no mean; and what is not lit is not around a pixel.
-    """
-    counts = known & lit
-    weight = counts.astype(np.float32)
-    share = cv2.blur(weight, EVEN_LIGHT_PX) + np.float32(1e-3)
-    gain = gain * weight
-    detail = gain - cv2.blur(gain, EVEN_LIGHT_PX) / share
-    detail *= weight
-    deviation = cv2.blur(detail * detail, EVEN_LIGHT_PX) / share
-    deviation += known ^ counts
-    return np.asarray(cv2.sqrt(cv2.erode(deviation, SQUARE_9)), np.float32)
-
-
-def _texture(light: Floats) -> Floats:
-    """Return the deviation from the mean of a square, (h, w)."""
-    detail = light - cv2.blur(light, EVEN_LIGHT_PX)
-    return np.asarray(cv2.sqrt(cv2.blur(detail * detail, EVEN_LIGHT_PX)), np.float32)
-
-
-def _noise(deviations: Floats, least: float) -> float:
-    """Return the deviation that noise makes, by the half that looks most as before."""
-    noisy = deviations[deviations > CONSTANT * least]
-    if len(noisy) < MIN_SAMPLES:
-        return least
-    return min(max(quantile(noisy, 0.5), least), MAX_NOISE_RATIO * least)
