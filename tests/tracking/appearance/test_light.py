@@ -1,6 +1,7 @@
 """The light that a cube's paper tells."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -10,11 +11,14 @@ from tests.tracking.drawn import WIDE, held
 from tracking.appearance.light import LightMeter
 from tracking.appearance.light_fit import MeasuredLight, fit_light, fit_patches
 from tracking.appearance.patches import PAPER_ALBEDO, PaperSampler, white_points
-from tracking.cube.faces import FacePlanes
+from tracking.cube.faces import FacePlanes, face_frame
+from tracking.cube.marker import cell_size
 from tracking.cube.model import FACE_AXES, CubeModel
 from tracking.geometry import se3
 from tracking.geometry.arrays import Array, Image
 from tracking.geometry.state import CubeState
+from tracking.synthetic.camera_rays import CameraRays
+from tracking.synthetic.paper_cube import PaperCube
 
 CUBE = CubeModel.load("locomotion")
 TO_LIGHT = np.array([-0.5, -0.7, -0.6]) / np.linalg.norm([-0.5, -0.7, -0.6])
@@ -244,17 +248,40 @@ def test_a_lamp_that_moves_is_followed():
     assert degrees(light, other) < 10
 
 
-def test_nothing_is_said_before_paper_is_measured():
-    meter, image = LightMeter(CUBE, WIDE), np.zeros((720, 1280, 3), np.uint8)
-    unseen = CubeState(False, None, np.zeros(6), np.eye(6), "predicted", (), np.nan, 0.0)
-    assert meter.update(image, unseen) is None
-    fast = state(held(), 0.1, np.array([2.0, 0, 0, 0, 0, 0]))
-    assert meter.update(picture(held()), fast) is None
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"visible": False},
+        {"visible": False, "camera_from_cube": None},
+        {"source": "predicted"},
+        {"velocity": np.array([2.0, 0, 0, 0, 0, 0])},
+    ],
+    ids=["hidden", "lost", "predicted", "fast"],
+)
+def test_nothing_is_said_before_paper_is_measured(change):
+    meter, image = LightMeter(CUBE, WIDE), picture(held())
+    for index in range(30):
+        light = meter.update(image, replace(state(held(), index / 30), **change))
+        assert light is None
 
 
-def test_white_points_are_apart_from_ink():
-    for face in CUBE.faces:
-        points, clearance = white_points(CUBE, face)
-        assert points.shape == (32, 3)
-        assert clearance > 0.25 * CUBE.marker_size / 6
-        assert np.abs(points).max() == pytest.approx(CUBE.edge / 2)
+@pytest.fixture(scope="module")
+def printed() -> PaperCube:
+    """The cube with markers, icons and folds, seen by `WIDE` in light of the same everywhere."""
+    return PaperCube(CUBE, CameraRays(WIDE), seed=1)
+
+
+@pytest.mark.parametrize("face", CUBE.faces, ids=lambda face: face.name)
+def test_white_points_are_apart_from_ink_and_folds(printed, face):
+    from_face = face_frame(face)
+    pose = se3.pose(np.eye(3), np.array([0, 0, 0.15])) @ se3.inverse(from_face)
+    region = printed.region(pose)
+    drawn, _ = printed.draw(region, [pose], np.array([0.0, 0.0, -1.0]), samples=2)
+    points, clearance = white_points(CUBE, face)
+    assert points.shape == (32, 3)
+    assert clearance > 0.25 * cell_size(CUBE)
+    reach = int(0.9 * clearance * WIDE.matrix[0, 0] / 0.15)
+    around = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach + 1, 2 * reach + 1))
+    darkest = cv2.erode(drawn.min(axis=2), around)
+    x, y = (_pixels(points, pose) - (region.x, region.y)).T
+    assert darkest[y, x].min() > 190  # a rim along the folds is darker than the rest: 203
