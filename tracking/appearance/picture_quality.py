@@ -1,7 +1,7 @@
 """How soft, noisy and hazy a camera's picture is, measured on the borders of a cube's markers."""
 
 import math
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
 
 import cv2
 import numpy as np
@@ -127,6 +127,10 @@ class QualityMeter:
             return self._quality
         measured = _measured(*(_sampled(each, places) for each in (before, image)))
         if measured is not None:
+            if self._quality and not measured.noise and np.array_equal(before, image):
+                # A camera sends a frame again: that tells nothing of noise, but the next one does.
+                measured = replace(measured, noise=self._quality.noise)
+                self._frames -= 1
             last, new = (astuple(each) for each in (self._quality or measured, measured))
             mixed = (a + SMOOTHING_SHARE * (b - a) for a, b in zip(last, new, strict=True))
             self._quality = PictureQuality(*mixed)
