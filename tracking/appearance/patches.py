@@ -119,7 +119,7 @@ def _white_texels(cube: CubeModel, face: Face, texel: float) -> Flags:
     place = np.abs((np.arange(side) + 0.5) * texel - side * texel / 2)
     cells = marker_cells(cube.dictionary, face.marker_id)
     margin = round((cube.edge - cube.marker_size) / 2 / texel)
-    inner = np.minimum(np.arange(side - 2 * margin) * len(cells) // (side - 2 * margin), len(cells))
+    inner = np.arange(side - 2 * margin) * len(cells) // (side - 2 * margin)
     white = np.ones((side, side), bool)
     white[margin : side - margin, margin : side - margin] = ~cells[inner][:, inner]
     if face.icon:  # in the middle of each margin
