@@ -23,6 +23,10 @@ MAX_ACCELERATION_SHARE, NOISE_FACTOR = 0.85, 2.0
 MAX_ACCELERATION_S = 0.07
 """A hand does not accelerate in the same direction for longer than this."""
 
+PREDICTION_TOLERANCE = 0.002
+"""A pose may be so much further from where it is expected than its covariance says, along and about
+each axis [m, rad]."""
+
 
 @dataclass(frozen=True)
 class TrackedPose:
@@ -77,9 +81,10 @@ class Prediction:
     """As in `TrackedPose.systematic`, of the last pose, (6, 6)."""
 
     def covers(self, camera_from_cube: Array) -> bool:
-        """Whether a pose lies within three standard deviations, along each axis."""
+        """Whether a pose lies within three standard deviations and a tolerance, for each axis."""
         delta = se3.delta(self.camera_from_cube, camera_from_cube)
-        return bool((np.abs(delta) < 3 * np.sqrt(np.diag(self.covariance)) + 0.002).all())
+        allowed = 3 * np.sqrt(np.diag(self.covariance)) + PREDICTION_TOLERANCE
+        return bool((np.abs(delta) < allowed).all())
 
 
 @dataclass(frozen=True)
