@@ -189,7 +189,10 @@ def sampled(image: Image, scale: int, samples: Box) -> Image:
 
 
 def shrunk(image: Image, scale: int) -> Image:
-    """Return a part of the image at working resolution, (h, w, 3) BGR: the mean of each square."""
+    """Return a part of the image at working resolution, (h, w, 3) BGR: the mean of each square.
+
+    Where `scale` is even, the outermost rows and columns of a square count half as much as others.
+    """
     # In a third of the time that INTER_AREA takes.
     side = (scale - 1) | 1
     soft = cv2.blur(image, (side, side)) if side > 1 else image

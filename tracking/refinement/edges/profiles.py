@@ -19,7 +19,8 @@ END_CLEARANCE_PX = 1.5
 """Points nearer to the end of an edge are left out: blur rounds corners."""
 
 REACH_PX = 3.5
-"""Half the length of a profile, which is never more than half a cell."""
+"""Half the length of a profile, or more where motion blurs the edge; it is never more than half a
+cell."""
 
 TAPS_PER_PROFILE = 9
 """Samples in a profile."""
