@@ -4,7 +4,7 @@
 def counted(number: int, one: str, many: str = "") -> str:
     """Return a number with its noun; `many` is for nouns whose plural does not only add an s.
 
-    >>> counted(1, "frame"), counted(0, "frame"), counted(2, "mesh", "meshes")
-    ('1 frame', '0 frames', '2 meshes')
+    >>> counted(1, "frame"), counted(1200, "frame"), counted(2, "mesh", "meshes")
+    ('1 frame', '1,200 frames', '2 meshes')
     """
-    return f"{number} {one if number == 1 else many or one + 's'}"
+    return f"{number:,} {one if number == 1 else many or one + 's'}"

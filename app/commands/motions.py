@@ -187,8 +187,8 @@ def describe(console: Console, stored: StoredGraph) -> None:
     library = stored.library
     whole, parts = standard_graph(stored), part_graphs(stored)
     console.print(
-        f"{counted(len(library.names), 'clip')}, {len(library):,} frames at {library.rate:g} Hz "
-        f"({len(library) / library.rate:.1f} s), compared by {stored.distance}",
+        f"{counted(len(library.names), 'clip')}, {counted(len(library), 'frame')} at "
+        f"{library.rate:g} Hz ({len(library) / library.rate:.1f} s), compared by {stored.distance}",
         highlight=False,
     )
     console.print(_clips(library, whole))

@@ -136,8 +136,9 @@ def _print(console: Console, inspection: Inspection) -> None:
     console.print(f"[bold]{escape(character.name)}[/], {character.anatomy.kind}", highlight=False)
     console.print(
         f"{stats.height:.3g} m tall, {counted(stats.joints, 'joint')}, "
-        f"{counted(stats.meshes, 'mesh', 'meshes')}, {stats.vertices:,} vertices, "
-        f"{stats.triangles:,} triangles, {counted(stats.materials, 'material')}, "
+        f"{counted(stats.meshes, 'mesh', 'meshes')}, "
+        f"{counted(stats.vertices, 'vertex', 'vertices')}, "
+        f"{counted(stats.triangles, 'triangle')}, {counted(stats.materials, 'material')}, "
         f"{counted(stats.textures, 'texture')}",
         highlight=False,
     )
