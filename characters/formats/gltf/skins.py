@@ -92,7 +92,8 @@ def _checked_weights(weights: Array, where: str) -> Array:
     if wrong:
         worst = int(errors.argmax())
         warnings.warn(
-            f"{where} has {wrong} vertices whose skin weights do not sum to one "
+            f"{where} has skin weights that do not sum to one, "
+            f"at {wrong} of {len(weights)} vertices "
             f"({weights[worst].sum():.3g} at vertex {worst}); scaled them",
             CharacterWarning,
             stacklevel=2,

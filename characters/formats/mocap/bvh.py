@@ -179,8 +179,7 @@ def _read_channels(words: _Words, tree: _Tree, joint: int) -> None:
         axis, kind = "XYZ".find(channel[0].upper()), channel[1:].lower()
         if axis < 0 or kind not in ("position", "rotation"):
             raise words.error(
-                f"expected {count} channels of {quoted(tree.names[joint])}, found "
-                f"{quoted(channel)}",
+                f"expected a channel of {quoted(tree.names[joint])}, found {quoted(channel)}",
                 "use Xposition … Zrotation, as many as stated",
             )
         moves = AxisChannel(joint, np.eye(3)[axis], tree.channel_count)
@@ -222,7 +221,7 @@ def _rows(
             rows.append(row)
             row_lines.append(line + 1)
         elif row:
-            problem = f"frame {len(rows) + 1} has {numbers(len(row))} for {width} channels"
+            problem = f"frame {len(rows) + 1} has {numbers(len(row))}, not {width}"
             raise file.error(line + 1, problem, "the file is cut off or edited: export it again")
     return rows, row_lines
 

@@ -57,7 +57,7 @@ def log_rate_bounded(probe: Probe) -> str:
     limit = (seconds + TIMING_SLACK_S) / timing.LOG_EVERY + 1
     if count > limit:
         raise CheckFailed(f"at most {limit:.0f} LOGs in {seconds:.1f} s", f"{count}")
-    return f"{count} LOGs in {seconds:.1f} s, for {REFUSED_COMMANDS} refusals"
+    return f"{count} × LOG in {seconds:.1f} s, for {REFUSED_COMMANDS} refusals"
 
 
 @LOG.must

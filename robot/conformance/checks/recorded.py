@@ -36,7 +36,8 @@ def sends_valid_frames(probe: Probe) -> None:
     if violations:
         count = probe.log.violation_counts["frame"]
         examples = "; ".join(map(str, violations))
-        raise CheckFailed("only valid frames of a robot's messages", f"{count} others; {examples}")
+        found = "another" if count == 1 else f"{count} others"
+        raise CheckFailed("only valid frames of a robot's messages", f"{found}; {examples}")
 
 
 @RECORDED.must_of(5)

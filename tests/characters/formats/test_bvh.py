@@ -241,8 +241,12 @@ def test_scale_and_up_can_be_stated(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("10 95 20 0 0 90 0 45 0", "10 95 20 0 0 90 0 45", "line 25: frame 2 has 8 numbers"),
-        ("10 95 20 0 0 90 0 45 0", "10 95 20 0 0 90 0 45 0 7", "line 25: frame 2 has 10 numbers"),
+        ("10 95 20 0 0 90 0 45 0", "10 95 20 0 0 90 0 45", "line 25: frame 2 has 8 numbers, not 9"),
+        (
+            "10 95 20 0 0 90 0 45 0",
+            "10 95 20 0 0 90 0 45 0 7",
+            "line 25: frame 2 has 10 numbers, not 9",
+        ),
         ("10 95 20 0 0 90 0 45 0\n", "", "line 24: ends after 1 of 2 frames"),
         ("Frames: 2", "Frames: 900000000", "line 25: ends after 2 of 900000000 frames"),
         ("Frames: 2", "Frames: -3x", "line 22: expected a number, found '-3x'"),
@@ -250,7 +254,7 @@ def test_scale_and_up_can_be_stated(tmp_path: Path) -> None:
         ("20 0 0 90", "20 0 1e999 90", "line 25: '1e999' is out of range"),
         ("20 0 0 90", "20 0 zero 90", "line 25: expected a number, found 'zero'"),
         ("OFFSET 0 -90 0", "OFFSET 0 inf 0", "line 8: 'inf' is out of range"),
-        ("Xposition", "Wposition", "line 5: expected 6 channels of 'hips', found 'Wposition'"),
+        ("Xposition", "Wposition", "line 5: expected a channel of 'hips', found 'Wposition'"),
         ("CHANNELS 6", "CHANNELS 5", "line 5: expected JOINT or END or"),
         ("CHANNELS 6", "CHANNELS 99999999999", "line 5: '99999999999' is not a number of channels"),
         ("MOTION", "}", "line 21: expected ROOT or MOTION, found '}'"),

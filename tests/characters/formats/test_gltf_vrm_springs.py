@@ -126,7 +126,10 @@ def test_a_file_without_a_vrm_has_no_spring_bones(load):
 @pytest.mark.parametrize(
     ("springs", "reason"),
     [
-        (springs_1(springs=[{"joints": [{"node": 99}]}]), r"node is 99, but there are 8 nodes"),
+        (
+            springs_1(springs=[{"joints": [{"node": 99}]}]),
+            r"node is 99, but the count of nodes is 8",
+        ),
         (springs_1(springs=[{"joints": [{"node": 4, "gravityDir": 1}]}]), "not 3 numbers"),
         (springs_1(colliders=[{"node": 1}]), "lacks 'shape'"),
     ],
