@@ -1,7 +1,11 @@
 """A pipeline that goes on from a checkpoint makes the messages that it made the first time."""
 
 import itertools
+from dataclasses import astuple, replace
+from typing import Any, ClassVar
 
+import cv2
+import numpy as np
 import pytest
 
 from app.pipeline import step_renderer
@@ -11,6 +15,7 @@ from app.running.opening import intrinsics_for
 from app.scenarios import SCENARIOS
 from app.session.bundled import bundled
 from app.session.encoding import encode
+from characters.rendering import create_context
 from tracking import StoredFrames, open_source
 
 SKIPPED, BEFORE, AFTER = 150, 12, 5
@@ -39,18 +44,63 @@ def test_what_follows_a_checkpoint_is_the_same_every_time(name):
         assert messages(playground, frames[BEFORE:]) == first
 
 
-def test_after_a_checkpoint_the_light_of_a_later_time_is_forgotten(monkeypatch):
-    made = []
+class NotedSurroundings(Surroundings):
+    """Keeps what it measures."""
 
-    class Counted(Surroundings):
-        def __init__(self, *given):
-            made.append(given)
-            super().__init__(*given)
+    noted: ClassVar[list[tuple[Any, ...]]] = []
 
-    monkeypatch.setattr(step_renderer, "Surroundings", Counted)
+    def view(self, frame, state, controls):
+        view = super().view(frame, state, controls)
+        self.noted.append((view.light, view.softness, view.focus))
+        return view
+
+    def cover(self, frame, state):
+        cover = super().cover(frame, state)
+        self.noted.append((cover,))
+        return cover
+
+
+def darker(frame):
+    """The frame as if a lamp had been switched off, and the lens was not clean."""
+    image = cv2.convertScaleAbs(cv2.GaussianBlur(frame.image, (0, 0), 2.0), alpha=0.4)
+    return replace(frame, image=np.asarray(image, np.uint8))
+
+
+@pytest.fixture
+def straight_and_after_a_seek():
+    """Draw some frames, once straight on, and once after a later time that looks otherwise."""
     with open_source(str(bundled("companion"))) as source:
-        playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
-        playground.step(next(iter(source)), drawn=False)
-    checkpoint, begun = playground.checkpoint(), len(made)
-    playground.restore(checkpoint)
-    assert len(made) == begun + 1
+        assert isinstance(source, StoredFrames)
+        intrinsics = intrinsics_for(source.intrinsics, source.size)
+        source.skip(SKIPPED)
+        frames = list(itertools.islice(source, BEFORE + AFTER))
+    context = create_context()
+
+    def pictures(later, **settings):
+        playground = Playground("companion", intrinsics, context=context, **settings)
+        messages(playground, frames[:BEFORE])
+        checkpoint = playground.checkpoint()
+        for frame in later:
+            playground.step(frame)
+        if later:
+            playground.restore(checkpoint)
+        yield from (playground.step(frame).picture for frame in frames[BEFORE:])
+        playground.close()
+
+    def both(**settings):
+        later = [darker(frame) for frame in frames[BEFORE:]]
+        return [list(pictures(each, **settings)) for each in ([], later)]
+
+    yield both
+    context.release()
+
+
+def test_after_a_seek_what_is_measured_is_as_in_a_straight_run(
+    straight_and_after_a_seek, monkeypatch
+):
+    monkeypatch.setattr(step_renderer, "Surroundings", NotedSurroundings)
+    NotedSurroundings.noted.clear()
+    straight_and_after_a_seek()
+    noted = [[each and astuple(each) for each in kept] for kept in NotedSurroundings.noted]
+    straight, after_a_seek = noted[: 2 * AFTER], noted[-2 * AFTER :]
+    np.testing.assert_equal(after_a_seek, straight)
