@@ -46,6 +46,8 @@ class StepRenderer:
     def play(self, cube: CubeModel) -> None:
         """Begin with another cube: what the pictures have shown so far is forgotten."""
         self._surroundings = Surroundings(cube, self._intrinsics, self._realism)
+        if self._stage is not None:
+            self._stage.forget()
 
     def look_through(self, intrinsics: Intrinsics) -> None:
         """Take another camera; `play` must follow."""

@@ -33,7 +33,7 @@ class Stage:
 
     A picture is an ordered list of passes over one `FrameResources`. Only the characters go through
     the graphics card, so that software rendering keeps up with a camera: all else is in memory. The
-    light is estimated from the pictures: a picture depends on those before it and on nothing else.
+    light is estimated from the pictures: a picture depends on those since `forget` alone.
 
     Parameters
     ----------
@@ -95,6 +95,10 @@ class Stage:
     def triangles(self) -> int:
         """How many triangles the characters of the last picture had."""
         return self._characters.triangles
+
+    def forget(self) -> None:
+        """Estimate the light anew: the next picture is of another time or place."""
+        self._light = LightEstimator()
 
     def expect(self, image: Image, matrix: Array, distortion: Array) -> None:
         """Begin with a frame that `draw` gets next, while the caller still finds out what is in it.

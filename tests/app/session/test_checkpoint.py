@@ -104,3 +104,8 @@ def test_after_a_seek_what_is_measured_is_as_in_a_straight_run(
     noted = [[each and astuple(each) for each in kept] for kept in NotedSurroundings.noted]
     straight, after_a_seek = noted[: 2 * AFTER], noted[-2 * AFTER :]
     np.testing.assert_equal(after_a_seek, straight)
+
+
+def test_after_a_seek_the_pictures_are_as_in_a_straight_run(straight_and_after_a_seek):
+    straight, after_a_seek = straight_and_after_a_seek(realism=())
+    np.testing.assert_array_equal(after_a_seek, straight)
