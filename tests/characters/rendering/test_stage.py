@@ -111,14 +111,39 @@ def test_a_path_is_bent_again_only_when_it_is_seen_to_move(stage, view, monkeypa
         assert len(bent) == times
 
 
+def spot(number):
+    """A path of one point."""
+    return FloorPath(np.array([[0.02 * number - 0.1, 0.0]]))
+
+
+@pytest.fixture
+def painted(monkeypatch):
+    """Sizes of the images of paths that are painted, (rows, columns)."""
+    sizes = []
+
+    def noted(pixels, *place):
+        sizes.append(pixels.shape)
+        return TableImage(pixels, *place)
+
+    monkeypatch.setattr(floor_paths, "TableImage", noted)
+    return sizes
+
+
+def test_paths_are_painted_again_only_when_they_have_changed(stage, view, painted):
+    paths = [spot(number) for number in range(12)]
+    stage.draw(view, [], paths)
+    stage.draw(view, [], [*paths[:-1], spot(20)])
+    assert len(painted) == 12 + 1
+
+
 def test_any_number_of_paths_is_painted(ctx, stage, view):
-    spots = [FloorPath(np.array([[0.02 * number - 0.1, 0.0]])) for number in range(12)]
+    spots = [spot(number) for number in range(12)]
     for paths in (spots[:1], spots, spots[3:5]):
         fresh = Stage(ctx, (320, 180))
         assert np.array_equal(stage.draw(view, [], paths), fresh.draw(view, [], paths))
         fresh.release()
-    painted = (stage.draw(view, [], spots) != view.image).any(axis=2)
-    assert cv2.connectedComponents(painted.astype(np.uint8))[0] - 1 == 12
+    changed = (stage.draw(view, [], spots) != view.image).any(axis=2)
+    assert cv2.connectedComponents(changed.astype(np.uint8))[0] - 1 == 12
 
 
 def test_the_cube_hides_pawn_shadow_and_path(stage, view, pawn, cube):
@@ -183,17 +208,10 @@ def test_a_path_far_beyond_the_table_is_painted_in_no_time(stage, view):
 
 
 @pytest.mark.parametrize("length_m", [7.94, 7.97, 1e9])
-def test_the_image_of_a_path_has_a_longest_side(stage, view, monkeypatch, length_m):
+def test_the_image_of_a_path_has_a_longest_side(stage, view, painted, length_m):
     """The first length just fits at a power of two, the second needs the next one."""
-    shapes = []
-
-    def kept(pixels, *place):
-        shapes.append(pixels.shape)
-        return TableImage(pixels, *place)
-
-    monkeypatch.setattr(floor_paths, "TableImage", kept)
     stage.draw(view, [], [replace(LOOP, points=np.array([[0.0, 0.0], [length_m, 0.0]]))])
-    assert max(shapes[0]) <= MAX_SIDE_TEXELS
+    assert max(painted[0]) <= MAX_SIDE_TEXELS
 
 
 def test_half_a_hand_hides_half_of_the_pawn(stage, view, pawn):
