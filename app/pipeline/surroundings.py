@@ -11,8 +11,8 @@ import numpy as np
 from app.errors import AppError
 from characters.rendering import Box, Cover, Focus, MeasuredLight, Softness, View
 from tracking import CubeControls, CubeModel, CubeState, Frame, Intrinsics
-from tracking.appearance.hand import HandFinder
-from tracking.appearance.hand_mask import EDGE_SLOPE, HandMask
+from tracking.appearance.hand.finder import HandFinder
+from tracking.appearance.hand.mask import EDGE_SLOPE, HandMask
 from tracking.appearance.light import LightMeter
 from tracking.appearance.picture_quality import QualityMeter
 

@@ -22,8 +22,8 @@ from app.pipeline.surroundings import cover_of
 from characters.rendering.hand_cover import PictureCover
 from characters.rendering.projection import Rectangle
 from tests.bench.hand_scenes import GLOVES, RATE_HZ, SKINS, HandScene, HandView
-from tracking.appearance.hand import HandFinder
-from tracking.appearance.hand_mask import HandMask
+from tracking.appearance.hand.finder import HandFinder
+from tracking.appearance.hand.mask import HandMask
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Floats, Image
 from tracking.tracker.tracker import CubeTracker

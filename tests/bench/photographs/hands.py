@@ -20,8 +20,8 @@ from rich.table import Table
 
 from tests.bench.hand_mask import covered
 from tests.bench.photographs.dodecahedron import body_model, camera, paths, photograph
-from tracking.appearance.hand import HandFinder
-from tracking.appearance.window import WindowFinder
+from tracking.appearance.hand.finder import HandFinder
+from tracking.appearance.hand.window import WindowFinder
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Flags, Floats, Image
 from tracking.geometry.frame import Frame

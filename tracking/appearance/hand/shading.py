@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from tracking.appearance.structuring_elements import SQUARE_9
+from tracking.appearance.hand.structuring_elements import SQUARE_9
 from tracking.geometry.arrays import Flags, Floats
 from tracking.geometry.robust_statistics import quantile
 

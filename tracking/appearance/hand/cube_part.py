@@ -6,11 +6,11 @@ from functools import cached_property
 import cv2
 import numpy as np
 
-from tracking.appearance.colour_model import MIN_SHOWN_PX
-from tracking.appearance.face_check import FaceCheck
-from tracking.appearance.face_pattern import FacePattern
-from tracking.appearance.structuring_elements import SQUARE_3
-from tracking.appearance.window import Window
+from tracking.appearance.hand.colour_model import MIN_SHOWN_PX
+from tracking.appearance.hand.face_check import FaceCheck
+from tracking.appearance.hand.face_pattern import FacePattern
+from tracking.appearance.hand.structuring_elements import SQUARE_3
+from tracking.appearance.hand.window import Window
 from tracking.geometry.arrays import Array, Flags, Floats, Image
 
 DOUBTFUL_ODDS = 1.6
@@ -60,7 +60,7 @@ class CubeCheck:
         self._hidden = np.zeros(3)  # the point behind the hand, in the cube's frame [m]
 
     def part(
-        self, window: Window, pose: Array, lab: Floats, by_colour: Floats, nearest_anew: bool
+        self, window: Window, pose: Array, lab: Floats, by_colour: Floats, nearest_is_due: bool
     ) -> CubePart:
         """Compare the cube in a window with its print.
 
@@ -74,7 +74,7 @@ class CubeCheck:
             L + 16, a and b of CIELab of the window, in bytes, (3, h, w).
         by_colour
             What the colours of the window speak for a hand, (h, w).
-        nearest_anew
+        nearest_is_due
             Whether to look again for the nearest point that is hidden; else it stays on the cube.
         """
         rows, columns = window.cube_box
@@ -88,7 +88,7 @@ class CubeCheck:
         evidence = self._faces.disagreement(part, seen, like_hand, window.edge)
         if not evidence.any():
             self._hidden = np.zeros(3)
-        elif nearest_anew or not self._hidden.any():
+        elif nearest_is_due or not self._hidden.any():
             corner = np.array([window.left + columns.start, window.top + rows.start], np.float64)
             scale = window.scale
             nearest = self._pattern.nearest(pose, seen.face * evidence, corner * scale, scale)

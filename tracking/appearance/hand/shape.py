@@ -3,10 +3,10 @@
 import cv2
 import numpy as np
 
-from tracking.appearance.background import Place
-from tracking.appearance.cube_part import CubePart
-from tracking.appearance.structuring_elements import SQUARE_3, SQUARE_5
-from tracking.appearance.window import Window
+from tracking.appearance.hand.background import Place
+from tracking.appearance.hand.cube_part import CubePart
+from tracking.appearance.hand.structuring_elements import SQUARE_3, SQUARE_5
+from tracking.appearance.hand.window import Window
 from tracking.geometry.arrays import Flags, Floats, Image
 
 CLOSED_EDGES = 0.25

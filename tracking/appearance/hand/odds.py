@@ -3,12 +3,12 @@
 import cv2
 import numpy as np
 
-from tracking.appearance.background import Place
-from tracking.appearance.cube_part import CubePart
-from tracking.appearance.hand_edge import ODDS_RANGE
-from tracking.appearance.hand_shape import filled
-from tracking.appearance.structuring_elements import SQUARE_3
-from tracking.appearance.window import Window
+from tracking.appearance.hand.background import Place
+from tracking.appearance.hand.cube_part import CubePart
+from tracking.appearance.hand.edge import ODDS_RANGE
+from tracking.appearance.hand.shape import filled
+from tracking.appearance.hand.structuring_elements import SQUARE_3
+from tracking.appearance.hand.window import Window
 from tracking.geometry.arrays import Floats
 
 SLANTED_EVIDENCE = -1.0

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from tests.bench.hand_mask import covered
-from tracking.appearance.hand_edge import ODDS_RANGE, soft_cover
-from tracking.appearance.hand_mask import HandMask
-from tracking.appearance.window import Window
+from tracking.appearance.hand.edge import ODDS_RANGE, soft_cover
+from tracking.appearance.hand.mask import HandMask
+from tracking.appearance.hand.window import Window
 
 SIDE, SCALE, EDGE = 40, 3, 20.3
 """Side of the window and pixels of the image per pixel of it [px]; where the hand ends [px of the

@@ -5,9 +5,10 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from tracking.appearance.arm import arm_samples, with_arm
-from tracking.appearance.background import UNKNOWN, Background, Box, Place
-from tracking.appearance.colour_model import (
+from tracking.appearance.colour_space import LAB_FROM_ROOTS, lab
+from tracking.appearance.hand.arm import arm_samples, with_arm
+from tracking.appearance.hand.background import UNKNOWN, Background, Box, Place
+from tracking.appearance.hand.colour_model import (
     MAX_ODDS,
     MIN_DIFFERENCE,
     MIN_SHOWN_PX,
@@ -15,15 +16,14 @@ from tracking.appearance.colour_model import (
     Colours,
     colours,
 )
-from tracking.appearance.colour_space import LAB_FROM_ROOTS, lab
-from tracking.appearance.cube_part import CubeCheck, CubePart
-from tracking.appearance.face_pattern import FacePattern
-from tracking.appearance.hand_edge import soft_cover
-from tracking.appearance.hand_mask import HandMask
-from tracking.appearance.hand_odds import hand_odds
-from tracking.appearance.hand_shape import connected
-from tracking.appearance.structuring_elements import SQUARE_5
-from tracking.appearance.window import Stillness, Window, WindowFinder, sampled, shrunk
+from tracking.appearance.hand.cube_part import CubeCheck, CubePart
+from tracking.appearance.hand.edge import soft_cover
+from tracking.appearance.hand.face_pattern import FacePattern
+from tracking.appearance.hand.mask import HandMask
+from tracking.appearance.hand.odds import hand_odds
+from tracking.appearance.hand.shape import connected
+from tracking.appearance.hand.structuring_elements import SQUARE_5
+from tracking.appearance.hand.window import Stillness, Window, WindowFinder, sampled, shrunk
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Flags, Floats, Image
 from tracking.geometry.intrinsics import Intrinsics
@@ -170,8 +170,8 @@ class HandFinder:
     def _found(self, view: _View, pose: Array) -> HandMask | None:
         """Find the hand in what is looked at, and learn from it."""
         window, by_colour = view.window, self._colours.odds(view.colours)
-        nearest_anew = self._frames % LEARNING_FRAMES == 0
-        cube = self._cube.part(window, pose, view.lab, by_colour, nearest_anew)
+        nearest_is_due = self._frames % LEARNING_FRAMES == 0
+        cube = self._cube.part(window, pose, view.lab, by_colour, nearest_is_due)
         if cube.shows_hand:
             self._colours.see_hand(view.colours[window.cube_box][cube.evidence])
         place = self._background.compare(view.lab, window.box, cube.outside, view.whole)

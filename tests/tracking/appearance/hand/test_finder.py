@@ -12,9 +12,9 @@ from app.session.bundled import bundled
 from tests.bench.hand_mask import covered, overlap
 from tests.bench.hand_scenes import GLOVES, SKINS, HandScene, HandView
 from tests.tracking.drawn import WIDE, held, photograph, scene
-from tracking.appearance.hand import MANY_FRAMES, HandFinder
-from tracking.appearance.hand_mask import HandMask
-from tracking.appearance.window import STILL_FRAMES, Stillness, WindowFinder
+from tracking.appearance.hand.finder import MANY_FRAMES, HandFinder
+from tracking.appearance.hand.mask import HandMask
+from tracking.appearance.hand.window import STILL_FRAMES, Stillness, WindowFinder
 from tracking.cube.model import CubeModel
 from tracking.geometry.intrinsics import Intrinsics
 from tracking.geometry.projection import Projection

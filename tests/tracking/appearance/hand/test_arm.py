@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 
 from tests.bench.hand_mask import covered, overlap
 from tests.bench.hand_scenes import SKINS, HandScene, HandView
-from tests.tracking.appearance.test_hand import CUBE, state_at
-from tracking.appearance.arm import ARM_UP_EDGES, MAX_WIDTH_EDGES, arm_samples, with_arm
-from tracking.appearance.background import GRID_PX
-from tracking.appearance.hand import HandFinder
-from tracking.appearance.hand_mask import HandMask
-from tracking.appearance.window import Window
+from tests.tracking.appearance.hand.test_finder import CUBE, state_at
+from tracking.appearance.hand.arm import ARM_UP_EDGES, MAX_WIDTH_EDGES, arm_samples, with_arm
+from tracking.appearance.hand.background import GRID_PX
+from tracking.appearance.hand.finder import HandFinder
+from tracking.appearance.hand.mask import HandMask
+from tracking.appearance.hand.window import Window
 
 SCALE, EDGE = 3, 30.0
 """Pixels of the image for each of the window, and the cube's edge [px of the window]."""

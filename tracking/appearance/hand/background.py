@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from tracking.appearance.camera_change import camera_change
-from tracking.appearance.shading import (
+from tracking.appearance.hand.camera_change import camera_change
+from tracking.appearance.hand.shading import (
     DETAIL_LIMIT,
     EDGE_DETAIL,
     EVEN_LIGHT_PX,
@@ -20,7 +20,7 @@ from tracking.appearance.shading import (
     roughness,
     texture,
 )
-from tracking.appearance.structuring_elements import SQUARE_3
+from tracking.appearance.hand.structuring_elements import SQUARE_3
 from tracking.geometry.arrays import Flags, Floats, Image
 
 SPARSE = np.s_[::5, ::5]

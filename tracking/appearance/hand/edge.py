@@ -3,8 +3,8 @@
 import cv2
 import numpy as np
 
-from tracking.appearance.structuring_elements import SQUARE_3, SQUARE_5
-from tracking.appearance.window import Window
+from tracking.appearance.hand.structuring_elements import SQUARE_3, SQUARE_5
+from tracking.appearance.hand.window import Window
 from tracking.geometry.arrays import Floats, Image
 
 ODDS_RANGE = 2.0

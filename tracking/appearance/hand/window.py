@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from tracking.appearance.background import GRID_PX, Box
+from tracking.appearance.hand.background import GRID_PX, Box
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Image
 from tracking.geometry.projection import MIN_DEPTH, Projection

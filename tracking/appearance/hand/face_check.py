@@ -3,8 +3,8 @@
 import cv2
 import numpy as np
 
-from tracking.appearance.face_pattern import SeenPattern
-from tracking.appearance.structuring_elements import SQUARE_2, SQUARE_3
+from tracking.appearance.hand.face_pattern import SeenPattern
+from tracking.appearance.hand.structuring_elements import SQUARE_2, SQUARE_3
 from tracking.geometry.arrays import Flags, Floats, Image
 from tracking.geometry.robust_statistics import quantile
 

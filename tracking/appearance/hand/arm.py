@@ -3,10 +3,10 @@
 import cv2
 import numpy as np
 
-from tracking.appearance.background import GRID_PX, MIDDLES, Box
-from tracking.appearance.hand_mask import HandMask
-from tracking.appearance.structuring_elements import SQUARE_3
-from tracking.appearance.window import Window
+from tracking.appearance.hand.background import GRID_PX, MIDDLES, Box
+from tracking.appearance.hand.mask import HandMask
+from tracking.appearance.hand.structuring_elements import SQUARE_3
+from tracking.appearance.hand.window import Window
 from tracking.geometry.arrays import Flags, Image
 
 ARM_EDGES, ARM_UP_EDGES = 12.0, 3.0
