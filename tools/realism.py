@@ -15,7 +15,7 @@ from app.pipeline.surroundings import Surroundings
 from app.ui.contact_sheets import save
 from characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
 from characters.rendering import SceneCharacter, Softness, Stage, create_context
-from characters.rendering.haze import haze_table
+from characters.rendering.camera_picture.haze import haze_table
 from tools.captions import framed
 from tracking import CubeControls, CubeGestures, CubeState, CubeTracker, Frame
 from tracking.synthetic import SyntheticSource, open_synthetic

@@ -8,10 +8,10 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from characters.rendering.camera_picture.haze import haze_table
+from characters.rendering.camera_picture.light import Light
+from characters.rendering.camera_picture.occlusion import corners_of, hidden_by_cube
 from characters.rendering.geometry.character_cache import CharacterInstance
-from characters.rendering.haze import haze_table
-from characters.rendering.light import Light
-from characters.rendering.occlusion import corners_of, hidden_by_cube
 from characters.rendering.projection import (
     NEAR_M,
     Rectangle,

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
+from characters.rendering.camera_picture.light import LightEstimator, paper_color
+from characters.rendering.camera_picture.occlusion import visible_cubes
+from characters.rendering.camera_picture.undistortion import Undistorter
 from characters.rendering.geometry.character_cache import CharacterCache, PictureFineness
-from characters.rendering.light import LightEstimator, paper_color
-from characters.rendering.occlusion import visible_cubes
 from characters.rendering.passes.by_quality import passes_for
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms
@@ -19,7 +20,6 @@ from characters.rendering.quality import FULL, QUALITIES, Quality
 from characters.rendering.resources import FrameResources
 from characters.rendering.scene import Cover, FloorPath, Scene, SceneCharacter, Softness, View
 from characters.rendering.target import TargetCache
-from characters.rendering.undistortion import Undistorter
 from characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
@@ -97,7 +97,7 @@ class Stage:
         return self._characters.triangles
 
     def forget(self) -> None:
-        """Estimate the light anew: the next picture is of another time or place."""
+        """Forget the light that was seen: the next picture is of another time or place."""
         self._light = LightEstimator()
 
     def expect(self, image: Image, matrix: Array, distortion: Array) -> None:

@@ -32,7 +32,7 @@ from characters.rendering import (
     View,
     create_context,
 )
-from characters.rendering.light import LINEAR_FROM_SRGB
+from characters.rendering.camera_picture.light import LINEAR_FROM_SRGB
 from tests.bench.picture import SIZE, scene
 from tests.characters.rendering.watch import WatchPass
 

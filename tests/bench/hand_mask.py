@@ -19,7 +19,7 @@ from rich.console import Console
 from rich.table import Table
 
 from app.pipeline.surroundings import cover_of
-from characters.rendering.hand_cover import PictureCover
+from characters.rendering.camera_picture.hand_cover import PictureCover
 from characters.rendering.projection import Rectangle
 from tests.bench.hand_scenes import GLOVES, RATE_HZ, SKINS, HandScene, HandView
 from tracking.appearance.hand.finder import HandFinder

@@ -22,15 +22,15 @@ from rich.table import Table
 from characters.control.command import PosedCharacter
 from characters.model.character import Character
 from characters.rendering import Box, FloorPath, SceneCharacter, Stage, View, create_context
+from characters.rendering.camera_picture.light import LightEstimator
+from characters.rendering.camera_picture.undistortion import Undistorter
 from characters.rendering.geometry.skinned_character import SkinnedCharacter
-from characters.rendering.light import LightEstimator
 from characters.rendering.passes.characters import CharacterPass
 from characters.rendering.passes.cube_occlusion import CubeOcclusionPass
 from characters.rendering.passes.floor_paths import FloorPathPass
 from characters.rendering.passes.resolve import ResolvePass
 from characters.rendering.passes.shadows import ShadowPass
 from characters.rendering.target import LayerTarget
-from characters.rendering.undistortion import Undistorter
 
 SIZE = (1280, 720)
 TARGET_MS = 12.0

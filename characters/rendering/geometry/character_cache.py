@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
+from characters.rendering.camera_picture.occlusion import is_usable
 from characters.rendering.geometry.detail_levels import LEVEL_TOLERANCES
 from characters.rendering.geometry.skinned_character import SkinnedCharacter
-from characters.rendering.occlusion import is_usable
 from characters.rendering.programs import ShaderPrograms
 from characters.rendering.projection import is_invertible
 from characters.rendering.scene import Box, Drawable, SceneCharacter

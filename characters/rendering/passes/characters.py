@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import moderngl
 
+from characters.rendering.camera_picture.occlusion import unit_cube_from_table
 from characters.rendering.geometry.surfaces import CLIPPED, VERTEX_LIT
-from characters.rendering.occlusion import unit_cube_from_table
 from characters.rendering.passes.cube_window import set_clipping
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.resources import CharacterLayer, FrameResources

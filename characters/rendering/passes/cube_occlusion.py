@@ -2,7 +2,7 @@
 
 import moderngl
 
-from characters.rendering.occlusion import UNIT_CUBE, camera_from_unit_cube
+from characters.rendering.camera_picture.occlusion import UNIT_CUBE, camera_from_unit_cube
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.resources import CharacterLayer, FrameResources

@@ -5,8 +5,8 @@ from dataclasses import replace
 import moderngl
 import numpy as np
 
+from characters.rendering.camera_picture.occlusion import UNIT_CUBE, camera_from_unit_cube
 from characters.rendering.geometry.character_cache import CharacterInstance
-from characters.rendering.occlusion import UNIT_CUBE, camera_from_unit_cube
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.passes.shadows import ShadowMap, key_share
 from characters.rendering.programs import ShaderPrograms, set_uniforms

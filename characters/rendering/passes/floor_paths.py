@@ -12,8 +12,8 @@ from itertools import chain, repeat
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.hand_cover import PictureCover
-from characters.rendering.hidden_table import hidden_table
+from characters.rendering.camera_picture.hand_cover import PictureCover
+from characters.rendering.camera_picture.hidden_table import hidden_table
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.passes.shadows import DISPLAY_GAMMA
 from characters.rendering.passes.table_image import TableImage

@@ -3,7 +3,7 @@
 import moderngl
 import numpy as np
 
-from characters.rendering.hand_cover import PictureCover
+from characters.rendering.camera_picture.hand_cover import PictureCover
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.projection import NEAR_M

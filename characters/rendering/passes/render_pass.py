@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Protocol
 
-from characters.rendering.hand_cover import PictureCover
+from characters.rendering.camera_picture.hand_cover import PictureCover
 from characters.rendering.resources import CharacterLayer, FrameResources
 
 

@@ -9,8 +9,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.hand_cover import PictureCover
-from characters.rendering.haze import hazy
+from characters.rendering.camera_picture.hand_cover import PictureCover
+from characters.rendering.camera_picture.haze import hazy
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.resources import FrameResources
 

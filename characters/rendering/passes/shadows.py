@@ -9,9 +9,9 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from characters.rendering.camera_picture.hand_cover import PictureCover
+from characters.rendering.camera_picture.light import Light
 from characters.rendering.geometry.character_cache import CharacterInstance
-from characters.rendering.hand_cover import PictureCover
-from characters.rendering.light import Light
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.passes.table_factors import darken
 from characters.rendering.passes.table_image import TableImage

@@ -3,9 +3,9 @@
 import cv2
 import numpy as np
 
-from characters.rendering.hand_cover import PictureCover
-from characters.rendering.haze import darkened
-from characters.rendering.hidden_table import hidden_table
+from characters.rendering.camera_picture.hand_cover import PictureCover
+from characters.rendering.camera_picture.haze import darkened
+from characters.rendering.camera_picture.hidden_table import hidden_table
 from characters.rendering.passes.table_image import TableImage
 from characters.rendering.resources import FrameResources
 

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from characters.rendering import Box
-from characters.rendering.hand_cover import PictureCover
-from characters.rendering.hidden_table import hidden_table
-from characters.rendering.occlusion import UNIT_CUBE, hidden_by_cube
+from characters.rendering.camera_picture.hand_cover import PictureCover
+from characters.rendering.camera_picture.hidden_table import hidden_table
+from characters.rendering.camera_picture.occlusion import UNIT_CUBE, hidden_by_cube
 from characters.rendering.projection import Rectangle
 from characters.rendering.scene import Cover
 

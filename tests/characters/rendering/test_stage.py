@@ -1,7 +1,6 @@
 """Whole pictures: what is drawn, what is not drawn, and invalid input."""
 
 import gc
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,11 +18,8 @@ from characters.rendering import (
     Stage,
     View,
 )
-from characters.rendering.passes import floor_paths
-from characters.rendering.passes.floor_paths import MAX_SIDE_TEXELS
 from characters.rendering.passes.hand_occlusion import HAND_DEPTH_M
 from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.passes.table_image import TableImage
 
 GOLDEN = Path(__file__).parent / "golden"
 LOOP = FloorPath(
@@ -82,70 +78,6 @@ def test_only_the_area_around_the_character_changes(stage, view, pawn):
     assert columns.max() < 260
 
 
-def test_a_path_is_seen_from_where_the_camera_is_now(ctx, stage, view):
-    moved = view.camera_from_table.copy()
-    moved[:3, 3] += (0.02, -0.01, 0.05)
-    changed = replace(LOOP, highlight=5)
-    for camera_from_table, path in ((moved, LOOP), (view.camera_from_table, changed)):
-        stage.draw(view, [], [LOOP])
-        now = replace(view, camera_from_table=camera_from_table)
-        fresh = Stage(ctx, (320, 180))
-        assert np.array_equal(stage.draw(now, [], [path]), fresh.draw(now, [], [path]))
-        fresh.release()
-
-
-def test_a_path_is_bent_again_only_when_it_is_seen_to_move(stage, view, monkeypatch):
-    bent = []
-    in_picture = TableImage.in_picture
-
-    def counted(*given, **named):
-        bent.append(given)
-        return in_picture(*given, **named)
-
-    monkeypatch.setattr(TableImage, "in_picture", counted)
-    path = FloorPath(np.array([(-0.05, 0.0), (0.05, 0.02)]))
-    for right_m, times in ((0.0, 1), (1e-6, 1), (2e-6, 1), (1e-3, 2), (1e-3, 2)):
-        moved = view.camera_from_table.copy()
-        moved[0, 3] += right_m
-        stage.draw(replace(view, camera_from_table=moved), [], [path])
-        assert len(bent) == times
-
-
-def spot(number):
-    """A path of one point."""
-    return FloorPath(np.array([[0.02 * number - 0.1, 0.0]]))
-
-
-@pytest.fixture
-def painted(monkeypatch):
-    """Sizes of the images of paths that are painted, (rows, columns)."""
-    sizes = []
-
-    def noted(pixels, *place):
-        sizes.append(pixels.shape)
-        return TableImage(pixels, *place)
-
-    monkeypatch.setattr(floor_paths, "TableImage", noted)
-    return sizes
-
-
-def test_paths_are_painted_again_only_when_they_have_changed(stage, view, painted):
-    paths = [spot(number) for number in range(12)]
-    stage.draw(view, [], paths)
-    stage.draw(view, [], [*paths[:-1], spot(20)])
-    assert len(painted) == 12 + 1
-
-
-def test_any_number_of_paths_is_painted(ctx, stage, view):
-    spots = [spot(number) for number in range(12)]
-    for paths in (spots[:1], spots, spots[3:5]):
-        fresh = Stage(ctx, (320, 180))
-        assert np.array_equal(stage.draw(view, [], paths), fresh.draw(view, [], paths))
-        fresh.release()
-    changed = (stage.draw(view, [], spots) != view.image).any(axis=2)
-    assert cv2.connectedComponents(changed.astype(np.uint8))[0] - 1 == 12
-
-
 def test_the_cube_hides_pawn_shadow_and_path(stage, view, pawn, cube):
     actor = pawn.posed(at=(-0.05, 0.0))
     free = stage.draw(view, [actor], [LOOP]).astype(int)
@@ -198,20 +130,6 @@ def test_a_path_behind_the_hand_is_not_seen(stage, view):
     whole = Cover(0, 0, np.full((180, 320), 255, np.uint8), np.array([0.0, 0.0, 0.3]))
     hidden = stage.draw(replace(view, cover=whole), [], [behind])
     assert np.array_equal(hidden, view.image)
-
-
-def test_a_path_far_beyond_the_table_is_painted_in_no_time(stage, view):
-    far = replace(LOOP, points=np.array([[0.0, 0.0], [1e9, -1e9], [0.05, 0.0]]))
-    started = time.perf_counter()
-    stage.draw(view, [], [far])
-    assert time.perf_counter() - started < 1.0
-
-
-@pytest.mark.parametrize("length_m", [7.94, 7.97, 1e9])
-def test_the_image_of_a_path_has_a_longest_side(stage, view, painted, length_m):
-    """The first length just fits at a power of two, the second needs the next one."""
-    stage.draw(view, [], [replace(LOOP, points=np.array([[0.0, 0.0], [length_m, 0.0]]))])
-    assert max(painted[0]) <= MAX_SIDE_TEXELS
 
 
 def test_half_a_hand_hides_half_of_the_pawn(stage, view, pawn):

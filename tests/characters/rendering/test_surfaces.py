@@ -7,9 +7,9 @@ import pytest
 
 from characters.model.mesh import Material, Mesh, ToonShading
 from characters.rendering import SceneCharacter
+from characters.rendering.camera_picture.light import TO_LIGHT
 from characters.rendering.geometry.surfaces import surface_features
 from characters.rendering.geometry.vertices import CharacterVertices
-from characters.rendering.light import TO_LIGHT
 
 RED = Material(base_color=(0.6, 0.1, 0.08, 1.0), roughness=0.5)
 

@@ -8,16 +8,16 @@ import pytest
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
-from characters.rendering.context import create_context
-from characters.rendering.light import (
+from characters.rendering.camera_picture.light import (
     LINEAR_FROM_SRGB,
     MIN_RISE,
     PICTURES_PER_LOOK,
     LightEstimator,
     paper_color,
 )
+from characters.rendering.camera_picture.undistortion import Undistorter
+from characters.rendering.context import create_context
 from characters.rendering.scene import Cover, MeasuredLight
-from characters.rendering.undistortion import Undistorter
 
 SIZE = (320, 180)
 BENT = np.array([0.12, -0.2, 0.001, -0.002, 0.05])

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import moderngl
 import numpy as np
 
+from characters.rendering.camera_picture.light import Light
 from characters.rendering.deferred.blocker_map import TABLE_RANGE_TEXELS, BlockerMap
 from characters.rendering.deferred.lamp import Lamp
-from characters.rendering.light import Light
 from characters.rendering.passes.shadows import ShadowPass, key_share, sky_extent
 from characters.rendering.passes.table_image import TableImage
 from characters.rendering.programs import ShaderPrograms, set_uniforms

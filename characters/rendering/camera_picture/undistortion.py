@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
-from characters.rendering.hand_cover import Maps, PictureCover, cropped
+from characters.rendering.camera_picture.hand_cover import Maps, PictureCover, cropped
 from characters.rendering.projection import Rectangle, is_pinhole, usable_distortion
 from characters.rendering.scene import Cover, View
 from characters.skeleton.pose import Array

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.light import LINEAR_FROM_SRGB
+from characters.rendering.camera_picture.light import LINEAR_FROM_SRGB
 from characters.rendering.scene import Softness
 
 Image = NDArray[np.uint8]

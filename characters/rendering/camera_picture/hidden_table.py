@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.hand_cover import PictureCover
+from characters.rendering.camera_picture.hand_cover import PictureCover
 from characters.rendering.projection import Rectangle
 
 
