@@ -105,6 +105,9 @@ class Place:
     """How much it differs, in lightness and chroma, (h, w) [CIELab bytes], 0 where unknown and in
     the cube."""
 
+    relit: Flags
+    """Pixels that look like the background in other light, (h, w)."""
+
     recoloured: Flags
     """Pixels of another hue or saturation than before, which no shadow gives them, (h, w)."""
 
@@ -130,8 +133,6 @@ class Background:
         self._sampled_mean = self._mean  # the samples of it, side by side: they are read faster
         self._age: Image = np.zeros((0, 0), np.uint8)
         self._texture: Floats = np.zeros((0, 0), np.float32)
-        # Where the last window that was compared is the background in other light.
-        self._relit: Flags = np.zeros((0, 0), bool)
         self._chroma_noise, self._detail_noise = MIN_CHROMA_NOISE, MIN_DETAIL_NOISE
         self._trust = 1.0
 
@@ -186,10 +187,9 @@ class Background:
         (mean, mean_a, mean_b), age = self._mean[:, *box], self._age[box]
         known = (age > 0) & outside
         if whole and not _is_enough(known):
-            none = self._relit = np.zeros(age.shape, bool)
             self._trust = 1.0
-            odds = np.float32(UNKNOWN) * outside
-            return Place(odds, none, np.zeros_like(light), none, (light, mean))
+            odds, none = np.float32(UNKNOWN) * outside, np.zeros(age.shape, bool)
+            return Place(odds, none, np.zeros_like(light), none, none, (light, mean))
         gain = light / mean
         off_a, off_b = a - gain * mean_a, b - gain * mean_b
         # What is large at a pixel and around it is neither noise nor the blur of its neighbour.
@@ -214,10 +214,10 @@ class Background:
             self._trust = _trust(np.count_nonzero(unchanged & known) / np.count_nonzero(known))
         looks = lit.view(np.uint8) + smooth + unchanged
         odds = self._odds(looks, np.minimum(age, FULL_AGE) * known, outside)
-        self._relit = lit & ~unchanged
         difference = (shade + np.float32(2) * off) * known
         recoloured = off > np.float32(RECOLOURED_SHARE) * light
-        return Place(odds, (odds > 0) & ~lit, difference, recoloured, (light, mean))
+        changed, relit = (odds > 0) & ~lit, lit & ~unchanged
+        return Place(odds, changed, difference, relit, recoloured, (light, mean))
 
     def _odds(self, looks: Image, age: Image, outside: Flags) -> Floats:
         """Return what each pixel speaks for a hand, (h, w): logarithm of odds.
@@ -267,11 +267,11 @@ class Background:
         lit = may_be_light(off, gain, np.abs(gain), SAMPLE_NOISE * self._chroma_noise)
         return np.asarray(~lit & (self._age[MIDDLES, MIDDLES][samples] > 0))
 
-    def learn(self, lab: Floats, box: Box, free: Flags, changed: Flags) -> None:
-        """Learn the pixels of a window that are free of cube and hand."""
+    def learn(self, lab: Floats, box: Box, free: Flags, place: Place) -> None:
+        """Learn the pixels of a window that are free of cube and hand, after `compare`."""
         age = self._age[box]
-        shaded = self._relit & (age > FULL_AGE)
-        looks = np.maximum(np.maximum(age, shaded * _SHADED), changed * _CHANGED)
+        relit = place.relit & (age > FULL_AGE)
+        looks = np.maximum(np.maximum(age, relit * _SHADED), place.changed * _CHANGED)
         self._learn(lab, box, np.asarray(cv2.LUT(looks, _STEPS), np.float32) * free)
         age += free & (age < MAX_AGE)
 

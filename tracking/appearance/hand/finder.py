@@ -245,7 +245,7 @@ class HandFinder:
 
     def _learn_desk(self, view: _View, place: Place, free: Flags) -> None:
         """Learn the desk and its colours where it is `free` of cube and hand, (h, w)."""
-        self._background.learn(view.lab, view.window.box, free, place.changed)
+        self._background.learn(view.lab, view.window.box, free, place)
         if view.whole:
             self._colours.learn_behind(view.colours, free & ~place.changed)
 

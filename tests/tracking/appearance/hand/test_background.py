@@ -35,9 +35,9 @@ def seen_for_long() -> Background:
     made, free = Background(), outside()
     made.match_size(200, 160)
     for _ in range(10):
-        made.compare(desk(), BOX, free, whole=True)
-        made.learn(desk(), BOX, free, ~free)
-    made.learn(desk(), BOX, ~free, ~free)
+        place = made.compare(desk(), BOX, free, whole=True)
+        made.learn(desk(), BOX, free, place)
+    made.learn(desk(), BOX, ~free, place)
     return made
 
 
@@ -137,5 +137,5 @@ def test_noise_is_measured_where_the_picture_is_not_clipped():
         blocks = noise.normal(0, 0.6, (2, HEIGHT // 10, (WIDTH - 100) // 10))
         picture[1:, :, 100:] += blocks.repeat(10, axis=1).repeat(10, axis=2)
         place = made.compare(picture, BOX, free, whole=True)
-        made.learn(picture, BOX, free, place.changed)
+        made.learn(picture, BOX, free, place)
     assert np.count_nonzero(place.changed) < 0.005 * place.changed.size
