@@ -16,6 +16,7 @@ from app.ui.contact_sheets import save
 from characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
 from characters.rendering import SceneCharacter, Softness, Stage, create_context
 from characters.rendering.camera_picture.haze import haze_table
+from characters.rendering.camera_picture.light import LINEAR_FROM_SRGB
 from tools.captions import framed
 from tracking import CubeControls, CubeGestures, CubeState, CubeTracker, Frame
 from tracking.synthetic import SyntheticSource, open_synthetic
@@ -47,6 +48,9 @@ CROP = (slice(150, 560), slice(440, 1010))
 GLARE = Softness(0.0, 0.0, haze=0.3, paper=0.75)
 """Haze of the lens that sees the scene of the second picture."""
 
+DIM = 0.08
+"""Light in the dark room of the third picture, relative to that in the others."""
+
 MAX_BYTES = 300_000
 """Size of a file."""
 
@@ -70,6 +74,12 @@ def main() -> None:
             for chosen, text in zip(ROWS[2:], ("through a hazy lens", "softness"), strict=True)
         ]
         _save([np.hstack(parts)], "haze.jpg")
+        dimmed = [(_dimmed(frame), state, controls) for frame, state, controls in seen]
+        parts = [
+            framed(_drawn(context, source, each, ROWS[-1])[CROP], text)
+            for each, text in ((seen, "a lit room"), (dimmed, "a dark room"))
+        ]
+        _save([np.hstack(parts)], "dark.jpg")
 
 
 def _save(rows: Sequence[Image], name: str) -> None:
@@ -82,6 +92,12 @@ def _hazed(frame: Frame) -> Frame:
     """Return a frame as a hazy lens shows it."""
     table = haze_table(GLARE)
     assert table is not None
+    return replace(frame, image=table[frame.image])
+
+
+def _dimmed(frame: Frame) -> Frame:
+    """Return a frame as a camera with the same exposure shows it in a dark room."""
+    table = np.searchsorted(LINEAR_FROM_SRGB, DIM * LINEAR_FROM_SRGB).astype(np.uint8)
     return replace(frame, image=table[frame.image])
 
 
