@@ -1,7 +1,8 @@
 #version 330 core
 
 // Linear blend skinning. The palette has one row for each joint: the first three rows of
-// table_from_bind. Normals are transformed by the cofactors, which are right under any scale.
+// table_from_bind; most vertices follow one joint or two, so that the loop ends with the last that
+// counts. Normals are transformed by the cofactors, which are right under any scale.
 
 uniform sampler2D palette;
 
@@ -15,12 +16,16 @@ out vec3 skinned_normal;
 
 void main() {
     vec4 x = vec4(0.0), y = vec4(0.0), z = vec4(0.0);
-    for (int i = 0; i < 4; ++i) {
-        int joint = int(joints[i]);
-        x += weights[i] * texelFetch(palette, ivec2(0, joint), 0);
-        y += weights[i] * texelFetch(palette, ivec2(1, joint), 0);
-        z += weights[i] * texelFetch(palette, ivec2(2, joint), 0);
-    }
+    uvec4 left = joints;
+    vec4 shares = weights;
+    do {
+        int joint = int(left.x);
+        x += shares.x * texelFetch(palette, ivec2(0, joint), 0);
+        y += shares.x * texelFetch(palette, ivec2(1, joint), 0);
+        z += shares.x * texelFetch(palette, ivec2(2, joint), 0);
+        left = left.yzwx;
+        shares = vec4(shares.yzw, 0.0);
+    } while (shares != vec4(0.0));
     vec4 point = vec4(position, 1.0);
     skinned_position = vec3(dot(x, point), dot(y, point), dot(z, point));
     vec3 turned = vec3(
