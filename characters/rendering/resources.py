@@ -12,13 +12,7 @@ from characters.rendering.camera_picture.haze import haze_table
 from characters.rendering.camera_picture.light import Light
 from characters.rendering.camera_picture.occlusion import corners_of, hidden_by_cube
 from characters.rendering.geometry.character_cache import CharacterInstance
-from characters.rendering.projection import (
-    NEAR_M,
-    Rectangle,
-    bounding_rectangle,
-    clip_from_camera,
-    project,
-)
+from characters.rendering.projection import NEAR_M, Rectangle, bounding_rectangle, clip_from_camera
 from characters.rendering.scene import Box, Scene, Softness
 from characters.rendering.target import LayerTarget, TargetCache
 from characters.skeleton.pose import Array
@@ -162,17 +156,6 @@ class FrameResources:
     def area_of(self, points: Array) -> Rectangle | None:
         """Return the area of the picture around points (n, 3) of the table frame, or None."""
         return bounding_rectangle(points, self.camera_matrix, self.camera_from_table, self.size)
-
-    def pixels_of(self, points: Array) -> Array | None:
-        """Return where points (n, 3) of the table frame are in the picture, (n, 2) [px].
-
-        The result is None if some of them are not before the camera.
-        """
-        pose = self.camera_from_table
-        in_camera = points @ pose[:3, :3].T + pose[:3, 3]
-        if in_camera[:, 2].min() < NEAR_M:
-            return None
-        return project(in_camera, self.camera_matrix)
 
     @property
     def on_table(self) -> tuple[CharacterInstance, ...]:

@@ -42,8 +42,8 @@ MAX_SIDE_TEXELS, RIM_TEXELS = 2048, 4
 further."""
 
 SAME_PX = 0.05
-"""Paint is not bent again while no corner of its image has moved further [px]: the table trembles
-less than that where the cube that shows it rests."""
+"""Paint is not bent again while the camera sees no corner of its image further off [px]: the table
+trembles less than that where the cube that shows it rests."""
 
 
 class FloorPathPass(RenderPass):
@@ -74,8 +74,8 @@ class _SeenPaint:
     image: TableImage
     """The paint on the table."""
 
-    corners: Array | None
-    """Where the corners of the image were in the picture, (4, 2) [px]; None if some were not."""
+    rays: Array
+    """Where the camera saw the corners of the image, see `_rays`, (4, 3) [px]."""
 
     area: Rectangle | None
     """The area of the picture around it."""
@@ -121,22 +121,26 @@ def _seen_paint(
     image = (
         known.image if known else _painted(places, path.closed, numbers == path.highlight, texel)
     )
-    corners = frame.pixels_of(image.corners)
-    if known is not None and _are_same(corners, known.corners):
+    rays = _rays(frame, image.corners)
+    if known is not None and np.abs(rays - known.rays).max() < SAME_PX:
         return known
     area, share = frame.area_of(image.corners), np.zeros((0, 0), np.uint8)
     if area is not None:
         share = image.in_picture(frame, area, beyond=0)
     pixels = np.stack(np.nonzero(share))
     share_of_pixels = share[tuple(pixels)] / np.float32(255.0)
-    return _SeenPaint(key, image, corners, area, pixels.astype(np.int32), share_of_pixels)
+    return _SeenPaint(key, image, rays, area, pixels.astype(np.int32), share_of_pixels)
 
 
-def _are_same(corners: Array | None, before: Array | None) -> bool:
-    """Return whether the camera sees paint where it saw it before."""
-    if corners is None or before is None:
-        return False
-    return bool(np.abs(corners - before).max() < SAME_PX)
+def _rays(frame: FrameResources, points: Array) -> Array:
+    """Return the directions in which the camera sees points (n, 3) of the table, behind it too.
+
+    They are unit vectors times the camera matrix, (n, 3) [px].
+    """
+    pose = frame.camera_from_table
+    in_camera = points @ pose[:3, :3].T + pose[:3, 3]
+    distance = np.linalg.norm(in_camera, axis=1, keepdims=True)
+    return np.asarray(in_camera / np.maximum(distance, 1e-9) @ frame.camera_matrix.T)
 
 
 def _texel(frame: FrameResources, points: Array) -> float:

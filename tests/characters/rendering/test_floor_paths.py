@@ -31,21 +31,33 @@ def test_a_path_is_seen_from_where_the_camera_is_now(ctx, stage, view):
         fresh.release()
 
 
-def test_a_path_is_bent_again_only_when_it_is_seen_to_move(stage, view, monkeypatch):
-    bent = []
-    in_picture = TableImage.in_picture
+@pytest.fixture
+def bent(monkeypatch):
+    """What was asked for each time that an image on the table was bent."""
+    calls, in_picture = [], TableImage.in_picture
 
-    def counted(*given, **named):
-        bent.append(given)
+    def noted(*given, **named):
+        calls.append(given)
         return in_picture(*given, **named)
 
-    monkeypatch.setattr(TableImage, "in_picture", counted)
+    monkeypatch.setattr(TableImage, "in_picture", noted)
+    return calls
+
+
+def test_a_path_is_bent_again_only_when_it_is_seen_to_move(stage, view, bent):
     path = FloorPath(np.array([(-0.05, 0.0), (0.05, 0.02)]))
     for right_m, times in ((0.0, 1), (1e-6, 1), (2e-6, 1), (1e-3, 2), (1e-3, 2)):
         moved = view.camera_from_table.copy()
         moved[0, 3] += right_m
         stage.draw(replace(view, camera_from_table=moved), [], [path])
         assert len(bent) == times
+
+
+def test_a_still_path_that_begins_behind_the_camera_is_bent_once(stage, view, bent):
+    path = FloorPath(np.array([(0.0, 0.0), (0.0, 2.0)]))
+    for _ in range(3):
+        stage.draw(view, [], [path])
+    assert len(bent) == 1
 
 
 def spot(number):
