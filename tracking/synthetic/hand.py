@@ -20,7 +20,6 @@ BLEND_DEPTH_M = 0.0035
 MIN_WEIGHT = np.float32(1e-36)
 """Added to weights, so that an empty sum can be divided by."""
 
-
 AXIS_SHARES = np.linspace(0.0, 1.0, 25)[:, None]
 """Points along the axis of a capsule by which the region around it is found: a lens bends what is
 far outside of the image into it, so that the ends alone do not do."""
@@ -105,13 +104,18 @@ def hand_at(position: Array, edge: float, grip: float) -> Hand:
 def hand_region(camera: CameraRays, hand: Hand) -> PixelRegion:
     """Return the region of the image that the hand covers."""
     parts = hand.skin + hand.sleeve
-    points = np.concatenate([part.start + AXIS_SHARES * (part.end - part.start) for part in parts])
+    points = np.concatenate([_axis(part.start, part.end) for part in parts])
     in_camera = camera.from_table(points)
     if (in_camera[:, 2] < 0.05).any():
         return PixelRegion(0, 0, 0, 0)
     focal = camera.intrinsics.matrix[0, 0]
     reach = max(max(part.radii) for part in parts) * focal / float(in_camera[:, 2].min()) + 3
     return camera.region_around(camera.pixels(in_camera), reach)
+
+
+def _axis(start: Array, end: Array) -> Array:
+    """Return points from one end of an axis to the other, both (3,), (n, 3)."""
+    return np.asarray(start + AXIS_SHARES * (end - start))
 
 
 def draw_hand(
@@ -219,8 +223,8 @@ class _CapsuleLayer:
 
     def _box(self, ends: Array, radii: tuple[float, float]) -> tuple[slice, slice]:
         margin = max(radii) * self._focal / float(ends[:, 2].min()) + 2
-        axis = self._camera.pixels(ends[0] + AXIS_SHARES * (ends[1] - ends[0]))
-        part, whole = self._camera.region_around(axis, margin), self._region
+        axis, whole = self._camera.pixels(_axis(*ends)), self._region
+        part = self._camera.region_around(axis, margin)
         height, width = self.cover.shape
         rows = np.clip((part.y - whole.y, part.bottom - whole.y), 0, height).tolist()
         columns = np.clip((part.x - whole.x, part.right - whole.x), 0, width).tolist()
