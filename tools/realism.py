@@ -64,10 +64,8 @@ def main() -> None:
         context = create_context()
         closing.callback(context.release)
         captions = ["off", *(" + ".join(chosen) for chosen in ROWS[1:])]
-        parts = [
-            framed(_drawn(context, source, seen, chosen)[CROP], text)
-            for chosen, text in zip(ROWS, captions, strict=True)
-        ]
+        lit = [_drawn(context, source, seen, chosen)[CROP] for chosen in ROWS]
+        parts = [framed(each, text) for each, text in zip(lit, captions, strict=True)]
         _save([np.hstack(parts[:2]), np.hstack(parts[2:])], "realism.jpg")
         parts = [
             framed(_drawn(context, source, hazed, chosen)[CROP], text)
@@ -75,10 +73,8 @@ def main() -> None:
         ]
         _save([np.hstack(parts)], "haze.jpg")
         dimmed = [(_dimmed(frame), state, controls) for frame, state, controls in seen]
-        parts = [
-            framed(_drawn(context, source, each, ROWS[-1])[CROP], text)
-            for each, text in ((seen, "a lit room"), (dimmed, "a dark room"))
-        ]
+        dark = _drawn(context, source, dimmed, ROWS[-1])[CROP]
+        parts = [framed(lit[-1], "a lit room"), framed(dark, "a dark room")]
         _save([np.hstack(parts)], "dark.jpg")
 
 
