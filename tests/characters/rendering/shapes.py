@@ -1,4 +1,4 @@
-"""Shapes that stand still, to measure light on."""
+"""Shapes that stand still, to measure light on, and a path."""
 
 from dataclasses import dataclass
 
@@ -6,8 +6,15 @@ import numpy as np
 
 from characters.control.command import PosedCharacter
 from characters.model.mesh import Material, Mesh
-from characters.rendering import SceneCharacter
+from characters.rendering import FloorPath, SceneCharacter
 from characters.skeleton.pose import Pose, Skeleton
+
+LOOP = FloorPath(
+    np.stack([0.13 * np.cos(np.arange(8) * 0.7854), 0.08 * np.sin(np.arange(8) * 0.7854)], axis=1),
+    closed=True,
+    highlight=2,
+)
+"""A closed path of eight points around the pawn's place, the third of them highlighted."""
 
 JOINT = Skeleton(("middle",), (-1,), Pose(np.zeros((1, 3)), np.eye(4)[3:]))
 

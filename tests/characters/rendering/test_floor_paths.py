@@ -11,12 +11,7 @@ from characters.rendering import FloorPath, Stage
 from characters.rendering.passes import floor_paths
 from characters.rendering.passes.floor_paths import MAX_SIDE_TEXELS
 from characters.rendering.passes.table_image import TableImage
-
-LOOP = FloorPath(
-    np.stack([0.13 * np.cos(np.arange(8) * 0.7854), 0.08 * np.sin(np.arange(8) * 0.7854)], axis=1),
-    closed=True,
-    highlight=2,
-)
+from tests.characters.rendering.shapes import LOOP
 
 
 def test_a_path_is_seen_from_where_the_camera_is_now(ctx, stage, view):

@@ -12,7 +12,6 @@ from characters.errors import CharacterError
 from characters.rendering import (
     QUALITIES,
     Cover,
-    FloorPath,
     MeasuredLight,
     SceneCharacter,
     Stage,
@@ -20,13 +19,9 @@ from characters.rendering import (
 )
 from characters.rendering.passes.hand_occlusion import HAND_DEPTH_M
 from characters.rendering.passes.render_pass import RenderPass
+from tests.characters.rendering.shapes import LOOP
 
 GOLDEN = Path(__file__).parent / "golden"
-LOOP = FloorPath(
-    np.stack([0.13 * np.cos(np.arange(8) * 0.7854), 0.08 * np.sin(np.arange(8) * 0.7854)], axis=1),
-    closed=True,
-    highlight=2,
-)
 
 
 def assert_golden(name, picture, regenerate, max_difference=24, max_share=0.004, max_mean=0.6):
