@@ -12,7 +12,7 @@ from tracking.geometry.arrays import Array
 from tracking.geometry.state import CubeControls, CubeState
 from tracking.gestures.detectors import DETECTORS
 from tracking.gestures.stillness import StillnessDetector
-from tracking.gestures.table import SIDE_NORMALS, TableEstimator, TablePlane
+from tracking.gestures.table import ALL_NORMALS, SIDE_NORMALS, TableEstimator, TablePlane
 from tracking.gestures.turning import TurnCounter, clockwise_angle, clockwise_angle_of, wrap_angle
 
 MAX_REST_TILT = np.deg2rad(10.0)
@@ -81,7 +81,7 @@ class CubeGestures:
         self._stillness = StillnessDetector()
         self._detectors = {name: make() for name, make in DETECTORS.items()}
         self._turns = TurnCounter()
-        self._positions: deque[tuple[float, Array]] = deque()
+        self._positions: deque[tuple[float, list[float]]] = deque()
         self._last: tuple[float, Array] | None = None
         self._lifted_since: float | None = None
         self._handled = True
@@ -155,9 +155,8 @@ class CubeGestures:
         table_from_camera = se3.inverse(table.camera_from_table)
         table_from_cube = table_from_camera @ pose
         up = table_from_cube[1, :3]
-        cosines = {name: float(up @ normal) for name, normal in SIDE_NORMALS.items()}
-        top = max(cosines, key=lambda name: cosines[name])
-        tilt = _angle(cosines[top])
+        cosine, top = max(zip((ALL_NORMALS @ up).tolist(), SIDE_NORMALS, strict=True))
+        tilt = _angle(cosine)
         if last_top is not None and tilt > MAX_TOP_TILT:
             top = last_top
         position = table_from_cube[[0, 2], 3]
@@ -181,7 +180,7 @@ class CubeGestures:
     def _remember(self, now: float, centre: Array) -> None:
         if self._positions and now - self._positions[-1][0] > MAX_GAP_S:
             self._positions.clear()
-        self._positions.append((now, centre))
+        self._positions.append((now, centre.tolist()))
         # One position older than the window stays, so that the window is always covered.
         while len(self._positions) > 2 and now - self._positions[1][0] >= TRAVEL_WINDOW_S - 1e-9:
             self._positions.popleft()
@@ -191,7 +190,7 @@ class CubeGestures:
         if now - self._positions[0][0] < TRAVEL_WINDOW_S - 1e-9:
             return resting
         centre = self._positions[-1][1]
-        travel = max(float(np.linalg.norm(centre - there)) for _, there in self._positions)
+        travel = max(math.dist(centre, there) for _, there in self._positions)
         limit = MAX_SPEED_TO_KEEP_RESTING if resting else MAX_SPEED_TO_START_RESTING
         return travel < limit * TRAVEL_WINDOW_S
 

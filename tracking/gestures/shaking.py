@@ -1,5 +1,6 @@
 """Shakes: quick reversals of the hand."""
 
+import math
 from collections import deque
 
 import numpy as np
@@ -28,7 +29,7 @@ class ShakeDetector:
         """Return whether the velocity completes a shake."""
         for kind, limit in enumerate(MIN_SPEED):
             part = velocity[3 * kind : 3 * kind + 3]
-            if float(np.linalg.norm(part)) < limit:
+            if math.hypot(*part.tolist()) < limit:
                 continue
             before = self._last_fast[kind]
             if before is not None and float(part @ before) < 0:

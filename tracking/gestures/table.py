@@ -57,6 +57,9 @@ class Rest:
 SIDE_NORMALS = {name: np.cross(*axes).astype(np.float64) for name, axes in FACE_AXES.items()}
 """Outward normals of the six sides in the cube frame, whether or not they carry a marker."""
 
+ALL_NORMALS = np.stack(list(SIDE_NORMALS.values()))
+"""All of them, (6, 3)."""
+
 
 def rest_of(camera_from_cube: Array, edge: float, up: Array | None = None) -> Rest | None:
     """Return where a resting cube stands; None where no side of it can be up.
@@ -64,7 +67,7 @@ def rest_of(camera_from_cube: Array, edge: float, up: Array | None = None) -> Re
     Without a table (`up` is None) only sides that face the camera can be up.
     """
     rotation, centre = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
-    normals = np.stack(list(SIDE_NORMALS.values())) @ rotation.T
+    normals = ALL_NORMALS @ rotation.T
     cosines = normals @ (PRIOR_UP if up is None else up)
     if up is None:
         tops = centre + normals * (edge / 2)

@@ -1,5 +1,7 @@
 """Where a cube at a pose appears in the image, and how large."""
 
+import math
+
 import numpy as np
 
 from tracking.cube.marker import cell_size
@@ -41,9 +43,8 @@ class Footprint:
 
     def blur_extent(self, blur_motion: Array) -> float:
         """Return how far an edge of the cube moves at most during the exposure [cells]."""
-        shift = float(np.linalg.norm(blur_motion[:3]))
-        turn = float(np.linalg.norm(blur_motion[3:]))
-        return (shift + self.half_edge * turn) / self.cell
+        x, y, z, *turn = blur_motion.tolist()
+        return (math.hypot(x, y, z) + self.half_edge * math.hypot(*turn)) / self.cell
 
     def crop(self, image: Image, camera_from_cube: Array, tone: Floats) -> Patch | None:
         """Do `Patch.crop` with the region of the cube at a pose; None where it is not in view."""

@@ -56,15 +56,16 @@ class Rest:
         return se3.moved(self.first, mean), np.asarray(np.mean(self.noises, axis=0) / count)
 
     def _moves(self) -> bool:
-        """Whether the poses have a slope, or the last leaves the others, by more than noise."""
-        offsets, noise = np.array(self.offsets), np.mean(self.noises, axis=0)
-        times = np.array(self.timestamps) - np.mean(self.timestamps)
+        """Whether the last pose leaves the others, or all have a slope, by more than noise."""
+        offsets, noises = np.array(self.offsets), np.array(self.noises)
+        others = len(offsets) - 1
+        leap = offsets[-1] - offsets[:-1].sum(axis=0) / others
+        leap_noise = noises[-1] + noises[:-1].sum(axis=0) / others**2
+        if leap @ np.linalg.solve(leap_noise, leap) > MAX_MOTION_CHI2:
+            return True
+        times = np.array(self.timestamps)
+        times -= times.mean()
         spread = float(times @ times)
         slope = times @ offsets / spread
-        others = len(offsets) - 1
-        leap = offsets[-1] - offsets[:-1].mean(axis=0)
-        leap_noise = self.noises[-1] + np.mean(self.noises[:-1], axis=0) / others
-        return bool(
-            slope @ np.linalg.solve(noise / spread, slope) > MAX_MOTION_CHI2
-            or leap @ np.linalg.solve(leap_noise, leap) > MAX_MOTION_CHI2
-        )
+        noise = noises.mean(axis=0) / spread
+        return bool(slope @ np.linalg.solve(noise, slope) > MAX_MOTION_CHI2)

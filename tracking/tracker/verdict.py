@@ -80,10 +80,11 @@ class FollowedPoseJudge:
         Once the tilt is known it stays known until the face comes square to the camera, where one
         pose can become the other. `image` is (H, W, 3) BGR, `tone` the light for each grey value.
         """
-        settled, unsettled = (replace(past, tilt_settled=known) for known in (True, False))
-        ambiguous = Verdict(candidate, "ambiguous", past)
+        settled = replace(past, tilt_settled=True)
         if len(candidate.faces) != 1:
             return Verdict(candidate, "", settled)
+        unsettled = replace(past, tilt_settled=False)
+        ambiguous = Verdict(candidate, "ambiguous", past)
         mirrored = self._edges.mirrored_pose(candidate)
         planar_ambiguity_angle = se3.angle_between(candidate.camera_from_cube, mirrored)
         if candidate.blur_motion is not None:
@@ -131,9 +132,8 @@ def _better(one: Candidate, other: Candidate) -> Candidate | None:
 
 def is_uncertain(covariance: Array) -> bool:
     """Whether a pose may be off by more than a person would accept."""
-    shift = np.linalg.eigvalsh(covariance[:3, :3])[-1]
-    turn = np.linalg.eigvalsh(covariance[3:, 3:])[-1]
-    return bool(shift > MAX_POSE_SPREAD[0] ** 2 or turn > MAX_POSE_SPREAD[1] ** 2)
+    largest = np.linalg.eigvalsh([covariance[:3, :3], covariance[3:, 3:]])[:, -1]
+    return bool((largest > np.square(MAX_POSE_SPREAD)).any())
 
 
 def is_unambiguous(candidates: Sequence[Candidate]) -> bool:

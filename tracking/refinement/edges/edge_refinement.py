@@ -138,7 +138,7 @@ class EdgeRefiner:
         model = profiles.model
         numbers = profiles.numbers
         inner = ~model.outline[numbers]
-        face = model.face[numbers]
+        face, lines = model.face[numbers], model.line[numbers[kept]]
         count = len(self._faces.names)
         wanted = np.bincount(face, minlength=count)
         found = np.bincount(face[kept], minlength=count)
@@ -147,13 +147,13 @@ class EdgeRefiner:
             covariance(step, model.line[numbers[step.strong]], profiles.pixels[step.strong]),
             float(np.sqrt((step.robust * step.residual**2).sum() / step.robust.sum())),
             len(kept) / len(numbers),
-            len(np.unique(model.line[numbers[kept]])),
+            len(run_starts(lines)),
             float(np.count_nonzero(inner[kept])) / max(1, int(np.count_nonzero(inner))),
             {
                 self._faces.names[number]: float(found[number] / wanted[number])
                 for number in np.flatnonzero(wanted > 10).tolist()
             },
-            *_sharpness(step.measured, kept, model.line[numbers[kept]]),
+            *_sharpness(step.measured, kept, lines),
             FittedEdges(profiles, step),
         )
 
