@@ -1,7 +1,7 @@
 """Levels of detail: fewer triangles for a character that is small in the picture."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -10,15 +10,19 @@ from numpy.typing import NDArray
 
 from characters.model.mesh import Material
 from characters.rendering.geometry.edge_collapse import Tolerance, collapsed_levels
+from characters.rendering.geometry.places import places_of
 from characters.rendering.geometry.vertices import CharacterVertices
 from characters.rendering.projection import is_invertible
 
 LEVEL_TOLERANCES = (
-    *map(Tolerance, (1 / 850, 1 / 600, 1 / 425, 1 / 300, 1 / 200)),
-    Tolerance(1 / 170, thickness_share=0.3),
+    *map(Tolerance, (1 / 850, 1 / 600, 1 / 500, 1 / 350, 1 / 240)),
+    Tolerance(1 / 170, thickness_share=0.2),
 )
 """Those of the coarser levels, with distances as shares of the character's largest side. In the
 coarsest one, small parts are not looked at closely."""
+
+SHAPE_TOLERANCE = Tolerance(1 / 150, thickness_share=0.3)
+"""The same for what casts a shadow."""
 
 SIZE_HYSTERESIS = 1.15
 """Factor by which the size in the picture changes back before the level does."""
@@ -29,14 +33,14 @@ GROUP_TRIANGLES = 256
 MIN_TRIANGLES = 1500
 """Fewer triangles are drawn as they are: they cost little."""
 
-NORMAL_SCALE, COLOR_SCALE = 0.012, 0.02
+NORMAL_SCALE, COLOR_SCALE = 0.008, 0.02
 """Distance that counts as much as an error of 1 in a unit normal, or in a linear colour, as shares
 of the largest side."""
 
-JOINT_SCALE = 0.3
+JOINT_SCALE = 0.15
 """Distance that counts as much as weights that move the mean of a vertex's joints by 1 m [m]."""
 
-MORPH_SCALE = 1.0
+MORPH_SCALE = 0.5
 """Distance that counts as much as a displacement by morphs by 1 m [m]."""
 
 MORPH_FEATURES, MORPH_SEED = 3, 1
@@ -110,6 +114,36 @@ def with_levels(
     return vertices.reordered(order), tuple(levels)
 
 
+def shape_only(vertices: CharacterVertices) -> CharacterVertices:
+    """Return fewer triangles of the same vertices, of which no more than a shadow is seen."""
+    side = float(np.ptp(vertices.positions, axis=0).max())
+    if len(vertices.indices) < 3 * MIN_TRIANGLES or not side > 0.0:
+        return vertices
+    # One vertex stands for those at one place with one joint: colours and normals have no seams.
+    keys = places_of(vertices.positions) * (int(vertices.owners.max()) + 1) + vertices.owners
+    _, first, number = np.unique(keys[vertices.indices], return_index=True, return_inverse=True)
+    triangles = vertices.indices[first][number].reshape(-1, 3).astype(np.intp)
+    bones = _moving_joints(vertices)
+    tolerance = SHAPE_TOLERANCE._replace(distance=side * SHAPE_TOLERANCE.distance)
+    [stand] = collapsed_levels(vertices.positions, JOINT_SCALE * bones, triangles, [tolerance])
+    corners = stand[triangles]
+    kept = _are_whole(corners)
+    ends = np.cumsum([0, *(count // 3 for _, count in vertices.materials)])
+    return replace(
+        vertices,
+        indices=corners[kept].ravel().astype(np.uint32),
+        materials=tuple(
+            (material, 3 * int(np.count_nonzero(kept[start:end])))
+            for (material, _), (start, end) in zip(vertices.materials, pairwise(ends), strict=True)
+        ),
+    )
+
+
+def _are_whole(triangles: NDArray[np.integer[Any]]) -> NDArray[np.bool_]:
+    """Return which triangles (n, 3) have three different corners."""
+    return np.asarray((triangles != np.roll(triangles, 1, axis=1)).all(axis=1))
+
+
 def chosen_level(levels: Sequence[DetailLevel], last: int, max_error: float) -> int:
     """Return the number of the coarsest level with an error of at most `max_error` [m].
 
@@ -134,7 +168,7 @@ def _drawn(
     A triangle is dormant if all of its vertices are.
     """
     corners = stand[vertices.indices].reshape(-1, 3)
-    kept = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
+    kept = _are_whole(corners)
     if (stand == np.arange(len(stand))).all():
         kept[:] = True  # the finest level is as it was given
     ends = np.cumsum([0, *(count // 3 for _, count in vertices.materials)])

@@ -38,7 +38,7 @@ class Tolerance(NamedTuple):
     distance: float
     """Root mean square distance [m]."""
 
-    thickness_share: float = 0.1
+    thickness_share: float = 0.15
     """Largest distance as a share of how thick a part is: small parts stay, and stay above what
     they lie on."""
 

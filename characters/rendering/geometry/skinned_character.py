@@ -12,6 +12,7 @@ from characters.face.action_units import ActionUnits
 from characters.rendering.geometry.detail_levels import (
     LEVEL_TOLERANCES,
     chosen_level,
+    shape_only,
     with_levels,
 )
 from characters.rendering.geometry.edge_collapse import Tolerance
@@ -88,7 +89,8 @@ class SkinnedCharacter:
             for each, (_, again) in zip(leveled, splits, strict=True)
         ]
         indices = context.buffer(np.concatenate(drawn))
-        simplified, self._caster_runs = leveled[-1].simplified(SHADOW_CELLS, self._levels[-1].awake)
+        shape = shape_only(leveled[-1])
+        simplified, self._caster_runs = shape.simplified(SHADOW_CELLS, self._levels[-1].awake)
         caster_indices = context.buffer(simplified)
         self.skinned = context.buffer(reserve=RECORD_BYTES * len(vertices.positions))
         """Positions and normals in the table frame, 3 + 3 float32 for each vertex."""

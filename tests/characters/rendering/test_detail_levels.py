@@ -9,9 +9,15 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from characters import Character
+from characters.model.mesh import Mesh
 from characters.rendering import QUALITIES
 from characters.rendering.geometry.character_cache import PictureFineness
-from characters.rendering.geometry.detail_levels import DetailLevel, chosen_level, with_levels
+from characters.rendering.geometry.detail_levels import (
+    DetailLevel,
+    chosen_level,
+    shape_only,
+    with_levels,
+)
 from characters.rendering.geometry.edge_collapse import Tolerance, collapsed_levels
 from characters.rendering.geometry.places import CELL_SHARE, connected, places_of
 from characters.rendering.geometry.vertices import CharacterVertices
@@ -284,3 +290,38 @@ def test_a_character_without_levels_keeps_its_triangles(human):
     vertices, (finest,) = with_levels(given, tolerances=())
     before, after = given.positions[given.indices], vertices.positions[finest.indices]
     assert np.array_equal(np.sort(before.ravel()), np.sort(after.ravel()))
+
+
+@pytest.mark.parametrize("name", Character.bundled())
+def test_what_casts_a_shadow_is_as_large_in_all_directions(name):
+    given = CharacterVertices.of(Character.load(name).meshes)
+    shape = shape_only(given)
+    assert len(shape.indices) < 0.6 * len(given.indices)
+    assert sum(count for _, count in shape.materials) == len(shape.indices)
+    directions = np.random.default_rng(1).normal(size=(200, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    before, after = (
+        (given.positions[each.indices] @ directions.T).max(axis=0) for each in (given, shape)
+    )
+    assert np.abs(after - before).max() < 0.01 * np.ptp(given.positions)
+
+
+def test_what_moves_apart_is_not_joined_in_its_shadow():
+    positions, triangles = ball()
+    count = len(positions)
+    meshes = [
+        Mesh(
+            name="ball",
+            positions=positions,
+            normals=positions,
+            triangles=triangles.astype(np.uint32),
+            joints=np.full((count, 4), joint, np.uint16),
+            weights=np.tile(np.float32([1, 0, 0, 0]), (count, 1)),
+            inverse_bind=np.tile(np.eye(4), (2, 1, 1)),
+        )
+        for joint in (0, 1)
+    ]
+    shape = shape_only(CharacterVertices.of(meshes))
+    owners = shape.owners[shape.indices].reshape(-1, 3)
+    assert (owners == owners[:, :1]).all()
+    assert np.bincount(owners[:, 0]).tolist() == [len(owners) / 2] * 2
