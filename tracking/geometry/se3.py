@@ -56,7 +56,11 @@ def rotation(vector: Array) -> Array:
     xy, yz, zx = versine * x * y, versine * y * z, versine * z * x
     x, y, z = sine * x, sine * y, sine * z
     return np.array(
-        [[1 - yy - zz, xy - z, zx + y], [xy + z, 1 - zz - xx, yz - x], [zx - y, yz + x, 1 - xx - yy]]
+        [
+            [1 - yy - zz, xy - z, zx + y],
+            [xy + z, 1 - zz - xx, yz - x],
+            [zx - y, yz + x, 1 - xx - yy],
+        ]
     )
 
 

@@ -36,9 +36,11 @@ def hidden_by_cube(box: Box, matrix: Array, area: Rectangle) -> NDArray[np.uint8
     x = np.arange(area.x, area.x + area.width, dtype=np.float32)
     y = np.arange(area.y, area.y + area.height, dtype=np.float32)[:, None]
     inside = np.ones((area.height, area.width), np.float32)
+    from_line = np.empty_like(inside)
     for a, b, c in np.array(_outline(box, matrix), np.float32):
-        np.minimum(inside, a * x + (b * y + (c + np.float32(0.5))), out=inside)
-    return np.asarray(np.rint(255.0 * np.maximum(inside, 0.0)), np.uint8)
+        np.add(a * x, b * y + (c + np.float32(0.5)), out=from_line)
+        np.minimum(inside, from_line, out=inside)
+    return np.asarray(cv2.convertScaleAbs(np.maximum(inside, 0.0), alpha=255.0), np.uint8)
 
 
 def camera_from_unit_cube(box: Box) -> Array:

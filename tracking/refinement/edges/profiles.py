@@ -164,14 +164,14 @@ def place_profiles(
     good = (cell > MIN_CELL_PX) & (patch.border_distance(pixels) > reach + 1) & (blur < cell)
     good &= model.to_end * length > END_CLEARANCE_PX
     found = np.flatnonzero(good)
-    normals = normals[:, found]
+    normals = normals.take(found, axis=1)
     return EdgeProfiles(
         model,
         found,
-        pixels.T[:, found].T,
+        pixels.T.take(found, axis=1).T,
         normals.T,
-        slopes[:, found].T,
-        None if bends is None else (normals * bends.T[:, found]).sum(axis=0),
+        slopes.take(found, axis=1).T,
+        None if bends is None else (normals * bends.T.take(found, axis=1)).sum(axis=0),
         k1,
         reach[found],
         blur_motion,
@@ -191,18 +191,15 @@ def measure_profiles(
     widths of step and edge do to the offset is undone, so that one measurement is nearly enough.
     """
     taps = UNIT_TAPS * profiles.reach.astype(np.float32)
-    x, y = (
-        (pixels + shifts * normals - first).astype(np.float32) + taps * normals.astype(np.float32)
-        for pixels, normals, first in zip(
-            profiles.pixels.T, profiles.normals.T, (patch.left, patch.top), strict=True
-        )
-    )
-    values = patch.sample_local(x, y)
+    normals = profiles.normals.T
+    middles = profiles.pixels.T + shifts * normals - np.array([[patch.left], [patch.top]])
+    (x, y), (across_x, across_y) = middles.astype(np.float32), normals.astype(np.float32)
+    values = patch.sample_local(x + taps * across_x, y + taps * across_y)
     ramp = (RAMP_WIDTH * profiles.blur) ** 2
     width = np.minimum(np.sqrt(width_px**2 + ramp), MAX_WIDTH * profiles.reach).astype(np.float32)
     step = np.tanh(taps / width) / 2
     slope = (0.25 - step * step) * (2 / width)
-    slope -= slope.mean(axis=0)
+    slope -= slope.sum(axis=0) / TAPS_PER_PROFILE
     contrast = _dot(step, values) / _dot(step, step)
     energy = _dot(slope, slope)
     safe = np.where(np.abs(contrast) > 1, contrast, 1)
@@ -215,7 +212,7 @@ def measure_profiles(
     half = TAPS_PER_PROFILE // 2
     rise = (values[half + 1] - values[half - 1]).astype(np.float64)
     fitted = contrast * (step[half + 1] - step[half - 1])
-    level = values.mean(axis=0).astype(np.float64)
+    level = values.sum(axis=0, dtype=np.float64) / TAPS_PER_PROFILE
     return EdgeMeasurements(offset, contrast, level, 1 / variance, rise, fitted)
 
 
