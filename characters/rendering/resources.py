@@ -135,7 +135,8 @@ class FrameResources:
     @cached_property
     def camera_position(self) -> Array:
         """The camera in the table frame, (3,) [m]."""
-        return np.asarray(np.linalg.inv(self.camera_from_table)[:3, 3], float)
+        rotation, origin = self.camera_from_table[:3, :3], self.camera_from_table[:3, 3]
+        return np.asarray(-origin @ rotation, float)
 
     @cached_property
     def table_plane(self) -> Array:

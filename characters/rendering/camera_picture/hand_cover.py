@@ -1,6 +1,7 @@
 """What a hand covers of the picture."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -48,9 +49,15 @@ class PictureCover:
             borderMode=cv2.BORDER_CONSTANT,
         )
         if self.cover.slope != 1.0:
-            levels = (np.arange(256) - 128) * self.cover.slope + 128
-            found = cv2.LUT(found, np.clip(levels, 0, 255).astype(np.uint8))
+            found = cv2.LUT(found, _steeper(self.cover.slope))
         return np.asarray(found, np.uint8)
+
+
+@lru_cache(maxsize=4)
+def _steeper(slope: float) -> NDArray[np.uint8]:
+    """Return what each share becomes where it rises more steeply through a half, (256,)."""
+    levels = (np.arange(256) - 128) * slope + 128
+    return np.asarray(np.clip(levels, 0, 255), np.uint8)
 
 
 def cropped(cover: Cover) -> Cover:

@@ -279,8 +279,10 @@ def _blurred_sum(
     total: NDArray[np.float32] = np.zeros(covered.shape[:2], np.float32)
     for level, deviation, weight in zip(cv2.split(covered), deviations, weights, strict=True):
         kernel = _gaussian_kernel(texels_per_height * deviation)
-        soft = cv2.sepFilter2D(level, cv2.CV_32F, kernel, kernel, borderType=cv2.BORDER_REPLICATE)
-        total += np.float32(weight / 255.0) * soft
+        weighted = np.float32(weight / 255.0) * kernel
+        total += cv2.sepFilter2D(
+            level, cv2.CV_32F, kernel, weighted, borderType=cv2.BORDER_REPLICATE
+        )
     return total
 
 

@@ -3,6 +3,7 @@
 They are bent in memory: a software driver takes several times as long for it as OpenCV does.
 """
 
+import math
 from dataclasses import dataclass
 
 import cv2
@@ -58,9 +59,12 @@ class TableImage:
         )
         if colored:
             bent = cv2.cvtColor(bent, cv2.COLOR_BGRA2BGR)
-        depth_row = np.linalg.inv(pixel_from_table)[2]
-        corners = np.array([(x, y, 1.0) for x in (0, area.width) for y in (0, area.height)])
-        if (corners @ depth_row <= 0.0).any():
+        # One over the depth of the table is linear in column and row: a row of the inverse matrix.
+        (a, b, c), (d, e, f), (g, h, i) = pixel_from_table.tolist()
+        row = d * h - e * g, b * g - a * h, a * e - b * d
+        sign = math.copysign(1.0, row[0] * c + row[1] * f + row[2] * i)
+        across, down, first = (sign * each for each in row)
+        if first + min(across * area.width, 0.0) + min(down * area.height, 0.0) <= 0.0:
             x, y = np.arange(area.width), np.arange(area.height)[:, None]
-            bent[depth_row[0] * x + depth_row[1] * y + depth_row[2] <= 0.0] = beyond
+            bent[across * x + down * y + first <= 0.0] = beyond
         return np.asarray(bent, np.uint8)

@@ -316,7 +316,7 @@ def test_what_moves_apart_is_not_joined_in_its_shadow():
             normals=positions,
             triangles=triangles.astype(np.uint32),
             joints=np.full((count, 4), joint, np.uint16),
-            weights=np.tile(np.float32([1, 0, 0, 0]), (count, 1)),
+            weights=np.tile(np.array([1, 0, 0, 0], np.float32), (count, 1)),
             inverse_bind=np.tile(np.eye(4), (2, 1, 1)),
         )
         for joint in (0, 1)
@@ -324,4 +324,4 @@ def test_what_moves_apart_is_not_joined_in_its_shadow():
     shape = shape_only(CharacterVertices.of(meshes))
     owners = shape.owners[shape.indices].reshape(-1, 3)
     assert (owners == owners[:, :1]).all()
-    assert np.bincount(owners[:, 0]).tolist() == [len(owners) / 2] * 2
+    assert np.bincount(owners[:, 0]).tolist() == [len(owners) // 2] * 2
