@@ -14,15 +14,11 @@ from characters.rendering.geometry.places import places_of
 from characters.rendering.geometry.vertices import CharacterVertices
 from characters.rendering.projection import is_invertible
 
-LEVEL_TOLERANCES = (
-    *map(Tolerance, (1 / 850, 1 / 600, 1 / 500, 1 / 350, 1 / 240)),
-    Tolerance(1 / 170, thickness_share=0.2),
-)
-"""Those of the coarser levels, with distances as shares of the character's largest side. In the
-coarsest one, small parts are not looked at closely."""
+LEVEL_TOLERANCES = tuple(map(Tolerance, (1 / 850, 1 / 600, 1 / 500, 1 / 350, 1 / 240, 1 / 170)))
+"""Those of the coarser levels, with distances as shares of the character's largest side."""
 
 SHAPE_TOLERANCE = Tolerance(1 / 150, thickness_share=0.3)
-"""The same for what casts a shadow."""
+"""The same for what casts a shadow; small parts are not looked at closely."""
 
 SIZE_HYSTERESIS = 1.15
 """Factor by which the size in the picture changes back before the level does."""
