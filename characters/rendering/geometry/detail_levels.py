@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from characters.model.mesh import Material
 from characters.rendering.geometry.edge_collapse import Tolerance, collapsed_levels
-from characters.rendering.geometry.places import places_of
+from characters.rendering.geometry.places import are_whole, places_of
 from characters.rendering.geometry.vertices import CharacterVertices
 from characters.rendering.projection import is_invertible
 
@@ -123,7 +123,7 @@ def shape_only(vertices: CharacterVertices) -> CharacterVertices:
     tolerance = SHAPE_TOLERANCE._replace(distance=side * SHAPE_TOLERANCE.distance)
     [stand] = collapsed_levels(vertices.positions, JOINT_SCALE * bones, triangles, [tolerance])
     corners = stand[triangles]
-    kept = _are_whole(corners)
+    kept = are_whole(corners)
     ends = np.cumsum([0, *(count // 3 for _, count in vertices.materials)])
     return replace(
         vertices,
@@ -133,11 +133,6 @@ def shape_only(vertices: CharacterVertices) -> CharacterVertices:
             for (material, _), (start, end) in zip(vertices.materials, pairwise(ends), strict=True)
         ),
     )
-
-
-def _are_whole(triangles: NDArray[np.integer[Any]]) -> NDArray[np.bool_]:
-    """Return which triangles (n, 3) have three different corners."""
-    return np.asarray((triangles != np.roll(triangles, 1, axis=1)).all(axis=1))
 
 
 def chosen_level(levels: Sequence[DetailLevel], last: int, max_error: float) -> int:
@@ -164,7 +159,7 @@ def _drawn(
     A triangle is dormant if all of its vertices are.
     """
     corners = stand[vertices.indices].reshape(-1, 3)
-    kept = _are_whole(corners)
+    kept = are_whole(corners)
     if (stand == np.arange(len(stand))).all():
         kept[:] = True  # the finest level is as it was given
     ends = np.cumsum([0, *(count // 3 for _, count in vertices.materials)])

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.geometry.places import connected, places_of
+from characters.rendering.geometry.places import are_whole, connected, places_of
 from characters.rendering.geometry.quadrics import (
     Floats,
     Indices,
@@ -124,8 +124,7 @@ class _Mesh:
         return int(np.count_nonzero(moving))
 
     def _without_degenerate(self, triangles: Indices) -> Indices:
-        places = self._place[triangles]
-        return np.asarray(triangles[(places != np.roll(places, 1, axis=1)).all(axis=1)])
+        return np.asarray(triangles[are_whole(self._place[triangles])])
 
     def _errors(self, keys: Indices, pair: Indices, froms: Indices) -> Floats:
         """Return the mean squared error of moving a place into another, infinite if it tears.
@@ -191,9 +190,7 @@ class _Mesh:
         target = np.arange(len(self._place))
         target[sources] = targets
         after = target[self._triangles]
-        places = self._place[after]
-        kept = (after != self._triangles).any(axis=1)
-        kept &= (places != np.roll(places, 1, axis=1)).all(axis=1)
+        kept = (after != self._triangles).any(axis=1) & are_whole(self._place[after])
         normal, new = (triangle_normals(self._positions[t[kept]]) for t in (self._triangles, after))
         size = np.linalg.norm(normal, axis=1) * np.linalg.norm(new, axis=1)
         bad = np.einsum("ij,ij->i", normal, new) < MIN_COS_TURN * size

@@ -1,5 +1,7 @@
 """Which vertices are at one place, and which places are connected."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -35,6 +37,15 @@ def places_of(positions: NDArray[np.float32]) -> Indices:
         neighbours.append(np.stack([order[:-1][same], order[1:][same]], axis=1))
     lowest = connected(np.concatenate(neighbours), len(points))
     return np.unique(lowest, return_inverse=True)[1][place.reshape(-1)].astype(np.intp)
+
+
+def are_whole(triangles: NDArray[np.integer[Any]]) -> NDArray[np.bool_]:
+    """Return which triangles (n, 3) have three different corners.
+
+    >>> are_whole(np.array([[0, 1, 2], [0, 1, 0]])).tolist()
+    [True, False]
+    """
+    return np.asarray((triangles != np.roll(triangles, 1, axis=1)).all(axis=1))
 
 
 def connected(together: Indices, count: int) -> Indices:

@@ -11,6 +11,7 @@ from characters.errors import CharacterError
 from characters.model.mesh import Material, Mesh, Morph
 from characters.rendering.geometry.extreme_vertices import extreme_vertices
 from characters.rendering.geometry.morph_mixer import merge_morphs
+from characters.rendering.geometry.places import are_whole
 from characters.skeleton.pose import Array
 
 
@@ -197,7 +198,7 @@ class CharacterVertices:
         keys = ((self.owners[used] * sizes[0] + grid[:, 0]) * sizes[1] + grid[:, 1]) * sizes[2]
         _, first, cluster = np.unique(keys + grid[:, 2], return_index=True, return_inverse=True)
         corners = used[first[cluster]][number].reshape(-1, 3)
-        kept = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
+        kept = are_whole(corners)
         if not kept.any():  # every triangle lies in one cell
             corners = self.indices.reshape(-1, 3)
             kept = np.ones_like(kept)

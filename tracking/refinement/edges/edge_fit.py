@@ -111,9 +111,8 @@ def fit_edges(
         normal = np.asarray(weighted @ columns.T + prior, np.float64)
         right = (weighted @ offset + pull)[:, None]
         # In half the time that numpy takes for so few unknowns.
-        solution = np.asarray(cv2.solve(normal, right, flags=cv2.DECOMP_CHOLESKY)[1], np.float64)[
-            :, 0
-        ]
+        _, solved = cv2.solve(normal, right, flags=cv2.DECOMP_CHOLESKY)
+        solution = np.asarray(solved, np.float64)[:, 0]
         residual = np.asarray(offset - solution @ columns, np.float64)
         scale = 1.4826 * quantile(np.abs(residual), 0.5)
         robust = tukey_weight(residual, max(4.685 * scale, 0.1))
