@@ -56,25 +56,33 @@ def with_arm(hand: HandMask, changed: Flags, samples: Box, window: Window) -> Ha
     window
         Where the hand was looked for.
     """
-    first_row, first_column = (GRID_PX * side.start for side in samples)
     rows, columns = (
         slice(side.start - first.start, side.stop - first.start)
         for side, first in zip(window.samples, samples, strict=True)
     )
     inside = rows, columns
-    # Less than a sample may be left of the image.
-    share = np.zeros([GRID_PX * side + GRID_PX - 1 for side in changed.shape], np.uint8)
-    top, left = hand.y // hand.scale - first_row, hand.x // hand.scale - first_column
+    share = np.zeros((window.height, window.width), np.uint8)
+    top, left = hand.y // hand.scale - window.top, hand.x // hand.scale - window.left
     height, width = hand.share.shape
     share[top : top + height, left : left + width] = hand.share
+    share = share[tuple(slice(GRID_PX * (side.stop - side.start)) for side in inside)]
     flags = changed.view(np.uint8).copy()
-    flags[inside] = share[MIDDLES, MIDDLES][inside] > HALF_SHARE
-    arm = ARM_SHARE * _arm(flags, inside, round(MAX_WIDTH_EDGES * window.edge / GRID_PX) | 1)
+    flags[inside] = share[MIDDLES, MIDDLES] > HALF_SHARE
+    arm = _arm(flags, inside, round(MAX_WIDTH_EDGES * window.edge / GRID_PX) | 1)
+    # What is around it is empty: the edge is interpolated.
+    x, y, width, height = cv2.boundingRect(arm)
+    top, left = max(min(y - 1, rows.start), 0), max(min(x - 1, columns.start), 0)
+    bottom, right = max(y + height + 1, rows.stop), max(x + width + 1, columns.stop)
+    arm = ARM_SHARE * arm[top:bottom, left:right]
     soft = cv2.resize(arm, None, fx=GRID_PX, fy=GRID_PX, interpolation=cv2.INTER_LINEAR)
+    # Less than a sample may be left of the image.
     soft = cv2.copyMakeBorder(soft, 0, GRID_PX - 1, 0, GRID_PX - 1, cv2.BORDER_REPLICATE)
-    rows, columns = (slice(GRID_PX * side.start, GRID_PX * side.stop) for side in inside)
-    soft[rows, columns] = share[rows, columns]
-    x, y = first_column * hand.scale, first_row * hand.scale
+    y, x = GRID_PX * (rows.start - top), GRID_PX * (columns.start - left)
+    soft[y : y + share.shape[0], x : x + share.shape[1]] = share
+    x, y = (
+        GRID_PX * hand.scale * (side.start + first)
+        for side, first in zip(samples[::-1], (left, top), strict=True)
+    )
     return HandMask(x, y, np.asarray(soft, np.uint8), hand.scale, hand.behind)
 
 

@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 
 from tracking.appearance.hand.camera_change import camera_change
+from tracking.appearance.hand.components import at_border
 from tracking.appearance.hand.shading import (
     DETAIL_LIMIT,
     EDGE_DETAIL,
@@ -247,16 +248,12 @@ class Background:
         rows, columns = (slice(side.start // GRID_PX, side.stop // GRID_PX + 1) for side in start)
         flags[rows, columns] = True
         near = cv2.dilate(flags.view(np.uint8), SQUARE_3)
-        _, labels, stats, _ = cv2.connectedComponentsWithStats(near)
-        left, top, width, height, area = stats.T
-        right, bottom = left + width, top + height
-        at_border = (left == 0) | (top == 0) | (right == near.shape[1]) | (bottom == near.shape[0])
-        chosen = at_border & (area > MIN_ARM_SAMPLES)
+        count, labels = cv2.connectedComponents(near)
+        chosen = at_border(labels, count)
+        chosen &= np.bincount(labels.ravel(), minlength=count) > MIN_ARM_SAMPLES
         chosen[0], chosen[labels[rows.start, columns.start]] = False, True
-        return (
-            _grown(int(top[chosen].min()), int(bottom[chosen].max())),
-            _grown(int(left[chosen].min()), int(right[chosen].max())),
-        )
+        left, top, width, height = cv2.boundingRect(chosen[labels].view(np.uint8))
+        return _grown(top, top + height), _grown(left, left + width)
 
     def changed_samples(self, lab: Floats, samples: Box) -> Flags:
         """Return which samples look like something else, and not as in a shadow, (h, w)."""

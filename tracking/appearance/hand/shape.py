@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 
 from tracking.appearance.hand.background import Place
+from tracking.appearance.hand.components import at_border
 from tracking.appearance.hand.cube_part import CubePart
 from tracking.appearance.hand.structuring_elements import SQUARE_3, SQUARE_5
 from tracking.appearance.hand.window import Window
@@ -84,10 +85,7 @@ def connected(
         least = MIN_COLOUR_ODDS if reaches else SURE_COLOUR_ODDS
         keep[label] = _like_hand(part, place, by_colour, least)
     if not keep[1:].any():
-        from_outside = np.zeros(256, bool)
-        for side in (labels[0], labels[-1], labels[:, 0], labels[:, -1]):
-            from_outside[side] = True
-        for label in np.flatnonzero(from_outside & large).tolist():
+        for label in np.flatnonzero(at_border(labels, 256) & large).tolist():
             keep[label] = _like_hand(labels == label, place, by_colour, SURE_COLOUR_ODDS)
     keep[[0, 255]] = False
     return np.asarray(cv2.LUT(labels, keep.view(np.uint8)), np.uint8) if keep.any() else None

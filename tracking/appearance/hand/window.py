@@ -182,10 +182,19 @@ def sampled(image: Image, scale: int, samples: Box) -> Image:
 
     `samples` counts rows and columns of such squares, which are in the image.
     """
-    step, (rows, columns) = GRID_PX * scale, samples
-    part = image[step * rows.start : step * rows.stop, step * columns.start : step * columns.stop]
-    size = columns.stop - columns.start, rows.stop - rows.start
-    return np.asarray(cv2.resize(part, size, interpolation=cv2.INTER_LINEAR), np.uint8)
+    step = GRID_PX * scale
+    rows, columns = (
+        slice(step * side.start + (step - 1) // 2, step * side.stop) for side in samples
+    )
+    return _every(step, image[rows, columns])
+
+
+def _every(step: int, image: Image) -> Image:
+    """Return each `step`th pixel of each `step`th row, from the first on."""
+    # In a quarter of the time that a slice with a step takes.
+    share = 1 / step
+    part = cv2.resize(image, None, fx=share, fy=share, interpolation=cv2.INTER_NEAREST)
+    return np.asarray(part, np.uint8)
 
 
 def shrunk(image: Image, scale: int) -> Image:
@@ -195,11 +204,8 @@ def shrunk(image: Image, scale: int) -> Image:
     """
     # In a third of the time that INTER_AREA takes.
     side = (scale - 1) | 1
-    soft = cv2.blur(image, (side, side)) if side > 1 else image
+    soft = np.asarray(cv2.blur(image, (side, side)) if side > 1 else image, np.uint8)
     if side == scale:
-        centres, share = soft[side // 2 :, side // 2 :], 1 / scale
-        small = cv2.resize(centres, None, fx=share, fy=share, interpolation=cv2.INTER_NEAREST)
-    else:
-        size = (image.shape[1] // scale, image.shape[0] // scale)
-        small = cv2.resize(soft, size, interpolation=cv2.INTER_LINEAR)
-    return np.asarray(small, np.uint8)
+        return _every(scale, soft[side // 2 :, side // 2 :])
+    size = (image.shape[1] // scale, image.shape[0] // scale)
+    return np.asarray(cv2.resize(soft, size, interpolation=cv2.INTER_LINEAR), np.uint8)
