@@ -1,7 +1,7 @@
 """What is behind the hand: a picture of the desk, learned where no hand is."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -114,6 +114,12 @@ class Place:
 
     lights: tuple[Floats, Floats]
     """L + 16 of CIELab of picture and background, in bytes, (h, w)."""
+
+    def without(self, mistaken: Flags) -> "Place":
+        """Return the same where the background is not known in some pixels."""
+        odds = self.odds.copy()
+        odds[mistaken] = UNKNOWN
+        return replace(self, odds=odds, changed=self.changed & ~mistaken)
 
     def likeness(self, where: Flags) -> float:
         """Return how alike the details of picture and background are in some pixels, -1…1.

@@ -1,13 +1,13 @@
 """The hand in front of the cube, as a soft mask."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
 
 from tracking.appearance.colour_space import LAB_FROM_ROOTS, lab
 from tracking.appearance.hand.arm import arm_samples, with_arm
-from tracking.appearance.hand.background import UNKNOWN, Background, Box, Place
+from tracking.appearance.hand.background import Background, Box, Place
 from tracking.appearance.hand.colour_model import (
     MAX_ODDS,
     MIN_DIFFERENCE,
@@ -22,7 +22,7 @@ from tracking.appearance.hand.face_pattern import FacePattern
 from tracking.appearance.hand.mask import HandMask
 from tracking.appearance.hand.odds import hand_odds
 from tracking.appearance.hand.shape import connected
-from tracking.appearance.hand.structuring_elements import SQUARE_5
+from tracking.appearance.hand.structuring_elements import SQUARE_3, SQUARE_5
 from tracking.appearance.hand.window import Stillness, Window, WindowFinder, sampled, shrunk
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Flags, Floats, Image
@@ -39,6 +39,9 @@ HELD_S = 0.15
 MAX_HAND_AGE = 15
 """Frames after which what a pixel shows is the desk, and no hand that was there from the beginning:
 what changes it is the first hand."""
+
+MAX_RESTING_AGE = 40
+"""The same where it has the colours of the hand, and is connected to it."""
 
 MANY_FRAMES = 20
 """Frames at a session's beginning, and after the camera was moved, in which all is looked at and
@@ -182,7 +185,9 @@ class HandFinder:
             self._learn_first(view, cube)
             by_colour = self._colours.odds(view.colours)
         if view.whole:
-            place = self._without_uncovered(place, view, by_colour)
+            place = self._without(self._uncovered(place, view, by_colour), place, window)
+        if cube.shows_hand and self._colours.hand_is_new:
+            place = self._without(self._resting(place, view, by_colour, cube), place, window)
         odds = hand_odds(window, cube, place, by_colour, self._colours.distinctness)
         hand = connected(odds > 0, window, cube, place, by_colour)
         self._learn(view, cube, place, odds, hand)
@@ -192,23 +197,39 @@ class HandFinder:
         x, y = (window.left + left) * window.scale, (window.top + top) * window.scale
         return HandMask(x, y, share, window.scale, cube.behind)
 
-    def _without_uncovered(self, place: Place, view: _View, by_colour: Floats) -> Place:
-        """Forget the background where it was a hand, there from the beginning, which has gone."""
+    def _without(self, mistaken: Flags, place: Place, window: Window) -> Place:
+        """Forget the background where it was `mistaken`, (h, w), for the desk."""
+        if not mistaken.any():
+            return place
+        self._background.forget_some(window.box, mistaken)
+        return place.without(mistaken)
+
+    def _uncovered(self, place: Place, view: _View, by_colour: Floats) -> Flags:
+        """Return where the background was a hand, there from the beginning, which has gone."""
         box = view.window.box
         doubtful = place.changed & (by_colour < MAX_ODDS - MIN_DIFFERENCE)
         if not self._colours.knows_hand:
             doubtful &= self._background.age(box) < MAX_HAND_AGE
-        if not doubtful.any():
-            return place
         before = colours(self._background.lab(box, doubtful))
-        uncovered = np.zeros(doubtful.shape, bool)
-        uncovered[doubtful] = self._colours.uncovered(view.colours[doubtful], before)
-        if not uncovered.any():
-            return place
-        self._background.forget_some(box, uncovered)
-        odds = place.odds.copy()
-        odds[uncovered] = UNKNOWN
-        return replace(place, odds=odds, changed=place.changed & ~uncovered)
+        doubtful[doubtful] = self._colours.uncovered(view.colours[doubtful], before)
+        return doubtful
+
+    def _resting(self, place: Place, view: _View, by_colour: Floats, cube: CubePart) -> Flags:
+        """Return where the background is a hand that has not moved since the beginning.
+
+        It has the colours of what hides the print, and is connected to that.
+        """
+        alike = (by_colour > MAX_ODDS - MIN_DIFFERENCE) & ~place.changed & cube.outside
+        alike &= self._background.age(view.window.box) < MAX_RESTING_AGE
+        closed = cv2.morphologyEx(alike.view(np.uint8), cv2.MORPH_CLOSE, SQUARE_3)
+        hand = np.asarray(closed, np.uint8)
+        evidence = cube.evidence.view(np.uint8)
+        near = np.asarray(cv2.dilate(evidence, SQUARE_5, iterations=2), np.uint8)
+        hand[view.window.cube_box] |= near
+        count, labels = cv2.connectedComponents(hand)
+        keep = np.zeros(count, bool)
+        keep[labels[view.window.cube_box][cube.evidence]] = True
+        return np.asarray(keep[labels] & cube.outside)
 
     def _learn_first(self, view: _View, cube: CubePart) -> None:
         """Learn colours before anything of a hand or its surroundings is known."""

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from tracking.appearance.hand.background import Place
+from tracking.appearance.hand.background import SHADED, UNKNOWN, Place
 from tracking.appearance.hand.cube_part import CubePart
 from tracking.appearance.hand.edge import ODDS_RANGE
 from tracking.appearance.hand.shape import filled
@@ -41,6 +41,8 @@ def hand_odds(
     halved = place.changed | ~cube.outside
     odds = by_colour * (np.float32(1) - np.float32(0.5) * halved)
     odds += _credible(place, by_colour, distinctness)
+    # However short a place is known for: what looks as before is no hand.
+    np.minimum(odds, np.float32(UNKNOWN), out=odds, where=place.odds < SHADED)
     part = odds[window.cube_box]
     part[cube.slanted] += SLANTED_EVIDENCE
     part[cube.inner] = -ODDS_RANGE

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from tracking.appearance.hand.background import Place
+from tracking.appearance.hand.background import UNKNOWN, Place
 from tracking.appearance.hand.components import at_border
 from tracking.appearance.hand.cube_part import CubePart
 from tracking.appearance.hand.structuring_elements import SQUARE_3, SQUARE_5
@@ -92,12 +92,16 @@ def connected(
 
 
 def _like_hand(part: Flags, place: Place, by_colour: Floats, least: float) -> bool:
-    """Return whether a component may be a hand; `least` is what its colours speak for one."""
-    return bool(
-        np.count_nonzero(part & (place.odds > 0)) > MIN_CHANGED_SHARE * np.count_nonzero(part)
-        and by_colour[part].mean() > least
-        and place.likeness(part) < MAX_LIKENESS
-    )
+    """Return whether a component may be a hand; `least` is what its colours speak for one.
+
+    Where the desk is not known, they must speak for sure.
+    """
+    some = MIN_CHANGED_SHARE * np.count_nonzero(part)
+    if np.count_nonzero(part & (place.odds > 0)) <= some:
+        least = SURE_COLOUR_ODDS
+        if np.count_nonzero(part & (place.odds >= UNKNOWN)) <= some:
+            return False
+    return bool(by_colour[part].mean() > least and place.likeness(part) < MAX_LIKENESS)
 
 
 def _within_reach(window: Window) -> tuple[slice, slice]:

@@ -102,6 +102,19 @@ def test_fingers_on_the_cube_from_the_beginning_are_not_taken_for_its_paper():
     assert overlap_in(view, 26, begin=22) > 0.8
 
 
+@pytest.mark.parametrize("skin", ["825c43", "3f6fc4"])
+def test_a_finger_on_the_cube_shows_the_hand_that_rested_beside_it_from_the_beginning(skin):
+    assert overlap_in(HandView(skin, azimuth_deg=10, seed=1), 31, begin=25) > 0.85
+
+
+def test_a_hand_from_the_beginning_stays_when_it_hides_no_face_any_more():
+    assert overlap_in(HandView(SKINS["Monk 03"], azimuth_deg=10, seed=1), 49, begin=46) > 0.85
+
+
+def test_a_wall_in_the_colours_of_a_hand_from_the_beginning_is_no_part_of_it():
+    assert overlap_in(HandView(SKINS["Monk 03"], azimuth_deg=-60, seed=2), 38, begin=25) > 0.8
+
+
 def test_the_sleeve_of_a_hand_that_is_there_from_the_beginning_is_found_when_it_moves():
     view = HandView(SKINS["Monk 09"], azimuth_deg=-120, seed=3, defocus=1.2)
     assert overlap_in(view, 42, begin=22) > 0.8
