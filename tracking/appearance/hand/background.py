@@ -270,6 +270,25 @@ class Background:
         lit = may_be_light(off, gain, np.abs(gain), SAMPLE_NOISE * self._chroma_noise)
         return np.asarray(~lit & (self._age[MIDDLES, MIDDLES][samples] > 0))
 
+    def sampled_age(self, samples: Box) -> Image:
+        """Return what `age` does, of some samples."""
+        return self._age[MIDDLES, MIDDLES][samples]
+
+    def sampled_lab(self, samples: Box, where: Flags) -> Floats:
+        """Return what `lab` does, of some samples, (3, n)."""
+        return self._sampled_mean[:, *samples][:, where]
+
+    def learn_samples(self, lab: Floats, samples: Box, where: Flags) -> None:
+        """Take some samples, (h, w), for the desk in all of their squares."""
+        self._sampled_mean[:, *samples][:, where] = lab[:, where]
+        rows, columns = (
+            GRID_PX * (side.start + places)
+            for side, places in zip(samples, np.nonzero(where), strict=True)
+        )
+        for down, right in np.ndindex(GRID_PX, GRID_PX):
+            self._mean[:, rows + down, columns + right] = lab[:, where]
+            self._age[rows + down, columns + right] = 1
+
     def learn(self, lab: Floats, box: Box, free: Flags, place: Place) -> None:
         """Learn the pixels of a window that are free of cube and hand, after `compare`."""
         age = self._age[box]

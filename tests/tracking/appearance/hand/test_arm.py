@@ -61,6 +61,17 @@ def test_an_arm_is_covered_to_the_border_of_the_picture(azimuth, skin):
     assert overlap(covered(mask, truth.shape), truth) > 0.93
 
 
+def test_an_arm_that_was_there_from_the_beginning_leaves_no_ghost():
+    made = HandScene(HandView("3f6fc4", azimuth_deg=10, seed=1), CUBE)
+    finder = HandFinder(CUBE, made.intrinsics)
+    for index in range(25, 46):
+        frame, truth = made.frame(index)
+        mask = finder.update(frame.image, state_at(made.truth(index)))
+    cover = covered(mask, truth.shape)
+    assert np.maximum(cover - truth, 0).sum() < 0.2 * truth.sum()
+    assert overlap(cover, truth) > 0.8
+
+
 def test_what_is_connected_to_the_hand_is_its_arm():
     changed = image()
     changed[80:115, 240:] = True
