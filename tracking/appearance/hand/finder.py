@@ -229,7 +229,8 @@ class HandFinder:
 
         It has the colours of what hides the print, and is connected to that.
         """
-        alike = (by_colour > MAX_ODDS - MIN_DIFFERENCE) & ~place.changed & cube.outside
+        alike = (by_colour > MAX_ODDS - MIN_DIFFERENCE) & cube.outside
+        alike &= ~(place.changed | place.relit)
         alike &= self._background.age(view.window.box) < MAX_RESTING_AGE
         closed = cv2.morphologyEx(alike.view(np.uint8), cv2.MORPH_CLOSE, SQUARE_3)
         hand = np.asarray(closed, np.uint8)
