@@ -192,7 +192,7 @@ class CubeWindow:
 def _smooth(share: float) -> float:
     """Return a share, 0…1, that begins and ends slowly.
 
-    >>> [_smooth(share) for share in (-1.0, 0.5, 2.0)]
+    >>> [round(_smooth(share), 4) for share in (-1.0, 0.5, 2.0)]
     [0.0, 0.5, 1.0]
     """
     return 0.5 - 0.5 * math.cos(math.pi * min(max(share, 0.0), 1.0))

@@ -35,8 +35,8 @@ def out_quart(x: Time) -> Time:
 def out_back(x: Time) -> Time:
     """Return the easing that overshoots and comes back.
 
-    >>> out_back(0.0), round(out_back(0.58), 4), out_back(1.0)
-    (0.0, 1.1, 1.0)
+    >>> [round(out_back(x), 4) for x in (0.0, 0.58, 1.0)]
+    [0.0, 1.1, 1.0]
     """
     back = x - 1.0
     return back * back * ((OVERSHOOT + 1.0) * back + OVERSHOOT) + 1.0

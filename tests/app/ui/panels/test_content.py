@@ -1,7 +1,5 @@
 """What the panels show of known steps, robots and times, to the letter."""
 
-import doctest
-import importlib
 import itertools
 from dataclasses import replace
 from types import SimpleNamespace
@@ -195,19 +193,3 @@ def test_the_settings_are_those_of_the_session_and_stay_in_a_recording():
     _, (*widgets, note) = shown("scenario", monitor)
     assert not any(each.enabled for each in widgets if isinstance(each, Choice | Slider))
     assert isinstance(note, Note)
-
-
-@pytest.mark.parametrize(
-    "module",
-    [
-        "commands.session.preference_options",
-        "pipeline.frame_times",
-        "ui.panels.drawing.places",
-        "ui.panels.drawing.style",
-        "ui.panels.trace",
-    ],
-)
-def test_the_examples_in_the_documentation_are_right(module):
-    results = doctest.testmod(importlib.import_module(f"app.{module}"))
-    assert results.attempted
-    assert not results.failed
