@@ -199,7 +199,7 @@ def _key_values(file: GltfFile, sampler: Json, path: str, width: int, keys: int)
     values = file.floats(sampler["output"], 1 if path == "weights" else width)
     needed = rows[kind] * width if path == "weights" else rows[kind]
     if len(values) != needed:
-        raise DamagedFileError(f"the count of its values is {len(values)}, not {needed}")
+        raise DamagedFileError(f"has {len(values)} values instead of {needed}")
     return values.reshape(-1, width)
 
 

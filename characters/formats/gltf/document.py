@@ -284,7 +284,7 @@ def _check(value: object, kind: Any, place: str, sizes: dict[str, int]) -> None:
     elif kind in SCHEMA:
         count = sizes.get(kind, 0)
         if type(value) is not int or not 0 <= value < count:
-            raise DamagedFileError(f"{place} is {value!r:.40}, but the count of {kind} is {count}")
+            raise DamagedFileError(f"{place} is {value!r:.40}, but the file has {count} {kind}")
     elif not _VALUE_CHECKS[kind](value):
         raise DamagedFileError(f"{place} is {value!r:.40}, not {kind}")
 

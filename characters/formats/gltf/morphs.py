@@ -44,9 +44,7 @@ def read_morph_table(file: GltfFile, tree: NodeTree) -> MorphTable:
             of_node[number] = names = target_names(mesh, node["mesh"])
             weights = node.get("weights") or mesh.get("weights") or [0.0] * len(names)
             if len(weights) != len(names):
-                raise DamagedFileError(
-                    f"the count of its weights is {len(weights)}, of its morph targets {len(names)}"
-                )
+                raise DamagedFileError(f"has {len(weights)} weights for {len(names)} morph targets")
             for name, weight in zip(names, weights, strict=True):
                 defaults.setdefault(name, float(weight))
     order, stated = tuple(defaults), file.scene_extra("morphs")
@@ -93,8 +91,8 @@ def read_morphs(
             shared[accessor] = file.floats(accessor, 3)
         if len(shared[accessor]) != vertices:
             raise DamagedFileError(
-                f"morph target {name!r}: the count of its displacements is "
-                f"{len(shared[accessor])}, of the vertices {vertices}"
+                f"morph target {name!r}: has {len(shared[accessor])} displacements for "
+                f"{vertices} vertices"
             )
         return shared[accessor]
 

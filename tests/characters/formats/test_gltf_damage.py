@@ -54,7 +54,7 @@ def test_a_node_of_two_parents_is_refused(tmp_path, arm):
 
 def test_an_absent_joint_is_named(tmp_path, arm):
     arm.document["skins"][0]["joints"] = [1, 7]
-    refused(tmp_path, arm, r"skins\[0\]\.joints\[1\] is 7, but the count of nodes is 4")
+    refused(tmp_path, arm, r"skins\[0\]\.joints\[1\] is 7, but the file has 4 nodes")
 
 
 def test_a_vertex_on_an_absent_joint_is_refused(tmp_path, arm):
@@ -135,7 +135,7 @@ def test_keys_that_do_not_ascend_are_refused(tmp_path, arm):
 
 def test_keys_without_values_are_refused(tmp_path, arm):
     arm.animate("LINEAR", [0.0, 1.0, 2.0], rotations.about("x", [0.0, 1.0]))
-    refused(tmp_path, arm, "animation 'a': channel 0: the count of its values is 2, not 3")
+    refused(tmp_path, arm, "animation 'a': channel 0: has 2 values instead of 3")
 
 
 def test_samplers_that_do_not_exist_are_refused(tmp_path, arm):
@@ -205,7 +205,7 @@ def test_an_invalid_number_in_the_json_is_named(tmp_path, arm):
         ("byteOffset", 4, "mesh 0: accessor 0: needs 40 bytes"),
         ("componentType", 5124, "mesh 0: accessor 0: component type 5124 does not exist"),
         ("type", "VEC2", "mesh 0: accessor 0: is VEC2, 3 components are needed"),
-        ("bufferView", 99, r"accessors\[0\]\.bufferView is 99, but the count of bufferViews is 4"),
+        ("bufferView", 99, r"accessors\[0\]\.bufferView is 99, but the file has 4 bufferViews"),
     ],
 )
 def test_an_invalid_accessor_is_named(tmp_path, arm, key, value, reason):

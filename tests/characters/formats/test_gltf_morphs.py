@@ -90,7 +90,7 @@ def test_a_target_of_another_size_is_refused(tmp_path):
     build = with_targets(lift(2, 1)[:2], names=["aa"])
     with pytest.raises(
         CharacterError,
-        match="morph target 'aa': the count of its displacements is 2, of the vertices 3",
+        match="morph target 'aa': has 2 displacements for 3 vertices",
     ):
         load(tmp_path, build)
 

@@ -147,7 +147,7 @@ def test_bones_that_move_no_vertex_are_joints_too(tmp_path):
         ({"specVersion": "2.0"}, r"VRMC_vrm: is version '2\.0'; export it as VRM 1\.0"),
         (
             {"specVersion": "1.0", "humanoid": {"humanBones": {"hips": {"node": 9}}}},
-            r"humanBones\.hips\.node is 9, but the count of nodes is 4",
+            r"humanBones\.hips\.node is 9, but the file has 4 nodes",
         ),
         (
             {

@@ -50,7 +50,7 @@ def test_only_characters_with_constraints_have_the_layer(load):
         ({"roll": {"source": 2, "rollAxis": "W"}}, "constraint of node 'twist': 'W' is no axis"),
         (
             {"aim": {"source": 9, "aimAxis": "PositiveX"}},
-            "source is 9, but the count of nodes is 5",
+            "source is 9, but the file has 5 nodes",
         ),
         ({}, "is neither roll, aim nor rotation"),
         ({"rotation": {"source": 4}}, "constraints of twist follow each other; remove one"),

@@ -128,7 +128,7 @@ def test_a_file_without_a_vrm_has_no_spring_bones(load):
     [
         (
             springs_1(springs=[{"joints": [{"node": 99}]}]),
-            r"node is 99, but the count of nodes is 8",
+            r"node is 99, but the file has 8 nodes",
         ),
         (springs_1(springs=[{"joints": [{"node": 4, "gravityDir": 1}]}]), "not 3 numbers"),
         (springs_1(colliders=[{"node": 1}]), "lacks 'shape'"),
