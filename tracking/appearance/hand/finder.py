@@ -198,8 +198,9 @@ class HandFinder:
             place = self._without(self._uncovered(place, view, by_colour), place, window)
         if cube.shows_hand and self._colours.hand_is_new:
             place = self._without(self._resting(place, view, by_colour, cube), place, window)
-        odds = hand_odds(window, cube, place, by_colour, self._colours.distinctness)
-        hand = connected(odds > 0, window, cube, place, by_colour)
+        distinctness = self._colours.distinctness
+        odds = hand_odds(window, cube, place, by_colour, distinctness)
+        hand = connected(odds > 0, window, cube, place, by_colour, distinctness)
         self._learn(view, cube, place, odds, hand)
         if hand is None:
             return None

@@ -47,6 +47,7 @@ def connected(
     cube: CubePart,
     place: Place,
     by_colour: Floats,
+    distinctness: float,
 ) -> Image | None:
     """Choose the components that hold evidence, or that touch the cube and reach away.
 
@@ -65,6 +66,8 @@ def connected(
         How the window looks compared with the desk.
     by_colour
         What colours speak for a hand, (h, w).
+    distinctness
+        How well they tell the hand that is there from the desk, 0…1.
     """
     hand = cv2.morphologyEx(flags.view(np.uint8), cv2.MORPH_OPEN, SQUARE_3)
     hand = cv2.morphologyEx(hand, cv2.MORPH_CLOSE, SQUARE_5)
@@ -83,23 +86,27 @@ def connected(
         part = labels == label
         reaches = np.count_nonzero(part) > np.count_nonzero(part[_within_reach(window)])
         least = MIN_COLOUR_ODDS if reaches else SURE_COLOUR_ODDS
-        keep[label] = _like_hand(part, place, by_colour, least)
+        keep[label] = _like_hand(part, place, by_colour, least, distinctness)
     if not keep[1:].any():
         for label in np.flatnonzero(at_border(labels, 256) & large).tolist():
-            keep[label] = _like_hand(labels == label, place, by_colour, SURE_COLOUR_ODDS)
+            part = labels == label
+            keep[label] = _like_hand(part, place, by_colour, SURE_COLOUR_ODDS, distinctness)
     keep[[0, 255]] = False
     return np.asarray(cv2.LUT(labels, keep.view(np.uint8)), np.uint8) if keep.any() else None
 
 
-def _like_hand(part: Flags, place: Place, by_colour: Floats, least: float) -> bool:
+def _like_hand(
+    part: Flags, place: Place, by_colour: Floats, least: float, distinctness: float
+) -> bool:
     """Return whether a component may be a hand; `least` is what its colours speak for one.
 
-    Where the desk is not known, they must speak for sure.
+    Where the desk is not known, they must speak for sure, and tell the hand that was just there.
     """
     some = MIN_CHANGED_SHARE * np.count_nonzero(part)
     if np.count_nonzero(part & (place.odds > 0)) <= some:
         least = SURE_COLOUR_ODDS
-        if np.count_nonzero(part & (place.odds >= UNKNOWN)) <= some:
+        unknown = np.count_nonzero(part & (place.odds >= UNKNOWN))
+        if unknown <= some or distinctness == 0:
             return False
     return bool(by_colour[part].mean() > least and place.likeness(part) < MAX_LIKENESS)
 
