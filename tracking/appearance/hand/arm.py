@@ -69,21 +69,30 @@ def with_arm(hand: HandMask, changed: Flags, samples: Box, window: Window) -> Ha
     flags = changed.view(np.uint8).copy()
     flags[inside] = share[MIDDLES, MIDDLES] > HALF_SHARE
     arm = _arm(flags, inside, round(MAX_WIDTH_EDGES * window.edge / GRID_PX) | 1)
-    # What is around it is empty: the edge is interpolated.
-    x, y, width, height = cv2.boundingRect(arm)
-    top, left = max(min(y - 1, rows.start), 0), max(min(x - 1, columns.start), 0)
-    bottom, right = max(y + height + 1, rows.stop), max(x + width + 1, columns.stop)
-    arm = ARM_SHARE * arm[top:bottom, left:right]
+    part = _around(arm, inside)
+    arm = ARM_SHARE * arm[part]
     soft = cv2.resize(arm, None, fx=GRID_PX, fy=GRID_PX, interpolation=cv2.INTER_LINEAR)
     # Less than a sample may be left of the image.
     soft = cv2.copyMakeBorder(soft, 0, GRID_PX - 1, 0, GRID_PX - 1, cv2.BORDER_REPLICATE)
-    y, x = GRID_PX * (rows.start - top), GRID_PX * (columns.start - left)
-    soft[y : y + share.shape[0], x : x + share.shape[1]] = share
-    x, y = (
-        GRID_PX * hand.scale * (side.start + first)
-        for side, first in zip(samples[::-1], (left, top), strict=True)
+    top, left = (
+        GRID_PX * (side.start - first.start) for side, first in zip(inside, part, strict=True)
+    )
+    soft[top : top + share.shape[0], left : left + share.shape[1]] = share
+    y, x = (
+        GRID_PX * hand.scale * (side.start + first.start)
+        for side, first in zip(samples, part, strict=True)
     )
     return HandMask(x, y, np.asarray(soft, np.uint8), hand.scale, hand.behind)
+
+
+def _around(arm: Image, inside: Box) -> Box:
+    """Return rows and columns with arm and window, and one more, as an edge is interpolated."""
+    x, y, width, height = cv2.boundingRect(arm)
+    rows, columns = (
+        slice(max(min(first, side.start) - 1, 0), max(first + count, side.stop) + 1)
+        for first, count, side in zip((y, x), (height, width), inside, strict=True)
+    )
+    return rows, columns
 
 
 def _arm(flags: Image, inside: Box, side: int) -> Image:
