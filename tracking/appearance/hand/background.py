@@ -278,17 +278,6 @@ class Background:
         """Return what `lab` does, of some samples, (3, n)."""
         return self._sampled_mean[:, *samples][:, where]
 
-    def learn_samples(self, lab: Floats, samples: Box, where: Flags) -> None:
-        """Take some samples, (h, w), for the desk in all of their squares."""
-        self._sampled_mean[:, *samples][:, where] = lab[:, where]
-        rows, columns = (
-            GRID_PX * (side.start + places)
-            for side, places in zip(samples, np.nonzero(where), strict=True)
-        )
-        for down, right in np.ndindex(GRID_PX, GRID_PX):
-            self._mean[:, rows + down, columns + right] = lab[:, where]
-            self._age[rows + down, columns + right] = 1
-
     def learn(self, lab: Floats, box: Box, free: Flags, place: Place) -> None:
         """Learn the pixels of a window that are free of cube and hand, after `compare`."""
         age = self._age[box]
@@ -326,6 +315,11 @@ class Background:
     def forget_some(self, box: Box, where: Flags) -> None:
         """Forget some pixels of a window: what was learned there was no background."""
         self._age[box][where] = 0
+
+    def forget_samples(self, samples: Box, where: Flags) -> None:
+        """Forget the squares of some samples, (h, w)."""
+        rows, columns = (slice(GRID_PX * side.start, GRID_PX * side.stop) for side in samples)
+        self.forget_some((rows, columns), where.repeat(GRID_PX, 0).repeat(GRID_PX, 1))
 
     def _learn(self, lab: Floats, box: Box, steps: Floats) -> None:
         for plane, mean in zip(lab, self._mean[:, *box], strict=True):

@@ -149,15 +149,15 @@ class HandFinder:
         planes = self._lab(sampled(image, window.scale, samples))
         changed = self._background.changed_samples(planes, samples)
         if self._since_whole == 0:
-            changed &= ~self._learn_uncovered(planes, samples, changed)
+            changed &= ~self._forget_uncovered(planes, samples, changed)
         return with_arm(hand, changed, samples, window)
 
-    def _learn_uncovered(self, planes: Floats, samples: Box, changed: Flags) -> Flags:
+    def _forget_uncovered(self, planes: Floats, samples: Box, changed: Flags) -> Flags:
         """Return the samples that show the desk since an arm that was there first has gone."""
         uncovered = changed & (self._background.sampled_age(samples) < MAX_RESTING_AGE)
         before = colours(self._background.sampled_lab(samples, uncovered))
         uncovered[uncovered] = self._colours.uncovered(colours(planes[:, uncovered]), before)
-        self._background.learn_samples(planes, samples, uncovered)
+        self._background.forget_samples(samples, uncovered)
         return uncovered
 
     def _lab(self, image: Image) -> Floats:

@@ -73,6 +73,18 @@ def test_a_desk_that_was_never_seen_differs(background):
     assert rows.stop >= HEIGHT
 
 
+def test_a_forgotten_sample_is_forgotten_with_its_square_and_nothing_else(background):
+    forgotten, known = (
+        np.zeros((HEIGHT // GRID_PX, WIDTH // GRID_PX), bool),
+        background.age(BOX) > 0,
+    )
+    forgotten[4, 5] = True
+    background.forget_samples(SAMPLES, forgotten)
+    known[4 * GRID_PX : 5 * GRID_PX, 5 * GRID_PX : 6 * GRID_PX] = False
+    np.testing.assert_array_equal(background.age(BOX) > 0, known)
+    assert not known.all()
+
+
 def test_noise_measured_in_a_whole_window_is_kept_for_its_parts(background):
     part = np.s_[9 : 9 + 90, 21 : 21 + 100]
     picture, free = desk()[:, :90, :100], outside()[:90, :100]
