@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 
 from tracking.appearance.hand.background import GRID_PX, MIDDLES, Box
+from tracking.appearance.hand.components import holding
 from tracking.appearance.hand.mask import HandMask
 from tracking.appearance.hand.structuring_elements import SQUARE_3
 from tracking.appearance.hand.window import Window
@@ -102,11 +103,7 @@ def _arm(flags: Image, inside: Box, side: int) -> Image:
     """
     for operation in (cv2.MORPH_OPEN, cv2.MORPH_CLOSE):
         flags = np.asarray(cv2.morphologyEx(flags, operation, SQUARE_3), np.uint8)
-    count, labels = cv2.connectedComponents(flags)
-    kept = np.zeros(count, np.uint8)
-    kept[labels[inside]] = 1
-    kept[0] = 0
-    arm = np.asarray(kept[labels], np.uint8)
+    arm = holding(flags, inside)
     if np.count_nonzero(arm) > side**2:
         body = cv2.morphologyEx(arm, cv2.MORPH_OPEN, np.ones((side, side), np.uint8)) > 0
         body[inside] = False

@@ -250,7 +250,7 @@ class Background:
             Rows and columns in the window of that part: the cube.
         """
         flags = np.abs(lab - self._sampled_mean[:, *samples]).max(axis=0) > MIN_CHANGE
-        flags |= self._age[MIDDLES, MIDDLES][samples] == 0
+        flags |= self.sampled_age(samples) == 0
         rows, columns = (slice(side.start // GRID_PX, side.stop // GRID_PX + 1) for side in start)
         flags[rows, columns] = True
         near = cv2.dilate(flags.view(np.uint8), SQUARE_3)
@@ -268,7 +268,7 @@ class Background:
         off = cv2.magnitude(lab[1] - gain * mean_a, lab[2] - gain * mean_b)
         gain -= 1
         lit = may_be_light(off, gain, np.abs(gain), SAMPLE_NOISE * self._chroma_noise)
-        return np.asarray(~lit & (self._age[MIDDLES, MIDDLES][samples] > 0))
+        return np.asarray(~lit & (self.sampled_age(samples) > 0))
 
     def sampled_age(self, samples: Box) -> Image:
         """Return what `age` does, of some samples."""

@@ -2,10 +2,24 @@
 
 from typing import Any
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.geometry.arrays import Flags
+from tracking.geometry.arrays import Flags, Image
+
+
+def holding(flags: Image, seeds: Flags | tuple[slice, slice]) -> Image:
+    """Return the components of flagged pixels that hold one of the seeds, (h, w) 0 or 1.
+
+    >>> holding(np.array([[1, 1, 0, 1]], np.uint8), np.s_[:, :1]).tolist()
+    [[1, 1, 0, 0]]
+    """
+    count, labels = cv2.connectedComponents(flags)
+    kept = np.zeros(count, np.uint8)
+    kept[labels[seeds]] = 1
+    kept[0] = 0
+    return np.asarray(kept[labels], np.uint8)
 
 
 def at_border(labels: NDArray[Any], count: int) -> Flags:

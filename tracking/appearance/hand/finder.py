@@ -16,6 +16,7 @@ from tracking.appearance.hand.colour_model import (
     Colours,
     colours,
 )
+from tracking.appearance.hand.components import holding
 from tracking.appearance.hand.cube_part import CubeCheck, CubePart
 from tracking.appearance.hand.edge import soft_cover
 from tracking.appearance.hand.face_pattern import FacePattern
@@ -233,15 +234,13 @@ class HandFinder:
         alike = (by_colour > MAX_ODDS - MIN_DIFFERENCE) & cube.outside
         alike &= ~(place.changed | place.relit)
         alike &= self._background.age(view.window.box) < MAX_RESTING_AGE
-        closed = cv2.morphologyEx(alike.view(np.uint8), cv2.MORPH_CLOSE, SQUARE_3)
-        hand = np.asarray(closed, np.uint8)
-        evidence = cube.evidence.view(np.uint8)
-        near = np.asarray(cv2.dilate(evidence, SQUARE_5, iterations=2), np.uint8)
-        hand[view.window.cube_box] |= near
-        count, labels = cv2.connectedComponents(hand)
-        keep = np.zeros(count, bool)
-        keep[labels[view.window.cube_box][cube.evidence]] = True
-        return np.asarray(keep[labels] & cube.outside)
+        evidence = np.zeros(alike.shape, bool)
+        evidence[view.window.cube_box] = cube.evidence
+        near = cv2.dilate(evidence.view(np.uint8), SQUARE_5, iterations=2)
+        hand = cv2.morphologyEx(alike.view(np.uint8), cv2.MORPH_CLOSE, SQUARE_3)
+        return (
+            holding(np.asarray(cv2.max(hand, near), np.uint8), evidence).view(bool) & cube.outside
+        )
 
     def _learn_first(self, view: _View, cube: CubePart) -> None:
         """Learn colours before anything of a hand or its surroundings is known."""
