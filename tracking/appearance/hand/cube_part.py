@@ -11,6 +11,7 @@ from tracking.appearance.hand.face_check import FaceCheck
 from tracking.appearance.hand.face_pattern import FacePattern
 from tracking.appearance.hand.structuring_elements import SQUARE_3
 from tracking.appearance.hand.window import Window
+from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Flags, Floats, Image
 
 DOUBTFUL_ODDS = 1.6
@@ -55,8 +56,8 @@ class CubePart:
 class CubeCheck:
     """Looks for what is in front of one cube, and remembers how near that must be."""
 
-    def __init__(self, pattern: FacePattern) -> None:
-        self._pattern, self._faces = pattern, FaceCheck()
+    def __init__(self, cube: CubeModel, pattern: FacePattern) -> None:
+        self._half, self._pattern, self._faces = cube.edge / 2, pattern, FaceCheck()
         self._hidden = np.zeros(3)  # the point behind the hand, in the cube's frame [m]
 
     def part(
@@ -92,7 +93,8 @@ class CubeCheck:
             corner = np.array([window.left + columns.start, window.top + rows.start], np.float64)
             scale = window.scale
             nearest = self._pattern.nearest(pose, seen.face * evidence, corner * scale, scale)
-            self._hidden = (nearest - pose[:3, 3]) @ pose[:3, :3]
+            hidden = (nearest - pose[:3, 3]) @ pose[:3, :3]
+            self._hidden = np.clip(hidden, -self._half, self._half)  # a pixel may be beyond an edge
         behind = pose[:3, :3] @ self._hidden + pose[:3, 3]
         inner = cv2.erode(seen.face, SQUARE_3) > 0
         slanted = (seen.face == 0) & outline.view(bool)

@@ -20,6 +20,7 @@ from tracking.appearance.hand.components import holding
 from tracking.appearance.hand.cube_part import CubeCheck, CubePart
 from tracking.appearance.hand.edge import soft_cover
 from tracking.appearance.hand.face_pattern import FacePattern
+from tracking.appearance.hand.last_hand import LastHand
 from tracking.appearance.hand.mask import HandMask
 from tracking.appearance.hand.odds import hand_odds
 from tracking.appearance.hand.shape import connected
@@ -28,7 +29,7 @@ from tracking.appearance.hand.window import Stillness, Window, WindowFinder, sam
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Flags, Floats, Image
 from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.projection import MIN_DEPTH, Projection
+from tracking.geometry.projection import Projection
 from tracking.geometry.state import CubeState
 
 SURE_ODDS = 1.2
@@ -86,15 +87,15 @@ class HandFinder:
         self._projection = Projection(intrinsics)
         self._pattern = FacePattern(cube, self._projection)
         self._windows = WindowFinder(cube, self._projection, self._pattern.corners)
-        self._cube = CubeCheck(self._pattern)
+        self._cube = CubeCheck(cube, self._pattern)
         self._background = Background()
         self._colours = ColourModel()
         self._stillness = Stillness()
         self._from_roots = LAB_FROM_ROOTS
         self._strip = self._frames = self._since_whole = 0
         self._scale = 0  # of the last window
-        self._last: HandMask | None = None
-        self._seen, self._pose = -np.inf, np.eye(4)
+        self._last = LastHand(self._projection)
+        self._seen = -np.inf
 
     def update(self, image: Image, state: CubeState) -> HandMask | None:
         """Find the hand in the next image, (H, W, 3) BGR, with the cube's state in it.
@@ -106,13 +107,16 @@ class HandFinder:
         """
         pose = state.camera_from_cube
         if pose is None or not state.visible:
-            return self._held(pose) if state.timestamp - self._seen < HELD_S else None
-        self._seen, self._pose = state.timestamp, pose
+            return self._last.held(pose) if state.timestamp - self._seen < HELD_S else None
+        self._seen = state.timestamp
         window = self._windows.window(pose, self._scale)
         if window is None:
-            self._last, self._stillness = None, Stillness()
+            self._last, self._stillness = LastHand(self._projection), Stillness()
             return None
         self._scale = window.scale
+        edge_px, time = window.edge * window.scale, state.timestamp
+        if not self._is_early and self._last.is_carried(pose, edge_px, time):
+            return self._last.mask
         self._since_whole += 1
         samples = sampled(image, window.scale, window.samples)
         if self._is_early or not self._stillness.is_still(window, samples):
@@ -122,8 +126,9 @@ class HandFinder:
             hand = self._found(view, pose)
             if self._is_early or hand is None:
                 self._learn_strip(image, view.window)
-            self._last = None if hand is None else self._with_arm(image, window, hand)
-        return self._last
+            found = None if hand is None else self._with_arm(image, window, hand)
+            self._last.found(found, pose, time)
+        return self._last.mask
 
     def region(self, camera_from_cube: Array) -> Box | None:
         """Rows and columns of the image in which the hand is looked for at a pose of the cube."""
@@ -134,15 +139,6 @@ class HandFinder:
     def _is_early(self) -> bool:
         """Whether so few frames were seen from the camera's place that all is looked at."""
         return self._frames < MANY_FRAMES
-
-    def _held(self, pose: Array | None) -> HandMask | None:
-        """Return the hand before, moved with the cube to a pose where it is expected."""
-        if self._last is None or pose is None or pose[2, 3] < MIN_DEPTH:
-            return self._last
-        centres = np.stack([self._pose[:3, 3], pose[:3, 3]])
-        before, now = np.rint(self._projection.project(centres))
-        right, down = (int(step) for step in now - before)
-        return self._last.moved(right, down)
 
     def _with_arm(self, image: Image, window: Window, hand: HandMask) -> HandMask:
         """Return a hand that was found in a window together with its arm beyond that."""

@@ -32,6 +32,24 @@ class HandMask:
     """The nearest point of the cube that the hand hides, in the camera's frame, (3,) [m]: the hand
     is nearer. The cube's centre where the hand hides no face."""
 
-    def moved(self, right: int, down: int) -> "HandMask":
-        """Return the same after a move by some pixels, perhaps out of the image."""
-        return replace(self, x=self.x + right, y=self.y + down)
+    def moved(self, right: int, down: int, step: Array) -> "HandMask":
+        """Return the same after a move, `step`, (3,) in metres, by some pixels of the image."""
+        return replace(self, x=self.x + right, y=self.y + down, behind=self.behind + step)
+
+    def agreement(self, other: "HandMask") -> float:
+        """Return the soft IoU with another mask, 0…1: the lesser over the greater shares of all.
+
+        Masks of other squares do not agree.
+        """
+        if self.scale != other.scale:
+            return 0.0
+        right, down = (
+            round((there - here) / self.scale)
+            for here, there in ((self.x, other.x), (self.y, other.y))
+        )
+        here = self.share[max(down, 0) :, max(right, 0) :]
+        there = other.share[max(-down, 0) :, max(-right, 0) :]
+        height, width = np.minimum(here.shape, there.shape)
+        both = int(np.minimum(here[:height, :width], there[:height, :width]).sum())
+        either = int(self.share.sum()) + int(other.share.sum()) - both
+        return both / max(either, 1)

@@ -66,15 +66,18 @@ def test_hands_of_any_colour_are_found(skin):
     assert overlap_in(HandView(skin, azimuth_deg=-120, seed=3), 25) > 0.8
 
 
-def test_the_hand_is_nearer_than_what_it_hides(film):
+def test_what_a_hand_hides_is_on_the_near_side_of_the_cube(film):
     intrinsics, pictures = film
     finder = HandFinder(CUBE, intrinsics)
-    for picture, pose in pictures:
-        mask = finder.update(picture, state_at(pose))
-    assert mask is not None
-    centre = pose[2, 3]
-    assert centre - CUBE.edge < mask.behind[2] <= centre
-    assert np.linalg.norm(mask.behind - pose[:3, 3]) < CUBE.edge
+    masks = [finder.update(picture, state_at(pose)) for picture, pose in pictures]
+    behind = [
+        mask.behind - pose[:3, 3]
+        for mask, (_, pose) in zip(masks, pictures, strict=True)
+        if mask is not None
+    ]
+    assert len(behind) > 3
+    assert np.max(behind, axis=0)[2] <= 0
+    assert np.linalg.norm(behind, axis=1).max() < 0.87 * CUBE.edge
 
 
 def test_a_cube_without_a_hand_is_not_covered():
@@ -290,13 +293,6 @@ def test_what_the_first_hand_hides_for_a_moment_is_not_taken_for_a_hand_later():
 def test_dark_fingers_on_ink_are_told_by_their_chroma():
     view = HandView("3a312a", azimuth_deg=-165, seed=4, gradient=0.5)
     assert overlap_in(view, 26) > 0.95
-
-
-def test_a_held_hand_moves_with_the_cube():
-    share = np.arange(12, dtype=np.uint8).reshape(3, 4)
-    moved = HandMask(100, 50, share, 3, np.array([0.0, 0.0, 0.5])).moved(5, -2)
-    assert (moved.x, moved.y, moved.scale, moved.behind[2]) == (105, 48, 3, 0.5)
-    np.testing.assert_array_equal(moved.share, share)
 
 
 @pytest.mark.parametrize("x", [-103, 1279, 5000])
