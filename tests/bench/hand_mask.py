@@ -53,7 +53,7 @@ class Result:
     """IoU of each frame in the whole picture."""
 
     times: list[float] = field(default_factory=list)
-    """Time of `HandFinder.update` [ms]."""
+    """Time of `HandFinder.update` in each frame with a hand [ms]."""
 
     marker_times: list[float] = field(default_factory=list)
     """Time of OpenCV's marker detection in the same frames [ms]."""
@@ -93,8 +93,9 @@ def measure(name: str, skin: str, given: argparse.Namespace) -> Result:
             mask = finder.update(frame.image, state)
             middle = time.perf_counter()
             markers.detectMarkers(cv2.cvtColor(frame.image, cv2.COLOR_BGR2GRAY))
-            result.times.append(1000 * (middle - start))
-            result.marker_times.append(1000 * (time.perf_counter() - middle))
+            if truth.any() or not skin:
+                result.times.append(1000 * (middle - start))
+                result.marker_times.append(1000 * (time.perf_counter() - middle))
             box = finder.region(scene.truth(index))
             if box is None:
                 continue

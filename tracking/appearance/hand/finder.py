@@ -94,7 +94,7 @@ class HandFinder:
         self._from_roots = LAB_FROM_ROOTS
         self._strip = self._frames = self._since_whole = 0
         self._scale = 0  # of the last window
-        self._last = LastHand(self._projection)
+        self._last = LastHand(cube, self._projection)
         self._seen = -np.inf
 
     def update(self, image: Image, state: CubeState) -> HandMask | None:
@@ -108,15 +108,15 @@ class HandFinder:
         pose = state.camera_from_cube
         if pose is None or not state.visible:
             return self._last.held(pose) if state.timestamp - self._seen < HELD_S else None
-        self._seen = state.timestamp
+        self._seen = time = state.timestamp
+        if not self._is_early and self._last.is_carried(pose, time):
+            return self._last.mask
         window = self._windows.window(pose, self._scale)
         if window is None:
-            self._last, self._stillness = LastHand(self._projection), Stillness()
+            self._stillness = Stillness()
+            self._last.found(None, pose, time)
             return None
         self._scale = window.scale
-        edge_px, time = window.edge * window.scale, state.timestamp
-        if not self._is_early and self._last.is_carried(pose, edge_px, time):
-            return self._last.mask
         self._since_whole += 1
         samples = sampled(image, window.scale, window.samples)
         if self._is_early or not self._stillness.is_still(window, samples):

@@ -3,6 +3,7 @@
 import numpy as np
 
 from tracking.appearance.hand.mask import HandMask
+from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array
 from tracking.geometry.projection import MIN_DEPTH, Projection
 
@@ -24,11 +25,12 @@ class LastHand:
     at. A hand that comes, lets go or turns the cube is looked at in each frame.
     """
 
-    def __init__(self, projection: Projection) -> None:
+    def __init__(self, cube: CubeModel, projection: Projection) -> None:
         self.mask: HandMask | None = None
         """What it covers; None where there is no hand."""
 
         self._projection = projection
+        self._edge = cube.edge * float(projection.matrix[0, 0])  # at 1 m [px]
         self._pose = np.eye(4)
         self._carried_looks, self._looked_at = 0, 0.0
 
@@ -41,11 +43,8 @@ class LastHand:
         self._carried_looks = self._carried_looks + 1 if is_carried else 0
         self.mask, self._pose, self._looked_at = mask, camera_from_cube, time
 
-    def is_carried(self, camera_from_cube: Array, edge_px: float, time: float) -> bool:
-        """Tell whether a frame need not be looked at; move the hand with the cube if so.
-
-        `edge_px` is the apparent edge of the cube.
-        """
+    def is_carried(self, camera_from_cube: Array, time: float) -> bool:
+        """Tell whether a frame need not be looked at; move the hand with the cube if so."""
         is_due = not 0.0 < time - self._looked_at < UNSEEN_S
         if is_due or self._carried_looks < CARRIED_LOOKS:
             return False
@@ -53,7 +52,8 @@ class LastHand:
         if hand is None or self.mask is None:
             return False
         step_px = max(abs(hand.x - self.mask.x), abs(hand.y - self.mask.y))
-        if step_px > MAX_STEP_EDGES * edge_px:
+        depth = float(camera_from_cube[2, 3])
+        if depth < MIN_DEPTH or step_px * depth > MAX_STEP_EDGES * self._edge:
             return False
         self.mask, self._pose = hand, camera_from_cube
         return True
