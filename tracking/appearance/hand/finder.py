@@ -109,7 +109,7 @@ class HandFinder:
         if pose is None or not state.visible:
             return self._last.held(pose) if state.timestamp - self._seen < HELD_S else None
         self._seen = time = state.timestamp
-        if not self._is_early and self._last.is_carried(pose, time):
+        if not self._is_early and self._last.carry(pose, time):
             return self._last.mask
         window = self._windows.window(pose, self._scale)
         if window is None:

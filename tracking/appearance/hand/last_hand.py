@@ -43,8 +43,8 @@ class LastHand:
         self._carried_looks = self._carried_looks + 1 if is_carried else 0
         self.mask, self._pose, self._looked_at = mask, camera_from_cube, time
 
-    def is_carried(self, camera_from_cube: Array, time: float) -> bool:
-        """Tell whether a frame need not be looked at; move the hand with the cube if so."""
+    def carry(self, camera_from_cube: Array, time: float) -> bool:
+        """Move the hand with the cube; return False where it must be looked for instead."""
         is_due = not 0.0 < time - self._looked_at < UNSEEN_S
         if is_due or self._carried_looks < CARRIED_LOOKS:
             return False

@@ -45,7 +45,7 @@ def last() -> LastHand:
     """A hand that was found so often at the same place that it is carried, the last time at 0 s."""
     hand = LastHand(CUBE, Projection(WIDE))
     for number in range(-CARRIED_LOOKS, 1):
-        assert not hand.is_carried(POSE, number / 30)
+        assert not hand.carry(POSE, number / 30)
         hand.found(mask(), POSE, number / 30)
     return hand
 
@@ -75,11 +75,11 @@ def test_masks_of_other_squares_and_empty_ones_do_not_agree():
 
 
 def test_a_hand_that_moved_with_the_cube_does_so_until_it_is_due_again(last):
-    assert last.is_carried(aside(20), 0.02)
+    assert last.carry(aside(20), 0.02)
     assert last.mask.x == 620
-    assert last.is_carried(aside(-10), 0.07)
+    assert last.carry(aside(-10), 0.07)
     assert last.mask.x == 590
-    assert not last.is_carried(aside(-10), UNSEEN_S)
+    assert not last.carry(aside(-10), UNSEEN_S)
 
 
 @pytest.mark.parametrize(
@@ -89,22 +89,22 @@ def test_a_hand_that_moved_with_the_cube_does_so_until_it_is_due_again(last):
 )
 def test_a_hand_that_moves_unlike_the_cube_is_looked_at_in_each_frame(last, found):
     last.found(found, aside(20), 0.03)
-    assert not last.is_carried(aside(20), 0.06)
+    assert not last.carry(aside(20), 0.06)
 
 
 def test_a_hand_is_looked_at_after_a_leap_of_the_cube_or_a_gap_or_without_a_clock(last):
     at_lens = POSE.copy()
     at_lens[2, 3] = 0.01
-    assert not last.is_carried(aside(1.1 * MAX_STEP_EDGES * EDGE_PX), 0.03)
-    assert not last.is_carried(at_lens, 0.03)
-    assert not last.is_carried(POSE, 0.2)
-    assert not last.is_carried(POSE, 0.0)
+    assert not last.carry(aside(1.1 * MAX_STEP_EDGES * EDGE_PX), 0.03)
+    assert not last.carry(at_lens, 0.03)
+    assert not last.carry(POSE, 0.2)
+    assert not last.carry(POSE, 0.0)
 
 
 def test_a_hand_is_looked_at_when_a_lost_cube_is_found_again(last):
     assert last.held(aside(20)).x == 620
     assert last.held(None).x == 600
-    assert not last.is_carried(POSE, 0.03)
+    assert not last.carry(POSE, 0.03)
 
 
 def test_a_carried_hand_covers_the_same_as_one_that_is_looked_at():
