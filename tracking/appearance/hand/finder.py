@@ -107,7 +107,8 @@ class HandFinder:
         """
         pose = state.camera_from_cube
         if pose is None or not state.visible:
-            return self._last.held(pose) if state.timestamp - self._seen < HELD_S else None
+            is_held = 0.0 <= state.timestamp - self._seen < HELD_S
+            return self._last.held(pose) if is_held else None
         self._seen = time = state.timestamp
         if not self._is_early and self._last.carry(pose, time):
             return self._last.mask
