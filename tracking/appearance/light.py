@@ -70,6 +70,8 @@ class LightMeter:
         None until any paper was measured. See `MeasuredLight.certainty` for how far to trust it.
         """
         now = state.timestamp
+        if now < self._looked:  # a recording is wound back
+            self._looked = self._fitted = self._measured = now - MEASURING_INTERVAL_S
         if self._measured > self._fitted and now - self._fitted >= FIT_INTERVAL_S - 1e-6:
             fitted = self._memory.fit(DEFAULT_UP if up is None else up)
             self._light = _blend(self._light, fitted, now - self._fitted)

@@ -233,6 +233,19 @@ def test_automatic_exposure_scales_the_light_and_does_not_turn_it():
     np.testing.assert_allclose(after.key, 0.7 * before.key, rtol=0.06)
 
 
+def test_a_recording_that_is_wound_back_is_measured_on():
+    meter, lights = LightMeter(CUBE, WIDE), []
+    for index in range(120):
+        pose, late = turned(index / 30), index < 90
+        shown_at = (300 if late else -90) + index
+        image = picture(pose, gain=1.0 if late else 0.7)
+        lights.append(meter.update(image, state(pose, shown_at / 30)))
+    before, after = lights[89], lights[119]
+    assert before is not None
+    assert after is not None
+    np.testing.assert_allclose(after.key, 0.7 * before.key, rtol=0.06)
+
+
 def test_a_lamp_that_moves_is_followed():
     other = TO_LIGHT * (-1, 1, 1)
 
