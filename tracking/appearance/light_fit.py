@@ -147,8 +147,7 @@ def fit_light(
     directions = DIRECTIONS
     for _ in range(2):
         lit = np.maximum(normals @ directions.T, 0)
-        fits = [_least_squares(lit, each, scaled, weights) for each in around]
-        cost, ambients, keys = (np.stack(part) for part in zip(*fits, strict=True))
+        cost, ambients, keys = _least_squares(lit, around, scaled, weights)
         variance = max(IRRADIANCE_ERROR**2, float(cost.min()) / (3 * max(total - 2, 1.0)))
         log = directions @ log_prior - cost * (independent / (2 * variance))
         likely = np.exp(log - log.max())
@@ -175,25 +174,25 @@ def fit_light(
 def _least_squares(
     lit: Array, around: Array, values: Array, weights: Array
 ) -> tuple[Array, Array, Array]:
-    """Fit ambient and key light, both at least 0, for each direction.
+    """Fit ambient and key light, both at least 0, for each way of light from around and direction.
 
     `lit` are the cosines of patches and directions, at least 0, (N, G), `around` the light from all
-    around on patches, as a share of its mean, (N,), `values` (N, 3), `weights` (N,).
-    Returns the weighted sum of squares (G,), ambient and key light (G, 3).
+    around on patches, as a share of its mean, (ways, N), `values` (N, 3), `weights` (N,).
+    Returns the weighted sum of squares (ways, G), ambient and key light (ways, G, 3).
     """
     weighted = weights[:, None] * values
     # What is expected of the ambient share is one more measurement, of a weight next to nothing.
     share, trust = EXPECTED_AMBIENT_SHARE, (IRRADIANCE_ERROR / (2 * AMBIENT_SHARE_SPREAD)) ** 2
     weighted_around = weights * around
-    aa = float(weighted_around @ around) + trust * (1 - share) ** 2
-    ak = (weighted_around @ lit)[:, None] - trust * share * (1 - share)
+    aa = (weighted_around * around).sum(axis=1)[:, None, None] + trust * (1 - share) ** 2
+    ak = (weighted_around @ lit)[:, :, None] - trust * share * (1 - share)
     kk = (weights @ (lit * lit))[:, None] + trust * share**2
-    a, k = around @ weighted, lit.T @ weighted
+    a, k = (around @ weighted)[:, None], lit.T @ weighted
     key = (aa * k - ak * a) / (aa * kk - ak * ak)
     key = np.where(ak * key > a, k / kk, np.maximum(key, 0))  # no negative ambient light
     ambient = np.maximum(a - ak * key, 0) / aa
     cost = aa * ambient**2 + 2 * ak * ambient * key + kk * key**2 - 2 * (ambient * a + key * k)
-    return cost.sum(axis=1) + float((weighted * values).sum()), ambient, key
+    return cost.sum(axis=2) + float((weighted * values).sum()), ambient, key
 
 
 def _around(centre: Array, radius: float) -> Array:
