@@ -17,12 +17,12 @@ from tracking.appearance.hand.colour_model import (
     colours,
 )
 from tracking.appearance.hand.components import holding
-from tracking.appearance.hand.cube_part import CubeCheck, CubePart
 from tracking.appearance.hand.edge import soft_cover
-from tracking.appearance.hand.face_pattern import FacePattern
 from tracking.appearance.hand.last_hand import LastHand
 from tracking.appearance.hand.mask import HandMask
 from tracking.appearance.hand.odds import hand_odds
+from tracking.appearance.hand.on_cube.cube_part import CubeCheck, CubePart
+from tracking.appearance.hand.on_cube.face_pattern import FacePattern
 from tracking.appearance.hand.shape import connected
 from tracking.appearance.hand.structuring_elements import SQUARE_3, SQUARE_5
 from tracking.appearance.hand.window import Stillness, Window, WindowFinder, sampled, shrunk

@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 
 from tracking.appearance.hand.background import SHADED, UNKNOWN, Place
-from tracking.appearance.hand.cube_part import CubePart
 from tracking.appearance.hand.edge import ODDS_RANGE
+from tracking.appearance.hand.on_cube.cube_part import CubePart
 from tracking.appearance.hand.shape import filled
 from tracking.appearance.hand.structuring_elements import SQUARE_3
 from tracking.appearance.hand.window import Window

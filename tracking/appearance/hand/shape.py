@@ -5,7 +5,7 @@ import numpy as np
 
 from tracking.appearance.hand.background import UNKNOWN, Place
 from tracking.appearance.hand.components import at_border
-from tracking.appearance.hand.cube_part import CubePart
+from tracking.appearance.hand.on_cube.cube_part import CubePart
 from tracking.appearance.hand.structuring_elements import SQUARE_3, SQUARE_5
 from tracking.appearance.hand.window import Window
 from tracking.geometry.arrays import Flags, Floats, Image

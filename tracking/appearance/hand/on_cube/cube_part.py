@@ -7,8 +7,8 @@ import cv2
 import numpy as np
 
 from tracking.appearance.hand.colour_model import MIN_SHOWN_PX
-from tracking.appearance.hand.face_check import FaceCheck
-from tracking.appearance.hand.face_pattern import FacePattern
+from tracking.appearance.hand.on_cube.face_check import FaceCheck
+from tracking.appearance.hand.on_cube.face_pattern import FacePattern
 from tracking.appearance.hand.structuring_elements import SQUARE_3
 from tracking.appearance.hand.window import Window
 from tracking.cube.model import CubeModel

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from tracking.appearance.hand.face_pattern import SeenPattern
+from tracking.appearance.hand.on_cube.face_pattern import SeenPattern
 from tracking.appearance.hand.structuring_elements import SQUARE_2, SQUARE_3
 from tracking.geometry.arrays import Flags, Floats, Image
 from tracking.geometry.robust_statistics import quantile

@@ -1,0 +1,1 @@
+"""What hides the print of a tracked cube."""
