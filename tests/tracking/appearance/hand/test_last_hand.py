@@ -52,7 +52,7 @@ def last() -> LastHand:
 
 def test_a_moved_hand_is_elsewhere_in_the_image_and_in_the_room():
     moved = mask().moved(5, -2, np.array([0.01, 0.0, -0.02]))
-    assert (moved.x, moved.y) == (605, 298)
+    assert (moved.x, moved.y, moved.scale) == (605, 298, 3)
     np.testing.assert_allclose(moved.behind, POSE[:3, 3] + [0.01, 0.0, -0.02])
     np.testing.assert_array_equal(moved.share, mask().share)
 
