@@ -35,19 +35,21 @@ class PictureCover:
 
     def share_in(self, area: Rectangle) -> NDArray[np.uint8]:
         """Return the share of each pixel of an area that is covered, (height, width), 0…255."""
+        scale = self.cover.scale
+        x, y = (corner + 0.5 * (scale - 1) for corner in (self.cover.x, self.cover.y))
         if self.maps is None:
-            rows, columns = np.mgrid[area.slices].astype(np.float32)
+            # In a fifth of the time that `cv2.remap` takes.
+            pixel_from_square = np.array([(scale, 0.0, x - area.x), (0.0, scale, y - area.y)])
+            size = area.width, area.height
+            found = cv2.warpAffine(self.cover.share, pixel_from_square, size)
         else:
             columns, rows = (each[area.slices] for each in self.maps)
-        scale = self.cover.scale
-        x, y = (np.float32(corner + 0.5 * (scale - 1)) for corner in (self.cover.x, self.cover.y))
-        found = cv2.remap(
-            self.cover.share,
-            (columns - x) * np.float32(1 / scale),
-            (rows - y) * np.float32(1 / scale),
-            cv2.INTER_LINEAR,
-            borderMode=cv2.BORDER_CONSTANT,
-        )
+            found = cv2.remap(
+                self.cover.share,
+                (columns - np.float32(x)) * np.float32(1 / scale),
+                (rows - np.float32(y)) * np.float32(1 / scale),
+                cv2.INTER_LINEAR,
+            )
         if self.cover.slope != 1.0:
             found = cv2.LUT(found, _steeper(self.cover.slope))
         return np.asarray(found, np.uint8)

@@ -277,7 +277,9 @@ def _blurred_sum(
 ) -> NDArray[np.float32]:
     """Return the weighted sum of the levels, each with its own blur, (rows, columns) 0…1."""
     total: NDArray[np.float32] = np.zeros(covered.shape[:2], np.float32)
-    for level, deviation, weight in zip(cv2.split(covered), deviations, weights, strict=True):
+    # In an eighth of the time that `cv2.split` takes for a part of a map.
+    levels = np.ascontiguousarray(covered.transpose(2, 0, 1))
+    for level, deviation, weight in zip(levels, deviations, weights, strict=True):
         kernel = _gaussian_kernel(texels_per_height * deviation)
         weighted = np.float32(weight / 255.0) * kernel
         total += cv2.sepFilter2D(

@@ -60,6 +60,15 @@ def test_a_cube_behind_the_camera_is_clipped_at_the_near_plane():
     assert hidden[60, 100] == 1.0
 
 
+@pytest.mark.parametrize("scale", [1, 2, 5])
+def test_a_hand_is_the_same_without_a_lens_and_with_one_that_bends_nothing(scale):
+    share = np.random.default_rng(scale).integers(0, 256, (24, 31), np.uint8)
+    cover = Cover(35, 10, share, np.array([0.0, 0.0, 0.5]), scale, 2.0)
+    rows, columns = np.mgrid[:180, :320].astype(np.float32)
+    plain, bent = (PictureCover(cover.area, cover, maps) for maps in (None, (columns, rows)))
+    assert np.array_equal(plain.share_in(PART), bent.share_in(PART))
+
+
 def test_a_cube_and_a_hand_hide_the_table_independently_of_each_other():
     box = box_at((0, 0, 0), (0.0, 0.0, 0.5))
     place = Rectangle(110, 60, 100, 60)
