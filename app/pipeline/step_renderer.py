@@ -96,7 +96,7 @@ class StepRenderer:
         """
         if self._stage is None:
             return None
-        view = self._surroundings.view(frame, state, controls)
+        view = self._surroundings.view(frame, state, controls, self._quality.matched)
         seen = body.posed.visible and controls.camera_from_table is not None
         characters = self._characters(outcome, body, interior, blood) if seen else []
         if interior is not None and interior.box is not None:

@@ -80,8 +80,13 @@ class Surroundings:
         self._quality = QualityMeter(cube, intrinsics) if "softness" in chosen else None
         self._autofocus = Autofocus() if "focus" in chosen else None
 
-    def view(self, frame: Frame, state: CubeState, controls: CubeControls) -> View:
-        """Return the camera's picture with all that is known of the scene but the hand."""
+    def view(
+        self, frame: Frame, state: CubeState, controls: CubeControls, matched: bool = True
+    ) -> View:
+        """Return the camera's picture with all that is known of the scene but the hand.
+
+        Blur, noise and haze are measured only where the drawing is `matched` to them.
+        """
         pose = state.camera_from_cube
         return View(
             frame.image,
@@ -90,7 +95,7 @@ class Surroundings:
             controls.camera_from_table,
             () if pose is None else (Box(pose, self._cube.edge),),
             light=self._measured_light(frame, state, controls),
-            softness=self._softness(frame, state),
+            softness=self._softness(frame, state) if matched else None,
             focus=None if self._autofocus is None else self._autofocus.update(state),
         )
 

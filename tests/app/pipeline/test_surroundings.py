@@ -55,6 +55,15 @@ def test_only_what_was_chosen_is_measured(source, seen):
     assert np.array_equal(full.image, plain.image)
 
 
+def test_softness_is_measured_only_where_the_drawing_follows_it(source, seen):
+    surroundings = Surroundings(source.cube, source.intrinsics, ("light", "softness"))
+    coarse = [surroundings.view(*each, matched=False) for each in seen][-1]
+    assert coarse.softness is None
+    assert coarse.light is not None
+    matched = [surroundings.view(*each) for each in seen][-1]
+    assert matched.softness.blur == pytest.approx(0.5, abs=0.25)
+
+
 def test_no_hand_is_found_where_none_is_near(source, seen):
     surroundings = Surroundings(source.cube, source.intrinsics, ("hand",))
     assert all(surroundings.cover(frame, state) is None for frame, state, _ in seen)

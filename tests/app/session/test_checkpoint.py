@@ -49,8 +49,8 @@ class NotedSurroundings(Surroundings):
 
     noted: ClassVar[list[tuple[Any, ...]]] = []
 
-    def view(self, frame, state, controls):
-        view = super().view(frame, state, controls)
+    def view(self, frame, state, controls, matched=True):
+        view = super().view(frame, state, controls, matched)
         self.noted.append((view.light, view.softness, view.focus))
         return view
 
