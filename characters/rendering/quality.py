@@ -49,7 +49,7 @@ QUALITIES = {
     for each in (
         Quality("rich", 2, True, deferred=True, effects=frozenset(Effect), max_error_px=0.85),
         Quality("full", 2, True, max_error_px=0.85),
-        Quality("reduced", 1, False, max_error_px=2.4),
+        Quality("reduced", 1, False, max_error_px=3.0),
     )
 }
 """The qualities by name, the best first."""

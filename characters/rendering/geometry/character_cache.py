@@ -64,6 +64,10 @@ class PictureFineness:
         """
         return self.max_error_px * self.pixel(table_from_character, height)
 
+    def detail(self, table_from_character: Array, height: float) -> float:
+        """Return the size of what is seen of a surface, as `pixel`: its error may be larger."""
+        return max(1.0, self.max_error_px) * self.pixel(table_from_character, height)
+
     def pixel(self, table_from_character: Array, height: float) -> float:
         """Return the size of a pixel at the nearest part, with parameters and unit of `error`."""
         # Plain numbers: numpy takes several times as long for so few.
@@ -117,7 +121,7 @@ class CharacterCache:
                     joints, place, each.posed.pose.morphs, fineness.error(place, skinned.height)
                 )
             if enclosing is not None:
-                pixel = fineness.pixel(place, skinned.height)
+                pixel = fineness.detail(place, skinned.height)
                 skinned.show_face(
                     each.posed.pose.morphs, each.blood, place, pixel if each.wrinkles else np.inf
                 )

@@ -14,8 +14,12 @@ from characters.rendering.geometry.places import are_whole, places_of
 from characters.rendering.geometry.vertices import CharacterVertices
 from characters.rendering.projection import is_invertible
 
-LEVEL_TOLERANCES = tuple(map(Tolerance, (1 / 850, 1 / 600, 1 / 500, 1 / 350, 1 / 240, 1 / 170)))
-"""Those of the coarser levels, with distances as shares of the character's largest side."""
+LEVEL_TOLERANCES = (
+    *map(Tolerance, (1 / 850, 1 / 600, 1 / 500, 1 / 350, 1 / 240, 1 / 170)),
+    Tolerance(1 / 120, thickness_share=0.3),
+)
+"""Those of the coarser levels, with distances as shares of the character's largest side. The small
+parts of the coarsest one are hardly seen, and half of its triangles would be theirs."""
 
 SHAPE_TOLERANCE = Tolerance(1 / 150, thickness_share=0.3)
 """The same for what casts a shadow; small parts are not looked at closely."""

@@ -285,6 +285,15 @@ def test_the_error_is_that_of_the_nearest_part(ctx, human):
     assert behind.error(np.eye(4), human.height) == 0.0
 
 
+@pytest.mark.parametrize(("max_error_px", "pixels"), [(0.0, 1.0), (0.85, 1.0), (3.0, 3.0)])
+def test_nothing_finer_than_the_error_is_seen_of_a_surface(human, max_error_px, pixels):
+    camera = np.diag([1.0, -1.0, -1.0, 1.0])
+    camera[2, 3] = 3.0
+    fineness = PictureFineness(camera, 900.0, max_error_px)
+    pixel = fineness.pixel(np.eye(4), human.height)
+    assert fineness.detail(np.eye(4), human.height) == pytest.approx(pixels * pixel)
+
+
 def test_a_character_without_levels_keeps_its_triangles(human):
     given = CharacterVertices.of(human.meshes)
     vertices, (finest,) = with_levels(given, tolerances=())
