@@ -13,7 +13,7 @@ from tracking.geometry.frame import Frame
 from tracking.geometry.intrinsics import Intrinsics
 from tracking.synthetic.camera_rays import CameraRays
 from tracking.synthetic.choreography import UP, Choreography, SceneState
-from tracking.synthetic.exposure import ExposureRenderer, shutter_samples
+from tracking.synthetic.exposure import ExposureRenderer, in_colours, shutter_samples
 from tracking.synthetic.hand import Capsule, Hand, draw_hand, hand_region
 from tracking.synthetic.options import SyntheticOptions
 from tracking.synthetic.paper_cube import PaperCube
@@ -151,7 +151,8 @@ class _HandRenderer(ExposureRenderer):
         spots = random.standard_normal((height // 10, width // 10)).astype(np.float32)
         large = cv2.resize(spots, (width, height), interpolation=cv2.INTER_CUBIC)
         self._spots = np.clip(large - 1.7, 0, 1) * 90.0 * view.gloss
-        self._light = np.linspace(1 - view.gradient, 1, width, dtype=np.float32)[:, None]
+        light = np.linspace(1 - view.gradient, 1, width, dtype=np.float32)
+        self._light = np.repeat(light[:, None], 3, axis=1)
 
     def draw(self, states: list[SceneState], poses: list[Array], index: int, in_air: bool) -> Image:
         self.covered = np.zeros_like(self.covered)
@@ -166,12 +167,12 @@ class _HandRenderer(ExposureRenderer):
         if region.empty:
             return
         colour, cover, depth = draw_hand(self._camera, region, hand, self._to_light)
-        colour = colour * self._mottle[region.index][..., None]
-        colour += (self._spots[region.index] * (cover > 0.9))[..., None]
+        colour = colour * in_colours(self._mottle[region.index])
+        colour += in_colours(self._spots[region.index] * (cover > 0.9))
         behind = depth - self._cube.depth(region, camera_from_cube)
         cover = cover * (1.0 - np.clip(behind / 0.0015, 0.0, 1.0))
         part = image[region.index]
-        part += (colour - part) * cover[..., None]
+        part += (colour - part) * in_colours(cover)
         self.covered[region.index] = cover
 
     def _table_position(self, camera_from_cube: Array) -> Array:

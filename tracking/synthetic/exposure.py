@@ -17,6 +17,9 @@ MAX_STEP_PX = 0.6
 MAX_SHUTTER_SAMPLES = 24
 """Maximum number of samples in time of one exposure."""
 
+STRIP_ROWS = 40
+"""Rows of an image that are sensed together: they fit into the processor's cache."""
+
 
 class ExposureRenderer:
     """Renders the images of one static camera."""
@@ -79,7 +82,7 @@ class ExposureRenderer:
         behind = depth - self._cube.depth(region, camera_from_cube)
         cover *= 1.0 - np.clip(behind / 0.0015, 0.0, 1.0)
         part = image[region.index]
-        part += (colour - part) * cover[..., None]
+        part += (colour - part) * in_colours(cover)
 
     def _hand_shadow(self, image: Floats, hand: Hand) -> None:
         """Cast the hand's shadow on the desk: wide strokes at low resolution, blurred."""
@@ -101,7 +104,7 @@ class ExposureRenderer:
         height_of_tip = float(hand.skin[0].start[1])
         soft = cv2.GaussianBlur(dark, (0, 0), 2.0 + 45.0 * max(0.0, height_of_tip))
         shade = cv2.resize(1.0 - 0.34 * soft, self._camera.size)
-        image *= shade[..., None]
+        image *= in_colours(np.asarray(shade, np.float32))
 
     def _cube_shadow(self, image: Floats, table_from_cube: Array) -> None:
         corners = self._cube.corners(table_from_cube)
@@ -134,21 +137,24 @@ class ExposureRenderer:
         x = width * (0.22 + 0.10 * np.sin(0.45 * time + self._options.seed))
         away = ((small[1] - x) / (0.34 * width)) ** 2 + ((small[0] - 1.1 * height) / height) ** 2
         shade = 1.0 - 0.22 * np.exp(-2.2 * away) * (0.75 + 0.25 * np.sin(0.6 * time))
-        image *= cv2.resize(shade.astype(np.float32), (width, height))[..., None]
+        image *= in_colours(cv2.resize(shade.astype(np.float32), (width, height)))
 
     def _sensor_image(self, image: Floats, index: int) -> Image:
         options = self._options
         if options.defocus > 0:
             image = np.asarray(cv2.GaussianBlur(image, (0, 0), options.defocus), np.float32)
-        if options.noise > 0:
-            random = np.random.default_rng([options.seed, index, 7])
-            top, left = random.integers(0, 128, 2)
-            width, height = self._camera.size
-            tile = self._noise[top : top + height, left : left + width]
-            # Shot noise grows with the square root of the light; the rest is read noise.
-            strength = np.sqrt(np.maximum(image, 0.0) * (0.75 / 128.0) + 0.25)
-            image = image + np.float32(options.noise) * strength * tile
-        return np.clip(np.rint(image), 0, 255).astype(np.uint8)
+        random = np.random.default_rng([options.seed, index, 7])
+        top, left = random.integers(0, 128, 2)
+        width, height = self._camera.size
+        tile = self._noise[top : top + height, left : left + width]
+        sensed = np.empty(image.shape, np.uint8)
+        for row in range(0, height, STRIP_ROWS):
+            strip = np.s_[row : row + STRIP_ROWS]
+            light = image[strip]
+            if options.noise > 0:
+                light = light + options.noise * _noise(light, tile[strip])
+            sensed[strip] = np.clip(np.rint(light), 0, 255)
+        return sensed
 
 
 def shutter_samples(camera: CameraRays, corners: list[Array]) -> int:
@@ -164,8 +170,26 @@ def _union(regions: list[PixelRegion]) -> PixelRegion:
     return PixelRegion(x, y, right - x, bottom - y)
 
 
+def _noise(image: Floats, normal: Floats) -> Floats:
+    """Return the noise in a part of an image from normal noise, (h, w, 3) each.
+
+    Shot noise grows with the square root of the light; the rest is read noise.
+    """
+    noise = np.maximum(image, 0.0)
+    noise *= 0.75 / 128.0
+    noise += 0.25
+    np.sqrt(noise, out=noise)
+    noise *= normal
+    return noise
+
+
 def _vignette(camera: CameraRays) -> Floats:
     width, height = camera.size
     x = np.linspace(-1, 1, width, dtype=np.float32)
     y = np.linspace(-height / width, height / width, height, dtype=np.float32)
-    return (1.0 - 0.14 * (x[None, :] ** 2 + y[:, None] ** 2))[..., None]
+    return in_colours(1.0 - 0.14 * (x[None, :] ** 2 + y[:, None] ** 2))
+
+
+def in_colours(shade: Array | Floats) -> Floats:
+    """Return a factor for each channel of an image, (h, w, 3): numpy is slow at repeating one."""
+    return np.asarray(cv2.merge([shade] * 3), np.float32)

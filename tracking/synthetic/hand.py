@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 
 from tracking.geometry.arrays import Array, Floats
@@ -136,10 +137,14 @@ def _skin_shader(skin_bgr: tuple[float, float, float]) -> Shader:
 
     def shade(light: Floats, slope: Floats, blush: Floats, along: Floats) -> Floats:
         rim = np.clip(1.0 - slope, 0.0, 1.0) ** 2
-        colour = np.array(skin_bgr, np.float32) * (0.40 + 0.62 * light)[..., None]
-        colour *= 1.0 - rim[..., None] * np.array([0.34, 0.28, 0.12], np.float32)
-        colour *= 1.0 - blush[..., None] * np.array([0.15, 0.11, 0.0], np.float32)
-        return np.asarray(colour + 16.0 * (light**6)[..., None], np.float32)
+        lit, gloss = 0.40 + 0.62 * light, 16.0 * light**6
+        channels = [
+            value * lit * (1.0 - paler * rim) * (1.0 - redder * blush) + gloss
+            for value, paler, redder in zip(
+                skin_bgr, (0.34, 0.28, 0.12), (0.15, 0.11, 0.0), strict=True
+            )
+        ]
+        return np.asarray(cv2.merge(channels), np.float32)
 
     return shade
 
@@ -150,7 +155,7 @@ def _cloth_shader(sleeve_bgr: tuple[float, float, float]) -> Shader:
     def shade(light: Floats, slope: Floats, blush: Floats, along: Floats) -> Floats:
         folds = 0.05 * np.sin(34 * along + 3.0 * slope) + 0.035 * np.sin(81 * along - 5.0 * slope)
         shade = 0.42 + 0.60 * light + folds * slope
-        return np.asarray(np.array(sleeve_bgr, np.float32) * shade[..., None], np.float32)
+        return np.asarray(cv2.merge([value * shade for value in sleeve_bgr]), np.float32)
 
     return shade
 
@@ -164,7 +169,7 @@ class _CapsuleLayer:
         self._focal = float(camera.intrinsics.matrix[0, 0])
         self.cover = np.zeros((region.height, region.width), np.float32)
         # Weighted sums: normal x, y, slope; blush; position along the capsule; depth; weight.
-        self._sums = np.zeros((*self.cover.shape, 7), np.float32)
+        self._sums = np.zeros((7, *self.cover.shape), np.float32)
         for part in parts:
             self._add(part)
 
@@ -193,16 +198,15 @@ class _CapsuleLayer:
         # Relative to a typical distance of 0.7 m, so that the exponential fits a float32.
         weight = cover * np.exp(np.clip((0.7 - depth) / BLEND_DEPTH_M, -80.0, 80.0)) + MIN_WEIGHT
         blush = part.blush[0] + share * (part.blush[1] - part.blush[0])
-        sums = self._sums[box]
-        for layer, value in enumerate((x, y, slope, blush, share, depth)):
-            sums[..., layer] += weight * value
-        sums[..., 6] += weight
+        for layer, value in zip(self._sums, (x, y, slope, blush, share, depth), strict=False):
+            layer[box] += weight * value
+        self._sums[6][box] += weight
         np.maximum(self.cover[box], cover, out=self.cover[box])
 
     def depth(self) -> Floats:
         """Return the depth of the surface (h, w) [m]; 0 where there is none."""
-        weight = np.maximum(self._sums[..., 6], MIN_WEIGHT)
-        return np.asarray(self._sums[..., 5] / weight, np.float32)
+        weight = np.maximum(self._sums[6], MIN_WEIGHT)
+        return np.asarray(self._sums[5] / weight, np.float32)
 
     def shaded(self, colour: Shader, to_light: Array) -> Floats:
         """Return the colour (h, w, 3) BGR; black where there is nothing."""
@@ -212,9 +216,8 @@ class _CapsuleLayer:
         if not len(rows):
             return shown
         box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-        sums = self._sums[box]
-        mean = sums[..., :5] / np.maximum(sums[..., 6:], MIN_WEIGHT)
-        x, y, slope, blush, along = np.moveaxis(np.asarray(mean, np.float32), -1, 0)
+        weight = np.maximum(self._sums[6][box], MIN_WEIGHT)
+        x, y, slope, blush, along = (each[box] / weight for each in self._sums[:5])
         light = np.float32(to_light[0]) * x + np.float32(to_light[1]) * y
         light = 0.25 + 0.75 * (light - np.float32(to_light[2]) * slope)
         light = np.asarray(np.clip(light, 0.0, 1.0), np.float32)

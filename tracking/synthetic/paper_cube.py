@@ -7,6 +7,7 @@ from tracking.cube.icons import FOLD_GAP_SHARE, ICON_COLOURS, ICON_SHARE, icon_m
 from tracking.cube.marker import black_texels, marker_cells
 from tracking.cube.model import FACE_AXES, CubeModel, Face
 from tracking.geometry.arrays import Array, Floats
+from tracking.geometry.projection import MIN_DEPTH
 from tracking.synthetic.camera_rays import CameraRays, PixelRegion, averaged
 from tracking.synthetic.folding import face_poses
 
@@ -24,6 +25,11 @@ TO_LIGHT = np.array([-0.42, 0.82, 0.40])
 
 AMBIENT_SHARE = 0.60
 """Share of the light that comes from all directions."""
+
+BEND_SHARE = 0.1
+"""How far a lens may bend an edge of a face, as a share of its length; more would be cut off."""
+
+_FACE_CORNERS = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
 
 
 class PaperCube:
@@ -57,14 +63,15 @@ class PaperCube:
 
     def depth(self, region: PixelRegion, camera_from_cube: Array) -> Floats:
         """Return the depth of the cube's surface, (h, w) [m]; infinite where there is no cube."""
-        rays = self._camera.rays(region, 1)
-        enters = np.zeros(rays.shape[:2], np.float32)
-        leaves = np.full(rays.shape[:2], np.inf, np.float32)
+        x, y = cv2.split(self._camera.rays(region, 1))
+        enters = np.zeros(x.shape, np.float32)
+        leaves = np.full(x.shape, np.inf, np.float32)
         for axis in range(3):
             for sign in (1.0, -1.0):
                 normal = sign * camera_from_cube[:3, axis]
                 offset = float(normal @ camera_from_cube[:3, 3]) + self.cube.edge / 2
-                slope = rays @ normal[:2].astype(np.float32) + np.float32(normal[2])
+                across, down, ahead = normal.astype(np.float32)
+                slope = across * x + down * y + ahead
                 reach = np.float32(offset) / np.where(slope == 0, np.float32(1e-9), slope)
                 np.maximum(enters, np.where(slope < 0, reach, 0.0), out=enters)
                 np.minimum(leaves, np.where(slope < 0, np.inf, reach), out=leaves)
@@ -85,11 +92,13 @@ class PaperCube:
         rays = self._camera.rays(region, samples)
         sums = np.zeros((region.height, region.width, 4), np.float32)
         for pose in poses:
-            sums += averaged(self._sampled(rays, pose, to_light, samples), samples)
+            sums += averaged(self._sampled(region, rays, pose, to_light, samples), samples)
         sums /= len(poses)
         return sums[..., :3], sums[..., 3:]
 
-    def _sampled(self, rays: Floats, pose: Array, to_light: Array, samples: int) -> Floats:
+    def _sampled(
+        self, region: PixelRegion, rays: Floats, pose: Array, to_light: Array, samples: int
+    ) -> Floats:
         shown = np.zeros((*rays.shape[:2], 4), np.float32)
         for name, (right, up) in FACE_AXES.items():
             axes = pose[:3, :3] @ np.array([right, up, np.cross(right, up)], float).T
@@ -100,8 +109,24 @@ class PaperCube:
                 centre = pose[:3, 3] + pose[:3, :3] @ place
             if axes[:, 2] @ centre >= 0:
                 continue  # it faces away
-            self._face(shown, rays, axes, centre, self._texture(name, centre, samples), to_light)
+            box = self._box(region, axes, centre, samples)
+            texture = self._texture(name, centre, samples)
+            self._face(shown[box], rays[box], axes, centre, texture, to_light)
         return shown
+
+    def _box(
+        self, region: PixelRegion, axes: Array, centre: Array, samples: int
+    ) -> tuple[slice, slice]:
+        """Return rows and columns of the samples of a region in which a face can be seen."""
+        corners = centre + self.cube.edge / 2 * (_FACE_CORNERS @ axes[:, :2].T)
+        if corners[:, 2].min() < MIN_DEPTH:
+            return np.s_[:, :]
+        pixels = self._camera.pixels(corners)
+        margin = 2.0 + BEND_SHARE * float(np.ptp(pixels, axis=0).max())
+        around = self._camera.region_around(pixels, margin)
+        top, left = max(around.y - region.y, 0), max(around.x - region.x, 0)
+        bottom, right = max(around.bottom - region.y, 0), max(around.right - region.x, 0)
+        return np.s_[samples * top : samples * bottom, samples * left : samples * right]
 
     def _texture(self, name: str, centre: Array, samples: int) -> Floats:
         """Choose the mipmap level of a face with about one texel per sample.
@@ -135,14 +160,13 @@ class PaperCube:
         seen = cv2.remap(face, x[box], y[box], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
         normal = axes[:, 2]
         brightness = AMBIENT_SHARE + (1 - AMBIENT_SHARE) * max(0.0, float(normal @ light))
+        seen *= np.array([brightness] * 3 + [1.0], np.float32)
         mask = inside[box]
-        part = shown[box]
-        part[mask, :3] = seen[mask] * np.float32(brightness)
-        part[mask, 3] = 1.0
+        cv2.copyTo(seen, mask.view(np.uint8), shown[box])
 
 
 def _face_texture(cube: CubeModel, face: Face | None, random: np.random.Generator) -> Floats:
-    """Draw the print of a face, (FACE_TEXELS, FACE_TEXELS, 3) BGR; None is blank paper."""
+    """Draw the print of a face, (FACE_TEXELS, FACE_TEXELS, 4) BGRA; None is blank paper."""
     grain = random.standard_normal((FACE_TEXELS // 8, FACE_TEXELS // 8)).astype(np.float32)
     paper = (
         cv2.resize(grain, (FACE_TEXELS, FACE_TEXELS), interpolation=cv2.INTER_CUBIC) * 1.2 + WHITE
@@ -156,7 +180,8 @@ def _face_texture(cube: CubeModel, face: Face | None, random: np.random.Generato
     rim = max(1, FACE_TEXELS // 160)
     for side in (np.s_[:rim], np.s_[-rim:], np.s_[:, :rim], np.s_[:, -rim:]):
         texture[side] *= 0.90
-    return texture
+    opaque = np.ones((FACE_TEXELS, FACE_TEXELS, 1), np.float32)
+    return np.concatenate([texture, opaque], axis=2)
 
 
 def _mipmaps(texture: Floats) -> list[Floats]:

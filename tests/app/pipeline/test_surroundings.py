@@ -57,11 +57,13 @@ def test_only_what_was_chosen_is_measured(source, seen):
 
 def test_softness_is_measured_only_where_the_drawing_follows_it(source, seen):
     surroundings = Surroundings(source.cube, source.intrinsics, ("light", "softness"))
-    coarse = [surroundings.view(*each, matched=False) for each in seen][-1]
+    for frame, state, controls in seen:
+        coarse = surroundings.view(frame, state, controls, matched=False)
     assert coarse.softness is None
     assert coarse.light is not None
-    matched = [surroundings.view(*each) for each in seen][-1]
-    assert matched.softness.blur == pytest.approx(0.5, abs=0.25)
+    softness = [surroundings.view(*each).softness for each in seen][-1]
+    assert softness is not None
+    assert softness.blur == pytest.approx(0.5, abs=0.25)
 
 
 def test_no_hand_is_found_where_none_is_near(source, seen):
