@@ -4,7 +4,8 @@ Hands of ten skin tones and three gloves take, turn and carry a cube in syntheti
 is compared with the true cover, in `HandFinder.region`, two edges of the cube around its bounds,
 and in the whole picture, with the arm.
 The score is the sum of the lesser over the sum of the greater cover of all pixels (soft IoU), by
-frames in which the hand holds the cube. The poses are the tracker's own.
+frames in which the hand holds the cube. The poses are the tracker's own. "Missed" is the share of
+the hand's inside over which a character could be drawn: of all frames, and of the worst.
 
 At the camera's rate, all hands take 20 minutes. With `--rate 8`, a quarter of that: the hand moves
 four times as far from frame to frame, and the finder looks at each of them.
@@ -38,6 +39,9 @@ HARD_SKIN = "Monk 06"
 """It is 0.85 times the colour of the synthetic desk's wood in red, green and blue: only texture
 tells it from the desk. Its row is printed, and does not count for the spread."""
 
+INSIDE = 0.99
+"""Cover of a pixel, and of those within 2 px of it, above which it is inside of a hand."""
+
 VIEWS = ((10.0, 0.0, 0.6), (-60.0, 0.3, 0.6), (-120.0, 0.0, 1.2), (-165.0, 0.5, 0.8))
 """Where the arm comes from [°], how uneven the light is, and the lens blur [px], of each scene."""
 
@@ -58,6 +62,9 @@ class Result:
     marker_times: list[float] = field(default_factory=list)
     """Time of OpenCV's marker detection in the same frames [ms]."""
 
+    missed: list[float] = field(default_factory=list)
+    """`missed_share` in the region, of each frame that has a score."""
+
     false_covers: list[int] = field(default_factory=list)
     """Greatest cover, 0…255, of each frame without a hand in the region."""
 
@@ -76,13 +83,19 @@ def overlap(found: Floats, true: Floats) -> float:
     return float(np.minimum(found, true).sum()) / max(both, 1e-6)
 
 
+def missed_share(found: Floats, true: Floats) -> float:
+    """Return the share of the hand's inside, off its soft edge, over which things may be drawn."""
+    inside = cv2.erode((true > INSIDE).astype(np.uint8), np.ones((5, 5), np.uint8)) > 0
+    return float(np.mean(found[inside] < 0.5)) if inside.any() else 0.0
+
+
 def measure(name: str, skin: str, given: argparse.Namespace) -> Result:
     """Show all scenes of one hand, "" for none, with the options of the command line."""
     cube, result = CubeModel.load("locomotion"), Result()
     markers = cv2.aruco.ArucoDetector(cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50))
     for number, (azimuth, gradient, defocus) in enumerate(VIEWS[: given.scenes]):
         view = HandView(skin or "000000", azimuth, number + 1, gradient, defocus, hand=bool(skin))
-        view = replace(view, exposure=given.exposure, warmth=given.warmth)
+        view = replace(view, exposure=given.exposure, warmth=given.warmth, tapping=given.tapping)
         scene = HandScene(view, cube, given.rate)
         tracker, finder = CubeTracker(cube, scene.intrinsics), HandFinder(cube, scene.intrinsics)
         result.scores.append([])
@@ -105,6 +118,7 @@ def measure(name: str, skin: str, given: argparse.Namespace) -> Result:
                 result.false_covers.append(round(255 * float(found.max())))
             if scene.state(index).grip > 0.99 and skin:
                 result.scores[-1].append(overlap(found, true))
+                result.missed.append(missed_share(found, true))
                 result.whole_scores.append(overlap(whole, truth))
                 if given.output and index % round(given.rate) == 0:
                     write(
@@ -139,12 +153,14 @@ def main() -> None:
         "--exposure", type=float, default=0.0, help="change of the camera's as the hand comes"
     )
     parser.add_argument("--warmth", type=float, default=0.0, help="the same of its white balance")
+    parser.add_argument("--tapping", action="store_true", help="a finger taps on the cube")
     given = parser.parse_args()
     columns = (
         "IoU",
         "of each scene",
         "worst frame",
         "with the arm",
+        "missed, worst",
         "mean ms",
         "95 %",
         "× markers",
@@ -158,13 +174,14 @@ def main() -> None:
         found = measure(name, skin, given)
         times += found.times
         false = max(false, *found.false_covers, 0)
-        row = [""] * 4
+        row = [""] * 5
         if skin:
             scenes = [float(np.mean(scores)) for scores in found.scores]
             means[name] = float(np.mean(scenes))
             worst = min(min(scores) for scores in found.scores)
             row = [f"{means[name]:.3f}", " ".join(f"{s:.2f}" for s in scenes), f"{worst:.2f}"]
             row.append(f"{np.mean(found.whole_scores):.3f}")
+            row.append(f"{np.mean(found.missed):.3f} {max(found.missed):.2f}")
         cost = float(np.mean(found.times))
         row += [f"{cost:.2f}", f"{np.percentile(found.times, 95):.2f}"]
         row.append(f"{cost / float(np.mean(found.marker_times)):.2f}")

@@ -39,6 +39,18 @@ GLOVES = {"blue nitrile": "3f6fc4", "black wool": "26262b", "yellow rubber": "e6
 CAMERA_HZ = 30.0
 """Frames a second of a webcam."""
 
+FOREFINGER = slice(5, 8)
+"""Its parts in `Hand.skin`, from the root to the tip."""
+
+LIFTS = ((0.0, 0.4), (0.4, 0.8), (0.8, 1.0))
+"""How far start and end of each part rise as the finger is lifted, relative to its tip."""
+
+LIFTED_M = np.array([0.0, 0.035, -0.008])
+"""How far the tip rises in the table frame, (3,) [m]."""
+
+TAP_S, TAP_TIMES, TAP_HEIGHTS = 0.8, (0.0, 0.24, 0.36, 0.56, 0.68), (0, 0, 1, 1, 0)
+"""Time from tap to tap [s], and how high the finger is in the course of it, 0…1."""
+
 RATE_HZ = 8.0
 """The same of a scene that tests go through quickly: cube and hand move four times as far."""
 
@@ -78,6 +90,9 @@ class HandView:
     """How much redder and less blue its picture becomes then, as a share: automatic white
     balance."""
 
+    tapping: bool = False
+    """Whether the forefinger is lifted from the cube and put down again, all the time."""
+
 
 class HandScene:
     """A cube that a hand takes, turns and slides."""
@@ -114,6 +129,7 @@ class HandScene:
         shifts = np.linspace(-half, half, shutter_samples(self._camera, corners))
         states = [self._choreography.at(time + float(shift)) for shift in shifts]
         poses = [self._posed(state) for state in states]
+        self._renderer.lift = float(np.interp(time % TAP_S, TAP_TIMES, TAP_HEIGHTS))
         image = self._renderer.draw(states, poses, index, False)
         grip, view = self.state(index).grip, self.view
         if view.exposure or view.warmth:
@@ -141,6 +157,7 @@ class _HandRenderer(ExposureRenderer):
         super().__init__(camera, cube, options)
         self._view = view
         self.covered = np.zeros(camera.size[::-1], np.float32)
+        self.lift = 0.0
         random = np.random.default_rng([view.seed, 11])
         width, height = camera.size
         self._mottle = np.ones((height, width), np.float32)
@@ -160,6 +177,8 @@ class _HandRenderer(ExposureRenderer):
 
     def _add_hand(self, image: Floats, hand: Hand, camera_from_cube: Array) -> None:
         at = self._table_position(camera_from_cube)
+        if self._view.tapping:
+            hand = lifted(hand, self.lift)
         hand = turned(hand, at, self._view.azimuth_deg)
         red, green, blue = bytes.fromhex(self._view.skin)
         hand = replace(hand, skin_bgr=(float(blue), float(green), float(red)))
@@ -180,6 +199,19 @@ class _HandRenderer(ExposureRenderer):
 
     def _sensor_image(self, image: Floats, index: int) -> Image:
         return super()._sensor_image(image * self._light, index)
+
+
+def lifted(hand: Hand, share: float) -> Hand:
+    """Return the hand with the forefinger lifted by a share, 0…1."""
+    finger = [
+        replace(
+            part, start=part.start + low * share * LIFTED_M, end=part.end + high * share * LIFTED_M
+        )
+        for part, (low, high) in zip(hand.skin[FOREFINGER], LIFTS, strict=True)
+    ]
+    skin = list(hand.skin)
+    skin[FOREFINGER] = finger
+    return replace(hand, skin=tuple(skin))
 
 
 def turned(hand: Hand, centre: Array, degrees: float) -> Hand:
