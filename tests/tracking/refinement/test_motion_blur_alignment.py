@@ -103,6 +103,17 @@ def test_alignment_succeeds_from_every_such_start(
     assert all(alignment for _, alignment in alignments)
 
 
+@pytest.mark.parametrize(("view", "lengths"), [(0, 3.25), (1, 3.0), (2, 2.875)])
+def test_a_cube_is_not_found_where_blur_leaves_too_little_of_each_face(
+    view: int, lengths: float
+) -> None:
+    sweep = np.array([DISTANCE, 0, 0, 0, 0, 0])
+    taken = shot(VIEWS[view], sweep)
+    expected = lengths * sweep + (0, 0, 0, 0, 0.9, 0)
+    sure = np.repeat([0.0005, 0.005], 3)
+    assert ALIGNER.align(taken.patch, taken.pose, expected, sure, coarse=False) is None
+
+
 def test_the_motion_across_the_image_is_measured(
     alignments: list[tuple[Shot, Alignment | None]],
 ) -> None:

@@ -109,16 +109,19 @@ class MotionBlurAligner:
         fit: PhotometricFit,
         before: Array,
         step: Array,
-    ) -> Alignment:
+    ) -> Alignment | None:
+        """Return what was found; None if no face is in view with enough of its samples."""
         overall, *each = fit.correlations.tolist()
-        named = zip(samples.facing, each, strict=True)
+        seen = [pair for pair in zip(samples.facing, each, strict=True) if not np.isnan(pair[1])]
+        if not seen:
+            return None
         return Alignment(
             pose,
             motion,
             fit.covariance(prior),
             fit.motion_information(before, step, prior),
             overall,
-            {self._faces.names[face]: value for face, value in named if not np.isnan(value)},
+            {self._faces.names[face]: value for face, value in seen},
             fit.scale / max(fit.contrast, 1.0),
             *fit.mixture_tones,
         )
