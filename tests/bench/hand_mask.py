@@ -25,6 +25,7 @@ from rich.table import Table
 from app.pipeline.surroundings import cover_of
 from characters.rendering.camera_picture.hand_cover import PictureCover
 from characters.rendering.projection import Rectangle
+from tests.bench.desks import DESKS, desk_picture
 from tests.bench.hand_scenes import CAMERA_HZ, GLOVES, SKINS, HandScene, HandView
 from tracking.appearance.hand.finder import HandFinder
 from tracking.appearance.hand.mask import HandMask
@@ -95,7 +96,8 @@ def measure(name: str, skin: str, given: argparse.Namespace) -> Result:
     markers = cv2.aruco.ArucoDetector(cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50))
     for number, (azimuth, gradient, defocus) in enumerate(VIEWS[: given.scenes]):
         view = HandView(skin or "000000", azimuth, number + 1, gradient, defocus, hand=bool(skin))
-        view = replace(view, exposure=given.exposure, warmth=given.warmth, tapping=given.tapping)
+        view = replace(view, exposure=given.exposure, warmth=given.warmth)
+        view = replace(view, tapping=given.tapping, desk=given.desk)
         scene = HandScene(view, cube, given.rate)
         tracker, finder = CubeTracker(cube, scene.intrinsics), HandFinder(cube, scene.intrinsics)
         result.scores.append([])
@@ -153,8 +155,16 @@ def main() -> None:
         "--exposure", type=float, default=0.0, help="change of the camera's as the hand comes"
     )
     parser.add_argument("--warmth", type=float, default=0.0, help="the same of its white balance")
+    parser.add_argument(
+        "--desk", default="", help=f"{', '.join(DESKS)} or a photograph, instead of wood"
+    )
     parser.add_argument("--tapping", action="store_true", help="a finger taps on the cube")
     given = parser.parse_args()
+    try:
+        if given.desk:
+            desk_picture(given.desk, np.random.default_rng(0))
+    except ValueError as error:
+        parser.error(str(error))
     columns = (
         "IoU",
         "of each scene",

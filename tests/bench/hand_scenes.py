@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
+from tests.bench.desks import desk_picture
 from tracking.appearance.colour_space import LINEAR_FROM_SRGB
 from tracking.cube.model import CubeModel
 from tracking.geometry import se3
@@ -13,6 +14,7 @@ from tracking.geometry.frame import Frame
 from tracking.geometry.intrinsics import Intrinsics
 from tracking.synthetic.camera_rays import CameraRays
 from tracking.synthetic.choreography import UP, Choreography, SceneState
+from tracking.synthetic.desk import draw_objects, render_desk
 from tracking.synthetic.exposure import ExposureRenderer, in_colours, shutter_samples
 from tracking.synthetic.hand import Capsule, Hand, draw_hand, hand_region
 from tracking.synthetic.options import SyntheticOptions
@@ -90,6 +92,9 @@ class HandView:
     """How much redder and less blue its picture becomes then, as a share: automatic white
     balance."""
 
+    desk: str = ""
+    """What the cube stands on, see `desk_picture`; "" for the wooden desk."""
+
     tapping: bool = False
     """Whether the forefinger is lifted from the cube and put down again, all the time."""
 
@@ -156,6 +161,10 @@ class _HandRenderer(ExposureRenderer):
     ) -> None:
         super().__init__(camera, cube, options)
         self._view = view
+        if view.desk:
+            random = np.random.default_rng([view.seed, 17])
+            self._desk = render_desk(camera, desk_picture(view.desk, random))
+            draw_objects(self._desk, camera)
         self.covered = np.zeros(camera.size[::-1], np.float32)
         self.lift = 0.0
         random = np.random.default_rng([view.seed, 11])

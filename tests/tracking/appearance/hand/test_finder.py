@@ -66,6 +66,12 @@ def test_hands_of_any_colour_are_found(skin):
     assert overlap_in(HandView(skin, azimuth_deg=-120, seed=3), 25) > 0.8
 
 
+@pytest.mark.parametrize("desk", ["white", "checked"])
+def test_a_hand_is_found_on_any_desk(desk):
+    view = HandView(SKINS["Monk 05"], azimuth_deg=-120, seed=3, desk=desk)
+    assert overlap_in(view, 25) > 0.9
+
+
 def test_what_a_hand_hides_is_on_the_near_side_of_the_cube(film):
     intrinsics, pictures = film
     finder = HandFinder(CUBE, intrinsics)
