@@ -37,7 +37,8 @@ campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 check: .venv/ready-dev  ## check formatting, lint, the floors of the rooms, and types
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
-	$(BIN)/lint-imports
+	$(BIN)/python -m tools.package_links
+	cd build/packages && ../../$(BIN)/lint-imports --config ../../.importlinter --cache-dir ../../.import_linter_cache
 	$(BIN)/mypy
 
 bench: .venv/ready-dev  ## measure every figure that the documents name

@@ -7,10 +7,10 @@ from here.
 'neutral'
 """
 
-from affect.dynamics import Feelings
-from affect.emotion import NEUTRAL, Emotion
-from affect.errors import AffectError
-from affect.labels import LABEL_SETS
-from affect.personality import Personality
+from cubeling.affect.dynamics import Feelings
+from cubeling.affect.emotion import NEUTRAL, Emotion
+from cubeling.affect.errors import AffectError
+from cubeling.affect.labels import LABEL_SETS
+from cubeling.affect.personality import Personality
 
 __all__ = ["LABEL_SETS", "NEUTRAL", "AffectError", "Emotion", "Feelings", "Personality"]

@@ -2,9 +2,9 @@
 
 import math
 
-from affect.emotion import Emotion
-from affect.errors import AffectError
-from affect.personality import Personality, check_range
+from cubeling.affect.emotion import Emotion
+from cubeling.affect.errors import AffectError
+from cubeling.affect.personality import Personality, check_range
 
 TOP_SPEED = 5.0
 """AvatAR's Speed at which a character moves as fast as it can."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from affect.hysteresis import label_at
+from cubeling.affect.hysteresis import label_at
 
 
 @dataclass(frozen=True)

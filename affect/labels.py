@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal, NamedTuple
 
-from affect.emotion import Emotion
-from affect.errors import AffectError
-from affect.hysteresis import Label, next_label
+from cubeling.affect.emotion import Emotion
+from cubeling.affect.errors import AffectError
+from cubeling.affect.hysteresis import Label, next_label
 
 Face = Literal["neutral", "happy", "sad", "angry", "surprised", "afraid", "disgusted"]
 

@@ -2,16 +2,16 @@
 
 Egges, *Real-time Animation of Interactive Virtual Humans*, 2006, section 5.3: table 5.2 for the
 face, eqs. 5.14 and 5.15 for the body. The faces and places of the emotions are those of the table
-in `affect.labels`; the places are ALMA's (Gebhard 2005).
+in `cubeling.affect.labels`; the places are ALMA's (Gebhard 2005).
 """
 
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from affect.emotion import NEUTRAL, Emotion
-from affect.errors import AffectError
-from affect.labels import WORD_TABLE, Face
-from affect.regions import on_disc
+from cubeling.affect.emotion import NEUTRAL, Emotion
+from cubeling.affect.errors import AffectError
+from cubeling.affect.labels import WORD_TABLE, Face
+from cubeling.affect.regions import on_disc
 
 _ROWS = {row.word: row for row in WORD_TABLE if row.set == "occ" and row.face != "neutral"}
 

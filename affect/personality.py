@@ -7,12 +7,12 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Literal
 
-from affect.emotion import Emotion
-from affect.errors import AffectError
-from affect.labels import LabelSet, label_set
-from affect.personality_file import bundled_text, fields_of
-from affect.settings import parse, read
-from affect.traits import AffectImpulse, Ocean
+from cubeling.affect.emotion import Emotion
+from cubeling.affect.errors import AffectError
+from cubeling.affect.labels import LabelSet, label_set
+from cubeling.affect.personality_file import bundled_text, fields_of
+from cubeling.affect.settings import parse, read
+from cubeling.affect.traits import AffectImpulse, Ocean
 
 MAX_GAIN_PER_S = 10.0
 """Largest gain of an action [1/s]: it crosses the whole plane in 0.2 s."""

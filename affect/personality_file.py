@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from affect.emotion import Emotion
-from affect.errors import AffectError
-from affect.settings import TomlTable
-from affect.traits import AffectImpulse, Ocean
+from cubeling.affect.emotion import Emotion
+from cubeling.affect.errors import AffectError
+from cubeling.affect.settings import TomlTable
+from cubeling.affect.traits import AffectImpulse, Ocean
 
 BUNDLED_FOLDER = Path(__file__).parent / "personalities"
 """Folder of the bundled personalities."""

@@ -7,9 +7,9 @@ the disc of evaluation (our valence) and activation (our arousal).
 import math
 from dataclasses import dataclass
 
-from affect.emotion import Emotion
-from affect.errors import AffectError
-from affect.words import WORD_PLACES
+from cubeling.affect.emotion import Emotion
+from cubeling.affect.errors import AffectError
+from cubeling.affect.words import WORD_PLACES
 
 
 @dataclass(frozen=True)

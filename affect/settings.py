@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from affect.errors import AffectError
+from cubeling.affect.errors import AffectError
 
 MAX_FILE_BYTES = 65_536
 """Largest file [bytes]; a larger one was not written by hand."""

@@ -2,7 +2,7 @@
 
 from dataclasses import astuple, dataclass
 
-from affect.emotion import Emotion
+from cubeling.affect.emotion import Emotion
 
 
 @dataclass(frozen=True)

@@ -4,13 +4,13 @@ import math
 from collections.abc import Sequence
 from types import MappingProxyType
 
-from affect.emotion import Emotion
-from affect.labels import LABEL_OF_FACE, WORD_TABLE
+from cubeling.affect.emotion import Emotion
+from cubeling.affect.labels import LABEL_OF_FACE, WORD_TABLE
 
 WORD_PLACES = MappingProxyType(
     {row.word: (row.valence, row.arousal) for row in reversed(WORD_TABLE)}  # the first row counts
 )
-"""(valence, arousal) of every known word; `affect.labels` gives the sources."""
+"""(valence, arousal) of every known word; `cubeling.affect.labels` gives the sources."""
 
 WORD_FACES = MappingProxyType({row.word: row.face for row in reversed(WORD_TABLE)})
 """Which of Ekman's faces shows each word."""

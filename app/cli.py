@@ -18,7 +18,7 @@ import typer.exceptions
 import typer.main
 from rich.console import Console
 
-from app.ui.literal_text import literal_text
+from cubeling.app.ui.literal_text import literal_text
 
 BAD_INPUT_EXIT_CODE = 2
 """Exit code for every error that the user can correct."""
@@ -58,7 +58,7 @@ SESSION_COMMANDS = ("demo", "play", "replay", "export")
 def load_command(name: str) -> Any:
     """Import the module of a command; return its function NAME, or the group that is its `app`."""
     folder = "session." if name in SESSION_COMMANDS else ""
-    module = import_module(f"app.commands.{folder}{name}")
+    module = import_module(f"cubeling.app.commands.{folder}{name}")
     group = getattr(module, "app", None)
     if group is None:
         group = typer.Typer(rich_markup_mode="rich", add_completion=False)
@@ -173,11 +173,11 @@ def end_on_termination_signals() -> None:
 
 
 ROOM_ERRORS = {
-    "app.errors": "AppError",
-    "affect.errors": "AffectError",
-    "tracking.errors": "TrackingError",
-    "characters.errors": "CharacterError",
-    "robot.errors": "RobotError",
+    "cubeling.app.errors": "AppError",
+    "cubeling.affect.errors": "AffectError",
+    "cubeling.tracking.errors": "TrackingError",
+    "cubeling.characters.errors": "CharacterError",
+    "cubeling.robot.errors": "RobotError",
 }
 """The base exception of each room, by its module."""
 
@@ -228,7 +228,7 @@ class WarningPrinter:
     ) -> None:
         """Print a warning; the signature is that of `warnings.showwarning`."""
         text = str(message)
-        errors = sys.modules.get("characters.errors")
+        errors = sys.modules.get("cubeling.characters.errors")
         if errors is None or not issubclass(category, errors.CharacterWarning):
             text = f"{filename}:{lineno}: {category.__name__}: {text}"
         if text not in self._printed:

@@ -13,19 +13,19 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
 from numpy.typing import NDArray
 
-from app.moods.colors import CURVE_STYLES, GRID_COLOR, SECONDARY_COLOR, TEXT_COLOR
-from app.moods.plot import write_figure
-from app.moods.plot_layout import MATPLOTLIB_STYLE, printable
-from characters import Character
-from characters.model.standing import idle_clips
-from characters.model.stick_figure import stick_figure
-from characters.rendering import create_context
-from characters.rendering.portrait import PAPER_BGR, PortraitRenderer
-from characters.skeleton.pose import Skeleton
-from characters.synthesis.archive import skeleton_identity
-from characters.synthesis.idle.database import IdleDatabase, RestingPosture
-from characters.synthesis.idle.recordings import BALANCES
-from characters.synthesis.idle.stretches import StretchStream
+from cubeling.app.moods.colors import CURVE_STYLES, GRID_COLOR, SECONDARY_COLOR, TEXT_COLOR
+from cubeling.app.moods.plot import write_figure
+from cubeling.app.moods.plot_layout import MATPLOTLIB_STYLE, printable
+from cubeling.characters import Character
+from cubeling.characters.model.standing import idle_clips
+from cubeling.characters.model.stick_figure import stick_figure
+from cubeling.characters.rendering import create_context
+from cubeling.characters.rendering.portrait import PAPER_BGR, PortraitRenderer
+from cubeling.characters.skeleton.pose import Skeleton
+from cubeling.characters.synthesis.archive import skeleton_identity
+from cubeling.characters.synthesis.idle.database import IdleDatabase, RestingPosture
+from cubeling.characters.synthesis.idle.recordings import BALANCES
+from cubeling.characters.synthesis.idle.stretches import StretchStream
 
 SIZE_IN = (13.0, 9.2)
 """Width and height of the plot [in]."""

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 
-from app.errors import AppError
+from cubeling.app.errors import AppError
 
 
 def check_output(

@@ -1,7 +1,7 @@
 """How the player likes the window and the sound, kept from one session to the next.
 
 A preference changes nothing that is recorded: what does (the scenario, its settings, where the
-eyes look, the robot) is an option of each session, see `app.session.SessionOptions`.
+eyes look, the robot) is an option of each session, see `cubeling.app.session.SessionOptions`.
 
 To add one, write a field of `Preferences` and a line of `FLAGS` in
 `app.commands.session.preference_options`. Who uses it reads `PreferenceStore.now`, and calls
@@ -19,7 +19,7 @@ from typing import Any
 
 import msgspec
 
-from app.errors import AppError
+from cubeling.app.errors import AppError
 
 PROGRAM = "cubeling"
 """Value of the key `program` in every file of preferences; no other file is overwritten."""

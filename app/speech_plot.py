@@ -14,13 +14,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from app.moods.colors import BORDER_COLOR, GRID_COLOR, SECONDARY_COLOR, TEXT_COLOR
-from app.moods.plot import write_figure
-from app.moods.plot_layout import MATPLOTLIB_STYLE, printable
-from characters.speech.accents import AccentSettings, accents_of
-from characters.speech.contours import Prosody, measure_prosody
-from characters.speech.phones import SoundClass, sound_class
-from characters.speech.speech import SILENCE, Accent, Speech
+from cubeling.app.moods.colors import BORDER_COLOR, GRID_COLOR, SECONDARY_COLOR, TEXT_COLOR
+from cubeling.app.moods.plot import write_figure
+from cubeling.app.moods.plot_layout import MATPLOTLIB_STYLE, printable
+from cubeling.characters.speech.accents import AccentSettings, accents_of
+from cubeling.characters.speech.contours import Prosody, measure_prosody
+from cubeling.characters.speech.phones import SoundClass, sound_class
+from cubeling.characters.speech.speech import SILENCE, Accent, Speech
 
 INCHES_PER_S, WIDTHS_IN = 2.2, (11.0, 60.0)
 """Width of a second, and smallest and largest width of the plot [in]."""

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from characters import Character
+from cubeling.characters import Character
 
 BUNDLED = Character.bundled()
 """Their names."""

@@ -2,6 +2,7 @@
 
 import gc
 import os
+import sys
 from collections.abc import Generator
 
 import pytest
@@ -23,7 +24,15 @@ os.environ.setdefault("OPENCV_FOR_THREADS_NUM", "1")
 os.environ.setdefault("MALLOC_MMAP_THRESHOLD_", str(2**25))
 os.environ.setdefault("MALLOC_TRIM_THRESHOLD_", str(2**30))
 
-import app as app  # noqa: E402  before numpy, whose rounding it sets
+import cubeling as cubeling  # noqa: E402  before numpy, whose rounding it sets
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _one_copy_of_each_room() -> Generator[None, None, None]:
+    """Fail if a test imported `tracking` for `cubeling.tracking`: its classes would be others."""
+    yield
+    rooms = {"affect", "tracking", "characters", "robot", "app", "recordings"}
+    assert not rooms & sys.modules.keys(), "import it from cubeling"
 
 
 @pytest.hookimpl(wrapper=True)

@@ -11,7 +11,8 @@ ROOT = Path(__file__).parents[1]
 ROOMS = "affect", "app", "characters", "robot", "tools", "tracking"
 
 MODULES = [
-    ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+    ("" if room == "tools" else "cubeling.")
+    + ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
     for room in ROOMS
     for path in sorted((ROOT / room).rglob("*.py"))
     if ">>> " in path.read_text(encoding="utf-8")

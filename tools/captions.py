@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.portrait import PAPER_BGR
+from cubeling.characters.rendering.portrait import PAPER_BGR
 
 Image = NDArray[np.uint8]
 

@@ -13,11 +13,11 @@ import moderngl
 import numpy as np
 from rich.console import Console
 
-from affect import Emotion
-from affect.regions import SECTOR_WORDS
-from affect.words import WORD_PLACES, closest_word
-from app.ui.contact_sheets import ContactSheets, Image, save, stacked
-from characters import (
+from cubeling.affect import Emotion
+from cubeling.affect.regions import SECTOR_WORDS
+from cubeling.affect.words import WORD_PLACES, closest_word
+from cubeling.app.ui.contact_sheets import ContactSheets, Image, save, stacked
+from cubeling.characters import (
     ActionIntent,
     Animator,
     Character,
@@ -26,10 +26,10 @@ from characters import (
     PosedCharacter,
     RootDelta,
 )
-from characters.face.lids import Lids
-from characters.rendering import SceneCharacter, Stage, View, create_context
-from characters.rendering.portrait import PAPER_BGR
-from characters.rendering.portrait_camera import CharacterExtent, PortraitCamera
+from cubeling.characters.face.lids import Lids
+from cubeling.characters.rendering import SceneCharacter, Stage, View, create_context
+from cubeling.characters.rendering.portrait import PAPER_BGR
+from cubeling.characters.rendering.portrait_camera import CharacterExtent, PortraitCamera
 
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures" / "cast"
 

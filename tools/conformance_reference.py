@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from robot.conformance.suite import GROUPS
+from cubeling.robot.conformance.suite import GROUPS
 from tools.marked_parts import replace_part
 
 DOCUMENT = Path(__file__).parents[1] / "docs" / "conformance.md"

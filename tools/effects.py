@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from app.ui.contact_sheets import save
-from characters import Character
-from characters.control.command import PosedCharacter
-from characters.rendering import (
+from cubeling.app.ui.contact_sheets import save
+from cubeling.characters import Character
+from cubeling.characters.control.command import PosedCharacter
+from cubeling.characters.rendering import (
     QUALITIES,
     Effect,
     Focus,
@@ -24,9 +24,9 @@ from characters.rendering import (
     View,
     create_context,
 )
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.synthetic.source import look_at
 from tools.captions import framed
-from tracking.geometry import se3
-from tracking.synthetic.source import look_at
 
 Image = NDArray[np.uint8]
 

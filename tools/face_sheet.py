@@ -14,16 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from app.ui.contact_sheets import save, standing_pose
-from characters import Animator, Character, CharacterCommand, Pose
-from characters.control.command import SpeechIntent
-from characters.face.visemes.coarticulation import EMPHASIS_LEVELS
-from characters.face.visemes.mouth_morphs import MouthMorphs
-from characters.face.visemes.sets import MOUTH_SHAPES, VOWEL_SHAPES
-from characters.rendering import create_context
-from characters.rendering.portrait import PortraitRenderer, side_by_side
-from characters.speech.speech import Utterance
-from characters.speech.voices import espeak
+from cubeling.app.ui.contact_sheets import save, standing_pose
+from cubeling.characters import Animator, Character, CharacterCommand, Pose
+from cubeling.characters.control.command import SpeechIntent
+from cubeling.characters.face.visemes.coarticulation import EMPHASIS_LEVELS
+from cubeling.characters.face.visemes.mouth_morphs import MouthMorphs
+from cubeling.characters.face.visemes.sets import MOUTH_SHAPES, VOWEL_SHAPES
+from cubeling.characters.rendering import create_context
+from cubeling.characters.rendering.portrait import PortraitRenderer, side_by_side
+from cubeling.characters.speech.speech import Utterance
+from cubeling.characters.speech.voices import espeak
 from tools.captions import underlined
 
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures"

@@ -1,19 +1,19 @@
 """Generate the tables of the firmware.
 
-`python -m tools.firmware_tables` writes `dino/messages.py` (from `robot.protocol`) and
+`python -m tools.firmware_tables` writes `dino/messages.py` (from `cubeling.robot.protocol`) and
 `dino/motions.py` (from the simulated dinosaur). A test compares them with their sources.
 """
 
 from pathlib import Path
 
-from affect.hysteresis import ANGRY_BELOW, HAPPY_ABOVE
-from robot.contract.motions import JointSine, SineMotion
-from robot.protocol import messages as m
-from robot.protocol import timing
-from robot.protocol.fields import FieldSpec
-from robot.protocol.schema import HEADER, MESSAGES, MessageSpec, spec_of
-from robot.protocol.wire import MAX_BODY, MAX_FRAME
-from robot.simulators.cubeling import dinosaur
+from cubeling.affect.hysteresis import ANGRY_BELOW, HAPPY_ABOVE
+from cubeling.robot.contract.motions import JointSine, SineMotion
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
+from cubeling.robot.protocol.fields import FieldSpec
+from cubeling.robot.protocol.schema import HEADER, MESSAGES, MessageSpec, spec_of
+from cubeling.robot.protocol.wire import MAX_BODY, MAX_FRAME
+from cubeling.robot.simulators.cubeling import dinosaur
 
 BOARD = Path(__file__).parents[1] / "robot" / "firmware" / "dino"
 """The folder that is copied to the board."""

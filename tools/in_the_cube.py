@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from app.pipeline.playground import Playground
-from app.pipeline.scenario import Inputs
-from app.running.opening import intrinsics_for
-from app.ui.contact_sheets import save
-from characters.rendering import create_context
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.ui.contact_sheets import save
+from cubeling.characters.rendering import create_context
+from cubeling.tracking.synthetic import open_synthetic
+from cubeling.tracking.synthetic.source import look_at
 from tools.captions import framed
-from tracking.synthetic import open_synthetic
-from tracking.synthetic.source import look_at
 
 Image = NDArray[np.uint8]
 

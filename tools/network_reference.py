@@ -8,7 +8,7 @@ from typing import Any
 
 import msgspec
 
-from robot.network.messages import MAX_TEXT_BYTES, MESSAGE_TYPES, RETAINED_KINDS
+from cubeling.robot.network.messages import MAX_TEXT_BYTES, MESSAGE_TYPES, RETAINED_KINDS
 from tools.marked_parts import replace_part
 
 DOCUMENT = Path(__file__).parents[1] / "docs" / "many.md"

@@ -14,37 +14,37 @@ import glfw
 import numpy as np
 from rich.console import Console
 
-from app.behaving.opening import open_lines
-from app.behaving.player import BehaviourOptions, BehaviourPlayer
-from app.behaving.recording import perform
-from app.commands.mood import plot
-from app.gesture_editor.tour import draw_tour
-from app.latency.pattern import draw_pattern
-from app.pipeline.playground import Playground
-from app.pipeline.step import RobotView, Step
-from app.preferences import PreferenceStore
-from app.running.opening import intrinsics_for, open_session
-from app.running.runner import run
-from app.session import SessionOptions, events
-from app.session.bundled import bundled
-from app.ui.calibration.coach import ANIMATION_PERIOD_S, CoachView
-from app.ui.calibration.coach_lines import write_coverage
-from app.ui.calibration.session import Advice, CalibrationSession, Picture
-from app.ui.cards.layout import CardLayout
-from app.ui.cards.overlay import overlay, virtual_robot_side
-from app.ui.cards.virtual_robot import VirtualRobot
-from app.ui.gesture_sheets import draw_library, draw_settings
-from app.ui.panels import PANELS
-from app.ui.playback.layer import PlaybackLayer
-from app.ui.playback.status import Mark, Position, SessionStatus
-from app.ui.window import Window
-from characters import Character
-from characters.rendering import create_context
-from characters.rendering.portrait import PortraitRenderer
+from cubeling.app.behaving.opening import open_lines
+from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
+from cubeling.app.behaving.recording import perform
+from cubeling.app.commands.mood import plot
+from cubeling.app.gesture_editor.tour import draw_tour
+from cubeling.app.latency.pattern import draw_pattern
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.preferences import PreferenceStore
+from cubeling.app.running.opening import intrinsics_for, open_session
+from cubeling.app.running.runner import run
+from cubeling.app.session import SessionOptions, events
+from cubeling.app.session.bundled import bundled
+from cubeling.app.ui.calibration.coach import ANIMATION_PERIOD_S, CoachView
+from cubeling.app.ui.calibration.coach_lines import write_coverage
+from cubeling.app.ui.calibration.session import Advice, CalibrationSession, Picture
+from cubeling.app.ui.cards.layout import CardLayout
+from cubeling.app.ui.cards.overlay import overlay, virtual_robot_side
+from cubeling.app.ui.cards.virtual_robot import VirtualRobot
+from cubeling.app.ui.gesture_sheets import draw_library, draw_settings
+from cubeling.app.ui.panels import PANELS
+from cubeling.app.ui.playback.layer import PlaybackLayer
+from cubeling.app.ui.playback.status import Mark, Position, SessionStatus
+from cubeling.app.ui.window import Window
+from cubeling.characters import Character
+from cubeling.characters.rendering import create_context
+from cubeling.characters.rendering.portrait import PortraitRenderer
+from cubeling.tracking import CubeModel, open_source, write_sheet
+from cubeling.tracking.calibration import CubeFinder
+from cubeling.tracking.synthetic import open_synthetic
 from tools.offscreen import no_display_needed
-from tracking import CubeModel, open_source, write_sheet
-from tracking.calibration import CubeFinder
-from tracking.synthetic import open_synthetic
 
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures"
 

@@ -1,9 +1,9 @@
 """Generates the C header of the messages: structs, pack and unpack functions."""
 
-from robot.protocol import timing
-from robot.protocol.fields import INTEGER_LIMITS, FieldSpec
-from robot.protocol.messages import constants
-from robot.protocol.schema import HEADER, MESSAGES, MessageSpec, VersionPart
+from cubeling.robot.protocol import timing
+from cubeling.robot.protocol.fields import INTEGER_LIMITS, FieldSpec
+from cubeling.robot.protocol.messages import constants
+from cubeling.robot.protocol.schema import HEADER, MESSAGES, MessageSpec, VersionPart
 
 _TYPES = {"u8": "uint8_t", "u16": "uint16_t", "u32": "uint32_t", "i16": "int16_t"}
 _ROW = 16  # elements of an i16x16

@@ -5,11 +5,11 @@
 
 from pathlib import Path
 
-from robot.protocol import messages as m
-from robot.protocol import timing
-from robot.protocol.fields import FieldSpec
-from robot.protocol.schema import HEADER, MESSAGES, MessageSpec
-from robot.protocol.wire import MAX_BODY, MAX_FRAME
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
+from cubeling.robot.protocol.fields import FieldSpec
+from cubeling.robot.protocol.schema import HEADER, MESSAGES, MessageSpec
+from cubeling.robot.protocol.wire import MAX_BODY, MAX_FRAME
 from tools.marked_parts import replace_part
 from tools.protocol_c_header import header
 from tools.protocol_vectors import VECTORS, vectors_file

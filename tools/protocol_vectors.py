@@ -3,10 +3,10 @@
 import json
 from dataclasses import asdict, dataclass, replace
 
-from robot.protocol import messages as m
-from robot.protocol.schema import pack, spec_of
-from robot.protocol.timing import VERSION
-from robot.protocol.wire import MAX_BODY, check_bytes, encode_frame
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.schema import pack, spec_of
+from cubeling.robot.protocol.timing import VERSION
+from cubeling.robot.protocol.wire import MAX_BODY, check_bytes, encode_frame
 
 
 @dataclass(frozen=True)

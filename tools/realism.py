@@ -11,15 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from app.pipeline.surroundings import Surroundings
-from app.ui.contact_sheets import save
-from characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
-from characters.rendering import SceneCharacter, Softness, Stage, create_context
-from characters.rendering.camera_picture.haze import haze_table
-from characters.rendering.camera_picture.light import LINEAR_FROM_SRGB
+from cubeling.app.pipeline.surroundings import Surroundings
+from cubeling.app.ui.contact_sheets import save
+from cubeling.characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
+from cubeling.characters.rendering import SceneCharacter, Softness, Stage, create_context
+from cubeling.characters.rendering.camera_picture.haze import haze_table
+from cubeling.characters.rendering.camera_picture.light import LINEAR_FROM_SRGB
+from cubeling.tracking import CubeControls, CubeGestures, CubeState, CubeTracker, Frame
+from cubeling.tracking.synthetic import SyntheticSource, open_synthetic
 from tools.captions import framed
-from tracking import CubeControls, CubeGestures, CubeState, CubeTracker, Frame
-from tracking.synthetic import SyntheticSource, open_synthetic
 
 Image = NDArray[np.uint8]
 

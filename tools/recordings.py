@@ -9,10 +9,10 @@ from pathlib import Path
 
 from rich.console import Console
 
-from app.commands.session.progress import run_with_progress
-from app.running.opening import open_session
-from app.scenarios import SCENARIOS
-from app.session import SessionOptions
+from cubeling.app.commands.session.progress import run_with_progress
+from cubeling.app.running.opening import open_session
+from cubeling.app.scenarios import SCENARIOS
+from cubeling.app.session import SessionOptions
 
 FOLDER = Path(__file__).parent.parent / "recordings"
 

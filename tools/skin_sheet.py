@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from app.ui.contact_sheets import save
-from characters import Character
-from characters.model.mesh import Mesh
-from characters.rendering import create_context
-from characters.rendering.portrait import PortraitRenderer, side_by_side
+from cubeling.app.ui.contact_sheets import save
+from cubeling.characters import Character
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.rendering import create_context
+from cubeling.characters.rendering.portrait import PortraitRenderer, side_by_side
 from tools.authoring.human.skull import SKIN
 from tools.captions import underlined
 

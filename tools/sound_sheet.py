@@ -14,8 +14,8 @@ mpl.use("svg")  # before pyplot: no display is needed
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 
-from app.sound import SAMPLE_RATE, SOUNDS, SoundBank
-from app.sound.synthesis import Array, loudness
+from cubeling.app.sound import SAMPLE_RATE, SOUNDS, SoundBank
+from cubeling.app.sound.synthesis import Array, loudness
 
 FILE = Path(__file__).parent.parent / "docs" / "pictures" / "sounds.png"
 

@@ -6,8 +6,8 @@
 from pathlib import Path
 from xml.sax.saxutils import escape
 
-from robot.firmware.dino import servos
-from robot.firmware.dino.table import Servo, ServoTable
+from cubeling.robot.firmware.dino import servos
+from cubeling.robot.firmware.dino.table import Servo, ServoTable
 
 PICTURE = Path(__file__).parents[1] / "docs" / "pictures" / "robot-wiring.svg"
 """Path of the diagram."""

@@ -1,21 +1,21 @@
 """Camera frames in; where the cube is, and what the hand does with it, out."""
 
-from tracking.calibration import Calibration, calibrate_camera
-from tracking.cube.file import write_cube
-from tracking.cube.icons import icon_mask, icon_paths
-from tracking.cube.model import CubeModel, Face
-from tracking.cube.model import bundled as bundled_cubes
-from tracking.cube.printing.sheet import write_sheet
-from tracking.detection.recognition import CubeRecognizer
-from tracking.errors import TrackingError
-from tracking.geometry.frame import Frame
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.state import CubeControls, CubeState
-from tracking.gestures.gestures import CubeGestures
-from tracking.refinement.lens_estimate import LensEstimate
-from tracking.sources import FrameSource, Health, LiveFrames, StoredFrames, open_source
-from tracking.tracker.several import CubesTracker
-from tracking.tracker.tracker import CubeTracker
+from cubeling.tracking.calibration import Calibration, calibrate_camera
+from cubeling.tracking.cube.file import write_cube
+from cubeling.tracking.cube.icons import icon_mask, icon_paths
+from cubeling.tracking.cube.model import CubeModel, Face
+from cubeling.tracking.cube.model import bundled as bundled_cubes
+from cubeling.tracking.cube.printing.sheet import write_sheet
+from cubeling.tracking.detection.recognition import CubeRecognizer
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry.state import CubeControls, CubeState
+from cubeling.tracking.gestures.gestures import CubeGestures
+from cubeling.tracking.refinement.lens_estimate import LensEstimate
+from cubeling.tracking.sources import FrameSource, Health, LiveFrames, StoredFrames, open_source
+from cubeling.tracking.tracker.several import CubesTracker
+from cubeling.tracking.tracker.tracker import CubeTracker
 
 __all__ = [
     "Calibration",

@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from tracking.errors import TrackingError
+from cubeling.tracking.errors import TrackingError
 
 
 def write_whole(path: str | Path, content: bytes, what: str) -> None:

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from app.speaking.performance import View, framed
-from characters import Character, Pose
+from cubeling.app.speaking.performance import View, framed
+from cubeling.characters import Character, Pose
 
 Focus = tuple[NDArray[np.float64], float]
 """What is seen: a centre (3,) and a radius in the character frame [m]."""

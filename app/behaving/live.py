@@ -9,20 +9,20 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from app.behaving.camera import FollowingCamera
-from app.behaving.player import BehaviourFrame, BehaviourPlayer
-from app.behaving.recording import SETTLE_S, placed_pose
-from app.behaving.server import BlockServer
-from app.sound.bank import SoundBank
-from app.sound.loudspeaker import Loudspeaker
-from app.sound.mixer import Mixer
-from app.sound.session_sound import SPEECH_GAIN, at_sample_rate
-from app.sound.synthesis import SAMPLE_RATE
-from app.speaking.performance import AZIMUTH_RAD, ELEVATION_RAD, View
-from characters import Character
-from characters.behaviour.bml import feedback_xml
-from characters.face.complexion import blood_of
-from characters.rendering.portrait import PortraitRenderer
+from cubeling.app.behaving.camera import FollowingCamera
+from cubeling.app.behaving.player import BehaviourFrame, BehaviourPlayer
+from cubeling.app.behaving.recording import SETTLE_S, placed_pose
+from cubeling.app.behaving.server import BlockServer
+from cubeling.app.sound.bank import SoundBank
+from cubeling.app.sound.loudspeaker import Loudspeaker
+from cubeling.app.sound.mixer import Mixer
+from cubeling.app.sound.session_sound import SPEECH_GAIN, at_sample_rate
+from cubeling.app.sound.synthesis import SAMPLE_RATE
+from cubeling.app.speaking.performance import AZIMUTH_RAD, ELEVATION_RAD, View
+from cubeling.characters import Character
+from cubeling.characters.behaviour.bml import feedback_xml
+from cubeling.characters.face.complexion import blood_of
+from cubeling.characters.rendering.portrait import PortraitRenderer
 
 
 class Output(Protocol):
@@ -77,7 +77,9 @@ class WindowOutput:
         AppError
             There is no display.
         """
-        from app.ui.window.picture_window import PictureWindow  # needs a display's libraries
+        from cubeling.app.ui.window.picture_window import (
+            PictureWindow,  # needs a display's libraries
+        )
 
         with ExitStack() as closing:
             window = PictureWindow(size, "Cubeling: behave")

@@ -3,12 +3,18 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from app.behaving.player import block_of
-from app.behaving.voice import LineSource, PatientSource, SayText, SilentSource, saying_with
-from app.speaking.voices import open_voice
-from characters import CharacterError
-from characters.model.files import read_text
-from characters.speech.voices import VoiceError
+from cubeling.app.behaving.player import block_of
+from cubeling.app.behaving.voice import (
+    LineSource,
+    PatientSource,
+    SayText,
+    SilentSource,
+    saying_with,
+)
+from cubeling.app.speaking.voices import open_voice
+from cubeling.characters import CharacterError
+from cubeling.characters.model.files import read_text
+from cubeling.characters.speech.voices import VoiceError
 
 MAX_BYTES = 1 << 20
 """Size of a document that is read."""

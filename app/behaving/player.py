@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from affect import Emotion
-from app.behaving.voice import LineSource
-from app.behaving.ways import SPEEDS, Ways
-from app.pipeline.spoken_line import SpokenLine
-from characters import (
+from cubeling.affect import Emotion
+from cubeling.app.behaving.voice import LineSource
+from cubeling.app.behaving.ways import SPEEDS, Ways
+from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.characters import (
     Animator,
     Character,
     CharacterCommand,
@@ -22,16 +22,16 @@ from characters import (
     PosedCharacter,
     RootDelta,
 )
-from characters.behaviour.bml import Block, BmlWarning, Feedback, Realizer, parse
-from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
-from characters.behaviour.fml import behaviours_of
-from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.performing.character_performer import CharacterPerformer
-from characters.behaviour.performing.performed import Performed, Performing, Saying
-from characters.behaviour.performing.speech_kind import retime_speeches
-from characters.behaviour.performing.surroundings import Surroundings, numbers_of
-from characters.control.command import SpeechIntent
-from characters.speech.speech import Utterance
+from cubeling.characters.behaviour.bml import Block, BmlWarning, Feedback, Realizer, parse
+from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
+from cubeling.characters.behaviour.fml import behaviours_of
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
+from cubeling.characters.behaviour.performing.character_performer import CharacterPerformer
+from cubeling.characters.behaviour.performing.performed import Performed, Performing, Saying
+from cubeling.characters.behaviour.performing.speech_kind import retime_speeches
+from cubeling.characters.behaviour.performing.surroundings import Surroundings, numbers_of
+from cubeling.characters.control.command import SpeechIntent
+from cubeling.characters.speech.speech import Utterance
 
 VIEWER = np.array([0.1, 0.16, 0.7])
 """The place called "viewer", in the table frame [m]."""

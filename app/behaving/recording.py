@@ -7,15 +7,15 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from app.behaving.player import BehaviourFrame, BehaviourPlayer
-from app.pipeline.spoken_line import SpokenLine
-from app.sound import SAMPLE_RATE
-from app.sound.mixer import FADE_OUT, limited
-from app.sound.session_sound import SPEECH_GAIN, at_sample_rate
-from characters import Clip, Pose, PosedCharacter
-from characters.behaviour.bml import Feedback
-from characters.motion.baking import stacked
-from characters.skeleton import rotations
+from cubeling.app.behaving.player import BehaviourFrame, BehaviourPlayer
+from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.sound import SAMPLE_RATE
+from cubeling.app.sound.mixer import FADE_OUT, limited
+from cubeling.app.sound.session_sound import SPEECH_GAIN, at_sample_rate
+from cubeling.characters import Clip, Pose, PosedCharacter
+from cubeling.characters.behaviour.bml import Feedback
+from cubeling.characters.motion.baking import stacked
+from cubeling.characters.skeleton import rotations
 
 SETTLE_S = 2.0
 """Time before the first frame [s], which is not shown: eyes find the viewer."""

@@ -6,9 +6,9 @@ import selectors
 import socket
 import threading
 
-from app.behaving.splitting import DocumentSplitter, StreamBroken
-from app.errors import AppError
-from characters.behaviour.bml import BmlWarning, feedback_xml
+from cubeling.app.behaving.splitting import DocumentSplitter, StreamBroken
+from cubeling.app.errors import AppError
+from cubeling.characters.behaviour.bml import BmlWarning, feedback_xml
 
 MAX_CLIENTS = 16
 """Connections at one time; more are closed at once."""

@@ -5,20 +5,20 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from app.behaving.camera import FollowingCamera
-from app.behaving.recording import BehaviourRecording
-from app.speaking.performance import (
+from cubeling.app.behaving.camera import FollowingCamera
+from cubeling.app.behaving.recording import BehaviourRecording
+from cubeling.app.speaking.performance import (
     AZIMUTH_RAD,
     ELEVATION_RAD,
     View,
     put_subtitle,
     sound_blocks,
 )
-from app.ui.video_file import VideoFile
-from characters import Character
-from characters.control.command import SpeechIntent
-from characters.rendering import create_context
-from characters.rendering.portrait import PortraitRenderer
+from cubeling.app.ui.video_file import VideoFile
+from cubeling.characters import Character
+from cubeling.characters.control.command import SpeechIntent
+from cubeling.characters.rendering import create_context
+from cubeling.characters.rendering.portrait import PortraitRenderer
 
 
 def write_video(

@@ -5,14 +5,14 @@ import threading
 from collections.abc import Callable
 from typing import Protocol
 
-from app.pipeline.spoken_line import SpokenLine
-from characters import CharacterError
-from characters.control.speech_profile import DEFAULT_PROFILE
-from characters.speech.prosody import utterance_of
-from characters.speech.saying import say
-from characters.speech.speech import Speech
-from characters.speech.tagged_text import TaggedText
-from characters.speech.voices import Voice
+from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.characters import CharacterError
+from cubeling.characters.control.speech_profile import DEFAULT_PROFILE
+from cubeling.characters.speech.prosody import utterance_of
+from cubeling.characters.speech.saying import say
+from cubeling.characters.speech.speech import Speech
+from cubeling.characters.speech.tagged_text import TaggedText
+from cubeling.characters.speech.voices import Voice
 
 MAX_REMEMBERED = 256
 """Lines that are remembered, so that a text that is said again is there at once."""

@@ -8,11 +8,11 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from app.errors import AppError
-from app.running.network import Network
-from app.running.players import PlayerPublisher
-from app.ui.literal_text import literal_text
-from robot.network import Credentials
+from cubeling.app.errors import AppError
+from cubeling.app.running.network import Network
+from cubeling.app.running.players import PlayerPublisher
+from cubeling.app.ui.literal_text import literal_text
+from cubeling.robot.network import Credentials
 
 Broker = Annotated[
     str | None,

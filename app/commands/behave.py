@@ -8,29 +8,29 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from app.behaving.live import NoOutput, Output, WindowOutput, play_live
-from app.behaving.opening import open_lines, read_document
-from app.behaving.player import BehaviourOptions, BehaviourPlayer, target_of
-from app.behaving.recording import BehaviourRecording, perform
-from app.behaving.server import BlockServer
-from app.behaving.video import write_video
-from app.behaving.voice import ThreadedSource
-from app.commands.output import OverwriteOption, chosen_output
-from app.commands.session.play import VoiceOption
-from app.commands.session.preference_options import emotion_of, size_of
-from app.counted import counted
-from app.errors import AppError
-from app.output_path import check_output
-from app.speaking.performance import View
-from app.ui.display import has_display
-from app.ui.video_file import VIDEO_FORMATS
-from characters import Character
-from characters.behaviour.bml import BlockProgress, BmlWarning, Feedback, feedback_xml
-from characters.behaviour.expressivity import GestureExpressivity
-from characters.face.complexion import blood_of
-from characters.formats.mocap.bvh_writing import save_bvh
-from characters.retargeting.bap import save_bap
-from characters.retargeting.root import with_root_joint
+from cubeling.app.behaving.live import NoOutput, Output, WindowOutput, play_live
+from cubeling.app.behaving.opening import open_lines, read_document
+from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer, target_of
+from cubeling.app.behaving.recording import BehaviourRecording, perform
+from cubeling.app.behaving.server import BlockServer
+from cubeling.app.behaving.video import write_video
+from cubeling.app.behaving.voice import ThreadedSource
+from cubeling.app.commands.output import OverwriteOption, chosen_output
+from cubeling.app.commands.session.play import VoiceOption
+from cubeling.app.commands.session.preference_options import emotion_of, size_of
+from cubeling.app.counted import counted
+from cubeling.app.errors import AppError
+from cubeling.app.output_path import check_output
+from cubeling.app.speaking.performance import View
+from cubeling.app.ui.display import has_display
+from cubeling.app.ui.video_file import VIDEO_FORMATS
+from cubeling.characters import Character
+from cubeling.characters.behaviour.bml import BlockProgress, BmlWarning, Feedback, feedback_xml
+from cubeling.characters.behaviour.expressivity import GestureExpressivity
+from cubeling.characters.face.complexion import blood_of
+from cubeling.characters.formats.mocap.bvh_writing import save_bvh
+from cubeling.characters.retargeting.bap import save_bap
+from cubeling.characters.retargeting.root import with_root_joint
 
 OUTPUT_SUFFIXES = (".bvh", ".bap", *VIDEO_FORMATS)
 

@@ -11,17 +11,17 @@ import typer
 from rich.console import Console
 from rich.live import Live
 
-from app.commands.access import Broker, Ca, PasswordFile, Site
-from app.errors import AppError
-from app.running.bridge import Bridge
-from app.running.network import DEFAULT_SITE, Network
-from app.ui.literal_text import literal_text
-from app.ui.roster import line, table
-from robot.network import Credentials, Member
-from robot.network.arbiter import HOLD_S
-from robot.network.messages import StatusMessage
-from robot.network.player import MAX_AGE_S
-from robot.network.topics import ANY
+from cubeling.app.commands.access import Broker, Ca, PasswordFile, Site
+from cubeling.app.errors import AppError
+from cubeling.app.running.bridge import Bridge
+from cubeling.app.running.network import DEFAULT_SITE, Network
+from cubeling.app.ui.literal_text import literal_text
+from cubeling.app.ui.roster import line, table
+from cubeling.robot.network import Credentials, Member
+from cubeling.robot.network.arbiter import HOLD_S
+from cubeling.robot.network.messages import StatusMessage
+from cubeling.robot.network.player import MAX_AGE_S
+from cubeling.robot.network.topics import ANY
 
 STEP_EVERY_S = 0.02
 """Time between two steps of the recorded players [s]."""

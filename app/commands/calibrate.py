@@ -10,17 +10,17 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from app.commands.session.play import DEFAULT_CAMERA, CubeOption
-from app.counted import counted
-from app.errors import AppError
-from app.output_path import check_output
-from app.pipeline.other_cube import scenario_for
-from app.running.opening import intrinsics_for
-from app.ui.calibration.coach_lines import COVERAGE_SUFFIXES, CoachLines, write_coverage
-from app.ui.calibration.session import CalibrationSession, Coach
-from app.ui.display import has_display
-from tracking import CubeModel, FrameSource, Intrinsics, bundled_cubes, open_source
-from tracking.calibration import (
+from cubeling.app.commands.session.play import DEFAULT_CAMERA, CubeOption
+from cubeling.app.counted import counted
+from cubeling.app.errors import AppError
+from cubeling.app.output_path import check_output
+from cubeling.app.pipeline.other_cube import scenario_for
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.ui.calibration.coach_lines import COVERAGE_SUFFIXES, CoachLines, write_coverage
+from cubeling.app.ui.calibration.session import CalibrationSession, Coach
+from cubeling.app.ui.display import has_display
+from cubeling.tracking import CubeModel, FrameSource, Intrinsics, bundled_cubes, open_source
+from cubeling.tracking.calibration import (
     Board,
     BoardFinder,
     Calibration,
@@ -30,8 +30,8 @@ from tracking.calibration import (
     measured_cube,
     write_board,
 )
-from tracking.cube.file import write_cube
-from tracking.cube.model import face_corners
+from cubeling.tracking.cube.file import write_cube
+from cubeling.tracking.cube.model import face_corners
 
 CAMERA_FILE = Path("camera.yaml")
 
@@ -150,7 +150,9 @@ def _collect_views(
     with ExitStack() as closing, suppress(KeyboardInterrupt):
         coach: Coach = CoachLines(Console(soft_wrap=True, highlight=False), target)
         if shown:
-            from app.ui.calibration.coach_window import CoachWindow  # needs a display's libraries
+            from cubeling.app.ui.calibration.coach_window import (
+                CoachWindow,  # needs a display's libraries
+            )
 
             coach = closing.enter_context(CoachWindow(frames.size, target))
         session.run(frames, coach, seconds)

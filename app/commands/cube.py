@@ -7,9 +7,9 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from app.commands.output import OverwriteOption, chosen_output
-from app.scenarios.roles import check_roles
-from tracking import CubeModel, write_sheet
+from cubeling.app.commands.output import OverwriteOption, chosen_output
+from cubeling.app.scenarios.roles import check_roles
+from cubeling.tracking import CubeModel, write_sheet
 
 
 def cube(

@@ -13,18 +13,18 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from app.errors import AppError
-from app.running.summary import camera_line
-from app.scenarios import SCENARIOS
-from app.session.bundled import bundled
-from app.sound import NoSoundError
-from app.sound.loudspeaker import load_portaudio, open_stream
-from app.ui.display import has_display, is_software_renderer
-from characters import Character, CharacterError
-from characters.rendering import create_context
-from characters.speech.voices.espeak import installed, remedy
-from robot import serial_ports
-from tracking import FrameSource, LiveFrames, TrackingError, open_source
+from cubeling.app.errors import AppError
+from cubeling.app.running.summary import camera_line
+from cubeling.app.scenarios import SCENARIOS
+from cubeling.app.session.bundled import bundled
+from cubeling.app.sound import NoSoundError
+from cubeling.app.sound.loudspeaker import load_portaudio, open_stream
+from cubeling.app.ui.display import has_display, is_software_renderer
+from cubeling.characters import Character, CharacterError
+from cubeling.characters.rendering import create_context
+from cubeling.characters.speech.voices.espeak import installed, remedy
+from cubeling.robot import serial_ports
+from cubeling.tracking import FrameSource, LiveFrames, TrackingError, open_source
 
 VERDICT_MARKS = {"good": "[green]✓[/]", "missing": "[yellow]–[/]", "bad": "[red]✗[/]"}
 

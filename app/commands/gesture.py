@@ -10,16 +10,16 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from app.commands.output import OverwriteOption, chosen_output
-from app.errors import AppError
-from app.gesture_editor.editing.edits import gesture_name, performers
-from app.gesture_editor.editing.importing import imported
-from app.gesture_editor.editing.store import GestureStore
-from app.gesture_editor.editing.timing import duration, phase_spans
-from app.ui.display import has_display
-from characters import Character
-from characters.behaviour.gestures.files import SUFFIX, save_gesture
-from characters.behaviour.symbolic_gesture import BodyKey, HandKey, SymbolicGesture
+from cubeling.app.commands.output import OverwriteOption, chosen_output
+from cubeling.app.errors import AppError
+from cubeling.app.gesture_editor.editing.edits import gesture_name, performers
+from cubeling.app.gesture_editor.editing.importing import imported
+from cubeling.app.gesture_editor.editing.store import GestureStore
+from cubeling.app.gesture_editor.editing.timing import duration, phase_spans
+from cubeling.app.ui.display import has_display
+from cubeling.characters import Character
+from cubeling.characters.behaviour.gestures.files import SUFFIX, save_gesture
+from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, SymbolicGesture
 
 SHEET_SUFFIXES = (".png", ".jpg")
 
@@ -56,7 +56,7 @@ def edit(
 
     Example: [cyan]cubeling gesture edit WAVE[/]
     """
-    from app.gesture_editor.window import edit as edit_in_window
+    from cubeling.app.gesture_editor.window import edit as edit_in_window
 
     if not has_display():
         raise AppError("the editor needs a window: run it where there is a display")
@@ -103,7 +103,7 @@ def show(
     gesture = GestureStore(folder).load(name)
     describe(Console(), gesture)
     if output is not None:
-        from app.gesture_editor.sheet import draw_sheet
+        from cubeling.app.gesture_editor.sheet import draw_sheet
 
         draw_sheet(output, gesture, character or list(Character.bundled()))
         print_written(str(output))

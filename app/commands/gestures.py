@@ -14,16 +14,16 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from app.commands.output import OverwriteOption, chosen_output
-from app.counted import counted
-from characters import Character
-from characters.control.controllers.recordings import read_motions
-from characters.model.stick_figure import stick_figure
-from characters.retargeting.root import with_root_joint
-from characters.synthesis.archive import skeleton_identity
-from characters.synthesis.gestures.graph import GestureGraph, sweep
-from characters.synthesis.gestures.learning import learned
-from characters.synthesis.gestures.library import GestureLibrary
+from cubeling.app.commands.output import OverwriteOption, chosen_output
+from cubeling.app.counted import counted
+from cubeling.characters import Character
+from cubeling.characters.control.controllers.recordings import read_motions
+from cubeling.characters.model.stick_figure import stick_figure
+from cubeling.characters.retargeting.root import with_root_joint
+from cubeling.characters.synthesis.archive import skeleton_identity
+from cubeling.characters.synthesis.gestures.graph import GestureGraph, sweep
+from cubeling.characters.synthesis.gestures.learning import learned
+from cubeling.characters.synthesis.gestures.library import GestureLibrary
 
 SHEET_SUFFIXES = (".png", ".jpg")
 
@@ -139,9 +139,9 @@ def describe(console: Console, library: GestureLibrary) -> None:
 
 def draw(path: Path, library: GestureLibrary) -> None:
     """Draw where each stroke of a library starts, and its apex."""
-    from app.ui.contact_sheets import frame_sheet, save
-    from characters.rendering import create_context
-    from characters.rendering.portrait import PortraitRenderer, side_by_side
+    from cubeling.app.ui.contact_sheets import frame_sheet, save
+    from cubeling.characters.rendering import create_context
+    from cubeling.characters.rendering.portrait import PortraitRenderer, side_by_side
 
     body = _body(library)
     centre = np.array([0.0, UPPER_BODY[0] * body.height, 0.0])
@@ -175,7 +175,7 @@ def _file(library: Path) -> Path:
     """Return the file of a library; the one beside a bundled character of that name."""
     if str(library) not in Character.bundled() or library.exists():
         return library
-    return Path(str(resources.files("characters") / "assets" / f"{library}.gestures"))
+    return Path(str(resources.files("cubeling.characters") / "assets" / f"{library}.gestures"))
 
 
 def _table(title: str, *headings: str) -> Table:

@@ -10,26 +10,26 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from affect import Emotion
-from affect.regions import Region, region_of
-from affect.words import WORD_PLACES
-from app.commands.output import (
+from cubeling.affect import Emotion
+from cubeling.affect.regions import Region, region_of
+from cubeling.affect.words import WORD_PLACES
+from cubeling.app.commands.output import (
     PLOT_SUFFIXES,
     OverwriteOption,
     PlotOption,
     chosen_output,
     needs_matplotlib,
 )
-from app.counted import counted
-from characters import Character
-from characters.control.controllers.recordings import read_motions
-from characters.retargeting.root import with_root_joint
-from characters.synthesis.idle.alignment import Alignment
-from characters.synthesis.idle.database import IdleDatabase
-from characters.synthesis.idle.posture_space import PostureVectors
-from characters.synthesis.idle.recordings import BALANCES, read_standing
-from characters.synthesis.idle.storage import Person, load_person, save_person
-from characters.synthesis.idle.variations import COMPONENTS
+from cubeling.app.counted import counted
+from cubeling.characters import Character
+from cubeling.characters.control.controllers.recordings import read_motions
+from cubeling.characters.retargeting.root import with_root_joint
+from cubeling.characters.synthesis.idle.alignment import Alignment
+from cubeling.characters.synthesis.idle.database import IdleDatabase
+from cubeling.characters.synthesis.idle.posture_space import PostureVectors
+from cubeling.characters.synthesis.idle.recordings import BALANCES, read_standing
+from cubeling.characters.synthesis.idle.storage import Person, load_person, save_person
+from cubeling.characters.synthesis.idle.variations import COMPONENTS
 
 app = typer.Typer(
     help="Learn how a person stands, from recordings, and let a character stand so.",
@@ -113,7 +113,7 @@ def show(
     if output is None:
         return
     with needs_matplotlib():
-        from app.idle_plot import save_plot
+        from cubeling.app.idle_plot import save_plot
     database = IdleDatabase.of(recordings, PostureVectors.of(skeleton, anatomy)).suiting(emotion)
     save_plot(output, database, f"How {person.stem} stands")
     console.print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
@@ -123,7 +123,7 @@ def _file(person: Path) -> Path:
     """Return the file of a person; the one beside a bundled character of that name."""
     if str(person) not in Character.bundled() or person.exists():
         return person
-    return Path(str(resources.files("characters") / "assets" / f"{person}.idle"))
+    return Path(str(resources.files("cubeling.characters") / "assets" / f"{person}.idle"))
 
 
 def _felt(recording: str) -> tuple[str, Region | None]:

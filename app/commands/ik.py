@@ -11,7 +11,7 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from characters.ik.solvers.measures import (
+from cubeling.characters.ik.solvers.measures import (
     REACH_M,
     Problem,
     arc,
@@ -21,8 +21,8 @@ from characters.ik.solvers.measures import (
     violations,
     zig_zag,
 )
-from characters.ik.solvers.single import SingleChain
-from characters.ik.solvers.solving import SOLVERS, TOLERANCE, solve
+from cubeling.characters.ik.solvers.single import SingleChain
+from cubeling.characters.ik.solvers.solving import SOLVERS, TOLERANCE, solve
 
 app = typer.Typer(
     help="Measure the solvers of inverse kinematics.",

@@ -8,16 +8,16 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from app.commands.session.play import DEFAULT_CAMERA
-from app.errors import AppError
-from app.latency.program import ProgramTimes, program_times
-from app.latency.result import latency_result
-from app.latency.session import MIN_FLIPS, LatencySession
-from app.output_path import check_output
-from app.scenarios import scenario_cube
-from app.session import SessionOptions
-from app.ui.display import has_display
-from tracking import LiveFrames, open_source
+from cubeling.app.commands.session.play import DEFAULT_CAMERA
+from cubeling.app.errors import AppError
+from cubeling.app.latency.program import ProgramTimes, program_times
+from cubeling.app.latency.result import latency_result
+from cubeling.app.latency.session import MIN_FLIPS, LatencySession
+from cubeling.app.output_path import check_output
+from cubeling.app.scenarios import scenario_cube
+from cubeling.app.session import SessionOptions
+from cubeling.app.ui.display import has_display
+from cubeling.tracking import LiveFrames, open_source
 
 Source = Annotated[
     str, typer.Option("--source", "-s", help="A live camera: camera:0, http://PHONE:8080/video.")
@@ -89,7 +89,7 @@ def _flip(session: LatencySession) -> tuple[str, bool, bool]:
     tuple
         What draws, whether the user ended early, and whether by Ctrl-C.
     """
-    from app.latency.window import PatternWindow  # needs a display's libraries
+    from cubeling.app.latency.window import PatternWindow  # needs a display's libraries
 
     interrupted = False
     with PatternWindow() as window:

@@ -7,18 +7,18 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from affect import LABEL_SETS, Personality
-from affect.labels import LabelSet
-from affect.personality_file import bundled, bundled_text
-from app.commands.output import (
+from cubeling.affect import LABEL_SETS, Personality
+from cubeling.affect.labels import LabelSet
+from cubeling.affect.personality_file import bundled, bundled_text
+from cubeling.app.commands.output import (
     PLOT_SUFFIXES,
     OverwriteOption,
     chosen_output,
     needs_matplotlib,
 )
-from app.counted import counted
-from app.errors import AppError
-from app.moods import read_history, read_robot_traces, replay_with, write_table
+from cubeling.app.counted import counted
+from cubeling.app.errors import AppError
+from cubeling.app.moods import read_history, read_robot_traces, replay_with, write_table
 
 app = typer.Typer(
     help="Plot and tabulate the moods of recorded sessions; print personalities.",
@@ -63,7 +63,7 @@ def plot(
         count = f"{len(personalities)} personalities are too many for one plot"
         raise AppError(f"{count}: name at most {MAX_PERSONALITIES}")
     with needs_matplotlib():
-        from app.moods.plot import save_plot
+        from cubeling.app.moods.plot import save_plot
     history = read_history(session, salvage=salvage)
     others = [replay_with(history, each) for each in personalities]
     fitting = fitting_label_set(history.recorded.labels)

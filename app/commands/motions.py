@@ -10,30 +10,30 @@ from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from rich.table import Table
 
-from app.commands.output import (
+from cubeling.app.commands.output import (
     PLOT_SUFFIXES,
     OverwriteOption,
     PlotOption,
     chosen_output,
     needs_matplotlib,
 )
-from app.counted import counted
-from app.errors import AppError
-from app.motion_graphs.recordings import clip_names, gather
-from app.motion_graphs.tables import make_tables
-from characters import Character
-from characters.retargeting.root import with_root_joint
-from characters.synthesis.graphs.building import (
+from cubeling.app.counted import counted
+from cubeling.app.errors import AppError
+from cubeling.app.motion_graphs.recordings import clip_names, gather
+from cubeling.app.motion_graphs.tables import make_tables
+from cubeling.characters import Character
+from cubeling.characters.retargeting.root import with_root_joint
+from cubeling.characters.synthesis.graphs.building import (
     DEFAULT_PROFILE,
     analyse,
     check_choices,
     part_graphs,
     standard_graph,
 )
-from characters.synthesis.graphs.graph import MotionGraph
-from characters.synthesis.graphs.parts import PartGraphs
-from characters.synthesis.graphs.storage import StoredGraph, load_graph, save_graph
-from characters.synthesis.library import DEFAULT_RATE_HZ, MotionLibrary
+from cubeling.characters.synthesis.graphs.graph import MotionGraph
+from cubeling.characters.synthesis.graphs.parts import PartGraphs
+from cubeling.characters.synthesis.graphs.storage import StoredGraph, load_graph, save_graph
+from cubeling.characters.synthesis.library import DEFAULT_RATE_HZ, MotionLibrary
 
 app = typer.Typer(
     help="Make motion graphs of your own recordings: where one clip can follow another.",
@@ -132,7 +132,7 @@ def show(
     if output is None:
         return
     with needs_matplotlib():
-        from app.motion_graphs.plot import save_plot
+        from cubeling.app.motion_graphs.plot import save_plot
     save_plot(output, stored, graph.name)
     console.print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
 
@@ -167,7 +167,7 @@ def tables(
     """
     target = chosen_output(output, "tables.html", "page", (".html",), overwrite)
     with needs_matplotlib():
-        from app.motion_graphs.page import write_page
+        from cubeling.app.motion_graphs.page import write_page
     body = with_root_joint(Character.load(character))
     console = Console()
     with console.status("reading") as status:

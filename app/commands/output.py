@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from app.errors import AppError
-from app.output_path import check_output
+from cubeling.app.errors import AppError
+from cubeling.app.output_path import check_output
 
 OverwriteOption = Annotated[
     bool, typer.Option("--overwrite", help="Overwrite the file of --output if it exists.")

@@ -8,8 +8,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from app.output_path import check_output_folder
-from app.sound import SAMPLE_RATE, SOUNDS, SoundBank, write_wave
+from cubeling.app.output_path import check_output_folder
+from cubeling.app.sound import SAMPLE_RATE, SOUNDS, SoundBank, write_wave
 
 
 def sounds(

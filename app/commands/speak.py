@@ -8,38 +8,38 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from affect import Emotion
-from app.commands.output import OverwriteOption, chosen_output
-from app.commands.session.play import VoiceOption
-from app.commands.session.preference_options import emotion_of, size_of
-from app.counted import counted
-from app.errors import AppError
-from app.output_path import check_output
-from app.pipeline.spoken_line import SpokenLine
-from app.sound import write_wave
-from app.sound.session_sound import at_sample_rate
-from app.speaking.live import speak_live
-from app.speaking.performance import Direction, View, performed, write_video
-from app.speaking.voices import open_voice
-from app.ui.display import has_display
-from app.ui.video_file import VIDEO_FORMATS
-from characters import Character
-from characters.control.layers.speech import known_gestures
-from characters.control.speech_profile import DATABASES, DEFAULT_PROFILE, SpeechProfile
-from characters.face.complexion import blood_of
-from characters.face.visemes.sets import viseme_sets
-from characters.formats.mocap.bvh_writing import save_bvh
-from characters.model.files import read_text
-from characters.model.speaking import gestures_for
-from characters.retargeting.root import with_root_joint
-from characters.speech.alignment import align
-from characters.speech.audio import read_speech
-from characters.speech.mouth import phones_from_sound
-from characters.speech.prosody import utterance_of
-from characters.speech.saying import say
-from characters.speech.speech import Speech
-from characters.speech.tagged_text import TaggedText
-from characters.speech.voices.feeling import manner_of
+from cubeling.affect import Emotion
+from cubeling.app.commands.output import OverwriteOption, chosen_output
+from cubeling.app.commands.session.play import VoiceOption
+from cubeling.app.commands.session.preference_options import emotion_of, size_of
+from cubeling.app.counted import counted
+from cubeling.app.errors import AppError
+from cubeling.app.output_path import check_output
+from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.sound import write_wave
+from cubeling.app.sound.session_sound import at_sample_rate
+from cubeling.app.speaking.live import speak_live
+from cubeling.app.speaking.performance import Direction, View, performed, write_video
+from cubeling.app.speaking.voices import open_voice
+from cubeling.app.ui.display import has_display
+from cubeling.app.ui.video_file import VIDEO_FORMATS
+from cubeling.characters import Character
+from cubeling.characters.control.layers.speech import known_gestures
+from cubeling.characters.control.speech_profile import DATABASES, DEFAULT_PROFILE, SpeechProfile
+from cubeling.characters.face.complexion import blood_of
+from cubeling.characters.face.visemes.sets import viseme_sets
+from cubeling.characters.formats.mocap.bvh_writing import save_bvh
+from cubeling.characters.model.files import read_text
+from cubeling.characters.model.speaking import gestures_for
+from cubeling.characters.retargeting.root import with_root_joint
+from cubeling.characters.speech.alignment import align
+from cubeling.characters.speech.audio import read_speech
+from cubeling.characters.speech.mouth import phones_from_sound
+from cubeling.characters.speech.prosody import utterance_of
+from cubeling.characters.speech.saying import say
+from cubeling.characters.speech.speech import Speech
+from cubeling.characters.speech.tagged_text import TaggedText
+from cubeling.characters.speech.voices.feeling import manner_of
 
 MAX_TEXT_BYTES = 100_000
 """Larger files are no speeches."""

@@ -11,31 +11,36 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from app.commands.output import (
+from cubeling.app.commands.output import (
     PLOT_SUFFIXES,
     OverwriteOption,
     PlotOption,
     chosen_output,
     needs_matplotlib,
 )
-from app.counted import counted
-from app.errors import AppError
-from characters import Character, CharacterError
-from characters.control.speech_profile import DEFAULT_PROFILE
-from characters.model.files import read_text
-from characters.speech.accents import (
+from cubeling.app.counted import counted
+from cubeling.app.errors import AppError
+from cubeling.characters import Character, CharacterError
+from cubeling.characters.control.speech_profile import DEFAULT_PROFILE
+from cubeling.characters.model.files import read_text
+from cubeling.characters.speech.accents import (
     AccentSettings,
     accents_of,
     syllable_nuclei,
 )
-from characters.speech.alignment import align as align_by_warping
-from characters.speech.alignment import align_with_sphinx
-from characters.speech.audio import read_speech
-from characters.speech.contours import measure_prosody
-from characters.speech.speech import Accent, Speech
-from characters.speech.textgrid import read_textgrid, textgrid_of, with_textgrid, write_textgrid
-from characters.speech.voices import espeak
-from characters.synthesis.gestures.plan import PlannedGesture
+from cubeling.characters.speech.alignment import align as align_by_warping
+from cubeling.characters.speech.alignment import align_with_sphinx
+from cubeling.characters.speech.audio import read_speech
+from cubeling.characters.speech.contours import measure_prosody
+from cubeling.characters.speech.speech import Accent, Speech
+from cubeling.characters.speech.textgrid import (
+    read_textgrid,
+    textgrid_of,
+    with_textgrid,
+    write_textgrid,
+)
+from cubeling.characters.speech.voices import espeak
+from cubeling.characters.synthesis.gestures.plan import PlannedGesture
 
 MAX_PLOT_S = 120.0
 """Longest speech that is plotted [s]."""
@@ -96,7 +101,7 @@ def show(
     if output is None:
         return
     with needs_matplotlib():
-        from app.speech_plot import GestureMark, save_plot
+        from cubeling.app.speech_plot import GestureMark, save_plot
     marks = [
         GestureMark(each.node.phrase.hand, each.start, each.apex, each.end, tuple(each.phases))
         for each in planned_gestures(character, accents, speech.duration)

@@ -1,7 +1,12 @@
 """Recorded sessions as tables for a statistics program."""
 
-from app.exporting.columns import CONTEXT_COLUMNS, EXPORT_TABLES, SESSION_COLUMNS, dictionary_rows
-from app.exporting.writing import ExportedSession, export
+from cubeling.app.exporting.columns import (
+    CONTEXT_COLUMNS,
+    EXPORT_TABLES,
+    SESSION_COLUMNS,
+    dictionary_rows,
+)
+from cubeling.app.exporting.writing import ExportedSession, export
 
 __all__ = [
     "CONTEXT_COLUMNS",

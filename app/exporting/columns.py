@@ -9,10 +9,10 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from app.exporting.column import Column, Table, field, vector
-from characters import CharacterCommand, PosedCharacter
-from characters.skeleton import rotations
-from tracking import CubeState
+from cubeling.app.exporting.column import Column, Table, field, vector
+from cubeling.characters import CharacterCommand, PosedCharacter
+from cubeling.characters.skeleton import rotations
+from cubeling.tracking import CubeState
 
 
 def _cube_place(state: CubeState) -> NDArray[np.float64] | None:

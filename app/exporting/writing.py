@@ -11,18 +11,18 @@ from typing import IO, Any
 
 import numpy as np
 
-from app.errors import AppError
-from app.exporting.column import Cell, Column, Table
-from app.exporting.columns import (
+from cubeling.app.errors import AppError
+from cubeling.app.exporting.column import Cell, Column, Table
+from cubeling.app.exporting.columns import (
     CONTEXT_COLUMNS,
     EXPORT_TABLES,
     SESSION_COLUMNS,
     SESSION_CONTEXT_COLUMNS,
     dictionary_rows,
 )
-from app.output_path import whole_file
-from app.session import SessionInfo, messages, session_info
-from app.session.encoding import MESSAGE_TYPES, decode
+from cubeling.app.output_path import whole_file
+from cubeling.app.session import SessionInfo, messages, session_info
+from cubeling.app.session.encoding import MESSAGE_TYPES, decode
 
 DICTIONARY_FILE = "data_dictionary.csv"
 DICTIONARY_COLUMNS = ("table", "column", "unit", "files", "meaning")

@@ -3,15 +3,15 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
-from app.gesture_editor.editing.document import ROWS
-from app.gesture_editor.editing.edits import (
+from cubeling.app.gesture_editor.editing.document import ROWS
+from cubeling.app.gesture_editor.editing.edits import (
     change_gesture,
     gesture_name,
     move_key,
     move_sector,
     neighbour,
 )
-from app.gesture_editor.editing.state import (
+from cubeling.app.gesture_editor.editing.state import (
     Action,
     EditorState,
     New,
@@ -23,10 +23,10 @@ from app.gesture_editor.editing.state import (
     unless_unsaved,
     with_text,
 )
-from app.gesture_editor.panels import bars, cards
-from app.gesture_editor.panels.fields import TextField
-from app.gesture_editor.panels.layout import widget_at, widget_named
-from app.gesture_editor.panels.time_line_parts import key_shown
+from cubeling.app.gesture_editor.panels import bars, cards
+from cubeling.app.gesture_editor.panels.fields import TextField
+from cubeling.app.gesture_editor.panels.layout import widget_at, widget_named
+from cubeling.app.gesture_editor.panels.time_line_parts import key_shown
 
 MAX_TEXT = 300
 """Letters that a text field takes."""

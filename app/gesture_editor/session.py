@@ -6,11 +6,18 @@ from pathlib import Path
 
 import moderngl
 
-from app.errors import AppError
-from app.gesture_editor.editing.document import EMPTY, ROWS, GestureDocument, Row, keys_of, moves
-from app.gesture_editor.editing.edits import gesture_name
-from app.gesture_editor.editing.importing import imported
-from app.gesture_editor.editing.state import (
+from cubeling.app.errors import AppError
+from cubeling.app.gesture_editor.editing.document import (
+    EMPTY,
+    ROWS,
+    GestureDocument,
+    Row,
+    keys_of,
+    moves,
+)
+from cubeling.app.gesture_editor.editing.edits import gesture_name
+from cubeling.app.gesture_editor.editing.importing import imported
+from cubeling.app.gesture_editor.editing.state import (
     EditorState,
     Import,
     New,
@@ -22,13 +29,13 @@ from app.gesture_editor.editing.state import (
     told,
     unless_unsaved,
 )
-from app.gesture_editor.editing.store import GestureStore
-from app.gesture_editor.handling import Event, handle, left_field
-from app.gesture_editor.panels.layout import Picture, WindowDrawing, preview_size
-from app.gesture_editor.preview import Performance, Preview
-from characters import Character
-from characters.behaviour.symbolic_gesture import SymbolicGesture
-from characters.errors import CharacterError
+from cubeling.app.gesture_editor.editing.store import GestureStore
+from cubeling.app.gesture_editor.handling import Event, handle, left_field
+from cubeling.app.gesture_editor.panels.layout import Picture, WindowDrawing, preview_size
+from cubeling.app.gesture_editor.preview import Performance, Preview
+from cubeling.characters import Character
+from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
+from cubeling.characters.errors import CharacterError
 
 KEEP_INTERVAL_S = 2.0
 """Time between two copies of changes that are not saved [s]."""

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
-from app.gesture_editor.editing.timing import phase_at, phase_spans, time_of
-from app.gesture_editor.preview import Performance, Preview
-from app.ui.contact_sheets import frame_sheet, save
-from characters.behaviour.symbolic_gesture import SymbolicGesture
-from characters.rendering import create_context
+from cubeling.app.gesture_editor.editing.timing import phase_at, phase_spans, time_of
+from cubeling.app.gesture_editor.preview import Performance, Preview
+from cubeling.app.ui.contact_sheets import frame_sheet, save
+from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
+from cubeling.characters.rendering import create_context
 
 CELL_PX = 300, 320
 """Size of a picture [px]."""

@@ -3,16 +3,16 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from app.gesture_editor.editing.timing import phase_spans, time_of
-from app.gesture_editor.handling import KeyPressed, Moved, Pressed, Released, Typed
-from app.gesture_editor.panels.fields import Slider
-from app.gesture_editor.panels.layout import widget_named
-from app.gesture_editor.panels.space_map import SpaceMap
-from app.gesture_editor.panels.time_line import time_axis
-from app.gesture_editor.panels.widgets import Widget
-from app.gesture_editor.session import EditorSession
-from app.ui.contact_sheets import save
-from characters.rendering import create_context
+from cubeling.app.gesture_editor.editing.timing import phase_spans, time_of
+from cubeling.app.gesture_editor.handling import KeyPressed, Moved, Pressed, Released, Typed
+from cubeling.app.gesture_editor.panels.fields import Slider
+from cubeling.app.gesture_editor.panels.layout import widget_named
+from cubeling.app.gesture_editor.panels.space_map import SpaceMap
+from cubeling.app.gesture_editor.panels.time_line import time_axis
+from cubeling.app.gesture_editor.panels.widgets import Widget
+from cubeling.app.gesture_editor.session import EditorSession
+from cubeling.app.ui.contact_sheets import save
+from cubeling.characters.rendering import create_context
 
 MOUSE_STEPS = 4
 """Places that the mouse passes in a drag."""

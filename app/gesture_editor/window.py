@@ -5,10 +5,18 @@ from typing import Any
 
 import glfw
 
-from app.gesture_editor.handling import Dropped, Event, KeyPressed, Moved, Pressed, Released, Typed
-from app.gesture_editor.panels.cards import HEIGHT, WIDTH
-from app.gesture_editor.session import EditorSession
-from app.ui.window.surface import TYPED_KEYS, Surface, key_name
+from cubeling.app.gesture_editor.handling import (
+    Dropped,
+    Event,
+    KeyPressed,
+    Moved,
+    Pressed,
+    Released,
+    Typed,
+)
+from cubeling.app.gesture_editor.panels.cards import HEIGHT, WIDTH
+from cubeling.app.gesture_editor.session import EditorSession
+from cubeling.app.ui.window.surface import TYPED_KEYS, Surface, key_name
 
 EDITING_KEYS = {glfw.KEY_DELETE: "Delete", glfw.KEY_BACKSPACE: "Backspace"}
 """Names of keys that other windows have no use for."""

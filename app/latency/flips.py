@@ -5,7 +5,7 @@ from itertools import chain
 
 import numpy as np
 
-from app.latency.pattern import MIN_CONTRAST
+from cubeling.app.latency.pattern import MIN_CONTRAST
 
 GOLDEN_RATIO = (1 + 5**0.5) / 2
 

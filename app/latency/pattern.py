@@ -4,10 +4,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from app.ui.canvas import Canvas
-from app.ui.palette import HAPPY, INK, RULE, bgr
-from tracking.cube.marker import marker_cells
-from tracking.detection.markers import MarkerDetector
+from cubeling.app.ui.canvas import Canvas
+from cubeling.app.ui.palette import HAPPY, INK, RULE, bgr
+from cubeling.tracking.cube.marker import marker_cells
+from cubeling.tracking.detection.markers import MarkerDetector
 
 Picture = NDArray[np.uint8]
 Array = NDArray[np.float64]

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pipeline.step import Step
-from app.running.opening import open_session
-from app.running.runner import run
-from app.session import SessionOptions
-from app.ui.screen import Screen
-from tracking import FrameSource
+from cubeling.app.pipeline.step import Step
+from cubeling.app.running.opening import open_session
+from cubeling.app.running.runner import run
+from cubeling.app.session import SessionOptions
+from cubeling.app.ui.screen import Screen
+from cubeling.tracking import FrameSource
 
 WARM_UP_S = 1.0
 """The first pictures wait for shaders that are compiled and caches that are filled [s]."""

@@ -11,12 +11,12 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from app.latency.flips import picture_age
-from app.latency.program import ProgramTimes
-from app.latency.session import LatencySession
-from app.ui.display import is_software_renderer
-from app.ui.literal_text import literal_text
-from tracking import Health
+from cubeling.app.latency.flips import picture_age
+from cubeling.app.latency.program import ProgramTimes
+from cubeling.app.latency.session import LatencySession
+from cubeling.app.ui.display import is_software_renderer
+from cubeling.app.ui.literal_text import literal_text
+from cubeling.tracking import Health
 
 SLOW_AGE_S = 0.12
 """A picture that is older than this on arrival is later than most webcams' on a good screen [s]."""

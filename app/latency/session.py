@@ -6,11 +6,11 @@ from typing import Protocol
 
 import numpy as np
 
-from app.counted import counted
-from app.errors import AppError
-from app.latency.flips import FlipDetector
-from app.latency.pattern import PatternReader, Picture, draw_pattern
-from tracking import LiveFrames
+from cubeling.app.counted import counted
+from cubeling.app.errors import AppError
+from cubeling.app.latency.flips import FlipDetector
+from cubeling.app.latency.pattern import PatternReader, Picture, draw_pattern
+from cubeling.tracking import LiveFrames
 
 PATIENCE_S = 30.0
 """Time without a flip that is seen, after which the measurement ends [s]."""

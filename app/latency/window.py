@@ -1,7 +1,7 @@
 """The pattern in a window."""
 
-from app.latency.pattern import SIZE_PX, Picture
-from app.ui.window.picture_window import PictureWindow
+from cubeling.app.latency.pattern import SIZE_PX, Picture
+from cubeling.app.ui.window.picture_window import PictureWindow
 
 
 class PatternWindow(PictureWindow):

@@ -1,7 +1,7 @@
 """Colours of the mood plot: those of the screen, pale enough to write on."""
 
-from affect.labels import LabelSet
-from app.ui.palette import ACTION_COLORS, ROBOT_COLOR, Color, between, bgr, mood_color
+from cubeling.affect.labels import LabelSet
+from cubeling.app.ui.palette import ACTION_COLORS, ROBOT_COLOR, Color, between, bgr, mood_color
 
 WHITE = bgr("#ffffff")
 TEXT_COLOR, SECONDARY_COLOR, BORDER_COLOR, GRID_COLOR = "#2b3345", "#6d7385", "#a9aebb", "#dcdfe6"

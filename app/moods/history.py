@@ -7,16 +7,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from affect import Personality
-from app.errors import AppError
-from app.pipeline.scenario import EmotionTarget
-from app.scenarios import find_scenario, scenario_names
-from app.scenarios.follow import gait
-from app.scenarios.mood import MoodController
-from app.session import SessionInfo, messages, session_info, start_over_times
-from app.session.encoding import decode
-from characters import CharacterCommand
-from tracking import CubeControls
+from cubeling.affect import Personality
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.scenario import EmotionTarget
+from cubeling.app.scenarios import find_scenario, scenario_names
+from cubeling.app.scenarios.follow import gait
+from cubeling.app.scenarios.mood import MoodController
+from cubeling.app.session import SessionInfo, messages, session_info, start_over_times
+from cubeling.app.session.encoding import decode
+from cubeling.characters import CharacterCommand
+from cubeling.tracking import CubeControls
 
 Array = NDArray[np.float64]
 

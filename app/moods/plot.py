@@ -12,11 +12,11 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from affect.labels import LabelSet
-from app.errors import AppError
-from app.moods.colors import CURVE_STYLES, OBSERVED_COLOR, SECONDARY_COLOR, TEXT_COLOR
-from app.moods.history import EmotionTrack, MoodHistory
-from app.moods.plot_layout import (
+from cubeling.affect.labels import LabelSet
+from cubeling.app.errors import AppError
+from cubeling.app.moods.colors import CURVE_STYLES, OBSERVED_COLOR, SECONDARY_COLOR, TEXT_COLOR
+from cubeling.app.moods.history import EmotionTrack, MoodHistory
+from cubeling.app.moods.plot_layout import (
     ACTION_PT,
     AROUSAL_PT,
     HEIGHT_PT,
@@ -31,16 +31,16 @@ from app.moods.plot_layout import (
     value_axis,
     write_line,
 )
-from app.moods.plot_panels import (
+from cubeling.app.moods.plot_panels import (
     ACKNOWLEDGED_STYLE,
     draw_actions,
     draw_bands,
     draw_plane,
     draw_robot,
 )
-from app.moods.regions import runs
-from app.moods.robot_traces import RobotTraces
-from app.output_path import whole_file
+from cubeling.app.moods.regions import runs
+from cubeling.app.moods.robot_traces import RobotTraces
+from cubeling.app.output_path import whole_file
 
 PNG_DPI = 144.0
 """Two pixels for each point."""

@@ -10,8 +10,8 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextPath
 from matplotlib.ticker import FixedLocator, FuncFormatter
 
-from app.moods.colors import BORDER_COLOR, GRID_COLOR, SECONDARY_COLOR, TEXT_COLOR
-from app.moods.history import EmotionTrack
+from cubeling.app.moods.colors import BORDER_COLOR, GRID_COLOR, SECONDARY_COLOR, TEXT_COLOR
+from cubeling.app.moods.history import EmotionTrack
 
 WIDTH_PT, HEIGHT_PT = 1120.0, 668.0
 """Size of the plot. Lengths count from its top left corner."""

@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from affect.labels import LabelSet
-from app.moods.colors import (
+from cubeling.affect.labels import LabelSet
+from cubeling.app.moods.colors import (
     BORDER_COLOR,
     CURVE_STYLES,
     GRID_COLOR,
@@ -19,10 +19,10 @@ from app.moods.colors import (
     action_color,
     label_color,
 )
-from app.moods.history import EmotionTrack, MoodHistory
-from app.moods.plot_layout import EmotionCurve, fits, value_axis, width_pt
-from app.moods.regions import label_position, regions, runs
-from app.moods.robot_traces import RobotTraces
+from cubeling.app.moods.history import EmotionTrack, MoodHistory
+from cubeling.app.moods.plot_layout import EmotionCurve, fits, value_axis, width_pt
+from cubeling.app.moods.regions import label_position, regions, runs
+from cubeling.app.moods.robot_traces import RobotTraces
 
 ACKNOWLEDGED_STYLE: dict[str, Any] = {
     "color": CURVE_STYLES[1][0],

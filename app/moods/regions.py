@@ -6,8 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from affect.hysteresis import ANGRY_BELOW, HAPPY_ABOVE
-from affect.labels import LabelSet
+from cubeling.affect.hysteresis import ANGRY_BELOW, HAPPY_ABOVE
+from cubeling.affect.labels import LabelSet
 
 Array = NDArray[np.float64]
 

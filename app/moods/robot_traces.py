@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.errors import AppError
-from app.session import messages
-from robot.protocol import messages as m
-from robot.protocol import timing
-from robot.protocol.clock import RobotClock
-from robot.protocol.fields import MessageError
-from robot.protocol.schema import Sender, unpack
-from robot.protocol.wire import FrameReader
+from cubeling.app.errors import AppError
+from cubeling.app.session import messages
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
+from cubeling.robot.protocol.clock import RobotClock
+from cubeling.robot.protocol.fields import MessageError
+from cubeling.robot.protocol.schema import Sender, unpack
+from cubeling.robot.protocol.wire import FrameReader
 
 Array = NDArray[np.float64]
 

@@ -4,10 +4,10 @@ import csv
 import math
 from pathlib import Path
 
-from app.errors import AppError
-from app.moods.history import EmotionTrack, MoodHistory
-from app.moods.robot_traces import RobotTraces
-from app.output_path import whole_file
+from cubeling.app.errors import AppError
+from cubeling.app.moods.history import EmotionTrack, MoodHistory
+from cubeling.app.moods.robot_traces import RobotTraces
+from cubeling.app.output_path import whole_file
 
 COLUMNS = (
     "time_s",

@@ -12,11 +12,11 @@ from pathlib import Path
 import matplotlib
 from matplotlib.figure import Figure
 
-from app.moods.colors import CURVE_STYLES
-from app.moods.plot import FILE_METADATA
-from app.moods.plot_layout import MATPLOTLIB_STYLE
-from app.motion_graphs.plot import plain_log_axis
-from app.motion_graphs.tables import Tables
+from cubeling.app.moods.colors import CURVE_STYLES
+from cubeling.app.moods.plot import FILE_METADATA
+from cubeling.app.moods.plot_layout import MATPLOTLIB_STYLE
+from cubeling.app.motion_graphs.plot import plain_log_axis
+from cubeling.app.motion_graphs.tables import Tables
 
 TITLES = {
     "3.2": "Table 3.2: time between frames and response, by threshold [frames]",

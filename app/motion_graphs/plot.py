@@ -11,14 +11,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
-from app.counted import counted
-from app.moods.colors import BORDER_COLOR, CURVE_STYLES, SECONDARY_COLOR, TEXT_COLOR
-from app.moods.plot import write_figure
-from app.moods.plot_layout import MATPLOTLIB_STYLE, printable
-from characters.synthesis.distances import DISTANCES, matrix
-from characters.synthesis.graphs.building import connectivity_curves, standard_graph
-from characters.synthesis.graphs.graph import MotionGraph
-from characters.synthesis.graphs.storage import WHOLE_BODY, StoredGraph
+from cubeling.app.counted import counted
+from cubeling.app.moods.colors import BORDER_COLOR, CURVE_STYLES, SECONDARY_COLOR, TEXT_COLOR
+from cubeling.app.moods.plot import write_figure
+from cubeling.app.moods.plot_layout import MATPLOTLIB_STYLE, printable
+from cubeling.characters.synthesis.distances import DISTANCES, matrix
+from cubeling.characters.synthesis.graphs.building import connectivity_curves, standard_graph
+from cubeling.characters.synthesis.graphs.graph import MotionGraph
+from cubeling.characters.synthesis.graphs.storage import WHOLE_BODY, StoredGraph
 
 SIZE_IN = (13.0, 6.4)
 """Width and height of the plot [in]."""

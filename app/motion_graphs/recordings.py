@@ -4,10 +4,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from app.errors import AppError
-from characters import Character, Clip
-from characters.retargeting import Recording, load_recording, retarget
-from characters.synthesis.library import DEFAULT_RATE_HZ
+from cubeling.app.errors import AppError
+from cubeling.characters import Character, Clip
+from cubeling.characters.retargeting import Recording, load_recording, retarget
+from cubeling.characters.synthesis.library import DEFAULT_RATE_HZ
 
 
 def clip_names(given: Sequence[str]) -> list[str]:

@@ -5,15 +5,19 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from app.counted import counted
-from app.motion_graphs.printed import CRITICAL, TABLE_3_2, TABLE_3_3, TABLE_3_4
-from characters.errors import CharacterError
-from characters.skeleton.pose import Array
-from characters.synthesis.graphs.graph import EdgeCosts, MotionGraph
-from characters.synthesis.graphs.parts import PartGraphs
-from characters.synthesis.library import MotionLibrary
-from characters.synthesis.transitions.comparison import Comparison, SplitComparison, common_requests
-from characters.synthesis.transitions.evaluation import (
+from cubeling.app.counted import counted
+from cubeling.app.motion_graphs.printed import CRITICAL, TABLE_3_2, TABLE_3_3, TABLE_3_4
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.graphs.graph import EdgeCosts, MotionGraph
+from cubeling.characters.synthesis.graphs.parts import PartGraphs
+from cubeling.characters.synthesis.library import MotionLibrary
+from cubeling.characters.synthesis.transitions.comparison import (
+    Comparison,
+    SplitComparison,
+    common_requests,
+)
+from cubeling.characters.synthesis.transitions.evaluation import (
     Answers,
     Requests,
     Summary,

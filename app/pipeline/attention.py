@@ -5,9 +5,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from app.errors import AppError
-from characters import CharacterCommand
-from tracking import CubeControls, CubeState
+from cubeling.app.errors import AppError
+from cubeling.characters import CharacterCommand
+from cubeling.tracking import CubeControls, CubeState
 
 Array = NDArray[np.float64]
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from app.errors import AppError
-from app.pipeline.resident import Resident
-from characters import Character, CharacterCommand, PosedCharacter
-from characters.rendering import Box
-from tracking import CubeControls, CubeModel, CubeState
-from tracking.gestures.table import SIDE_NORMALS
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.resident import Resident
+from cubeling.characters import Character, CharacterCommand, PosedCharacter
+from cubeling.characters.rendering import Box
+from cubeling.tracking import CubeControls, CubeModel, CubeState
+from cubeling.tracking.gestures.table import SIDE_NORMALS
 
 Array = NDArray[np.float64]
 

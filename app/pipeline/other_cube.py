@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Sequence
 
-from app.pipeline.registry import SCENARIOS
-from app.pipeline.scenario import Scenario, missing_roles
-from tracking import CubeModel, CubeRecognizer, CubeState, Frame, bundled_cubes
+from cubeling.app.pipeline.registry import SCENARIOS
+from cubeling.app.pipeline.scenario import Scenario, missing_roles
+from cubeling.tracking import CubeModel, CubeRecognizer, CubeState, Frame, bundled_cubes
 
 LOOK_AFTER_S, LOOK_EVERY_S, SHOWN_S = 1.0, 0.5, 1.5
 """After so long without the cube other cubes are looked for, so often; one that was recognised is

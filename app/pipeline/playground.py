@@ -8,33 +8,33 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from app.errors import AppError
-from app.pipeline.attention import Attention
-from app.pipeline.checkpoint import Checkpoint
-from app.pipeline.cube_window import CubeWindow, Interior
-from app.pipeline.frame_times import Lap
-from app.pipeline.other_cube import OtherCube, advice
-from app.pipeline.registry import make_scenario
-from app.pipeline.scenario import (
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.attention import Attention
+from cubeling.app.pipeline.checkpoint import Checkpoint
+from cubeling.app.pipeline.cube_window import CubeWindow, Interior
+from cubeling.app.pipeline.frame_times import Lap
+from cubeling.app.pipeline.other_cube import OtherCube, advice
+from cubeling.app.pipeline.registry import make_scenario
+from cubeling.app.pipeline.scenario import (
     AdjustableScenario,
     Inputs,
     Outcome,
     Scenario,
     ScenarioSettings,
 )
-from app.pipeline.scenario_errors import checked, scenario_errors
-from app.pipeline.spoken_line import SpokenLine
-from app.pipeline.step import ReplayInputs, Step
-from app.pipeline.step_renderer import StepRenderer
-from app.pipeline.subjects import subjects
-from app.pipeline.surroundings import REALISM_CHOICES
-from app.pipeline.things import Body, BodyParts
-from characters import Animator, Character, CharacterCommand, PosedCharacter, RootDelta
-from characters.control.command import SpeechIntent
-from characters.control.controllers import ControllerFactory, first_suitable
-from characters.face.complexion import Complexion
-from characters.rendering import Quality
-from tracking import (
+from cubeling.app.pipeline.scenario_errors import checked, scenario_errors
+from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.step import ReplayInputs, Step
+from cubeling.app.pipeline.step_renderer import StepRenderer
+from cubeling.app.pipeline.subjects import subjects
+from cubeling.app.pipeline.surroundings import REALISM_CHOICES
+from cubeling.app.pipeline.things import Body, BodyParts
+from cubeling.characters import Animator, Character, CharacterCommand, PosedCharacter, RootDelta
+from cubeling.characters.control.command import SpeechIntent
+from cubeling.characters.control.controllers import ControllerFactory, first_suitable
+from cubeling.characters.face.complexion import Complexion
+from cubeling.characters.rendering import Quality
+from cubeling.tracking import (
     CubeControls,
     CubeGestures,
     CubeModel,

@@ -3,17 +3,17 @@
 from functools import cache
 from importlib.metadata import EntryPoint, EntryPoints, entry_points
 
-from affect import Personality
-from app.errors import AppError
-from app.pipeline.scenario import Scenario, ScenarioSettings
-from app.pipeline.scenario_errors import scenario_errors
-from tracking import CubeModel
+from cubeling.affect import Personality
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.scenario import Scenario, ScenarioSettings
+from cubeling.app.pipeline.scenario_errors import scenario_errors
+from cubeling.tracking import CubeModel
 
 ENTRY_POINT_GROUP = "cubeling.scenarios"
 """The group in which a package names its scenarios, one entry point each."""
 
 SCENARIOS: dict[str, type[Scenario]] = {}
-"""The bundled scenarios by name; `app.scenarios` registers them."""
+"""The bundled scenarios by name; `cubeling.app.scenarios` registers them."""
 
 
 @cache

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters import (
+from cubeling.characters import (
     ActionIntent,
     Animator,
     Character,
@@ -14,10 +14,10 @@ from characters import (
     PosedCharacter,
     RootDelta,
 )
-from characters.rendering import WALL_SHARE
-from characters.smoothing import smoothstep
-from tracking.geometry import se3
-from tracking.gestures.table import SIDE_NORMALS
+from cubeling.characters.rendering import WALL_SHARE
+from cubeling.characters.smoothing import smoothstep
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.gestures.table import SIDE_NORMALS
 
 Array = NDArray[np.float64]
 

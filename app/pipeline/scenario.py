@@ -6,13 +6,13 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from affect import Emotion, Personality
-from app.errors import AppError
-from app.pipeline.spoken_line import SpokenLine
-from app.pipeline.things import Body, Thing
-from characters import CharacterCommand, PosedCharacter, RootDelta
-from characters.rendering import FloorPath
-from tracking import CubeControls, CubeModel
+from cubeling.affect import Emotion, Personality
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.things import Body, Thing
+from cubeling.characters import CharacterCommand, PosedCharacter, RootDelta
+from cubeling.characters.rendering import FloorPath
+from cubeling.tracking import CubeControls, CubeModel
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from app.errors import AppError
-from app.pipeline.scenario import Outcome, Scenario
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.scenario import Outcome, Scenario
 
 
 @contextmanager
@@ -20,7 +20,7 @@ def scenario_errors(scenario: type[Scenario]) -> Iterator[None]:
     except AppError:
         raise
     except Exception as error:
-        if scenario.__module__.startswith("app."):
+        if scenario.__module__.startswith("cubeling."):
             raise
         reason = f"{type(error).__name__}: {error}".removesuffix(": ")
         raise AppError(

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
-from characters.speech.speech import Samples, Utterance
+from cubeling.characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
+from cubeling.characters.speech.speech import Samples, Utterance
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from affect import Emotion
-from app.pipeline.cube_window import Interior
-from app.pipeline.scenario import EmotionTarget, Outcome
-from app.pipeline.spoken_line import SpokenLine
-from characters import CharacterCommand, PosedCharacter
-from robot import Catalogue, Telemetry
-from tracking import CubeControls, CubeState, Frame
+from cubeling.affect import Emotion
+from cubeling.app.pipeline.cube_window import Interior
+from cubeling.app.pipeline.scenario import EmotionTarget, Outcome
+from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.characters import CharacterCommand, PosedCharacter
+from cubeling.robot import Catalogue, Telemetry
+from cubeling.tracking import CubeControls, CubeState, Frame
 
 Rect = tuple[float, float, float, float]
 """Left, top, right and bottom of a rectangle in the picture."""

@@ -8,14 +8,14 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pipeline.cube_window import Interior
-from app.pipeline.resident import MIN_SIZE
-from app.pipeline.scenario import Outcome
-from app.pipeline.surroundings import Surroundings
-from app.pipeline.things import Body
-from characters import PosedCharacter
-from characters.rendering import FULL, Quality, SceneCharacter, Stage, draws_in_software
-from tracking import CubeControls, CubeModel, CubeState, Frame, Intrinsics
+from cubeling.app.pipeline.cube_window import Interior
+from cubeling.app.pipeline.resident import MIN_SIZE
+from cubeling.app.pipeline.scenario import Outcome
+from cubeling.app.pipeline.surroundings import Surroundings
+from cubeling.app.pipeline.things import Body
+from cubeling.characters import PosedCharacter
+from cubeling.characters.rendering import FULL, Quality, SceneCharacter, Stage, draws_in_software
+from cubeling.tracking import CubeControls, CubeModel, CubeState, Frame, Intrinsics
 
 
 class StepRenderer:

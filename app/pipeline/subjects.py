@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pipeline.cube_window import Interior
-from app.pipeline.step import Rect
-from characters import Character, PosedCharacter
-from tracking import CubeControls, CubeModel, CubeState
+from cubeling.app.pipeline.cube_window import Interior
+from cubeling.app.pipeline.step import Rect
+from cubeling.characters import Character, PosedCharacter
+from cubeling.tracking import CubeControls, CubeModel, CubeState
 
 HAND_EDGES = 0.6
 """How far a hand reaches around the cube, in edges of it."""

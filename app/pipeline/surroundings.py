@@ -8,13 +8,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.errors import AppError
-from characters.rendering import Box, Cover, Focus, MeasuredLight, Softness, View
-from tracking import CubeControls, CubeModel, CubeState, Frame, Intrinsics
-from tracking.appearance.hand.finder import HandFinder
-from tracking.appearance.hand.mask import EDGE_SLOPE, HandMask
-from tracking.appearance.light import LightMeter
-from tracking.appearance.picture_quality import QualityMeter
+from cubeling.app.errors import AppError
+from cubeling.characters.rendering import Box, Cover, Focus, MeasuredLight, Softness, View
+from cubeling.tracking import CubeControls, CubeModel, CubeState, Frame, Intrinsics
+from cubeling.tracking.appearance.hand.finder import HandFinder
+from cubeling.tracking.appearance.hand.mask import EDGE_SLOPE, HandMask
+from cubeling.tracking.appearance.light import LightMeter
+from cubeling.tracking.appearance.picture_quality import QualityMeter
 
 REALISM_CHOICES = {
     "hand": "the hand that holds the cube hides what is behind it",

@@ -8,11 +8,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from characters import Character, PosedCharacter
-from characters.ik.reaching import reach_effort
-from characters.ik.reaching.hands import find_hand
-from characters.rendering import SceneCharacter
-from characters.rendering.toys import GRIP_M, toy
+from cubeling.characters import Character, PosedCharacter
+from cubeling.characters.ik.reaching import reach_effort
+from cubeling.characters.ik.reaching.hands import find_hand
+from cubeling.characters.rendering import SceneCharacter
+from cubeling.characters.rendering.toys import GRIP_M, toy
 
 Point = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ class Thing:
     """A small thing on the table, or in a hand; it stays upright."""
 
     name: str
-    """What it is: one of `characters.rendering.toys.TOYS`."""
+    """What it is: one of `cubeling.characters.rendering.toys.TOYS`."""
 
     place: Point
     """Where its foot is, (3,) in the table frame [m]. In a hand: where it is from there."""

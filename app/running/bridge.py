@@ -5,21 +5,21 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from app.errors import AppError
-from app.pipeline.scenario import EmotionTarget
-from app.running.network import Network
-from app.running.players import PlayerPublisher
-from app.session import messages, session_info
-from app.session.encoding import decode
-from characters import CharacterCommand
-from robot import connect
-from robot.contract.closeable import Closeable
-from robot.network import BusClient, Pattern, RobotNode, Roster
-from robot.network.arbiter import HOLD_S
-from robot.network.messages import MAX_ENTRIES
-from robot.network.player import MAX_AGE_S
-from robot.network.roster import OnMessage
-from robot.network.topics import ANY
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.scenario import EmotionTarget
+from cubeling.app.running.network import Network
+from cubeling.app.running.players import PlayerPublisher
+from cubeling.app.session import messages, session_info
+from cubeling.app.session.encoding import decode
+from cubeling.characters import CharacterCommand
+from cubeling.robot import connect
+from cubeling.robot.contract.closeable import Closeable
+from cubeling.robot.network import BusClient, Pattern, RobotNode, Roster
+from cubeling.robot.network.arbiter import HOLD_S
+from cubeling.robot.network.messages import MAX_ENTRIES
+from cubeling.robot.network.player import MAX_AGE_S
+from cubeling.robot.network.roster import OnMessage
+from cubeling.robot.network.topics import ANY
 
 PUBLISHED_TOPICS: dict[str, type[Any]] = {
     "/character/command": CharacterCommand,

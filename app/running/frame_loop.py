@@ -3,14 +3,14 @@
 import time
 from dataclasses import replace
 
-from app.pipeline.scenario import Inputs
-from app.pipeline.spoken_line import SpokenLine
-from app.pipeline.step import ReplayInputs, Step
-from app.running.opened_session import OpenedSession
-from app.running.quality_control import AUTO_QUALITY, QualityControl
-from app.running.summary import Summary
-from characters.rendering import QUALITIES
-from tracking import Frame
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.step import ReplayInputs, Step
+from cubeling.app.running.opened_session import OpenedSession
+from cubeling.app.running.quality_control import AUTO_QUALITY, QualityControl
+from cubeling.app.running.summary import Summary
+from cubeling.characters.rendering import QUALITIES
+from cubeling.tracking import Frame
 
 
 class FrameLoop:

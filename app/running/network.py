@@ -4,8 +4,8 @@ import time
 from contextlib import ExitStack
 from typing import TypeVar
 
-from robot.contract.closeable import Closeable
-from robot.network import (
+from cubeling.robot.contract.closeable import Closeable
+from cubeling.robot.network import (
     Address,
     Bus,
     BusClient,
@@ -16,7 +16,7 @@ from robot.network import (
     MqttBus,
     check_name,
 )
-from robot.network.topics import Role
+from cubeling.robot.network.topics import Role
 
 E = TypeVar("E", bound=Endpoint)
 

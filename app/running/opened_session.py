@@ -4,26 +4,26 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from affect import AffectError, Personality
-from app.errors import AppError
-from app.pipeline.other_cube import cube_for
-from app.pipeline.playground import Playground
-from app.pipeline.step import ReplayInputs
-from app.preferences import PreferenceStore
-from app.running.clock import Pace, SessionClock
-from app.running.players import PlayerPublisher
-from app.running.recording import SessionRecording
-from app.running.robots import RobotLine
-from app.running.wire_tap import WireTap
-from app.scenarios import Scenario, ScenarioSettings, find_scenario, make_scenario
-from app.session import SessionOptions
-from app.sound import SessionSound
-from app.speaking.speaker import Speaker
-from app.ui.panels import SessionMonitor
-from app.ui.playback.status import EndCard
-from app.ui.screen import Screen
-from characters import CharacterError
-from tracking import CubeModel, FrameSource, TrackingError
+from cubeling.affect import AffectError, Personality
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.other_cube import cube_for
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.step import ReplayInputs
+from cubeling.app.preferences import PreferenceStore
+from cubeling.app.running.clock import Pace, SessionClock
+from cubeling.app.running.players import PlayerPublisher
+from cubeling.app.running.recording import SessionRecording
+from cubeling.app.running.robots import RobotLine
+from cubeling.app.running.wire_tap import WireTap
+from cubeling.app.scenarios import Scenario, ScenarioSettings, find_scenario, make_scenario
+from cubeling.app.session import SessionOptions
+from cubeling.app.sound import SessionSound
+from cubeling.app.speaking.speaker import Speaker
+from cubeling.app.ui.panels import SessionMonitor
+from cubeling.app.ui.playback.status import EndCard
+from cubeling.app.ui.screen import Screen
+from cubeling.characters import CharacterError
+from cubeling.tracking import CubeModel, FrameSource, TrackingError
 
 
 @dataclass

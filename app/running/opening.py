@@ -8,35 +8,35 @@ from pathlib import Path
 
 import moderngl
 
-from app.errors import AppError
-from app.output_path import check_output, default_folder
-from app.pipeline.frame_times import FrameTimes
-from app.pipeline.playground import Playground
-from app.preferences import PreferenceStore
-from app.running.clock import Pace, SessionClock
-from app.running.opened_session import OpenedSession, scenario_of
-from app.running.players import PlayerPublisher
-from app.running.recording import SessionRecording
-from app.running.robots import RobotLine, is_real_robot
-from app.running.wire_tap import WireTap
-from app.scenarios import scenario_cube
-from app.session import SessionOptions, check_codec, opening_times, start_over_times
-from app.session.replay_inputs import read_replay_inputs
-from app.sound import Mixer, SessionSound, SoundBank
-from app.speaking.opening import open_speaker
-from app.ui.cards.overlay import virtual_robot_side
-from app.ui.cards.virtual_robot import VirtualRobot
-from app.ui.output_file import OUTPUT_SUFFIXES, OutputFile
-from app.ui.panels import SessionMonitor
-from app.ui.playback.status import EndCard
-from app.ui.playback.timeline import STRIP_HEIGHT
-from app.ui.screen import NullScreen, Screen
-from app.ui.video_file import has_sound
-from characters import Character, choose_controller
-from characters.control.controllers.actions import clips_of_actions
-from characters.control.controllers.idle import standing_as
-from characters.rendering import create_context
-from tracking import (
+from cubeling.app.errors import AppError
+from cubeling.app.output_path import check_output, default_folder
+from cubeling.app.pipeline.frame_times import FrameTimes
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.preferences import PreferenceStore
+from cubeling.app.running.clock import Pace, SessionClock
+from cubeling.app.running.opened_session import OpenedSession, scenario_of
+from cubeling.app.running.players import PlayerPublisher
+from cubeling.app.running.recording import SessionRecording
+from cubeling.app.running.robots import RobotLine, is_real_robot
+from cubeling.app.running.wire_tap import WireTap
+from cubeling.app.scenarios import scenario_cube
+from cubeling.app.session import SessionOptions, check_codec, opening_times, start_over_times
+from cubeling.app.session.replay_inputs import read_replay_inputs
+from cubeling.app.sound import Mixer, SessionSound, SoundBank
+from cubeling.app.speaking.opening import open_speaker
+from cubeling.app.ui.cards.overlay import virtual_robot_side
+from cubeling.app.ui.cards.virtual_robot import VirtualRobot
+from cubeling.app.ui.output_file import OUTPUT_SUFFIXES, OutputFile
+from cubeling.app.ui.panels import SessionMonitor
+from cubeling.app.ui.playback.status import EndCard
+from cubeling.app.ui.playback.timeline import STRIP_HEIGHT
+from cubeling.app.ui.screen import NullScreen, Screen
+from cubeling.app.ui.video_file import has_sound
+from cubeling.characters import Character, choose_controller
+from cubeling.characters.control.controllers.actions import clips_of_actions
+from cubeling.characters.control.controllers.idle import standing_as
+from cubeling.characters.rendering import create_context
+from cubeling.tracking import (
     CubeModel,
     FrameSource,
     Intrinsics,
@@ -214,7 +214,9 @@ def _open_screen(
         samples = None if sound is None else sound.mixer.render
         output = OutputFile(options.output, source.size, source.rate, virtual_robot, samples)
         return closing.enter_context(output), context
-    from app.ui.window import Window  # imports libraries that a computer without display lacks
+    from cubeling.app.ui.window import (
+        Window,  # imports libraries that a computer without display lacks
+    )
 
     strip = STRIP_HEIGHT if is_seekable(source) else 0.0
     folder = options.folder or default_folder()

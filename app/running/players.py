@@ -4,11 +4,11 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 
-from app.pipeline.scenario import EmotionTarget
-from app.running.network import Network
-from characters import CharacterCommand
-from robot.network import BusClient, Player
-from robot.network.player import MAX_AGE_S
+from cubeling.app.pipeline.scenario import EmotionTarget
+from cubeling.app.running.network import Network
+from cubeling.characters import CharacterCommand
+from cubeling.robot.network import BusClient, Player
+from cubeling.robot.network.player import MAX_AGE_S
 
 UNPUBLISHED_ACTIONS = frozenset({"idle", "move"})
 """Actions of a character that robots do not repeat."""

@@ -1,7 +1,7 @@
 """Choosing the quality of the pictures that holds the camera's rate."""
 
-from app.errors import AppError
-from characters.rendering import FULL, QUALITIES, Quality
+from cubeling.app.errors import AppError
+from cubeling.characters.rendering import FULL, QUALITIES, Quality
 
 AUTO_QUALITY = "auto"
 """The name of the quality that is chosen by the time that frames take."""

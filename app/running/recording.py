@@ -4,14 +4,20 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from app.errors import AppError
-from app.pipeline.playground import Playground
-from app.pipeline.scenario import Inputs
-from app.pipeline.step import Step
-from app.running.wire_tap import WireTap
-from app.session import INSIDE_EVENT, START_OVER_EVENT, Recorder, SessionOptions, frame_encoder
-from robot.contract.closeable import Closeable
-from tracking import Frame, FrameSource
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.step import Step
+from cubeling.app.running.wire_tap import WireTap
+from cubeling.app.session import (
+    INSIDE_EVENT,
+    START_OVER_EVENT,
+    Recorder,
+    SessionOptions,
+    frame_encoder,
+)
+from cubeling.robot.contract.closeable import Closeable
+from cubeling.tracking import Frame, FrameSource
 
 
 class SessionRecording(Closeable):

@@ -8,13 +8,13 @@ from pathlib import Path
 
 from rich.table import Table
 
-from app.pipeline.scenario import Inputs
-from app.pipeline.step import Step
-from app.running.opened_session import OpenedSession
-from app.running.opening import open_session
-from app.running.runner import Progress
-from app.session import SessionOptions, messages
-from app.session.encoding import MESSAGE_TYPES, encode, upgraded
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.step import Step
+from cubeling.app.running.opened_session import OpenedSession
+from cubeling.app.running.opening import open_session
+from cubeling.app.running.runner import Progress
+from cubeling.app.session import SessionOptions, messages
+from cubeling.app.session.encoding import MESSAGE_TYPES, encode, upgraded
 
 
 @dataclass

@@ -6,13 +6,13 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Self
 
-from affect import NEUTRAL
-from affect.words import closest_word
-from app.pipeline.scenario import EmotionTarget
-from app.pipeline.step import RobotView
-from robot import LogLine, Robot, RobotError, SimulatedPort, SteppedRobot, connect
-from robot.contract.closeable import Closeable
-from robot.link.exchange import Direction
+from cubeling.affect import NEUTRAL
+from cubeling.affect.words import closest_word
+from cubeling.app.pipeline.scenario import EmotionTarget
+from cubeling.app.pipeline.step import RobotView
+from cubeling.robot import LogLine, Robot, RobotError, SimulatedPort, SteppedRobot, connect
+from cubeling.robot.contract.closeable import Closeable
+from cubeling.robot.link.exchange import Direction
 
 OnBytes = Callable[[Direction, bytes, float], None]
 """Called with a direction, bytes and the time of the robot's clock [s] for all on the wire."""
@@ -69,7 +69,7 @@ class RobotLine(Closeable):
         ----------
         url
             "none"; "sim" for a simulated robot behind a pseudo-terminal of this computer; or any
-            URL that `robot.connect` takes: "pleo:/dev/ttyACM0", "sim:opencat".
+            URL that `cubeling.robot.connect` takes: "pleo:/dev/ttyACM0", "sim:opencat".
         stepped
             Whether a simulated robot advances with the frames, for a session that is processed
             faster or slower than real time: its bytes are then the same every time.

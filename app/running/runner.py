@@ -3,17 +3,17 @@
 import time
 from collections.abc import Callable
 
-from app.pipeline.step import Step
-from app.running.clock import Pace
-from app.running.frame_loop import FrameLoop
-from app.running.interrupts import uninterrupted
-from app.running.opened_session import OpenedSession
-from app.running.playback.player_controls import PlayerControls
-from app.running.playback.transport import Transport
-from app.running.summary import Summary
-from app.ui.notice import lens_notice, notice
-from robot import RobotError
-from tracking import Frame, Health, LiveFrames, TrackingError
+from cubeling.app.pipeline.step import Step
+from cubeling.app.running.clock import Pace
+from cubeling.app.running.frame_loop import FrameLoop
+from cubeling.app.running.interrupts import uninterrupted
+from cubeling.app.running.opened_session import OpenedSession
+from cubeling.app.running.playback.player_controls import PlayerControls
+from cubeling.app.running.playback.transport import Transport
+from cubeling.app.running.summary import Summary
+from cubeling.app.ui.notice import lens_notice, notice
+from cubeling.robot import RobotError
+from cubeling.tracking import Frame, Health, LiveFrames, TrackingError
 
 Progress = Callable[[Step], None]
 """Called after every frame."""

@@ -9,11 +9,11 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from app.counted import counted
-from app.pipeline.step import RobotView, Step
-from app.ui.literal_text import literal_text
-from robot import LogLine, RobotError
-from tracking import Health, TrackingError
+from cubeling.app.counted import counted
+from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.ui.literal_text import literal_text
+from cubeling.robot import LogLine, RobotError
+from cubeling.tracking import Health, TrackingError
 
 CURVE_BLOCKS = "▁▂▃▄▅▆▇█"
 """The heights of a curve, from −1 to 1."""

@@ -2,9 +2,9 @@
 
 import threading
 
-from app.session import Recorder
-from app.ui.panels.wire_log import WireLog
-from robot.link.exchange import Direction
+from cubeling.app.session import Recorder
+from cubeling.app.ui.panels.wire_log import WireLog
+from cubeling.robot.link.exchange import Direction
 
 
 class WireTap:

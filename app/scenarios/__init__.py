@@ -1,6 +1,6 @@
 """The bundled scenarios, one file each, and what a scenario of one's own is made of."""
 
-from app.pipeline.registry import (
+from cubeling.app.pipeline.registry import (
     ENTRY_POINT_GROUP,
     SCENARIOS,
     find_scenario,
@@ -8,13 +8,19 @@ from app.pipeline.registry import (
     scenario_cube,
     scenario_names,
 )
-from app.pipeline.scenario import EmotionTarget, Inputs, Outcome, Scenario, ScenarioSettings
-from app.scenarios.companion import Companion
-from app.scenarios.follow import Follow
-from app.scenarios.mood import MoodController
-from app.scenarios.presence import Presence
-from app.scenarios.reach import Reach
-from app.scenarios.sketch import Sketch
+from cubeling.app.pipeline.scenario import (
+    EmotionTarget,
+    Inputs,
+    Outcome,
+    Scenario,
+    ScenarioSettings,
+)
+from cubeling.app.scenarios.companion import Companion
+from cubeling.app.scenarios.follow import Follow
+from cubeling.app.scenarios.mood import MoodController
+from cubeling.app.scenarios.presence import Presence
+from cubeling.app.scenarios.reach import Reach
+from cubeling.app.scenarios.sketch import Sketch
 
 _BUNDLED: tuple[type[Scenario], ...] = (Follow, Sketch, Companion, Reach)
 SCENARIOS |= {scenario.name: scenario for scenario in _BUNDLED}

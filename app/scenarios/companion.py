@@ -6,12 +6,18 @@ from typing import Literal, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from affect import Personality
-from app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
-from app.scenarios.mood import MoodController
-from app.scenarios.presence import Presence
-from characters import ActionIntent, CharacterCommand, LocomotionIntent, PosedCharacter, RootDelta
-from tracking import CubeControls, CubeModel
+from cubeling.affect import Personality
+from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
+from cubeling.app.scenarios.mood import MoodController
+from cubeling.app.scenarios.presence import Presence
+from cubeling.characters import (
+    ActionIntent,
+    CharacterCommand,
+    LocomotionIntent,
+    PosedCharacter,
+    RootDelta,
+)
+from cubeling.tracking import CubeControls, CubeModel
 
 Action = Literal["idle", "kiss", "shout"]
 

@@ -3,13 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from affect import Personality
-from app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
-from app.scenarios.mood import MoodController
-from app.scenarios.presence import Presence
-from app.scenarios.pursuit import Pursuit
-from app.scenarios.speed import SpeedDial
-from characters import (
+from cubeling.affect import Personality
+from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
+from cubeling.app.scenarios.mood import MoodController
+from cubeling.app.scenarios.presence import Presence
+from cubeling.app.scenarios.pursuit import Pursuit
+from cubeling.app.scenarios.speed import SpeedDial
+from cubeling.characters import (
     IDLE_SPEED,
     RUN_SPEED,
     ActionIntent,
@@ -18,7 +18,7 @@ from characters import (
     PosedCharacter,
     RootDelta,
 )
-from tracking import CubeControls, CubeModel
+from cubeling.tracking import CubeControls, CubeModel
 
 Point = NDArray[np.float64]
 

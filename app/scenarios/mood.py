@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
-from affect import Feelings, Personality
-from app.pipeline.scenario import EmotionTarget
-from tracking import CubeControls
+from cubeling.affect import Feelings, Personality
+from cubeling.app.pipeline.scenario import EmotionTarget
+from cubeling.tracking import CubeControls
 
 
 class MoodController:

@@ -1,6 +1,6 @@
 """Whether the character is visible."""
 
-from tracking import CubeControls
+from cubeling.tracking import CubeControls
 
 HIDE_DELAY_S = 0.6
 """How long the character stays when the cube is hidden: fingers hide it for moments."""

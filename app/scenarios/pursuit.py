@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from characters import PosedCharacter
-from tracking import CubeControls
+from cubeling.characters import PosedCharacter
+from cubeling.tracking import CubeControls
 
 REACHED_M, LOST_M = 0.07, 0.14
 """A cube nearer than the first is reached, one farther than the second is to be reached again; both

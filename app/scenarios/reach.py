@@ -2,16 +2,16 @@
 
 import numpy as np
 
-from affect import Personality
-from app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
-from app.pipeline.things import Body
-from app.scenarios.follow import PLAYER_POSITION, gait
-from app.scenarios.mood import MoodController
-from app.scenarios.presence import Presence
-from app.scenarios.reach_behaviour import ReachingBody, Scene
-from app.scenarios.reach_catching import ARRIVED_M, Catching, Prospect
-from app.scenarios.reach_gifts import Gifts
-from app.scenarios.reach_places import (
+from cubeling.affect import Personality
+from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
+from cubeling.app.pipeline.things import Body
+from cubeling.app.scenarios.follow import PLAYER_POSITION, gait
+from cubeling.app.scenarios.mood import MoodController
+from cubeling.app.scenarios.presence import Presence
+from cubeling.app.scenarios.reach_behaviour import ReachingBody, Scene
+from cubeling.app.scenarios.reach_catching import ARRIVED_M, Catching, Prospect
+from cubeling.app.scenarios.reach_gifts import Gifts
+from cubeling.app.scenarios.reach_places import (
     Point,
     around,
     gap,
@@ -19,8 +19,14 @@ from app.scenarios.reach_places import (
     out_of,
     way_to,
 )
-from characters import ActionIntent, CharacterCommand, LocomotionIntent, PosedCharacter, RootDelta
-from tracking import CubeControls, CubeModel
+from cubeling.characters import (
+    ActionIntent,
+    CharacterCommand,
+    LocomotionIntent,
+    PosedCharacter,
+    RootDelta,
+)
+from cubeling.tracking import CubeControls, CubeModel
 
 LOOK_FOR_S = 15.0
 """How long it stays and looks for a cube that is out of sight [s]."""

@@ -3,11 +3,11 @@
 import math
 from dataclasses import dataclass
 
-from app.pipeline.things import GRIP, Body, Side
-from app.scenarios.reach_intents import Ongoing, bundled_gesture, gesture_times
-from app.scenarios.reach_places import Point, in_front, look_about
-from characters.behaviour.expressivity import GestureExpressivity
-from characters.behaviour.intents import (
+from cubeling.app.pipeline.things import GRIP, Body, Side
+from cubeling.app.scenarios.reach_intents import Ongoing, bundled_gesture, gesture_times
+from cubeling.app.scenarios.reach_places import Point, in_front, look_about
+from cubeling.characters.behaviour.expressivity import GestureExpressivity
+from cubeling.characters.behaviour.intents import (
     BehaviourIntent,
     GazeIntent,
     GestureIntent,

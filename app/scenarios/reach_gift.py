@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pipeline.things import GRIP, Side, Thing
-from characters.smoothing import smoothstep
+from cubeling.app.pipeline.things import GRIP, Side, Thing
+from cubeling.characters.smoothing import smoothstep
 
 Point = NDArray[np.float64]
 

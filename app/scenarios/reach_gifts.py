@@ -7,8 +7,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pipeline.things import GRIP, Body, Side, Thing
-from app.scenarios.reach_gift import Gift
+from cubeling.app.pipeline.things import GRIP, Body, Side, Thing
+from cubeling.app.scenarios.reach_gift import Gift
 
 Point = NDArray[np.float64]
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 from functools import cache
 from typing import Any, Generic, TypeVar
 
-from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.intents import (
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
+from cubeling.characters.behaviour.intents import (
     GazeIntent,
     GestureIntent,
     HeadIntent,
@@ -13,7 +13,7 @@ from characters.behaviour.intents import (
     StrokeTimes,
     Times,
 )
-from characters.behaviour.symbolic_gesture import SymbolicGesture
+from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
 
 Intent = TypeVar("Intent", ReachIntent, GestureIntent, HeadIntent, GazeIntent)
 

@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pipeline.things import Body
-from characters.locomotion.steering import ARRIVAL_DISTANCE_M
+from cubeling.app.pipeline.things import Body
+from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M
 
 Point = NDArray[np.float64]
 

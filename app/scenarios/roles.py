@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from app.errors import AppError
-from app.pipeline.registry import find_scenario, scenario_names
-from app.pipeline.scenario import missing_roles
-from tracking import CubeModel, bundled_cubes
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.registry import find_scenario, scenario_names
+from cubeling.app.pipeline.scenario import missing_roles
+from cubeling.tracking import CubeModel, bundled_cubes
 
 
 def check_cubes(scenario: str, cubes: Sequence[str]) -> None:

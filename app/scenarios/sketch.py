@@ -3,13 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from affect import Personality
-from app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
-from app.scenarios.follow import PLAYER_POSITION, gait
-from app.scenarios.mood import MoodController
-from app.scenarios.presence import Presence
-from app.scenarios.speed import SpeedDial
-from characters import (
+from cubeling.affect import Personality
+from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
+from cubeling.app.scenarios.follow import PLAYER_POSITION, gait
+from cubeling.app.scenarios.mood import MoodController
+from cubeling.app.scenarios.presence import Presence
+from cubeling.app.scenarios.speed import SpeedDial
+from cubeling.characters import (
     IDLE_SPEED,
     ActionIntent,
     CharacterCommand,
@@ -18,8 +18,8 @@ from characters import (
     PosedCharacter,
     RootDelta,
 )
-from characters.rendering import FloorPath
-from tracking import CubeControls, CubeModel
+from cubeling.characters.rendering import FloorPath
+from cubeling.tracking import CubeControls, CubeModel
 
 MAX_POINTS = 8
 """Number of points that closes the path (AvatAR)."""

@@ -1,8 +1,8 @@
 """A session on disk: one .mcap file with the camera's frames and every message after them."""
 
-from app.session.frames import FrameEncoder, check_codec, frame_encoder
-from app.session.options import SessionOptions
-from app.session.reading import (
+from cubeling.app.session.frames import FrameEncoder, check_codec, frame_encoder
+from cubeling.app.session.options import SessionOptions
+from cubeling.app.session.reading import (
     INSIDE_EVENT,
     START_OVER_EVENT,
     SessionInfo,
@@ -13,7 +13,7 @@ from app.session.reading import (
     spoken_lines,
     start_over_times,
 )
-from app.session.recorder import Recorder
+from cubeling.app.session.recorder import Recorder
 
 __all__ = [
     "INSIDE_EVENT",

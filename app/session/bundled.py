@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from app.errors import AppError
+from cubeling.app.errors import AppError
 
 
 def bundled(name: str) -> Path:
     """Return the session of a scenario in `recordings/`."""
-    import recordings
+    from cubeling import recordings
 
     for folder in recordings.__path__:
         path = Path(folder) / f"{name}.mcap"

@@ -9,10 +9,10 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pipeline.scenario import EmotionTarget
-from characters import CharacterCommand, Pose, PosedCharacter
-from characters.speech.speech import Samples
-from tracking import CubeControls, CubeState
+from cubeling.app.pipeline.scenario import EmotionTarget
+from cubeling.characters import CharacterCommand, Pose, PosedCharacter
+from cubeling.characters.speech.speech import Samples
+from cubeling.tracking import CubeControls, CubeState
 
 T = TypeVar("T")
 

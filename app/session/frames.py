@@ -8,8 +8,8 @@ import av
 import cv2
 import numpy as np
 
-from app.errors import AppError
-from tracking import Frame
+from cubeling.app.errors import AppError
+from cubeling.tracking import Frame
 
 FrameEncoder = Callable[[Frame], Frame]
 """Gives a frame its encoded bytes, and the picture that a replay decodes from them."""

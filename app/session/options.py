@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
 
-from app.pipeline.surroundings import REALISM_CHOICES
-from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
+from cubeling.app.pipeline.surroundings import REALISM_CHOICES
+from cubeling.characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -17,7 +17,7 @@ class SessionOptions:
     """Name of the scenario."""
 
     source: str
-    """URI of the frames, as `tracking.open_source` takes it."""
+    """URI of the frames, as `cubeling.tracking.open_source` takes it."""
 
     cubes: tuple[str, ...] = ()
     """Bundled cubes or .toml files: the one in play, then others that may come into view; () for
@@ -27,7 +27,7 @@ class SessionOptions:
     """A bundled character or a .glb file; None for the scenario's own."""
 
     controller: str = "tree"
-    """What moves the character: one of `characters.CONTROLLER_CHOICES`."""
+    """What moves the character: one of `cubeling.characters.CONTROLLER_CHOICES`."""
 
     motions: tuple[str, ...] = ()
     """Files that the controller takes its motions from; none for the character's own clips."""

@@ -15,10 +15,10 @@ from mcap.records import Chunk, DataEnd, Metadata
 from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
-from app.counted import counted
-from app.errors import AppError
-from app.pipeline.spoken_line import SpokenLine
-from app.session.encoding import (
+from cubeling.app.counted import counted
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.session.encoding import (
     CLOCK_RECORD,
     CLOCK_ZERO,
     IMAGE_TOPIC,
@@ -26,8 +26,8 @@ from app.session.encoding import (
     decode,
     decode_sound,
 )
-from app.session.options import SessionOptions
-from characters import CharacterCommand
+from cubeling.app.session.options import SessionOptions
+from cubeling.characters import CharacterCommand
 
 START_OVER_EVENT = "start over"
 """Event of a player who starts over. It is an input, so a replay repeats it."""

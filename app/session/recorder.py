@@ -16,10 +16,10 @@ from foxglove_schemas_protobuf.RawAudio_pb2 import RawAudio
 from mcap.writer import Writer
 from mcap_protobuf.schema import register_schema
 
-from app.errors import AppError
-from app.pipeline.spoken_line import SpokenLine
-from app.pipeline.step import Step
-from app.session.encoding import (
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.step import Step
+from cubeling.app.session.encoding import (
     CLOCK_RECORD,
     CLOCK_ZERO,
     IMAGE_TOPIC,
@@ -29,9 +29,9 @@ from app.session.encoding import (
     encode_sound,
     schema,
 )
-from robot.contract.closeable import Closeable
-from tracking import Frame, Intrinsics
-from tracking.sources.base import nanoseconds_of
+from cubeling.robot.contract.closeable import Closeable
+from cubeling.tracking import Frame, Intrinsics
+from cubeling.tracking.sources.base import nanoseconds_of
 
 CHUNK_BYTES = 128 * 1024
 """Size at which a chunk is written to the disk [B]: well under a second of any session."""

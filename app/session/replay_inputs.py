@@ -4,10 +4,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from app.errors import AppError
-from app.pipeline.step import ReplayInputs
-from app.session import messages
-from app.session.encoding import MESSAGE_TYPES, decode
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.step import ReplayInputs
+from cubeling.app.session import messages
+from cubeling.app.session.encoding import MESSAGE_TYPES, decode
 
 START_STAGES = ("camera", "state", "controls", "command", "pose")
 """The stages that a replay can start from; each takes one channel more as recorded."""

@@ -3,13 +3,13 @@
 Start with `SessionSound`. `SOUNDS` lists all sounds.
 """
 
-from app.sound.bank import SoundBank, write_wave
-from app.sound.cues import Cue, SoundCues
-from app.sound.loudspeaker import Loudspeaker, NoSoundError
-from app.sound.mixer import Mixer
-from app.sound.session_sound import SessionSound
-from app.sound.sounds import SOUNDS
-from app.sound.synthesis import SAMPLE_RATE
+from cubeling.app.sound.bank import SoundBank, write_wave
+from cubeling.app.sound.cues import Cue, SoundCues
+from cubeling.app.sound.loudspeaker import Loudspeaker, NoSoundError
+from cubeling.app.sound.mixer import Mixer
+from cubeling.app.sound.session_sound import SessionSound
+from cubeling.app.sound.sounds import SOUNDS
+from cubeling.app.sound.synthesis import SAMPLE_RATE
 
 __all__ = [
     "SAMPLE_RATE",

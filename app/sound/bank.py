@@ -9,9 +9,9 @@ from typing import Self
 
 import numpy as np
 
-from app.errors import AppError
-from app.sound.sounds import SOUNDS
-from app.sound.synthesis import SAMPLE_RATE, Array, levelled
+from cubeling.app.errors import AppError
+from cubeling.app.sound.sounds import SOUNDS
+from cubeling.app.sound.synthesis import SAMPLE_RATE, Array, levelled
 
 VARIANT_COUNT = 4
 """Variants of each synthesised sound, which differ a little, so that repetition does not tire."""

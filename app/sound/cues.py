@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from affect.words import closest_word
-from app.pipeline.step import Step
-from app.sound.sounds import MOOD_SOUNDS
-from characters import Character, Footfalls, PosedCharacter
+from cubeling.affect.words import closest_word
+from cubeling.app.pipeline.step import Step
+from cubeling.app.sound.sounds import MOOD_SOUNDS
+from cubeling.characters import Character, Footfalls, PosedCharacter
 
 EDGE_RAD = math.radians(30.0)
 """A character at this angle from the middle of the picture is heard on one side only."""

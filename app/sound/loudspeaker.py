@@ -4,9 +4,9 @@ import shutil
 import threading
 from typing import Any
 
-from app.errors import AppError
-from app.sound.mixer import Mixer
-from app.sound.synthesis import SAMPLE_RATE
+from cubeling.app.errors import AppError
+from cubeling.app.sound.mixer import Mixer
+from cubeling.app.sound.synthesis import SAMPLE_RATE
 
 LATENCY_S = 0.025
 """How long a sample waits in buffers before it is heard [s]: less than a frame, and long enough for

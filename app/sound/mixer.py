@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from app.sound.bank import SoundBank
-from app.sound.cues import Cue
-from app.sound.synthesis import SAMPLE_RATE, Array
+from cubeling.app.sound.bank import SoundBank
+from cubeling.app.sound.cues import Cue
+from cubeling.app.sound.synthesis import SAMPLE_RATE, Array
 
 MAX_SOUNDS = 24
 """Sounds that play at one time, and cues that wait; the oldest give way to newer ones."""

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from app.pipeline.spoken_line import SpokenLine
-from app.pipeline.step import Step
-from app.sound.cues import SoundCues, pan_of
-from app.sound.loudspeaker import Loudspeaker
-from app.sound.mixer import Mixer
-from app.sound.synthesis import SAMPLE_RATE, Array
-from characters import Character
-from characters.speech.audio import resampled
+from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.step import Step
+from cubeling.app.sound.cues import SoundCues, pan_of
+from cubeling.app.sound.loudspeaker import Loudspeaker
+from cubeling.app.sound.mixer import Mixer
+from cubeling.app.sound.synthesis import SAMPLE_RATE, Array
+from cubeling.characters import Character
+from cubeling.characters.speech.audio import resampled
 
 SPEECH_GAIN = 0.9
 """Amplitude of speech beside the other sounds."""

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.sound.synthesis import (
+from cubeling.app.sound.synthesis import (
     SAMPLE_RATE,
     Array,
     Formant,

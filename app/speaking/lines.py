@@ -7,8 +7,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from app.errors import AppError
-from characters.model.files import read_text
+from cubeling.app.errors import AppError
+from cubeling.characters.model.files import read_text
 
 MAX_BYTES = 1_000_000
 """Larger files are not written by hand."""
@@ -57,7 +57,7 @@ def languages_in(path: Path) -> tuple[str, ...]:
 
 
 def _bundled(scenario: str) -> dict[str, Any]:
-    file = resources.files("app") / "scenarios" / "lines" / f"{scenario}.toml"
+    file = resources.files("cubeling.app") / "scenarios" / "lines" / f"{scenario}.toml"
     return _voice(file.read_text("utf-8"), scenario) if file.is_file() else {}
 
 

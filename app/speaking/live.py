@@ -3,27 +3,27 @@
 import time
 from collections.abc import Callable
 
-from affect import Emotion
-from app.errors import AppError
-from app.sound import NoSoundError
-from app.speaking.microphone import MICROPHONE_HZ, SILENT_S, Microphone
-from app.speaking.performance import (
+from cubeling.affect import Emotion
+from cubeling.app.errors import AppError
+from cubeling.app.sound import NoSoundError
+from cubeling.app.speaking.microphone import MICROPHONE_HZ, SILENT_S, Microphone
+from cubeling.app.speaking.performance import (
     AZIMUTH_RAD,
     ELEVATION_RAD,
     VIEWER,
     View,
     framed,
 )
-from characters import Animator, Character, CharacterCommand, PosedCharacter, RootDelta
-from characters.control.command import SpeechIntent
-from characters.control.layers import layers_of
-from characters.control.layers.live_mouth import LiveMouthLayer
-from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
-from characters.face.complexion import blood_of
-from characters.rendering.portrait import PortraitRenderer
-from characters.speech.mouth import MouthTracker
-from characters.speech.onsets import OnsetDetector
-from characters.speech.speech import Accent, Samples, Utterance
+from cubeling.characters import Animator, Character, CharacterCommand, PosedCharacter, RootDelta
+from cubeling.characters.control.command import SpeechIntent
+from cubeling.characters.control.layers import layers_of
+from cubeling.characters.control.layers.live_mouth import LiveMouthLayer
+from cubeling.characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
+from cubeling.characters.face.complexion import blood_of
+from cubeling.characters.rendering.portrait import PortraitRenderer
+from cubeling.characters.speech.mouth import MouthTracker
+from cubeling.characters.speech.onsets import OnsetDetector
+from cubeling.characters.speech.speech import Accent, Samples, Utterance
 
 PREPARED_S = 0.4
 """So much of the preparation of a beat is left out [s]: hands cannot foresee a stressed syllable,
@@ -77,7 +77,7 @@ def speak_live(
     AppError
         There is no microphone or display, or the microphone was lost.
     """
-    from app.ui.window.picture_window import PictureWindow  # needs a display's libraries
+    from cubeling.app.ui.window.picture_window import PictureWindow  # needs a display's libraries
 
     performer = LivePerformer(character, MICROPHONE_HZ, emotion, profile)
     try:

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from app.sound.loudspeaker import NoSoundError, load_portaudio
-from characters.speech.speech import Samples
+from cubeling.app.sound.loudspeaker import NoSoundError, load_portaudio
+from cubeling.characters.speech.speech import Samples
 
 MICROPHONE_HZ = 16_000
 """Sample rate [Hz]."""

@@ -4,9 +4,9 @@ import math
 from collections import Counter
 from dataclasses import dataclass
 
-from app.pipeline.step import Step
-from app.speaking.lines import ScenarioLines
-from characters.speech.voices import Manner
+from cubeling.app.pipeline.step import Step
+from cubeling.app.speaking.lines import ScenarioLines
+from cubeling.characters.speech.voices import Manner
 
 SETTLED_S = 0.35
 """An action or gait that lasts so long is spoken of [s]: the cube passes others on its way."""

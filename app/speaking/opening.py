@@ -3,12 +3,12 @@
 from functools import lru_cache
 from pathlib import Path
 
-from app.session import SessionOptions, spoken_lines
-from app.speaking.lines import bundled_languages, bundled_lines, languages_in, read_lines
-from app.speaking.speaker import SILENT, LiveSpeaker, RecordedSpeaker, Speaker
-from app.speaking.voices import open_voice
-from characters import Character
-from characters.speech.voices import VoiceError
+from cubeling.app.session import SessionOptions, spoken_lines
+from cubeling.app.speaking.lines import bundled_languages, bundled_lines, languages_in, read_lines
+from cubeling.app.speaking.speaker import SILENT, LiveSpeaker, RecordedSpeaker, Speaker
+from cubeling.app.speaking.voices import open_voice
+from cubeling.characters import Character
+from cubeling.characters.speech.voices import VoiceError
 
 DEFAULT_LANGUAGE = "en"
 """Language of what is said unless the user chooses one."""

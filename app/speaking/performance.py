@@ -8,19 +8,19 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from affect import Emotion
-from app.pipeline.spoken_line import SpokenLine
-from app.sound import SAMPLE_RATE
-from app.sound.session_sound import at_sample_rate
-from app.ui.canvas import PICTURE_HEIGHT
-from app.ui.cards.subtitles import draw_subtitle, subtitle, subtitle_place
-from app.ui.video_file import VideoFile
-from characters import Animator, Character, CharacterCommand, Clip, Pose, RootDelta
-from characters.control.command import SpeechIntent
-from characters.motion.baking import stacked
-from characters.rendering import create_context
-from characters.rendering.portrait import PortraitRenderer
-from characters.rendering.portrait_camera import CharacterExtent, joints_below
+from cubeling.affect import Emotion
+from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.sound import SAMPLE_RATE
+from cubeling.app.sound.session_sound import at_sample_rate
+from cubeling.app.ui.canvas import PICTURE_HEIGHT
+from cubeling.app.ui.cards.subtitles import draw_subtitle, subtitle, subtitle_place
+from cubeling.app.ui.video_file import VideoFile
+from cubeling.characters import Animator, Character, CharacterCommand, Clip, Pose, RootDelta
+from cubeling.characters.control.command import SpeechIntent
+from cubeling.characters.motion.baking import stacked
+from cubeling.characters.rendering import create_context
+from cubeling.characters.rendering.portrait import PortraitRenderer
+from cubeling.characters.rendering.portrait_camera import CharacterExtent, joints_below
 
 LEAD_S, TAIL_S = 0.6, 1.2
 """Time before and after the speech [s]: hands get ready, and come to rest."""

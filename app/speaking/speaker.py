@@ -5,17 +5,17 @@ import threading
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
-from app.pipeline.spoken_line import SpokenLine
-from app.pipeline.step import Step
-from app.speaking.lines import ScenarioLines
-from app.speaking.moments import LineRequest, Moments
-from characters import CharacterError
-from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
-from characters.speech.prosody import utterance_of
-from characters.speech.saying import say
-from characters.speech.tagged_text import TaggedText
-from characters.speech.voices import Voice
-from characters.synthesis.gestures.library import GestureLibrary
+from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.step import Step
+from cubeling.app.speaking.lines import ScenarioLines
+from cubeling.app.speaking.moments import LineRequest, Moments
+from cubeling.characters import CharacterError
+from cubeling.characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
+from cubeling.characters.speech.prosody import utterance_of
+from cubeling.characters.speech.saying import say
+from cubeling.characters.speech.tagged_text import TaggedText
+from cubeling.characters.speech.voices import Voice
+from cubeling.characters.synthesis.gestures.library import GestureLibrary
 
 MAX_FAILURES = 3
 """A voice that has failed so often in a row is not asked again."""

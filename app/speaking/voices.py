@@ -2,8 +2,8 @@
 
 import shlex
 
-from app.errors import AppError
-from characters.speech.voices import Voice, espeak
+from cubeling.app.errors import AppError
+from cubeling.characters.speech.voices import Voice, espeak
 
 VOICE_VARIABLE = "CUBELING_VOICE"
 """Environment variable of the option `--voice`."""

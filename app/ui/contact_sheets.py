@@ -10,13 +10,13 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from app.counted import counted
-from app.errors import AppError
-from app.output_path import whole_file
-from app.ui.canvas import Canvas, text_width
-from app.ui.palette import INK, QUIET
-from characters import Character, Clip, Pose
-from characters.rendering.portrait import PAPER_BGR, PortraitRenderer, side_by_side
+from cubeling.app.counted import counted
+from cubeling.app.errors import AppError
+from cubeling.app.output_path import whole_file
+from cubeling.app.ui.canvas import Canvas, text_width
+from cubeling.app.ui.palette import INK, QUIET
+from cubeling.characters import Character, Clip, Pose
+from cubeling.characters.rendering.portrait import PAPER_BGR, PortraitRenderer, side_by_side
 
 Image = NDArray[np.uint8]
 

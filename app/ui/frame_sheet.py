@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from app.ui.contact_sheets import frame_sheet, save
+from cubeling.app.ui.contact_sheets import frame_sheet, save
 
 MAX_FRAMES = 24
 """Pictures on a sheet."""

@@ -8,18 +8,18 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from app.ui.canvas import Canvas
-from app.ui.contact_sheets import frame_sheet, save, stacked
-from app.ui.palette import INK
-from characters import Character
-from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
-from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.gestures.motion import GestureMotion
-from characters.behaviour.gestures.planning import Performer
-from characters.behaviour.gestures.timing import apex_share
-from characters.behaviour.symbolic_gesture import SymbolicGesture
-from characters.rendering import create_context
-from characters.rendering.portrait import PAPER_BGR, PortraitRenderer, side_by_side
+from cubeling.app.ui.canvas import Canvas
+from cubeling.app.ui.contact_sheets import frame_sheet, save, stacked
+from cubeling.app.ui.palette import INK
+from cubeling.characters import Character
+from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
+from cubeling.characters.behaviour.gestures.motion import GestureMotion
+from cubeling.characters.behaviour.gestures.planning import Performer
+from cubeling.characters.behaviour.gestures.timing import apex_share
+from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
+from cubeling.characters.rendering import create_context
+from cubeling.characters.rendering.portrait import PAPER_BGR, PortraitRenderer, side_by_side
 
 Image = NDArray[np.uint8]
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from tracking import Health, Intrinsics, LensEstimate
+from cubeling.tracking import Health, Intrinsics, LensEstimate
 
 
 @dataclass(frozen=True)

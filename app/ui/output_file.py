@@ -6,17 +6,17 @@ from typing import Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pipeline.scenario import Inputs
-from app.pipeline.step import RobotView, Step
-from app.ui.canvas import PICTURE_HEIGHT
-from app.ui.cards.layout import CardLayout
-from app.ui.cards.overlay import overlay
-from app.ui.cards.virtual_robot import VirtualRobot
-from app.ui.frame_sheet import FrameSheet
-from app.ui.playback.cards import draw_ending
-from app.ui.playback.status import SessionStatus
-from app.ui.screen import NullScreen
-from app.ui.video_file import VIDEO_FORMATS, AudioSource, VideoFile
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.ui.canvas import PICTURE_HEIGHT
+from cubeling.app.ui.cards.layout import CardLayout
+from cubeling.app.ui.cards.overlay import overlay
+from cubeling.app.ui.cards.virtual_robot import VirtualRobot
+from cubeling.app.ui.frame_sheet import FrameSheet
+from cubeling.app.ui.playback.cards import draw_ending
+from cubeling.app.ui.playback.status import SessionStatus
+from cubeling.app.ui.screen import NullScreen
+from cubeling.app.ui.video_file import VIDEO_FORMATS, AudioSource, VideoFile
 
 SHEET_SUFFIX = ".png"
 """Suffix of a contact sheet of frames."""

@@ -5,9 +5,9 @@ from typing import Any
 from rich.table import Table
 from rich.text import Text
 
-from app.ui.literal_text import literal_text
-from robot.network import Member, Roster, RosterEntry
-from robot.network.messages import (
+from cubeling.app.ui.literal_text import literal_text
+from cubeling.robot.network import Member, Roster, RosterEntry
+from cubeling.robot.network.messages import (
     AckMessage,
     ActionMessage,
     EmotionMessage,

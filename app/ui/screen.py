@@ -2,11 +2,11 @@
 
 from typing import Protocol
 
-from app.pipeline.scenario import Inputs
-from app.pipeline.step import RobotView, Step
-from app.ui.notice import Notice
-from app.ui.playback.requests import SessionRequest
-from app.ui.playback.status import SessionStatus
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.ui.notice import Notice
+from cubeling.app.ui.playback.requests import SessionRequest
+from cubeling.app.ui.playback.status import SessionStatus
 
 
 class Screen(Protocol):

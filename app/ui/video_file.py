@@ -13,8 +13,8 @@ import av.filter
 import numpy as np
 from numpy.typing import NDArray
 
-from app.errors import AppError
-from app.sound import SAMPLE_RATE
+from cubeling.app.errors import AppError
+from cubeling.app.sound import SAMPLE_RATE
 
 AudioSource = Callable[[int], NDArray[np.float32]]
 """Returns the next samples of stereo sound, (count, 2)."""

@@ -12,8 +12,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
-from characters.behaviour.symbolic_gesture import SymbolicGesture
+from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
+from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
 
 Hand = Literal["left", "right", "both", "nearest"]
 """Which hand; "nearest" chooses by the target, or by what is free."""

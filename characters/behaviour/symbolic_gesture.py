@@ -7,7 +7,7 @@ become places for the proportions of whoever performs it.
 from dataclasses import dataclass
 from typing import Literal
 
-from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
+from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
 
 SECTORS_X = ("XEP", "XP", "XC", "XOppC")
 """Across: extreme periphery, periphery and centre of the hand's own side, and the other centre."""
@@ -21,7 +21,7 @@ SECTORS_Z = ("ZNear", "ZMiddle", "ZFar")
 Vector3 = tuple[float, float, float]
 
 Path = Literal["line", "arc", "circle", "wave", "keys"]
-"""How a hand gets from key to key; see `characters.behaviour.gestures.targeting`."""
+"""How a hand gets from key to key; see `cubeling.characters.behaviour.gestures.targeting`."""
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 Degrees = tuple[float, float, float]
 """A turn about the body's axes [degrees]: x to the left, y up, z forward."""

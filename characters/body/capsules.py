@@ -7,9 +7,9 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.mesh import Mesh
-from characters.skeleton.anatomy import SIDES, Anatomy
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 RADIUS_QUANTILE = 0.6
 """Share of the vertices of a body part that are inside its capsule: clothes may touch."""

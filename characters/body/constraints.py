@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.constraints import JointConstraint, constraint_levels
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.model.constraints import JointConstraint, constraint_levels
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 
 @dataclass(frozen=True)

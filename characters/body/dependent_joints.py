@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.skeleton.pose import Array, Pose
-from characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
+from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
 
 FADE_FROM, FADE_TO = 20 / 48, 30 / 48
 """Shares of the components, first and last, between which the filter fades out: the documents have

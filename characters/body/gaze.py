@@ -11,13 +11,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from characters.body.eye_range import range_share, within_range
-from characters.body.gaze_morphs import GazeMorphs, range_parts
-from characters.body.head_joints import HeadJoints, middle
-from characters.model.look_at import LookAt
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.skeleton.scalar_quaternions import (
+from cubeling.characters.body.eye_range import range_share, within_range
+from cubeling.characters.body.gaze_morphs import GazeMorphs, range_parts
+from cubeling.characters.body.head_joints import HeadJoints, middle
+from cubeling.characters.model.look_at import LookAt
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.skeleton.scalar_quaternions import (
     Quaternion,
     Vector,
     conjugate,
@@ -27,7 +27,7 @@ from characters.skeleton.scalar_quaternions import (
     subtract,
     to_rotation_vector,
 )
-from characters.smoothing import damped_spring
+from cubeling.characters.smoothing import damped_spring
 
 # How far a head turns, relative to the chest: slightly within the range of motion of a healthy
 # adult's neck (Youdas et al., 1992).

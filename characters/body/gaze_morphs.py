@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.body.eye_range import MAX_EYE_PITCH_RAD, MAX_EYE_YAW_RAD
-from characters.face.lids import numbers_by_name
-from characters.skeleton.pose import Array
+from cubeling.characters.body.eye_range import MAX_EYE_PITCH_RAD, MAX_EYE_YAW_RAD
+from cubeling.characters.face.lids import numbers_by_name
+from cubeling.characters.skeleton.pose import Array
 
 # Normalised names of VRM and ARKit: to the left, to the right, up, down. ARKit's "in" is towards
 # the nose.

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from characters.motion.curves import Keyed
-from characters.skeleton.pose import Array
-from characters.speech.speech import Accent
+from cubeling.characters.motion.curves import Keyed
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.speech.speech import Accent
 
 WEAK_RAD, STRONG_RAD = np.deg2rad(1.5), np.deg2rad(6.5)
 """How far the head goes down for the weakest and the strongest accent [rad]."""

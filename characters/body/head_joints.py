@@ -7,10 +7,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.skeleton.rotations import from_matrix
-from characters.skeleton.scalar_quaternions import (
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.skeleton.rotations import from_matrix
+from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
     Quaternion,
     Vector,

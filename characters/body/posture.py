@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from affect import Emotion
-from characters.body.axes import Degrees, body_axes, rotation_vectors
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Skeleton
-from characters.smoothing import damped_spring
+from cubeling.affect import Emotion
+from cubeling.characters.body.axes import Degrees, body_axes, rotation_vectors
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.smoothing import damped_spring
 
 EXPRESSIVITY_LAG_S = 0.9
 """Lag with which a body follows an emotion [s]; the face is faster."""

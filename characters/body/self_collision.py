@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from characters.body.capsules import CapsuleBody
-from characters.skeleton.pose import Array, Pose
-from characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
+from cubeling.characters.body.capsules import CapsuleBody
+from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
 
 COMPONENTS, SAMPLES, DOMAIN_MARGIN = 10, 100, 0.1
 """Components that are damped; samples of the domain of each; and how much larger it is than that of

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.springs import SpringBone, SpringCollider
-from characters.skeleton.pose import Array
+from cubeling.characters.model.springs import SpringBone, SpringCollider
+from cubeling.characters.skeleton.pose import Array
 
 _Indices = NDArray[np.intp]
 _NEVER = -1.0  # reach of a pair that does not exist: no distance is less

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.springs import SpringBone
-from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.skeleton.skeleton_part import SkeletonPart
+from cubeling.characters.model.springs import SpringBone
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.skeleton.skeleton_part import SkeletonPart
 
 _Indices = NDArray[np.intp]
 

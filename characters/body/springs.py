@@ -17,11 +17,17 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.body.spring_contacts import Contacts, with_length
-from characters.body.spring_frames import PlacedBones, SpringFrames, moved, rigid_moves, rows
-from characters.model.springs import REFERENCE_HEIGHT_M, SpringBone
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.body.spring_contacts import Contacts, with_length
+from cubeling.characters.body.spring_frames import (
+    PlacedBones,
+    SpringFrames,
+    moved,
+    rigid_moves,
+    rows,
+)
+from cubeling.characters.model.springs import REFERENCE_HEIGHT_M, SpringBone
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 REFERENCE_RATE = 60.0
 """Steps a second to which stiffness, drag and gravity belong [1/s]; also the fewest made."""

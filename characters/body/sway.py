@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 
-from characters.body.axes import Degrees, body_axes, rotation_vectors
-from characters.body.posture import Expressivity
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.body.axes import Degrees, body_axes, rotation_vectors
+from cubeling.characters.body.posture import Expressivity
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 RESTING_BREATH_HZ, MAX_BREATH_HZ = 0.25, 0.7
 """Breathing rate at rest and after a run [Hz]."""

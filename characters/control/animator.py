@@ -6,15 +6,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from characters.body.posture import ExpressivityFilter
-from characters.control.command import CharacterCommand, LocomotionIntent, PosedCharacter
-from characters.control.controllers import ControllerFactory, default_height, first_suitable
-from characters.control.layers import FrameContext, LayerFactory, layers_of
-from characters.errors import CharacterError
-from characters.model.character import Character
-from characters.motion.motion import RootDelta
-from characters.skeleton.pose import Array
-from characters.smoothing import low_pass
+from cubeling.characters.body.posture import ExpressivityFilter
+from cubeling.characters.control.command import CharacterCommand, LocomotionIntent, PosedCharacter
+from cubeling.characters.control.controllers import (
+    ControllerFactory,
+    default_height,
+    first_suitable,
+)
+from cubeling.characters.control.layers import FrameContext, LayerFactory, layers_of
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.smoothing import low_pass
 
 MAX_TIME_STEP_S = 0.25
 """Time that one update may advance at most [s], so that the character does not leap after a gap."""

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from affect import Emotion
-from characters.behaviour.intents import BehaviourIntent
-from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
-from characters.locomotion.gaits import IDLE_SPEED
-from characters.skeleton.pose import Pose
-from characters.speech.speech import Utterance
+from cubeling.affect import Emotion
+from cubeling.characters.behaviour.intents import BehaviourIntent
+from cubeling.characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
+from cubeling.characters.locomotion.gaits import IDLE_SPEED
+from cubeling.characters.skeleton.pose import Pose
+from cubeling.characters.speech.speech import Utterance
 
 
 @dataclass(frozen=True)

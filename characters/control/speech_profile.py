@@ -9,13 +9,13 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, get_args
 
-from characters.errors import CharacterError
-from characters.face.visemes.sets import viseme_sets
-from characters.model.files import read_file
-from characters.speech.accents import AccentSettings
-from characters.synthesis.gestures.graph import GestureGraph
-from characters.synthesis.gestures.library import Database, GestureLibrary
-from characters.synthesis.gestures.planning import GesturePlanner, GestureSettings
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.face.visemes.sets import viseme_sets
+from cubeling.characters.model.files import read_file
+from cubeling.characters.speech.accents import AccentSettings
+from cubeling.characters.synthesis.gestures.graph import GestureGraph
+from cubeling.characters.synthesis.gestures.library import Database, GestureLibrary
+from cubeling.characters.synthesis.gestures.planning import GesturePlanner, GestureSettings
 
 DATABASES: tuple[str, ...] = get_args(Database)
 """Parts of a gesture library: the stronger gestures, the weaker ones, or all."""

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.face.lids import numbers_by_name
-from characters.model.face_maps import LAYER_NAMES, WRINKLE_LAYERS
-from characters.skeleton.pose import Array
+from cubeling.characters.face.lids import numbers_by_name
+from cubeling.characters.model.face_maps import LAYER_NAMES, WRINKLE_LAYERS
+from cubeling.characters.skeleton.pose import Array
 
 WRINKLE_UNITS = tuple(WRINKLE_LAYERS)
 """Numbers of the action units that wrinkle the skin, in the order of `ActionUnits`."""

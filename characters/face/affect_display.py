@@ -7,10 +7,10 @@ import math
 from collections.abc import Sequence
 from operator import mul
 
-from affect import Emotion
-from characters.face.expressions import EXPRESSIONS, ExpressionMorphs
-from characters.skeleton.pose import Array
-from characters.smoothing import damped_spring, low_pass
+from cubeling.affect import Emotion
+from cubeling.characters.face.expressions import EXPRESSIONS, ExpressionMorphs
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.smoothing import damped_spring, low_pass
 
 FACE_RECIPES: dict[str, tuple[float, ...]] = {
     #            happy angry  sad  surprised relaxed lids

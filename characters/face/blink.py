@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from characters.motion.curves import ease
+from cubeling.characters.motion.curves import ease
 
 MEAN_INTERVAL_S = 3.6
 """Mean time between two blinks [s]."""

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from characters.face.lids import numbers_by_name
-from characters.motion.curves import ease
-from characters.speech.speech import Accent
+from cubeling.characters.face.lids import numbers_by_name
+from cubeling.characters.motion.curves import ease
+from cubeling.characters.speech.speech import Accent
 
 RISING_S, FALLING_S = 0.16, 0.32
 """How long before an accent the brows begin to rise, and how long after it they are down [s]."""

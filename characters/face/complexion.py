@@ -11,11 +11,11 @@ times are ours; of Huang 2013 this is no part.
 import math
 from collections.abc import Mapping
 
-from affect import Emotion
-from affect.labels import Face
-from affect.words import WORD_FACES, closest_word
-from characters.face.affect_display import FULL_DISTANCE, MIN_STRENGTH
-from characters.smoothing import low_pass
+from cubeling.affect import Emotion
+from cubeling.affect.labels import Face
+from cubeling.affect.words import WORD_FACES, closest_word
+from cubeling.characters.face.affect_display import FULL_DISTANCE, MIN_STRENGTH
+from cubeling.characters.smoothing import low_pass
 
 BLOOD_OF_FACE: Mapping[Face, float] = {
     "neutral": 0.0,

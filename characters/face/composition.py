@@ -7,8 +7,8 @@ the mouth belongs to the speech, and an expression keeps `MOUTH_SHARE` of its ow
 
 from collections.abc import Sequence
 
-from characters.face.expressions import EXPRESSIONS, ExpressionMorphs
-from characters.face.lids import numbers_by_name
+from cubeling.characters.face.expressions import EXPRESSIONS, ExpressionMorphs
+from cubeling.characters.face.lids import numbers_by_name
 
 MOUTH_SHARE = 0.3
 """Share of an expression that stays on the mouth of a face that speaks."""

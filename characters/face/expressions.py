@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.face.lids import numbers_by_name
-from characters.skeleton.pose import Array
+from cubeling.characters.face.lids import numbers_by_name
+from cubeling.characters.skeleton.pose import Array
 
 EXPRESSIONS = ("happy", "angry", "sad", "surprised", "relaxed")
 """The expressions, by the names that VRM 1.0 gives to those of emotion."""

@@ -18,10 +18,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.face.lids import numbers_by_name
-from characters.face.visemes.mouth_morphs import arkit_parts
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.face.lids import numbers_by_name
+from cubeling.characters.face.visemes.mouth_morphs import arkit_parts
+from cubeling.characters.skeleton.pose import Array
 
 FAP_COUNT = 68
 """How many parameters there are."""

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Pose, Skeleton
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Pose, Skeleton
 
 OPEN_RAD = math.radians(18)
 """Rotation of a jaw that is wide open [rad]."""

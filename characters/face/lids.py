@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.mesh import Mesh
-from characters.skeleton.pose import Array
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.pose import Array
 
 # Normalised names of VRM, ARKit and Mixamo, Ready Player Me, VRoid, Character Creator and
 # MikuMikuDance (whose names are Japanese).

@@ -5,21 +5,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from characters.face.brows import FALLING_S, AccentBrows
-from characters.face.composition import SpeakingExpression
-from characters.face.expressions import ExpressionMorphs
-from characters.face.visemes.coarticulation import (
+from cubeling.characters.face.brows import FALLING_S, AccentBrows
+from cubeling.characters.face.composition import SpeakingExpression
+from cubeling.characters.face.expressions import ExpressionMorphs
+from cubeling.characters.face.visemes.coarticulation import (
     DEFAULT,
     EMPHASIS_LEVELS,
     PAUSE_BESIDE_S,
     Coarticulation,
     MouthTrack,
 )
-from characters.face.visemes.mouth_morphs import MouthMorphs, jaw_opening
-from characters.face.visemes.sets import MOUTH_SHAPES
-from characters.motion.curves import ease
-from characters.skeleton.pose import Array
-from characters.speech.speech import Utterance
+from cubeling.characters.face.visemes.mouth_morphs import MouthMorphs, jaw_opening
+from cubeling.characters.face.visemes.sets import MOUTH_SHAPES
+from cubeling.characters.motion.curves import ease
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.speech.speech import Utterance
 
 LEAD_S = 0.02
 """How far the mouth is ahead of the phones [s]: vowels are loudest before their middle. Without it

@@ -8,14 +8,14 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
-from characters.formats.loading import (
+from cubeling.characters.formats.loading import (
     MESH_FINDERS,
     MOTION_READERS,
     Performance,
     is_motion_only,
     load_motion,
 )
-from characters.model.character import CHARACTER_READERS, CHARACTER_WRITERS
+from cubeling.characters.model.character import CHARACTER_READERS, CHARACTER_WRITERS
 
 
 def _deferred(module: str, function: str) -> Callable[..., Any]:

@@ -4,10 +4,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from characters.errors import CharacterError
-from characters.model.character import CHARACTER_READERS, conversion_advice
-from characters.motion.clip import Clip
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.character import CHARACTER_READERS, conversion_advice
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton.pose import Skeleton
 
 
 @dataclass(frozen=True)

@@ -8,12 +8,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.ik import two_bones
-from characters.skeleton.anatomy import SIDES, Anatomy
-from characters.skeleton.feet import foot_joints_by_side
-from characters.skeleton.masks import subtree
-from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.skeleton.scalar_quaternions import (
+from cubeling.characters.ik import two_bones
+from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
+from cubeling.characters.skeleton.feet import foot_joints_by_side
+from cubeling.characters.skeleton.masks import subtree
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.skeleton.scalar_quaternions import (
     Quaternion,
     Vector,
     conjugate,

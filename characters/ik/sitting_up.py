@@ -6,11 +6,11 @@ from functools import cached_property
 
 import numpy as np
 
-from characters.ik.legs import LegFrames, LegIK, find_paws
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.masks import subtree
-from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.skeleton.scalar_quaternions import (
+from cubeling.characters.ik.legs import LegFrames, LegIK, find_paws
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.masks import subtree
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.skeleton.scalar_quaternions import (
     Quaternion,
     Vector,
     add,

@@ -2,7 +2,7 @@
 
 import math
 
-from characters.skeleton.scalar_quaternions import (
+from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
     Quaternion,
     Vector,
@@ -31,7 +31,7 @@ def reach(
     both are given in the frame of the points. The knee stays in its plane and bends by the law of
     cosines. Unless `knees_ahead` is false, a knee that bends slightly backwards is corrected.
 
-    >>> from characters.skeleton.scalar_quaternions import multiply
+    >>> from cubeling.characters.skeleton.scalar_quaternions import multiply
     >>> upper, lower = reach((0, 2, 0), (0, 1, 0.1), (0, 0, 0), (0, 0.5, 0))
     >>> x, y, z = rotate(upper, (0.0, -1.0, 0.1))  # the new direction of the thigh
     >>> sx, sy, sz = rotate(multiply(upper, lower), (0.0, -1.0, -0.1))

@@ -8,7 +8,7 @@ foot whose offset becomes too large takes a quick step.
 import math
 from dataclasses import dataclass
 
-from characters.motion.inertialization import quintic_decay
+from cubeling.characters.motion.inertialization import quintic_decay
 
 # Lengths are in body heights.
 _MAX_LANDING_HEIGHT = 0.014

@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 
-from characters.ik.legs import LegFrames, LegIK
-from characters.locomotion.foot_constraint import FootConstraint, FootPoints, rotate_yaw
-from characters.motion.motion import RootDelta
-from characters.skeleton.pose import Pose
-from characters.skeleton.scalar_quaternions import Quaternion, Vector, rotate
-from characters.smoothing import low_pass
+from cubeling.characters.ik.legs import LegFrames, LegIK
+from cubeling.characters.locomotion.foot_constraint import FootConstraint, FootPoints, rotate_yaw
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton.pose import Pose
+from cubeling.characters.skeleton.scalar_quaternions import Quaternion, Vector, rotate
+from cubeling.characters.smoothing import low_pass
 
 _MAX_EXTENSION = 0.997  # of a leg's length
 _MAX_PELVIS_DROP = 0.02  # [body heights]

@@ -5,14 +5,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from characters.ik.legs import LegIK
-from characters.motion.batch.bank import ClipBank
-from characters.motion.clip import Clip
-from characters.motion.contacts import find_contacts
-from characters.motion.motion import RootDelta
-from characters.motion.phase import PhasedMotion
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.ik.legs import LegIK
+from cubeling.characters.motion.batch.bank import ClipBank
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.contacts import find_contacts
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.motion.phase import PhasedMotion
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 _CACHED_TIMES = 64
 _LAST_FRAME_CONTACT = 0.45  # contact in the last frame of a span: too little to hold the foot

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.skeleton.feet import find_feet
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.skeleton.feet import find_feet
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 # Heights are in body heights, speeds over the ground in body heights a second.
 _LANDING_HEIGHT, _LIFTING_HEIGHT = 0.015, 0.02

@@ -8,16 +8,16 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from characters.ik.legs import find_legs
-from characters.locomotion.foot_trajectories import FootTrajectories
-from characters.locomotion.stride_blending import StrideBlend
-from characters.motion.blend import Blend, BlendSpace1D, TimeScaled
-from characters.motion.clip import Clip
-from characters.motion.contacts import find_contacts
-from characters.motion.motion import Motion
-from characters.motion.phase import PhasedMotion, StaticPose, phased
-from characters.skeleton.pose import Pose, Skeleton
-from characters.smoothing import interpolate
+from cubeling.characters.ik.legs import find_legs
+from cubeling.characters.locomotion.foot_trajectories import FootTrajectories
+from cubeling.characters.locomotion.stride_blending import StrideBlend
+from cubeling.characters.motion.blend import Blend, BlendSpace1D, TimeScaled
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.contacts import find_contacts
+from cubeling.characters.motion.motion import Motion
+from cubeling.characters.motion.phase import PhasedMotion, StaticPose, phased
+from cubeling.characters.skeleton.pose import Pose, Skeleton
+from cubeling.characters.smoothing import interpolate
 
 IDLE_SPEED = 0.5
 """Largest Speed at which a character stands."""

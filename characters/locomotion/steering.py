@@ -6,9 +6,9 @@ from itertools import accumulate
 
 import numpy as np
 
-from characters.locomotion.gaits import IDLE_SPEED, MAX_ANGULAR_RAD, TOP_SPEED, Gaits
-from characters.motion.motion import RootDelta
-from characters.smoothing import interpolate
+from cubeling.characters.locomotion.gaits import IDLE_SPEED, MAX_ANGULAR_RAD, TOP_SPEED, Gaits
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.smoothing import interpolate
 
 ARRIVAL_DISTANCE_M = 0.05
 """Distance at which a target is reached [m on the table]."""

@@ -11,11 +11,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from characters.locomotion.foot_trajectories import FootTrajectories
-from characters.motion.motion import RootDelta
-from characters.motion.phase import PhaseDriven
-from characters.skeleton.pose import Pose
-from characters.skeleton.scalar_quaternions import (
+from cubeling.characters.locomotion.foot_trajectories import FootTrajectories
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.motion.phase import PhaseDriven
+from cubeling.characters.skeleton.pose import Pose
+from cubeling.characters.skeleton.scalar_quaternions import (
     Quaternion,
     Vector,
     conjugate,

@@ -12,11 +12,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.mesh import Mesh
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import SIDES, Anatomy
-from characters.skeleton.masks import subtree_sizes
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
+from cubeling.characters.skeleton.masks import subtree_sizes
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 _IDENTITY_TOLERANCE = 1e-5
 _MAX_REST_DISTANCE = 0.01  # body sizes; a bind pose closer to the rest pose is the rest pose

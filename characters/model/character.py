@@ -8,25 +8,25 @@ from pathlib import Path
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.ik.reaching.upper_body import UpperBody
-from characters.locomotion.gaits import Gaits
-from characters.model.bind_pose import bound_upright
-from characters.model.constraints import JointConstraint
-from characters.model.facing import turned_ahead
-from characters.model.limb_ends import with_limb_ends
-from characters.model.look_at import LookAt
-from characters.model.mesh import Mesh
-from characters.model.sidecar import Sidecar, read_sidecar
-from characters.model.speaking import gestures_beside
-from characters.model.springs import SpringBone
-from characters.model.standing import StandingFactory, recordings_beside, standing_factory
-from characters.motion.clip import Clip
-from characters.motion.motion import StandingMotion
-from characters.motion.trees.plan import Plan
-from characters.skeleton.anatomy import BODY_PARTS, Anatomy
-from characters.skeleton.pose import Array, Skeleton
-from characters.synthesis.gestures.library import GestureLibrary
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.ik.reaching.upper_body import UpperBody
+from cubeling.characters.locomotion.gaits import Gaits
+from cubeling.characters.model.bind_pose import bound_upright
+from cubeling.characters.model.constraints import JointConstraint
+from cubeling.characters.model.facing import turned_ahead
+from cubeling.characters.model.limb_ends import with_limb_ends
+from cubeling.characters.model.look_at import LookAt
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.model.sidecar import Sidecar, read_sidecar
+from cubeling.characters.model.speaking import gestures_beside
+from cubeling.characters.model.springs import SpringBone
+from cubeling.characters.model.standing import StandingFactory, recordings_beside, standing_factory
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.motion import StandingMotion
+from cubeling.characters.motion.trees.plan import Plan
+from cubeling.characters.skeleton.anatomy import BODY_PARTS, Anatomy
+from cubeling.characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.synthesis.gestures.library import GestureLibrary
 
 CHARACTER_READERS: "dict[str, Callable[[Path], Character]]" = {}
 """Readers of a character by the suffix of the file; `characters.formats` registers its own."""
@@ -111,14 +111,14 @@ class Character:
                 f"no bundled character {str(name_or_path)!r}; there are "
                 f"{', '.join(bundled)}, or give a {_known_suffixes()} file"
             )
-        asset = resources.files("characters") / "assets" / f"{name_or_path}.glb"
+        asset = resources.files("cubeling.characters") / "assets" / f"{name_or_path}.glb"
         with resources.as_file(asset) as file:
             return _with_sidecar(CHARACTER_READERS[".glb"](file), file)
 
     @staticmethod
     def bundled() -> tuple[str, ...]:
         """Return the names of the characters that come with the package."""
-        assets = resources.files("characters") / "assets"
+        assets = resources.files("cubeling.characters") / "assets"
         if not assets.is_dir():
             return ()
         return tuple(sorted(a.name[:-4] for a in assets.iterdir() if a.name.endswith(".glb")))

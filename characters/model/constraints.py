@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from characters.errors import CharacterError
-from characters.model.springs import Point
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.springs import Point
+from cubeling.characters.skeleton.pose import Skeleton
 
 ConstraintKind = Literal["roll", "aim", "rotation"]
 """Turns about an axis as the source does; points with an axis to it; turns as it does."""

@@ -22,9 +22,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.model.files import read_file
-from characters.model.mesh import FaceMaps, Mesh
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.files import read_file
+from cubeling.characters.model.mesh import FaceMaps, Mesh
 
 WRINKLE_LAYERS: Mapping[int, tuple[int, ...]] = {
     1: (0,),

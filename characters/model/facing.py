@@ -7,11 +7,11 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.facing import common_from_skeleton
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.facing import common_from_skeleton
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 _UP = np.array([0.0, 1.0, 0.0])
 

@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 from stat import S_ISDIR, S_ISREG
 
-from characters.errors import CharacterError
+from cubeling.characters.errors import CharacterError
 
 MAX_FILE_BYTES = 1 << 30
 """Two hours of motion capture at 120 Hz take 0.6 GB."""

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.model.character import Character
-from characters.motion.clip import Clip
-from characters.motion.contacts import find_contacts, spans
-from characters.motion.ground import find_ground, joint_trajectories
-from characters.skeleton.feet import find_feet
-from characters.skeleton.masks import subtree
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.contacts import find_contacts, spans
+from cubeling.characters.motion.ground import find_ground, joint_trajectories
+from cubeling.characters.skeleton.feet import find_feet
+from cubeling.characters.skeleton.masks import subtree
 
 MANY_JOINTS, MANY_TRIANGLES, LARGE_TEXTURE_PX = 256, 100_000, 4096
 """More of these is slow without a GPU."""

@@ -10,12 +10,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from characters.model.mesh import Mesh
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import SIDES, Anatomy
-from characters.skeleton.masks import subtree
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
+from cubeling.characters.skeleton.masks import subtree
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 _SOLE_HEIGHT = 0.1  # of the way from the lowest vertex of a leg up to its last joint
 _TIP = 90.0  # percentile: what is farther from the shoulder is the tip of an arm

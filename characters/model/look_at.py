@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from characters.model.springs import Point
+from cubeling.characters.model.springs import Point
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from characters.model.bind_pose import bind_placements
-from characters.model.character import Character
-from characters.motion.mirror import LENGTH_TOLERANCE, NO_PAIRS, Mirror
-from characters.skeleton.pose import Pose
+from cubeling.characters.model.bind_pose import bind_placements
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.mirror import LENGTH_TOLERANCE, NO_PAIRS, Mirror
+from cubeling.characters.skeleton.pose import Pose
 
 
 def mirror_of(

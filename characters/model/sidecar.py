@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from characters.errors import CharacterError
-from characters.model.face_maps import FaceTable, read_face_table
-from characters.model.files import read_file
-from characters.model.springs import SpringGroup, read_spring_groups
-from characters.motion.trees.plan import Plan
-from characters.motion.trees.reading import PLAN_TABLES, read_plan
-from characters.skeleton.anatomy import BODY_PARTS
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.face_maps import FaceTable, read_face_table
+from cubeling.characters.model.files import read_file
+from cubeling.characters.model.springs import SpringGroup, read_spring_groups
+from cubeling.characters.motion.trees.plan import Plan
+from cubeling.characters.motion.trees.reading import PLAN_TABLES, read_plan
+from cubeling.characters.skeleton.anatomy import BODY_PARTS
 
 _MAX_BYTES = 1_000_000  # larger files are not written by hand
 
@@ -22,7 +22,7 @@ _MAX_BYTES = 1_000_000  # larger files are not written by hand
 _TABLES = ("joints", "body", "springs", "face", *PLAN_TABLES)
 
 BODY_LAYERS = ("dependent_joints", "self_collision")
-"""Layers that the table [body] switches on; `characters.control.layers` makes them."""
+"""Layers that the table [body] switches on; `cubeling.characters.control.layers` makes them."""
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from characters.errors import CharacterError
-from characters.skeleton.pose import Skeleton
-from characters.synthesis.archive import skeleton_identity
-from characters.synthesis.gestures.library import GestureLibrary
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton.pose import Skeleton
+from cubeling.characters.synthesis.archive import skeleton_identity
+from cubeling.characters.synthesis.gestures.library import GestureLibrary
 
 
 def gestures_beside(path: Path, skeleton: Skeleton) -> GestureLibrary | None:

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.model.mesh import Mesh
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 Point = tuple[float, float, float]
 """A position or direction [m]."""

@@ -5,18 +5,18 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
-from characters.errors import CharacterError
-from characters.motion.clip import Clip
-from characters.motion.motion import StandingMotion
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Skeleton
-from characters.synthesis.archive import skeleton_identity
-from characters.synthesis.idle.database import IdleDatabase
-from characters.synthesis.idle.idle_motion import IdleMotion
-from characters.synthesis.idle.posture_space import PostureVectors
-from characters.synthesis.idle.recordings import StandingRecording
-from characters.synthesis.idle.standing import PlantedPaws, StandingPerson
-from characters.synthesis.idle.storage import load_person
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.motion import StandingMotion
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Skeleton
+from cubeling.characters.synthesis.archive import skeleton_identity
+from cubeling.characters.synthesis.idle.database import IdleDatabase
+from cubeling.characters.synthesis.idle.idle_motion import IdleMotion
+from cubeling.characters.synthesis.idle.posture_space import PostureVectors
+from cubeling.characters.synthesis.idle.recordings import StandingRecording
+from cubeling.characters.synthesis.idle.standing import PlantedPaws, StandingPerson
+from cubeling.characters.synthesis.idle.storage import load_person
 
 StandingFactory = Callable[[int], StandingMotion]
 """Makes the motion that a character stands with from a seed."""

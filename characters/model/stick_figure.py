@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.character import Character
-from characters.model.mesh import Material, Mesh
-from characters.motion.clip import Clip
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.mesh import Material, Mesh
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 LEFT_RGB, RIGHT_RGB, MIDDLE_RGB = (0.06, 0.2, 0.55), (0.6, 0.06, 0.04), (0.5, 0.46, 0.38)
 """Linear colours of the sides."""

@@ -6,10 +6,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from characters.motion.clip import Clip
-from characters.motion.motion import Motion, RootDelta
-from characters.skeleton import rotations
-from characters.skeleton.pose import Pose
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.motion import Motion, RootDelta
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Pose
 
 
 def bake(motion: Motion, rate: float, seconds: float, name: str) -> Clip:

@@ -10,11 +10,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from characters.errors import CharacterError
-from characters.motion.motion import Motion, RootDelta, mean_delta
-from characters.motion.phase import Cyclic, PhaseDriven, as_cyclic, cycle_length
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.motion import Motion, RootDelta, mean_delta
+from cubeling.characters.motion.phase import Cyclic, PhaseDriven, as_cyclic, cycle_length
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
 
 _PARTS_PER_CYCLE = 2  # so that no part turns by half a circle or more
 

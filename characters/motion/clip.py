@@ -6,10 +6,10 @@ from functools import cached_property
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.motion.motion import RootDelta
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
 
 
 @dataclass(frozen=True)

@@ -8,16 +8,16 @@ the body's height and speed; very short contacts and gaps are dropped.
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.motion.clip import Clip
-from characters.motion.ground import (
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.ground import (
     FIXED_GROUND,
     MAX_CONTACT_HEIGHT,
     find_ground,
     height_above_lowest,
     joint_trajectories,
 )
-from characters.skeleton.feet import Feet
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.skeleton.feet import Feet
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 # Limits to begin and to end a contact: lengths in body heights, speeds in body heights a second.
 _HEIGHT_LIMITS = (MAX_CONTACT_HEIGHT, 0.05)  # above a joint's lowest position

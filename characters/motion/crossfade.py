@@ -3,11 +3,11 @@
 import math
 from dataclasses import dataclass
 
-from characters.errors import CharacterError
-from characters.motion.blend import mix
-from characters.motion.curves import Ease, ease
-from characters.motion.motion import Motion, RootDelta, integrate_travel, mean_delta
-from characters.skeleton.pose import Pose
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.blend import mix
+from cubeling.characters.motion.curves import Ease, ease
+from cubeling.characters.motion.motion import Motion, RootDelta, integrate_travel, mean_delta
+from cubeling.characters.skeleton.pose import Pose
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from typing import Literal, Protocol, TypeAlias, get_args
 
-from characters.errors import CharacterError
-from characters.smoothing import smoothstep
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.smoothing import smoothstep
 
 Ease = Literal["linear", "cubic", "gonio"]
 """Shape of a fade: linear, 3u² − 2u³, or half a cosine."""

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 MAX_CONTACT_HEIGHT = 0.03
 """How far above its lowest position a foot joint may be near the ground [body heights]."""

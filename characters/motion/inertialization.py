@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
 
 _MAX_JOINT_SPEED = 30.0  # [rad/s]; a faster turn is a jump in the clip itself
 

@@ -5,12 +5,12 @@ from functools import cached_property
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.motion.curves import Weight, value
-from characters.motion.motion import Motion, RootDelta, integrate_travel, mean_delta
-from characters.skeleton import rotations
-from characters.skeleton.masks import Mask, check_mask
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.curves import Weight, value
+from cubeling.characters.motion.motion import Motion, RootDelta, integrate_travel, mean_delta
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.masks import Mask, check_mask
+from cubeling.characters.skeleton.pose import Array, Pose
 
 
 @dataclass(frozen=True)

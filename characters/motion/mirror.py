@@ -14,12 +14,17 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.motion.clip import Clip
-from characters.motion.motion import RootDelta
-from characters.motion.phase import TransformedMotion, has_footfalls
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.skeleton.symmetry import REFLECTION, check_symmetry, paired_joints, paired_names
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.motion.phase import TransformedMotion, has_footfalls
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.skeleton.symmetry import (
+    REFLECTION,
+    check_symmetry,
+    paired_joints,
+    paired_names,
+)
 
 _QUATERNION_REFLECTION = np.array([1.0, -1.0, -1.0, 1.0])
 LENGTH_TOLERANCE = 1e-5

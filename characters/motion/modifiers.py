@@ -9,13 +9,13 @@ from functools import cached_property
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.motion.curves import check_knots
-from characters.motion.motion import Motion, RootDelta
-from characters.motion.phase import TransformedMotion, as_cyclic
-from characters.skeleton import rotations
-from characters.skeleton.pose import Pose
-from characters.smoothing import hermite
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.curves import check_knots
+from cubeling.characters.motion.motion import Motion, RootDelta
+from cubeling.characters.motion.phase import TransformedMotion, as_cyclic
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Pose
+from cubeling.characters.smoothing import hermite
 
 
 @dataclass(frozen=True)

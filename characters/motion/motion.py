@@ -10,9 +10,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
-from affect import Emotion
-from characters.skeleton.pose import Pose
-from characters.skeleton.rotations import wrap
+from cubeling.affect import Emotion
+from cubeling.characters.skeleton.pose import Pose
+from cubeling.characters.skeleton.rotations import wrap
 
 _WEIGHT_INTERVAL_S = 1 / 60  # varying weights are constant within such an interval
 _MAX_ARC_RAD = 3.0  # a larger turn is not described by a single arc

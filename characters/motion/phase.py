@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol, cast
 
-from characters.motion.clip import Clip
-from characters.motion.contacts import find_contacts, spans
-from characters.motion.motion import Motion, RootDelta
-from characters.skeleton.feet import Feet, find_feet, foot_joints_by_side
-from characters.skeleton.pose import Pose, Skeleton
-from characters.smoothing import hermite
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.contacts import find_contacts, spans
+from cubeling.characters.motion.motion import Motion, RootDelta
+from cubeling.characters.skeleton.feet import Feet, find_feet, foot_joints_by_side
+from cubeling.characters.skeleton.pose import Pose, Skeleton
+from cubeling.characters.smoothing import hermite
 
 _MIN_STEP_CYCLES = 0.2  # feet that land within this part of a cycle land together
 _MIN_LOOP_FRAMES = 5  # shorter loops contain no steps

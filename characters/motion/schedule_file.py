@@ -10,13 +10,13 @@ from xml.parsers import expat
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.motion.curves import Adsr, Ease, FadeCurve, Product, Weight
-from characters.motion.modifiers import Filtered, PoseFilter, Stretch, Window
-from characters.motion.motion import Motion
-from characters.motion.schedule import Action, Schedule
-from characters.skeleton.anatomy import SIDES, Anatomy
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.curves import Adsr, Ease, FadeCurve, Product, Weight
+from cubeling.characters.motion.modifiers import Filtered, PoseFilter, Stretch, Window
+from cubeling.characters.motion.motion import Motion
+from cubeling.characters.motion.schedule import Action, Schedule
+from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 _SIDED_HANIM = {
     "sternoclavicular": "Shoulder",

@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.motion.blend import mix
-from characters.motion.curves import ease
-from characters.motion.inertialization import Inertialization, OffsetDecay
-from characters.motion.motion import Motion, RootDelta, integrate_travel, mean_delta
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.blend import mix
+from cubeling.characters.motion.curves import ease
+from cubeling.characters.motion.inertialization import Inertialization, OffsetDecay
+from cubeling.characters.motion.motion import Motion, RootDelta, integrate_travel, mean_delta
+from cubeling.characters.skeleton.pose import Array, Pose
 
 _VELOCITY_STEP_S = 1e-3  # velocities at a switch are differences over this time
 

@@ -1,8 +1,8 @@
 """Draws characters into the camera's picture: `Stage` and what it is given."""
 
-from characters.rendering.context import create_context, draws_in_software
-from characters.rendering.quality import FULL, QUALITIES, Effect, Quality
-from characters.rendering.scene import (
+from cubeling.characters.rendering.context import create_context, draws_in_software
+from cubeling.characters.rendering.quality import FULL, QUALITIES, Effect, Quality
+from cubeling.characters.rendering.scene import (
     RIM_SHARE,
     WALL_SHARE,
     Box,
@@ -15,7 +15,7 @@ from characters.rendering.scene import (
     Softness,
     View,
 )
-from characters.rendering.stage import Stage
+from cubeling.characters.rendering.stage import Stage
 
 __all__ = [
     "FULL",

@@ -6,7 +6,7 @@ from typing import Any
 
 import moderngl
 
-from characters.errors import CharacterError
+from cubeling.characters.errors import CharacterError
 
 OPENGL_VERSION = 330
 """OpenGL 3.3 core: every driver of the last ten years has it, including Mesa's software driver."""

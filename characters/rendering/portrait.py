@@ -9,17 +9,21 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.control.command import PosedCharacter
-from characters.model.character import Character
-from characters.motion.clip import Clip
-from characters.rendering.portrait_camera import CharacterExtent, PortraitCamera, joints_below
-from characters.rendering.quality import FULL
-from characters.rendering.scene import SceneCharacter, View
-from characters.rendering.stage import Stage
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Pose
-from characters.smoothing import smoothstep
+from cubeling.characters.control.command import PosedCharacter
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.rendering.portrait_camera import (
+    CharacterExtent,
+    PortraitCamera,
+    joints_below,
+)
+from cubeling.characters.rendering.quality import FULL
+from cubeling.characters.rendering.scene import SceneCharacter, View
+from cubeling.characters.rendering.stage import Stage
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.smoothing import smoothstep
 
 Image = NDArray[np.uint8]
 Focus = str | tuple[Array, float] | None

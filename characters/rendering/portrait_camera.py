@@ -7,12 +7,12 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.rendering.geometry.morph_mixer import MorphMixer
-from characters.rendering.geometry.vertices import CharacterVertices
-from characters.rendering.scene import Drawable
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.rendering.geometry.morph_mixer import MorphMixer
+from cubeling.characters.rendering.geometry.vertices import CharacterVertices
+from cubeling.characters.rendering.scene import Drawable
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array, Pose
 
 FIELD_OF_VIEW_RAD = math.radians(24.0)
 """Along the picture's shorter side; portraits look best with a long lens."""

@@ -7,9 +7,9 @@ from importlib.resources import files
 import moderngl
 import numpy as np
 
-from characters.skeleton.pose import Array
+from cubeling.characters.skeleton.pose import Array
 
-SHADER_FOLDER = files("characters.rendering") / "shaders"
+SHADER_FOLDER = files("cubeling.characters.rendering") / "shaders"
 
 
 class ShaderPrograms:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.skeleton.pose import Array
+from cubeling.characters.skeleton.pose import Array
 
 NEAR_M, FAR_M = 0.02, 20.0
 """Depths of the near and far planes [m]: from a hand at the lens to the end of a room."""

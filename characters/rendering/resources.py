@@ -8,14 +8,19 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.camera_picture.haze import haze_table
-from characters.rendering.camera_picture.light import Light
-from characters.rendering.camera_picture.occlusion import corners_of, hidden_by_cube
-from characters.rendering.geometry.character_cache import CharacterInstance
-from characters.rendering.projection import NEAR_M, Rectangle, bounding_rectangle, clip_from_camera
-from characters.rendering.scene import Box, Scene, Softness
-from characters.rendering.target import LayerTarget, TargetCache
-from characters.skeleton.pose import Array
+from cubeling.characters.rendering.camera_picture.haze import haze_table
+from cubeling.characters.rendering.camera_picture.light import Light
+from cubeling.characters.rendering.camera_picture.occlusion import corners_of, hidden_by_cube
+from cubeling.characters.rendering.geometry.character_cache import CharacterInstance
+from cubeling.characters.rendering.projection import (
+    NEAR_M,
+    Rectangle,
+    bounding_rectangle,
+    clip_from_camera,
+)
+from cubeling.characters.rendering.scene import Box, Scene, Softness
+from cubeling.characters.rendering.target import LayerTarget, TargetCache
+from cubeling.characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
 

@@ -7,10 +7,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.control.command import PosedCharacter
-from characters.model.mesh import Mesh
-from characters.rendering.projection import Rectangle
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.control.command import PosedCharacter
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.rendering.projection import Rectangle
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 RIM_SHARE, WALL_SHARE = 0.055, 0.025
 """Width of the rim that an open wall of a cube keeps, and thickness of the walls, as shares of the

@@ -4,7 +4,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.projection import grown_size
+from cubeling.characters.rendering.projection import grown_size
 
 
 class ShareTexture:

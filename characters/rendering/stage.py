@@ -7,20 +7,27 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.rendering.camera_picture.light import LightEstimator, paper_color
-from characters.rendering.camera_picture.occlusion import visible_cubes
-from characters.rendering.camera_picture.undistortion import Undistorter
-from characters.rendering.geometry.character_cache import CharacterCache, PictureFineness
-from characters.rendering.passes.by_quality import passes_for
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.programs import ShaderPrograms
-from characters.rendering.projection import is_invertible, is_pinhole
-from characters.rendering.quality import FULL, QUALITIES, Quality
-from characters.rendering.resources import FrameResources
-from characters.rendering.scene import Cover, FloorPath, Scene, SceneCharacter, Softness, View
-from characters.rendering.target import TargetCache
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.rendering.camera_picture.light import LightEstimator, paper_color
+from cubeling.characters.rendering.camera_picture.occlusion import visible_cubes
+from cubeling.characters.rendering.camera_picture.undistortion import Undistorter
+from cubeling.characters.rendering.geometry.character_cache import CharacterCache, PictureFineness
+from cubeling.characters.rendering.passes.by_quality import passes_for
+from cubeling.characters.rendering.passes.render_pass import RenderPass
+from cubeling.characters.rendering.programs import ShaderPrograms
+from cubeling.characters.rendering.projection import is_invertible, is_pinhole
+from cubeling.characters.rendering.quality import FULL, QUALITIES, Quality
+from cubeling.characters.rendering.resources import FrameResources
+from cubeling.characters.rendering.scene import (
+    Cover,
+    FloorPath,
+    Scene,
+    SceneCharacter,
+    Softness,
+    View,
+)
+from cubeling.characters.rendering.target import TargetCache
+from cubeling.characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
 

@@ -7,8 +7,8 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.deferred.buffers import GeometryBuffer, LightBuffer
-from characters.rendering.projection import texture_size
+from cubeling.characters.rendering.deferred.buffers import GeometryBuffer, LightBuffer
+from cubeling.characters.rendering.projection import texture_size
 
 Image = NDArray[np.uint8]
 

@@ -11,11 +11,11 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from characters.control.command import PosedCharacter
-from characters.errors import CharacterError
-from characters.model.mesh import Material, Mesh
-from characters.rendering.scene import SceneCharacter
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.control.command import PosedCharacter
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.mesh import Material, Mesh
+from cubeling.characters.rendering.scene import SceneCharacter
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 GRIP_M = 0.072
 """Height at which a hand holds a toy that stands on the table [m]."""

@@ -4,10 +4,13 @@
 character needs to walk and run where it is sent.
 """
 
-from characters.retargeting.locomotion.grading import YAW_RATE_PER_ANGULAR, GaitReport
-from characters.retargeting.locomotion.locomotion_clips import LocomotionResult, make_locomotion
-from characters.retargeting.recording import Recording, load_recording
-from characters.retargeting.retarget import retarget
+from cubeling.characters.retargeting.locomotion.grading import YAW_RATE_PER_ANGULAR, GaitReport
+from cubeling.characters.retargeting.locomotion.locomotion_clips import (
+    LocomotionResult,
+    make_locomotion,
+)
+from cubeling.characters.retargeting.recording import Recording, load_recording
+from cubeling.characters.retargeting.retarget import retarget
 
 __all__ = [
     "YAW_RATE_PER_ANGULAR",

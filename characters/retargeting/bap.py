@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from characters.errors import CharacterError
-from characters.formats.mocap.bap import BapTrack, track_of, write_baps
-from characters.formats.mocap.hanim import hanim_anatomy, hanim_skeleton
-from characters.motion.clip import Clip
-from characters.retargeting.retarget import retarget
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.formats.mocap.bap import BapTrack, track_of, write_baps
+from cubeling.characters.formats.mocap.hanim import hanim_anatomy, hanim_skeleton
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.retargeting.retarget import retarget
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Skeleton
 
 
 def baps_of(clip: Clip, skeleton: Skeleton, anatomy: Anatomy) -> BapTrack:

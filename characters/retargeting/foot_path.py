@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.motion.contacts import spans
-from characters.skeleton.pose import Array
-from characters.smoothing import smoothstep
+from cubeling.characters.motion.contacts import spans
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.smoothing import smoothstep
 
 _SETTLING_S = 0.12  # to leave or reach the speed of the correction during a contact
 

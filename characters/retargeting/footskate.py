@@ -13,31 +13,31 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.motion.clip import Clip
-from characters.motion.contacts import find_contacts, spans
-from characters.retargeting.foot_path import FootPath
-from characters.retargeting.ground_motion import GroundMotion
-from characters.retargeting.heel_rise import Heels
-from characters.retargeting.hips_shift import (
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.contacts import find_contacts, spans
+from cubeling.characters.retargeting.foot_path import FootPath
+from cubeling.characters.retargeting.ground_motion import GroundMotion
+from cubeling.characters.retargeting.heel_rise import Heels
+from cubeling.characters.retargeting.hips_shift import (
     HeldLegs,
     following_feet,
     smooth_bound,
     with_listing_hips,
     with_moved_hips,
 )
-from characters.retargeting.leg_ik import place_ankle
-from characters.retargeting.rig import LegJoints, Rig
-from characters.retargeting.soles import stretched_to_fit, tilted_to_fit, tilts
-from characters.retargeting.transfer import (
+from cubeling.characters.retargeting.leg_ik import place_ankle
+from cubeling.characters.retargeting.rig import LegJoints, Rig
+from cubeling.characters.retargeting.soles import stretched_to_fit, tilted_to_fit, tilts
+from cubeling.characters.retargeting.transfer import (
     ankle_positions,
     clip_in_common_axes,
     in_common_axes,
     turns_from_rest,
     with_turns_from_rest,
 )
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
-from characters.smoothing import gaussian_smoothed
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.smoothing import gaussian_smoothed
 
 # Lengths in leg lengths.
 _MAX_BALL_RISE = 0.02  # of the ball of a standing foot above its lowest position

@@ -13,12 +13,12 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.motion.clip import Clip
-from characters.motion.motion import RootDelta
-from characters.retargeting.rig import LegJoints, Rig
-from characters.retargeting.transfer import clip_in_common_axes
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.retargeting.rig import LegJoints, Rig
+from cubeling.characters.retargeting.transfer import clip_in_common_axes
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array
 
 # A treadmill is assumed if standing feet are faster than this, and the body stays in place.
 _MIN_TREADMILL_SPEED = 0.1  # leg lengths a second

@@ -10,13 +10,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.retargeting.ground_motion import GroundMotion
-from characters.retargeting.hips_shift import HeldLegs
-from characters.retargeting.rig import LegJoints, Rig
-from characters.retargeting.transfer import turns_from_rest, with_turns_from_rest
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
-from characters.smoothing import smoothstep
+from cubeling.characters.retargeting.ground_motion import GroundMotion
+from cubeling.characters.retargeting.hips_shift import HeldLegs
+from cubeling.characters.retargeting.rig import LegJoints, Rig
+from cubeling.characters.retargeting.transfer import turns_from_rest, with_turns_from_rest
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.smoothing import smoothstep
 
 _MAX_TILT = 0.35  # of a foot beyond its motion's [rad]
 _HALVINGS = 10  # of the range of tilts

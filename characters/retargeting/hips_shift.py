@@ -15,18 +15,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.retargeting.foot_path import FootPath
-from characters.retargeting.ground_motion import GroundMotion
-from characters.retargeting.rig import LegJoints, Rig
-from characters.retargeting.transfer import (
+from cubeling.characters.retargeting.foot_path import FootPath
+from cubeling.characters.retargeting.ground_motion import GroundMotion
+from cubeling.characters.retargeting.rig import LegJoints, Rig
+from cubeling.characters.retargeting.transfer import (
     in_common_axes,
     set_joint_positions,
     turns_from_rest,
     with_turns_from_rest,
 )
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
-from characters.smoothing import gaussian_smoothed, smoothstep
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.smoothing import gaussian_smoothed, smoothstep
 
 _SMOOTHING_S = 0.05  # standard deviation of the shift with the feet
 _DROP_SMOOTHING_S = 0.04  # and of the drop

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from characters.retargeting.rig import LegJoints, Rig, global_rotations
-from characters.retargeting.transfer import ankle_positions, set_joint_positions
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters.retargeting.rig import LegJoints, Rig, global_rotations
+from cubeling.characters.retargeting.transfer import ankle_positions, set_joint_positions
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
 
 _MAX_REACH = 0.9995  # leg lengths; beyond, the knee would snap straight
 _MIN_REACH = 0.35  # leg lengths, unless the clip bends the leg more

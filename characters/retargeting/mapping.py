@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.retargeting.rig import Rig, leg_pairs
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.retargeting.rig import Rig, leg_pairs
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array
 
 _LIMB_BONES = (
     (("UpperArm", "LowerArm"), ("LowerArm", "Hand")),

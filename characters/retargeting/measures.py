@@ -5,12 +5,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from characters.model.character import skin
-from characters.model.mesh import Mesh
-from characters.retargeting.rig import LegJoints, Rig
-from characters.retargeting.soles import parts_of_joints
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters.model.character import skin
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.retargeting.rig import LegJoints, Rig
+from cubeling.characters.retargeting.soles import parts_of_joints
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
 
 _KNEE_QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 _LIMBS = (("Arm", "Hand"), ("Leg", "Foot"))

@@ -5,17 +5,17 @@ from pathlib import Path
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.formats.loading import Performance, is_motion_only, load_motion
-from characters.model.bind_pose import with_bind_pose
-from characters.model.character import Character
-from characters.model.sidecar import read_sidecar
-from characters.motion.clip import Clip
-from characters.retargeting.standing_rest import standing_skeleton
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.facing import common_from_skeleton
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.formats.loading import Performance, is_motion_only, load_motion
+from cubeling.characters.model.bind_pose import with_bind_pose
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.sidecar import read_sidecar
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.retargeting.standing_rest import standing_skeleton
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.facing import common_from_skeleton
+from cubeling.characters.skeleton.pose import Skeleton
 
 _MIN_WAY = 0.05  # of hips in a cycle, in sizes of the skeleton; loops close less exactly
 _UNROLLED_CYCLES = 3

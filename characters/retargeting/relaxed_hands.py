@@ -10,11 +10,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.retargeting.rig import Rig
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import SIDES
-from characters.skeleton.masks import subtree
-from characters.skeleton.pose import Array
+from cubeling.characters.retargeting.rig import Rig
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import SIDES
+from cubeling.characters.skeleton.masks import subtree
+from cubeling.characters.skeleton.pose import Array
 
 # Flexion from one bone to the next [deg]: at the knuckle, the middle joint and the last one.
 _RELAXED_DEG = {

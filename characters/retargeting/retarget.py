@@ -5,27 +5,27 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.model.mesh import Mesh
-from characters.motion.clip import Clip
-from characters.retargeting.footskate import (
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.retargeting.footskate import (
     ball_positions,
     find_foot_contacts,
     hold_feet_in_contact,
 )
-from characters.retargeting.ground_motion import find_ground_motion
-from characters.retargeting.mapping import map_joints
-from characters.retargeting.rig import Rig, leg_pairs
-from characters.retargeting.root import has_root_joint, root_trajectory
-from characters.retargeting.transfer import (
+from cubeling.characters.retargeting.ground_motion import find_ground_motion
+from cubeling.characters.retargeting.mapping import map_joints
+from cubeling.characters.retargeting.rig import Rig, leg_pairs
+from cubeling.characters.retargeting.root import has_root_joint, root_trajectory
+from cubeling.characters.retargeting.transfer import (
     build_poses,
     hips_trajectory,
     in_common_axes,
     transferred_rotations,
 )
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 # Of an animal's steps, in parts of the length of its legs.
 _MAX_REACH = 0.99

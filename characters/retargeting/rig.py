@@ -6,16 +6,16 @@ from functools import cached_property
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.model.character import skin
-from characters.model.mesh import Mesh
-from characters.retargeting.soles import Sole, shared_skin, skin_of_joints
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import SIDES, Anatomy
-from characters.skeleton.facing import common_from_skeleton
-from characters.skeleton.masks import subtree
-from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.skeleton.skeleton_part import SkeletonPart
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.character import skin
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.retargeting.soles import Sole, shared_skin, skin_of_joints
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
+from cubeling.characters.skeleton.facing import common_from_skeleton
+from cubeling.characters.skeleton.masks import subtree
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.skeleton.skeleton_part import SkeletonPart
 
 _STANDING_HEIGHT = (-0.02, 0.12)  # of the lowest joint of a standing rest pose, in body sizes
 _MAX_HOVERING = 0.2  # of feet above the ground at rest, in leg lengths

@@ -9,13 +9,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.character import Character
-from characters.motion.clip import Clip
-from characters.retargeting.rig import Rig, global_rotations
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.smoothing import gaussian_smoothed
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.retargeting.rig import Rig, global_rotations
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.smoothing import gaussian_smoothed
 
 _SMOOTHING_S = 0.3  # standard deviation; removes the sway of a stride
 

@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.character import skin
-from characters.model.mesh import Mesh
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array
+from cubeling.characters.model.character import skin
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array
 
 _UP = np.array([0.0, 1.0, 0.0])
 _DIRECTIONS = 256  # in which the outermost points of a foot are kept

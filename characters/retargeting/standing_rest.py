@@ -9,11 +9,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import SIDES, Anatomy
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 _MIN_UPRIGHT = 0.5  # cosine: bones farther than 60° from the vertical do not stand
 _RAISED_FOOT_COST = 2.0  # of uprightness, for a foot that is raised by the body's height

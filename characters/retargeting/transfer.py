@@ -10,14 +10,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.motion.clip import Clip
-from characters.motion.contacts import find_contacts
-from characters.retargeting.mapping import JointMapping
-from characters.retargeting.relaxed_hands import relaxed_rest
-from characters.retargeting.rig import LegJoints, Rig, global_rotations
-from characters.retargeting.root import ground_positions
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.contacts import find_contacts
+from cubeling.characters.retargeting.mapping import JointMapping
+from cubeling.characters.retargeting.relaxed_hands import relaxed_rest
+from cubeling.characters.retargeting.rig import LegJoints, Rig, global_rotations
+from cubeling.characters.retargeting.root import ground_positions
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
 
 _FLAT_QUANTILE = 0.25  # of the heights of a standing ankle: later the heel rises
 _MAX_SINKING = 0.25  # of a leg's length: ankles always lower than that under rest have other ground

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
-from characters.errors import CharacterError
-from characters.skeleton.body_parts.joint_words import SIDES as SIDES
-from characters.skeleton.body_parts.parts import find_parts
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton.body_parts.joint_words import SIDES as SIDES
+from cubeling.characters.skeleton.body_parts.parts import find_parts
+from cubeling.characters.skeleton.pose import Skeleton
 
 Kind = Literal["humanoid", "quadruped", "other"]
 
@@ -76,7 +76,7 @@ class Anatomy:
         CharacterError
             If the semantics name an unknown part or joint.
 
-        >>> from characters import Character
+        >>> from cubeling.characters import Character
         >>> anatomy = Anatomy.guess(Character.load("human").skeleton)
         >>> anatomy.kind, anatomy.missing
         ('humanoid', ())

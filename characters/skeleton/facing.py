@@ -5,9 +5,9 @@ The axes that all bodies share are +y up, +z ahead and +x to the left.
 
 import numpy as np
 
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 _MIN_LEVEL_PART = 0.4  # of a foot's length; toes that hang show no direction
 

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from characters.skeleton.anatomy import SIDES, Anatomy
-from characters.skeleton.body_parts.joint_names import JointName, read_names
-from characters.skeleton.masks import subtree
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
+from cubeling.characters.skeleton.body_parts.joint_names import JointName, read_names
+from cubeling.characters.skeleton.masks import subtree
+from cubeling.characters.skeleton.pose import Skeleton
 
 Feet = Sequence[Sequence[int]]
 """The joints of each foot, from the ankle on; a paw may have one joint only."""

@@ -6,9 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array
 
 EDGE_RAD = 1e-6
 """How far beyond a limit an angle still counts as within: rounding, and no more."""

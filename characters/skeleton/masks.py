@@ -7,8 +7,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 Mask: TypeAlias = Array
 """Weight of each joint, (joints,), 0…1."""

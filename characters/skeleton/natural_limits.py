@@ -9,10 +9,10 @@ from typing import Literal
 
 import numpy as np
 
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import SIDES, Anatomy
-from characters.skeleton.joint_limits import JointLimits
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
+from cubeling.characters.skeleton.joint_limits import JointLimits
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 Toward = Literal["forward", "backward", "up", "palm"]
 """Where a positive bend moves the end of a bone."""
@@ -71,7 +71,7 @@ _AZIMUTH_DEG, _LATITUDE_DEG, _ARM_TWIST_DEG = (-120.0, 160.0), (-88.0, 70.0), 12
 def natural_limits(skeleton: Skeleton, anatomy: Anatomy) -> JointLimits:
     """Return the limits of all joints of a skeleton; joints of no known part turn freely.
 
-    >>> from characters import Character
+    >>> from cubeling.characters import Character
     >>> human = Character.load("human")
     >>> limits = natural_limits(human.skeleton, human.anatomy)
     >>> elbow = human.anatomy.joints["leftLowerArm"]

@@ -7,8 +7,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.skeleton import rotations
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton import rotations
 
 Array = NDArray[np.float64]
 

@@ -1,6 +1,6 @@
 """Single quaternions xyzw and vectors as tuples of floats.
 
-For one rotation this is much faster than `characters.skeleton.rotations`.
+For one rotation this is much faster than `cubeling.characters.skeleton.rotations`.
 """
 
 import math

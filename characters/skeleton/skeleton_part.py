@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.skeleton.joint_chains import children_of
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton.joint_chains import children_of
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 REFLECTION = np.array([-1.0, 1.0, 1.0])
 """Factors of a position that is mirrored about x = 0."""

@@ -14,10 +14,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.speech.contours import Prosody, ProsodySettings, measure_prosody
-from characters.speech.phones import is_vowel
-from characters.speech.speech import Accent, Phone, Samples
-from characters.speech.strength import scaled
+from cubeling.characters.speech.contours import Prosody, ProsodySettings, measure_prosody
+from cubeling.characters.speech.phones import is_vowel
+from cubeling.characters.speech.speech import Accent, Phone, Samples
+from cubeling.characters.speech.strength import scaled
 
 LOUDNESS_EXPONENT = 0.6
 """Loudness grows with this power of the sound pressure (S. S. Stevens 1955, "The measurement of

@@ -9,8 +9,8 @@ from typing import IO
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.speech.speech import Samples, Speech
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.speech.speech import Samples, Speech
 
 MAX_S = 2 * 3600.0
 """Longest sound that is read [s]: at 48 kHz its samples take 1.4 GB."""

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from characters.speech.frames import frame_blocks
-from characters.speech.phones import sound_class
-from characters.speech.speech import SILENCE, Speech
+from cubeling.characters.speech.frames import frame_blocks
+from cubeling.characters.speech.phones import sound_class
+from cubeling.characters.speech.speech import SILENCE, Speech
 
 SEARCHED_S = 0.08
 """How long before the burst a closure may begin [s]."""

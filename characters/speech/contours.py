@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.speech.frames import frame_blocks, runs
-from characters.speech.pitch import PitchSettings, track_pitch
-from characters.speech.speech import Samples
+from cubeling.characters.speech.frames import frame_blocks, runs
+from cubeling.characters.speech.pitch import PitchSettings, track_pitch
+from cubeling.characters.speech.speech import Samples
 
 INTENSITY_WINDOW_S = 0.04
 """Length of the window of the intensity [s]: three periods of the lowest voice."""

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.speech.speech import Samples
+from cubeling.characters.speech.speech import Samples
 
 BLOCK_FRAMES = 512
 """Frames of a block."""

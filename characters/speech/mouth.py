@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.speech.frames import frame_blocks
-from characters.speech.phones import fill_pauses
-from characters.speech.speech import SILENCE, Phone, Samples
+from cubeling.characters.speech.frames import frame_blocks
+from cubeling.characters.speech.phones import fill_pauses
+from cubeling.characters.speech.speech import SILENCE, Phone, Samples
 
 STEP_S, WINDOW_S = 0.01, 0.03
 """Time from frame to frame, and length of a frame [s]."""

@@ -5,7 +5,7 @@ A live detector cannot know what follows, so it reports an onset, and not the mi
 
 import numpy as np
 
-from characters.speech.speech import Samples
+from cubeling.characters.speech.speech import Samples
 
 STEP_S = 0.01
 """Time from one measurement to the next [s]."""

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Literal
 
-from characters.speech.speech import SILENCE, Phone
+from cubeling.characters.speech.speech import SILENCE, Phone
 
 SoundClass = Literal["silence", "vowel", "glide", "nasal", "stop", "fricative", "affricate"]
 """How a phone is made; glides are approximants, laterals, taps and trills."""

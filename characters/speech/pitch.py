@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.speech.frames import frame_blocks, frame_times
-from characters.speech.speech import Samples
+from cubeling.characters.speech.frames import frame_blocks, frame_times
+from cubeling.characters.speech.speech import Samples
 
 MAX_CANDIDATES = 15
 """Candidates of a frame, "unvoiced" among them."""

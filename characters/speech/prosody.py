@@ -1,8 +1,8 @@
 """What a speaker does while a speech sounds."""
 
-from characters.speech.accents import AccentSettings, detect_accents
-from characters.speech.speech import Speech, Utterance
-from characters.speech.tagged_text import TaggedText
+from cubeling.characters.speech.accents import AccentSettings, detect_accents
+from cubeling.characters.speech.speech import Speech, Utterance
+from cubeling.characters.speech.tagged_text import TaggedText
 
 
 def utterance_of(

@@ -1,9 +1,9 @@
 """Saying a text with a voice, as mouth and subtitles need it."""
 
-from characters.speech.closures import with_closures
-from characters.speech.speech import Speech
-from characters.speech.voices import Manner, Voice
-from characters.speech.words import with_every_word
+from cubeling.characters.speech.closures import with_closures
+from cubeling.characters.speech.speech import Speech
+from cubeling.characters.speech.voices import Manner, Voice
+from cubeling.characters.speech.words import with_every_word
 
 USUAL = Manner()
 """How a text is usually spoken."""

@@ -11,8 +11,8 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from characters.errors import CharacterError
-from characters.speech.speech import GestureSpan, Word
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.speech.speech import GestureSpan, Word
 
 MIN_SPAN_S = 0.4
 """Shortest time of a gesture [s]: one around a short word, or around none, is made longer."""

@@ -9,9 +9,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from characters.errors import CharacterError
-from characters.speech.phones import fill_pauses, ipa_of_arpabet, is_arpabet
-from characters.speech.speech import SILENCE, Phone, Speech, Word
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.speech.phones import fill_pauses, ipa_of_arpabet, is_arpabet
+from cubeling.characters.speech.speech import SILENCE, Phone, Speech, Word
 
 MAX_BYTES = 100_000_000
 """Largest file [B]."""

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from characters.speech.speech import SILENCE, Phone, Speech, Word
+from cubeling.characters.speech.speech import SILENCE, Phone, Speech, Word
 
 _WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
 

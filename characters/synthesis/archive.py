@@ -17,9 +17,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Pose, Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Pose, Skeleton
 
 Content = Mapping[str, Any]
 """What the JSON text says."""

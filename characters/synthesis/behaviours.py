@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.skeleton.pose import Array
-from characters.synthesis.library import Frames, MotionLibrary
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.library import Frames, MotionLibrary
 
 WINDOW_S = 0.5
 """Speed and yaw rate of a frame are means over so long before and after it [s]."""

@@ -10,9 +10,9 @@ from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
-from characters.errors import CharacterError
-from characters.skeleton.anatomy import BODY_PARTS, Anatomy
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton.anatomy import BODY_PARTS, Anatomy
+from cubeling.characters.skeleton.pose import Skeleton
 
 LOWER_CHAINS = ("HC5", "HC6")
 """The chains of the legs: they are always in one part, whose timing the others follow."""
@@ -104,7 +104,7 @@ class BodyPlan:
 @cache
 def default_body_plan() -> BodyPlan:
     """Return the weights, chains and profiles of the thesis."""
-    return read_body_plan(Path(str(files("characters.synthesis") / "profiles.toml")))
+    return read_body_plan(Path(str(files("cubeling.characters.synthesis") / "profiles.toml")))
 
 
 def read_body_plan(path: Path) -> BodyPlan:

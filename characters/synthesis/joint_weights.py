@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.skeleton.pose import Array
-from characters.synthesis.body import default_body_plan
-from characters.synthesis.distances.angles import JointAngles
-from characters.synthesis.distances.points import PointClouds
-from characters.synthesis.library import MotionLibrary
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.body import default_body_plan
+from cubeling.characters.synthesis.distances.angles import JointAngles
+from cubeling.characters.synthesis.distances.points import PointClouds
+from cubeling.characters.synthesis.library import MotionLibrary
 
 COMPARED_PAIRS = 20_000
 """Pairs of frames that are compared."""

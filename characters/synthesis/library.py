@@ -7,15 +7,15 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.motion.baking import placed_clip
-from characters.motion.clip import Clip
-from characters.motion.contacts import find_contacts
-from characters.motion.motion import RootDelta
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.feet import find_feet
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.baking import placed_clip
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.contacts import find_contacts
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.feet import find_feet
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 Frames = NDArray[np.intp]
 """Numbers of frames of a library."""

@@ -1,8 +1,8 @@
 """Conformance tests of robots against PROTOCOL.md: `cubeling robot conform PORT`, as a library."""
 
-from robot.conformance.channel import Channel, PortChannel, SimulatedChannel
-from robot.conformance.check import Check
-from robot.conformance.suite import (
+from cubeling.robot.conformance.channel import Channel, PortChannel, SimulatedChannel
+from cubeling.robot.conformance.check import Check
+from cubeling.robot.conformance.suite import (
     CheckResult,
     ConformanceReport,
     all_checks,

@@ -4,10 +4,10 @@ from typing import Protocol
 
 import serial
 
-from robot.conformance.errors import CheckFailed
-from robot.contract.port import Clock, Port
-from robot.errors import RobotError
-from robot.simulators import Simulated
+from cubeling.robot.conformance.errors import CheckFailed
+from cubeling.robot.contract.port import Clock, Port
+from cubeling.robot.errors import RobotError
+from cubeling.robot.simulators import Simulated
 
 MAX_READ_BYTES = 4096
 """Most bytes of one read, so that a robot that never pauses does not block the suite."""

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from robot.conformance.probe import Probe
+from cubeling.robot.conformance.probe import Probe
 
 Level = Literal["must", "should"]
 """must: a robot that fails does not conform. should: it conforms, but could be better."""

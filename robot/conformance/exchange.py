@@ -4,14 +4,19 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from robot.conformance.channel import Channel
-from robot.conformance.errors import CheckFailed
-from robot.conformance.received import FrameLog, FrameSplitter, ReceivedFrame, describe_frames
-from robot.contract.port import READ_TIMEOUT_S
-from robot.link.line_sample import LineSample
-from robot.protocol import timing
-from robot.protocol.schema import HEADER, pack, spec_of
-from robot.protocol.wire import encode_frame
+from cubeling.robot.conformance.channel import Channel
+from cubeling.robot.conformance.errors import CheckFailed
+from cubeling.robot.conformance.received import (
+    FrameLog,
+    FrameSplitter,
+    ReceivedFrame,
+    describe_frames,
+)
+from cubeling.robot.contract.port import READ_TIMEOUT_S
+from cubeling.robot.link.line_sample import LineSample
+from cubeling.robot.protocol import timing
+from cubeling.robot.protocol.schema import HEADER, pack, spec_of
+from cubeling.robot.protocol.wire import encode_frame
 
 REPLY_WITHIN_S = 0.100
 """Longest time to an answer "at once" [s] (PROTOCOL.md, section 5)."""

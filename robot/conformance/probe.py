@@ -4,13 +4,13 @@ import contextlib
 from collections.abc import Callable
 from typing import Any
 
-from robot.conformance.channel import Channel
-from robot.conformance.errors import CheckFailed, NoAnswerError
-from robot.conformance.exchange import REPLY_WITHIN_S, FrameExchange
-from robot.conformance.received import ReceivedFrame, describe_frames, format_bytes
-from robot.protocol import messages as m
-from robot.protocol import timing
-from robot.protocol.schema import spec_of
+from cubeling.robot.conformance.channel import Channel
+from cubeling.robot.conformance.errors import CheckFailed, NoAnswerError
+from cubeling.robot.conformance.exchange import REPLY_WITHIN_S, FrameExchange
+from cubeling.robot.conformance.received import ReceivedFrame, describe_frames, format_bytes
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
+from cubeling.robot.protocol.schema import spec_of
 
 EFFECT_WITHIN_S = 0.250
 """Longest time until STATE shows what a command started or ended [s] (PROTOCOL.md, section 6)."""

@@ -4,11 +4,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
-from robot.protocol import messages as m
-from robot.protocol import timing
-from robot.protocol.fields import MessageError
-from robot.protocol.schema import MESSAGES, spec_of, unpack
-from robot.protocol.wire import MAX_FRAME, FrameError, decode_frame
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
+from cubeling.robot.protocol.fields import MessageError
+from cubeling.robot.protocol.schema import MESSAGES, spec_of, unpack
+from cubeling.robot.protocol.wire import MAX_FRAME, FrameError, decode_frame
 
 MAX_STATES = 20_000
 """Most STATEs in a log: over ten minutes of them; and most LOGs."""

@@ -4,28 +4,28 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from robot.conformance.channel import Channel
-from robot.conformance.check import Check, CheckGroup
-from robot.conformance.checks.bodies import BODIES
-from robot.conformance.checks.catalogue import CATALOGUE
-from robot.conformance.checks.commands import COMMANDS
-from robot.conformance.checks.failsafe import FAILSAFE
-from robot.conformance.checks.frames import FRAMES
-from robot.conformance.checks.going_neutral import NEUTRALITY
-from robot.conformance.checks.heartbeat import HEARTBEAT
-from robot.conformance.checks.log import LOG
-from robot.conformance.checks.moods import MOODS
-from robot.conformance.checks.moving import MOVING
-from robot.conformance.checks.other_sessions import OTHER_SESSIONS
-from robot.conformance.checks.playing import PLAYING
-from robot.conformance.checks.recorded import RECORDED
-from robot.conformance.checks.sessions import SESSIONS
-from robot.conformance.checks.stopping import STOPPING
-from robot.conformance.errors import CheckFailed, NoAnswerError, NotApplicableError
-from robot.conformance.probe import Probe
-from robot.errors import RobotError
-from robot.protocol import messages as m
-from robot.protocol import timing
+from cubeling.robot.conformance.channel import Channel
+from cubeling.robot.conformance.check import Check, CheckGroup
+from cubeling.robot.conformance.checks.bodies import BODIES
+from cubeling.robot.conformance.checks.catalogue import CATALOGUE
+from cubeling.robot.conformance.checks.commands import COMMANDS
+from cubeling.robot.conformance.checks.failsafe import FAILSAFE
+from cubeling.robot.conformance.checks.frames import FRAMES
+from cubeling.robot.conformance.checks.going_neutral import NEUTRALITY
+from cubeling.robot.conformance.checks.heartbeat import HEARTBEAT
+from cubeling.robot.conformance.checks.log import LOG
+from cubeling.robot.conformance.checks.moods import MOODS
+from cubeling.robot.conformance.checks.moving import MOVING
+from cubeling.robot.conformance.checks.other_sessions import OTHER_SESSIONS
+from cubeling.robot.conformance.checks.playing import PLAYING
+from cubeling.robot.conformance.checks.recorded import RECORDED
+from cubeling.robot.conformance.checks.sessions import SESSIONS
+from cubeling.robot.conformance.checks.stopping import STOPPING
+from cubeling.robot.conformance.errors import CheckFailed, NoAnswerError, NotApplicableError
+from cubeling.robot.conformance.probe import Probe
+from cubeling.robot.errors import RobotError
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
 
 GROUPS: tuple[CheckGroup, ...] = (
     FRAMES, BODIES, SESSIONS, OTHER_SESSIONS, CATALOGUE, COMMANDS, MOODS, PLAYING, STOPPING,

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from affect import Emotion
-from robot.contract.catalogue import Catalogue
-from robot.contract.moves import JointMover
-from robot.contract.port import Clock, Opener
-from robot.contract.telemetry import LinkState, Telemetry
+from cubeling.affect import Emotion
+from cubeling.robot.contract.catalogue import Catalogue
+from cubeling.robot.contract.moves import JointMover
+from cubeling.robot.contract.port import Clock, Opener
+from cubeling.robot.contract.telemetry import LinkState, Telemetry
 
 MAX_QUEUED_ACTIONS = 4
 """Motions and sounds that may wait for a robot that plays one after the other; more are refused.
@@ -90,4 +90,4 @@ class DriverKind:
 
 
 DRIVERS: dict[str, DriverKind] = {}
-"""The protocols by name; `robot.drivers` registers those of this program."""
+"""The protocols by name; `cubeling.robot.drivers` registers those of this program."""

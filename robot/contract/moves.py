@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
-from robot.contract.catalogue import Catalogue, JointLimits
-from robot.errors import RobotError
+from cubeling.robot.contract.catalogue import Catalogue, JointLimits
+from cubeling.robot.errors import RobotError
 
 ROUNDING_RAD = 5e-4
 """How far an angle may be beyond a limit that a robot reports in whole milliradians [rad]."""

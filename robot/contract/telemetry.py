@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Literal
 
-from affect import Emotion
+from cubeling.affect import Emotion
 
 MAX_COMPLAINT_CHARS = 80
 """Longest error message of a robot that is kept [characters]."""

@@ -1,10 +1,10 @@
 """The protocols by name: one package each, registered here for `connect`."""
 
-from robot.contract.driver import DRIVERS
-from robot.drivers.cubeling.host import CUBELING
-from robot.drivers.opencat.host import OPENCAT
-from robot.drivers.pleo.driver import PLEO
-from robot.drivers.reachy.driver import REACHY
+from cubeling.robot.contract.driver import DRIVERS
+from cubeling.robot.drivers.cubeling.host import CUBELING
+from cubeling.robot.drivers.opencat.host import OPENCAT
+from cubeling.robot.drivers.pleo.driver import PLEO
+from cubeling.robot.drivers.reachy.driver import REACHY
 
 __all__ = ["DRIVERS"]
 

@@ -7,7 +7,7 @@ Motions and sounds are events: each is sent at most once, in order, and dropped 
 from collections import deque
 from typing import TypeVar
 
-from affect import Emotion
+from cubeling.affect import Emotion
 
 Action = TypeVar("Action")
 

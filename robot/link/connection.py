@@ -3,13 +3,13 @@
 import time
 from pathlib import Path
 
-from robot.contract.driver import DRIVERS
-from robot.contract.port import Clock
-from robot.errors import RobotError
-from robot.link.exchange import ByteHook, Direction, IoThread
-from robot.link.line_sample import LineSample
-from robot.link.linked_robot import Robot
-from robot.link.transport import opener, spaced
+from cubeling.robot.contract.driver import DRIVERS
+from cubeling.robot.contract.port import Clock
+from cubeling.robot.errors import RobotError
+from cubeling.robot.link.exchange import ByteHook, Direction, IoThread
+from cubeling.robot.link.line_sample import LineSample
+from cubeling.robot.link.linked_robot import Robot
+from cubeling.robot.link.transport import opener, spaced
 
 CATALOGUE_TIMEOUT_S = 10.0
 """Additional time to report its catalogue for a robot that answers over a very lossy line [s]."""

@@ -1,6 +1,6 @@
 """Moves bytes between a port and a driver, within a rate limit, in a thread of its own.
 
-`robot.simulators.stepped` does so in virtual time.
+`cubeling.robot.simulators.stepped` does so in virtual time.
 """
 
 import contextlib
@@ -10,9 +10,9 @@ from typing import Literal
 
 import serial
 
-from robot.contract.driver import Driver
-from robot.contract.port import Clock, Opener, Port
-from robot.errors import RobotError
+from cubeling.robot.contract.driver import Driver
+from cubeling.robot.contract.port import Clock, Opener, Port
+from cubeling.robot.errors import RobotError
 
 Direction = Literal["tx", "rx"]
 """From the host to the robot, or back."""

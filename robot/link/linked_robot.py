@@ -3,16 +3,16 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from affect import Emotion
-from robot.contract.catalogue import Catalogue
-from robot.contract.closeable import Closeable
-from robot.contract.driver import Driver
-from robot.contract.moves import joint_move
-from robot.contract.port import Clock
-from robot.contract.telemetry import Telemetry
-from robot.errors import RobotError
-from robot.link.exchange import PortExchange
-from robot.protocol import messages as m
+from cubeling.affect import Emotion
+from cubeling.robot.contract.catalogue import Catalogue
+from cubeling.robot.contract.closeable import Closeable
+from cubeling.robot.contract.driver import Driver
+from cubeling.robot.contract.moves import joint_move
+from cubeling.robot.contract.port import Clock
+from cubeling.robot.contract.telemetry import Telemetry
+from cubeling.robot.errors import RobotError
+from cubeling.robot.link.exchange import PortExchange
+from cubeling.robot.protocol import messages as m
 
 
 class Robot(Closeable):

@@ -13,9 +13,9 @@ from typing import Any, NamedTuple, cast
 import serial
 from serial.tools import list_ports
 
-from robot.contract.port import READ_TIMEOUT_S, Clock, Opener, Port
-from robot.errors import RobotError
-from robot.protocol import timing
+from cubeling.robot.contract.port import READ_TIMEOUT_S, Clock, Opener, Port
+from cubeling.robot.errors import RobotError
+from cubeling.robot.protocol import timing
 
 SCHEMES: dict[str, Callable[[str, Clock], Opener]] = {}
 """Openers of the URL schemes that pySerial does not know; `robot` registers "sim"."""

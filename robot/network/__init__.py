@@ -1,6 +1,6 @@
 """Characters and robots on several computers: players, robot nodes, and the bus between them.
 
->>> from robot import Emotion
+>>> from cubeling.robot import Emotion
 >>> broker, ann = MemoryBroker(), Member("hall", "player", "ann")
 >>> client = BusClient(Player(ann, session=1), broker.bus(), clock=lambda: 0.0)
 >>> client.endpoint.feel(Emotion(0.8, 0.5, "happy"))
@@ -11,16 +11,16 @@
 >>> client.close()
 """
 
-from robot.network.bus import Bus, BusState, Message
-from robot.network.client import BusClient
-from robot.network.endpoint import Endpoint
-from robot.network.memory import MemoryBroker, MemoryBus
-from robot.network.mqtt.access import Address, Credentials
-from robot.network.mqtt.bus import MqttBus
-from robot.network.node import RobotNode
-from robot.network.player import Player
-from robot.network.roster import Roster, RosterEntry
-from robot.network.topics import Member, Pattern, check_name
+from cubeling.robot.network.bus import Bus, BusState, Message
+from cubeling.robot.network.client import BusClient
+from cubeling.robot.network.endpoint import Endpoint
+from cubeling.robot.network.memory import MemoryBroker, MemoryBus
+from cubeling.robot.network.mqtt.access import Address, Credentials
+from cubeling.robot.network.mqtt.bus import MqttBus
+from cubeling.robot.network.node import RobotNode
+from cubeling.robot.network.player import Player
+from cubeling.robot.network.roster import Roster, RosterEntry
+from cubeling.robot.network.topics import Member, Pattern, check_name
 
 __all__ = [
     "Address",

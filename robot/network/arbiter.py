@@ -3,9 +3,9 @@
 import math
 from dataclasses import dataclass
 
-from robot.network.endpoint import LOST_AFTER_S
-from robot.network.messages import EmotionMessage
-from robot.network.topics import Member
+from cubeling.robot.network.endpoint import LOST_AFTER_S
+from cubeling.robot.network.messages import EmotionMessage
+from cubeling.robot.network.topics import Member
 
 MAX_PLAYERS = 32
 """Most players in a robot's table; as many as fit into a message."""

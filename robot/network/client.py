@@ -4,10 +4,10 @@ import threading
 from collections import deque
 from typing import Generic, Self, TypeVar
 
-from robot.contract.closeable import Closeable
-from robot.contract.port import Clock
-from robot.network.bus import Bus, BusState, Message
-from robot.network.endpoint import Endpoint
+from cubeling.robot.contract.closeable import Closeable
+from cubeling.robot.contract.port import Clock
+from cubeling.robot.network.bus import Bus, BusState, Message
+from cubeling.robot.network.endpoint import Endpoint
 
 STEP_EVERY_S = 0.05
 """Longest time between two steps of an endpoint [s]; a message triggers the next one at once."""

@@ -3,8 +3,8 @@
 import math
 from typing import Any, Literal
 
-from robot.network.bus import Message
-from robot.network.messages import (
+from cubeling.robot.network.bus import Message
+from cubeling.robot.network.messages import (
     MAX_INTEGER,
     MESSAGE_TYPES,
     MalformedError,
@@ -12,7 +12,7 @@ from robot.network.messages import (
     decode,
     encode,
 )
-from robot.network.topics import Member, Pattern, member_of
+from cubeling.robot.network.topics import Member, Pattern, member_of
 
 HEARTBEAT_EVERY_S = 2.0
 """Time between two heartbeats of a member [s]."""

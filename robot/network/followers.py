@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from robot.network.endpoint import LOST_AFTER_S
-from robot.network.messages import StatusMessage
-from robot.network.topics import Member, Pattern
+from cubeling.robot.network.endpoint import LOST_AFTER_S
+from cubeling.robot.network.messages import StatusMessage
+from cubeling.robot.network.topics import Member, Pattern
 
 MAX_ROBOTS = 64
 """Most robots in a player's table."""

@@ -2,8 +2,8 @@
 
 import threading
 
-from robot.network.bus import Bus, Message
-from robot.network.topics import topic_matches
+from cubeling.robot.network.bus import Bus, Message
+from cubeling.robot.network.topics import topic_matches
 
 
 class MemoryBroker:

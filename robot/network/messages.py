@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, TypeVar
 import msgspec
 from msgspec import Meta, Struct
 
-from robot.errors import RobotError
+from cubeling.robot.errors import RobotError
 
 MAX_PAYLOAD_BYTES = 4096
 """Largest payload that is sent or read [bytes]."""

@@ -3,21 +3,21 @@
 import math
 from typing import Any, Protocol
 
-from affect import NEUTRAL, Emotion
-from robot.contract.catalogue import Catalogue
-from robot.contract.telemetry import Telemetry
-from robot.errors import RobotError
-from robot.network import messages as m
-from robot.network.arbiter import HOLD_S, FollowedPlayer, PlayerArbiter
-from robot.network.bus import Message
-from robot.network.endpoint import MemberEndpoint
-from robot.network.messages import encode
-from robot.network.state_publisher import StatePublisher
-from robot.network.topics import Member, Pattern
+from cubeling.affect import NEUTRAL, Emotion
+from cubeling.robot.contract.catalogue import Catalogue
+from cubeling.robot.contract.telemetry import Telemetry
+from cubeling.robot.errors import RobotError
+from cubeling.robot.network import messages as m
+from cubeling.robot.network.arbiter import HOLD_S, FollowedPlayer, PlayerArbiter
+from cubeling.robot.network.bus import Message
+from cubeling.robot.network.endpoint import MemberEndpoint
+from cubeling.robot.network.messages import encode
+from cubeling.robot.network.state_publisher import StatePublisher
+from cubeling.robot.network.topics import Member, Pattern
 
 
 class RobotControl(Protocol):
-    """The part of `robot.Robot` that a node uses; no method blocks."""
+    """The part of `cubeling.robot.Robot` that a node uses; no method blocks."""
 
     @property
     def catalogue(self) -> Catalogue:

@@ -12,13 +12,13 @@ from typing import Any
 
 from msgspec import structs
 
-from affect import Emotion
-from robot.network import messages as m
-from robot.network.bus import Message
-from robot.network.endpoint import MemberEndpoint
-from robot.network.followers import Followers
-from robot.network.messages import MAX_TEXT_BYTES, encode
-from robot.network.topics import ROOT, Member
+from cubeling.affect import Emotion
+from cubeling.robot.network import messages as m
+from cubeling.robot.network.bus import Message
+from cubeling.robot.network.endpoint import MemberEndpoint
+from cubeling.robot.network.followers import Followers
+from cubeling.robot.network.messages import MAX_TEXT_BYTES, encode
+from cubeling.robot.network.topics import ROOT, Member
 
 MAX_AGE_S = 10.0
 """Age at which an action expires [s]: a kiss that comes so late answers nothing."""

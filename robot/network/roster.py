@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from robot.network.endpoint import LOST_AFTER_S, Endpoint
-from robot.network.topics import ANY, ROOT, Member
+from cubeling.robot.network.endpoint import LOST_AFTER_S, Endpoint
+from cubeling.robot.network.topics import ANY, ROOT, Member
 
 MAX_MEMBERS = 256
 """Most members in the roster."""

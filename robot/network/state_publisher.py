@@ -5,10 +5,10 @@ from collections.abc import Mapping
 
 from msgspec.structs import replace
 
-from affect.emotion import Emotion
-from robot.contract.telemetry import Telemetry
-from robot.network.messages import StateMessage
-from robot.network.topics import Member
+from cubeling.affect.emotion import Emotion
+from cubeling.robot.contract.telemetry import Telemetry
+from cubeling.robot.network.messages import StateMessage
+from cubeling.robot.network.topics import Member
 
 STATE_EVERY_S = 0.2
 """Shortest time between two messages of a robot's state [s]."""

@@ -9,7 +9,7 @@ number, so both can share a broker.
 from dataclasses import dataclass
 from typing import Literal
 
-from robot.errors import RobotError
+from cubeling.robot.errors import RobotError
 
 ROOT = "cubeling/1"
 """Prefix of every topic."""

@@ -10,7 +10,7 @@ the age of a sample by how far the clock may have drifted since.
 from collections import deque
 from dataclasses import dataclass
 
-from robot.protocol.timing import CLOCK_TOLERANCE
+from cubeling.robot.protocol.timing import CLOCK_TOLERANCE
 
 KEPT_SAMPLES = 60
 """Seconds from which a sample is kept."""

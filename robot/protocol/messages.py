@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Final
 
-from robot.protocol.fields import wire_field
-from robot.protocol.schema import message
+from cubeling.robot.protocol.fields import wire_field
+from cubeling.robot.protocol.schema import message
 
 NOTHING: Final = 255
 """The index for none: no motion, no sound."""

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, TypeVar
 
-from robot.protocol.fields import STRUCT_CODES, FieldSpec, MessageError
-from robot.protocol.timing import VERSION
+from cubeling.robot.protocol.fields import STRUCT_CODES, FieldSpec, MessageError
+from cubeling.robot.protocol.timing import VERSION
 
 Sender = Literal["host", "robot"]
 

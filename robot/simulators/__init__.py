@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from typing import Protocol
 
-from robot.simulators.cubeling.simulator import Simulator
-from robot.simulators.opencat.simulator import OpenCatSimulator, nybble
-from robot.simulators.pleo.simulator import PleoSimulator
+from cubeling.robot.simulators.cubeling.simulator import Simulator
+from cubeling.robot.simulators.opencat.simulator import OpenCatSimulator, nybble
+from cubeling.robot.simulators.pleo.simulator import PleoSimulator
 
 
 class Simulated(Protocol):

@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from robot.simulators.faults import Faults
+from cubeling.robot.simulators.faults import Faults
 
 MAX_IN_FLIGHT_BYTES: Final = 65536
 """Most bytes in flight; further ones are lost, as in any buffer."""

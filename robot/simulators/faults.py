@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
-from robot.errors import RobotError
+from cubeling.robot.errors import RobotError
 
 DEFAULT_STALL_INTERVAL_S: Final = 20.0
 """Default mean time between stalls [s]."""

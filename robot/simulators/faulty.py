@@ -5,9 +5,9 @@ from typing import Final
 
 import numpy as np
 
-from robot.simulators import Simulated
-from robot.simulators.channel import FaultyChannel
-from robot.simulators.faults import Faults
+from cubeling.robot.simulators import Simulated
+from cubeling.robot.simulators.channel import FaultyChannel
+from cubeling.robot.simulators.faults import Faults
 
 POLL_INTERVAL_S: Final = 0.020
 """Longest time between two steps of the robot while it is not stalled [s]."""

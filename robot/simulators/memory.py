@@ -6,11 +6,11 @@ from urllib.parse import parse_qsl
 
 import serial
 
-from robot.contract.port import READ_TIMEOUT_S, Clock, Opener
-from robot.errors import RobotError
-from robot.simulators import SIMULATORS, Simulated
-from robot.simulators.faults import Faults, faults_of
-from robot.simulators.faulty import FaultyRobot
+from cubeling.robot.contract.port import READ_TIMEOUT_S, Clock, Opener
+from cubeling.robot.errors import RobotError
+from cubeling.robot.simulators import SIMULATORS, Simulated
+from cubeling.robot.simulators.faults import Faults, faults_of
+from cubeling.robot.simulators.faulty import FaultyRobot
 
 
 def open_simulated(url: str, clock: Clock) -> Opener:

@@ -10,11 +10,11 @@ import threading
 import time
 from typing import Literal
 
-from robot.contract.closeable import Closeable
-from robot.contract.port import Clock
-from robot.errors import RobotError
-from robot.simulators import Simulated
-from robot.simulators.cubeling.simulator import Simulator
+from cubeling.robot.contract.closeable import Closeable
+from cubeling.robot.contract.port import Clock
+from cubeling.robot.errors import RobotError
+from cubeling.robot.simulators import Simulated
+from cubeling.robot.simulators.cubeling.simulator import Simulator
 
 POLL_TIMEOUT_S = 0.010
 """Longest wait for bytes [s]; the robot advances in steps of 20 ms."""
@@ -118,7 +118,7 @@ class SimulatedPort(Closeable):
 
     Examples
     --------
-    >>> import robot
+    >>> from cubeling import robot
     >>> with SimulatedPort() as port, robot.connect(port.url) as dino:
     ...     dino.catalogue.name
     'Dino'

@@ -3,14 +3,14 @@
 import math
 from pathlib import Path
 
-from robot.contract.driver import Driver
-from robot.contract.port import Clock, Opener, Port
-from robot.drivers import DRIVERS
-from robot.errors import RobotError
-from robot.link.connection import CATALOGUE_TIMEOUT_S, protocol_of
-from robot.link.exchange import MAX_READ_BYTES, REOPEN_INTERVAL_S, ByteHook, PortExchange
-from robot.link.linked_robot import Robot
-from robot.link.transport import opener
+from cubeling.robot.contract.driver import Driver
+from cubeling.robot.contract.port import Clock, Opener, Port
+from cubeling.robot.drivers import DRIVERS
+from cubeling.robot.errors import RobotError
+from cubeling.robot.link.connection import CATALOGUE_TIMEOUT_S, protocol_of
+from cubeling.robot.link.exchange import MAX_READ_BYTES, REOPEN_INTERVAL_S, ByteHook, PortExchange
+from cubeling.robot.link.linked_robot import Robot
+from cubeling.robot.link.transport import opener
 
 STEP_S = 0.005
 """Step of the virtual time [s]; an answer is processed at most this much late."""
@@ -64,7 +64,7 @@ class SteppedRobot(Robot):
 
     Examples
     --------
-    >>> import robot
+    >>> from cubeling import robot
     >>> with SteppedRobot("sim:cubeling") as dino:
     ...     dino.express(robot.Emotion(0.8, 0.5))
     ...     dino.advance(3.0)

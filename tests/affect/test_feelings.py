@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affect import LABEL_SETS, Emotion, Feelings, Personality
-from affect.dynamics import MAX_TIME_STEP_S
-from affect.errors import AffectError
-from affect.personality_file import bundled
-from affect.traits import AffectImpulse
-from affect.words import closest_word
+from cubeling.affect import LABEL_SETS, Emotion, Feelings, Personality
+from cubeling.affect.dynamics import MAX_TIME_STEP_S
+from cubeling.affect.errors import AffectError
+from cubeling.affect.personality_file import bundled
+from cubeling.affect.traits import AffectImpulse
+from cubeling.affect.words import closest_word
 
 FRAME_S = 1 / 30
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affect import LABEL_SETS, Emotion
-from affect.errors import AffectError
-from affect.labels import WORD_TABLE, label_set
-from affect.words import WORD_LABELS, WORD_PLACES, closest_word
+from cubeling.affect import LABEL_SETS, Emotion
+from cubeling.affect.errors import AffectError
+from cubeling.affect.labels import WORD_TABLE, label_set
+from cubeling.affect.words import WORD_LABELS, WORD_PLACES, closest_word
 
 THREE_WORDS = ("neutral", "happy", "angry")
 

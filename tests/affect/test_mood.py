@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affect import Feelings, Personality
-from affect.dynamics import MAX_TIME_STEP_S
-from affect.errors import AffectError
-from affect.hysteresis import Label, next_label
-from affect.traits import AffectImpulse
+from cubeling.affect import Feelings, Personality
+from cubeling.affect.dynamics import MAX_TIME_STEP_S
+from cubeling.affect.errors import AffectError
+from cubeling.affect.hysteresis import Label, next_label
+from cubeling.affect.traits import AffectImpulse
 
 FRAME_S = 1 / 30
 

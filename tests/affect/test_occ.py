@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affect.errors import AffectError
-from affect.occ import OCC_FACES, face_intensities, shown_emotion
-from affect.words import WORD_PLACES
-from characters.face.affect_display import expression_weights
-from characters.face.expressions import EXPRESSIONS
+from cubeling.affect.errors import AffectError
+from cubeling.affect.occ import OCC_FACES, face_intensities, shown_emotion
+from cubeling.affect.words import WORD_PLACES
+from cubeling.characters.face.affect_display import expression_weights
+from cubeling.characters.face.expressions import EXPRESSIONS
 
 intensities = st.dictionaries(st.sampled_from(sorted(OCC_FACES)), st.floats(0, 1))
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affect import Emotion, Personality
-from affect.errors import AffectError
-from affect.personality_file import bundled, bundled_text
-from affect.traits import AffectImpulse, Ocean
+from cubeling.affect import Emotion, Personality
+from cubeling.affect.errors import AffectError
+from cubeling.affect.personality_file import bundled, bundled_text
+from cubeling.affect.traits import AffectImpulse, Ocean
 
 trait = st.floats(0, 1)
 anyone = st.builds(Ocean, trait, trait, trait, trait, trait)

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affect import NEUTRAL, AffectError, Emotion
-from affect.regions import SECTOR_WORDS, Box, Sector, on_disc, region_of
-from affect.words import WORD_PLACES
+from cubeling.affect import NEUTRAL, AffectError, Emotion
+from cubeling.affect.regions import SECTOR_WORDS, Box, Sector, on_disc, region_of
+from cubeling.affect.words import WORD_PLACES
 
 AXIS = st.floats(-1.0, 1.0)
 

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affect.errors import AffectError
-from affect.settings import MAX_ENTRIES, MAX_FILE_BYTES, TomlTable, parse, read
+from cubeling.affect.errors import AffectError
+from cubeling.affect.settings import MAX_ENTRIES, MAX_FILE_BYTES, TomlTable, parse, read
 
 
 def outcome(do, *what) -> str | None:

@@ -12,16 +12,16 @@ import moderngl
 import numpy as np
 import pytest
 
-from app import cli
-from app.commands.session import progress
-from app.pipeline.playground import Playground
-from app.pipeline.step import Step
-from app.running.opening import intrinsics_for
-from app.session import Recorder
+from cubeling.app import cli
+from cubeling.app.commands.session import progress
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.step import Step
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.session import Recorder
+from cubeling.tracking import CubeControls, open_source
 from tests.bundled_characters import (
     bundled_characters_are_read_once as bundled_characters_are_read_once,
 )
-from tracking import CubeControls, open_source
 
 FRAME = 1 / 30
 
@@ -89,7 +89,7 @@ def hand() -> Hand:
 @pytest.fixture(scope="session")
 def bundled_session() -> Path:
     """A complete bundled session."""
-    from app.session.bundled import bundled
+    from cubeling.app.session.bundled import bundled
 
     return bundled("companion")
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.counted import counted
+from cubeling.app.counted import counted
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.errors import AppError
-from app.preferences import FILE_COMMENT, Preferences, PreferenceStore
+from cubeling.app.errors import AppError
+from cubeling.app.preferences import FILE_COMMENT, Preferences, PreferenceStore
 
 SIZES = st.none() | st.tuples(st.integers(320, 9999), st.integers(180, 9999))
 PREFERENCES = st.builds(

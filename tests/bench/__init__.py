@@ -1,3 +1,3 @@
 """Benchmarks: each prints a table of figures."""
 
-import app as app  # before numpy, whose threads and rounding it sets as in the program
+import cubeling as cubeling  # before numpy, whose threads and rounding it sets as in the program

@@ -33,14 +33,14 @@ from parselmouth.praat import call
 from rich.console import Console
 from rich.table import Table
 
-from characters.speech.accents import AccentSettings, detect_accents
-from characters.speech.alignment import align
-from characters.speech.audio import read_speech
-from characters.speech.contours import measure_prosody
-from characters.speech.phones import is_vowel
-from characters.speech.speech import Phone, Samples, Speech
-from characters.speech.strength import AccentMeasures, ev, ev2, matthews, psi
-from characters.speech.voices import Voice, espeak
+from cubeling.characters.speech.accents import AccentSettings, detect_accents
+from cubeling.characters.speech.alignment import align
+from cubeling.characters.speech.audio import read_speech
+from cubeling.characters.speech.contours import measure_prosody
+from cubeling.characters.speech.phones import is_vowel
+from cubeling.characters.speech.speech import Phone, Samples, Speech
+from cubeling.characters.speech.strength import AccentMeasures, ev, ev2, matthews, psi
+from cubeling.characters.speech.voices import Voice, espeak
 
 RATE = 16_000
 TOLERANCE_S = 0.05

@@ -11,10 +11,10 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from tracking.geometry import se3
-from tracking.geometry.state import CubeState
-from tracking.synthetic import SyntheticSource, open_synthetic
-from tracking.tracker.tracker import CubeTracker
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.state import CubeState
+from cubeling.tracking.synthetic import SyntheticSource, open_synthetic
+from cubeling.tracking.tracker.tracker import CubeTracker
 
 SCENES = (
     "poses",

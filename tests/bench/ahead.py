@@ -15,17 +15,17 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-import app.scenarios as _scenarios  # registers them
-from app.pipeline.playground import Playground
-from app.pipeline.scenario import Inputs
-from app.session import messages
-from app.session.bundled import bundled
-from app.session.encoding import MESSAGE_TYPES, decode
-from tracking import CubeState, Intrinsics
-from tracking.geometry import se3
-from tracking.synthetic import open_synthetic
-from tracking.synthetic.choreography import minimum_jerk
-from tracking.tracker.prediction import Track, TrackedPose
+import cubeling.app.scenarios as _scenarios  # registers them
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.session import messages
+from cubeling.app.session.bundled import bundled
+from cubeling.app.session.encoding import MESSAGE_TYPES, decode
+from cubeling.tracking import CubeState, Intrinsics
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.synthetic import open_synthetic
+from cubeling.tracking.synthetic.choreography import minimum_jerk
+from cubeling.tracking.tracker.prediction import Track, TrackedPose
 
 Array = NDArray[np.float64]
 

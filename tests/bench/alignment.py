@@ -22,12 +22,12 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters.speech.alignment import align, align_with_sphinx
-from characters.speech.audio import read_speech
-from characters.speech.phones import fill_pauses, ipa_of_arpabet, sound_class
-from characters.speech.speech import SILENCE, Phone, Speech, Word
-from characters.speech.textgrid import read_textgrid, with_textgrid
-from characters.speech.voices import Voice, espeak
+from cubeling.characters.speech.alignment import align, align_with_sphinx
+from cubeling.characters.speech.audio import read_speech
+from cubeling.characters.speech.phones import fill_pauses, ipa_of_arpabet, sound_class
+from cubeling.characters.speech.speech import SILENCE, Phone, Speech, Word
+from cubeling.characters.speech.textgrid import read_textgrid, with_textgrid
+from cubeling.characters.speech.voices import Voice, espeak
 
 RECORDINGS = Path(__file__).parents[3] / "shared" / "data" / "speech"
 MAX_WARPING_MS, MAX_SPHINX_MS = 25.0, 15.0

@@ -15,8 +15,8 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from affect import Emotion
-from characters import (
+from cubeling.affect import Emotion
+from cubeling.characters import (
     ActionIntent,
     Animator,
     Character,
@@ -24,10 +24,10 @@ from characters import (
     LocomotionIntent,
     mask_of,
 )
-from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.gestures.timing import natural_times
-from characters.behaviour.intents import BehaviourIntent, GestureIntent, ReachIntent, Times
-from characters.motion.layers import overlaid
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
+from cubeling.characters.behaviour.gestures.timing import natural_times
+from cubeling.characters.behaviour.intents import BehaviourIntent, GestureIntent, ReachIntent, Times
+from cubeling.characters.motion.layers import overlaid
 
 FRAMES = 600
 

@@ -28,7 +28,7 @@ import pytest
 from rich.console import Console
 from rich.table import Table
 
-from characters.behaviour.bml import Block, BmlWarning, Realizer, parse
+from cubeling.characters.behaviour.bml import Block, BmlWarning, Realizer, parse
 from tests.characters.behaviour.bml.estimates import Estimates
 from tests.characters.behaviour.bml.suite import block
 

@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
+from cubeling.tracking import CubeModel, Frame
+from cubeling.tracking.calibration import CubeFinder, View, ViewCollector, calibrate, measured_cube
+from cubeling.tracking.synthetic import open_synthetic
+from cubeling.tracking.synthetic.folding import face_poses, fold_cube
 from tests.bench.tracking.sequences import Sequence, sequence
 from tests.tracking.calibration.waved import aligned
-from tracking import CubeModel, Frame
-from tracking.calibration import CubeFinder, View, ViewCollector, calibrate, measured_cube
-from tracking.synthetic import open_synthetic
-from tracking.synthetic.folding import face_poses, fold_cube
 
 Array = NDArray[np.float64]
 

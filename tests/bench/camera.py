@@ -16,9 +16,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from app.commands.doctor import camera_report, read_for
-from tracking import Frame, TrackingError, open_source
-from tracking.sources.live import LiveSource
+from cubeling.app.commands.doctor import camera_report, read_for
+from cubeling.tracking import Frame, TrackingError, open_source
+from cubeling.tracking.sources.live import LiveSource
 
 RATE_HZ = 30.0
 BUFFERS = 4

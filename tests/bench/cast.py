@@ -42,13 +42,13 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from characters import ActionIntent, Animator, Character, CharacterCommand, Pose, RootDelta
-from characters.control.controllers.actions import clips_of_actions
-from characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS
-from characters.model.mesh import Mesh
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
-from characters.skeleton.feet import find_feet
+from cubeling.characters import ActionIntent, Animator, Character, CharacterCommand, Pose, RootDelta
+from cubeling.characters.control.controllers.actions import clips_of_actions
+from cubeling.characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.feet import find_feet
 from tools.authoring.modelling.rig import mirrored
 
 Array = NDArray[np.float64]

@@ -13,13 +13,13 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from app.session import frame_encoder
-from app.session.frames import FrameEncoder
+from cubeling.app.session import frame_encoder
+from cubeling.app.session.frames import FrameEncoder
+from cubeling.tracking import Frame
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.synthetic import SyntheticSource, open_synthetic
+from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.bench.accuracy import in_view
-from tracking import Frame
-from tracking.geometry import se3
-from tracking.synthetic import SyntheticSource, open_synthetic
-from tracking.tracker.tracker import CubeTracker
 
 SCENES = (
     *(f"static?seed={seed}" for seed in range(2, 8)),

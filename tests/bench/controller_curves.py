@@ -18,8 +18,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from app.ui.video_file import VIDEO_FORMATS, VideoFile
-from characters import (
+from cubeling.app.ui.video_file import VIDEO_FORMATS, VideoFile
+from cubeling.characters import (
     CONTROLLER_CHOICES,
     ActionIntent,
     Animator,
@@ -31,12 +31,12 @@ from characters import (
     PosedCharacter,
     choose_controller,
 )
-from characters.control.controllers import ControllerFactory
-from characters.control.layers import FOOT_LAYERS
-from characters.rendering import FloorPath, SceneCharacter, Stage, View, create_context
-from characters.rendering.portrait import PAPER_BGR, PortraitRenderer, side_by_side
-from characters.rendering.portrait_camera import CharacterExtent, PortraitCamera
-from characters.skeleton import rotations
+from cubeling.characters.control.controllers import ControllerFactory
+from cubeling.characters.control.layers import FOOT_LAYERS
+from cubeling.characters.rendering import FloorPath, SceneCharacter, Stage, View, create_context
+from cubeling.characters.rendering.portrait import PAPER_BGR, PortraitRenderer, side_by_side
+from cubeling.characters.rendering.portrait_camera import CharacterExtent, PortraitCamera
+from cubeling.characters.skeleton import rotations
 from tests.bench.controllers import CMU
 from tests.bench.feet import FRAME_RATE
 

@@ -41,7 +41,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from characters import (
+from cubeling.characters import (
     CONTROLLER_CHOICES,
     ActionIntent,
     Animator,
@@ -53,11 +53,11 @@ from characters import (
     PosedCharacter,
     choose_controller,
 )
-from characters.control.controllers import ControllerFactory
-from characters.control.controllers.controller import CharacterController
-from characters.control.controllers.graph import GraphController
-from characters.control.controllers.walk import NOT_ACTIONS
-from characters.control.layers import FOOT_LAYERS, FrameContext
+from cubeling.characters.control.controllers import ControllerFactory
+from cubeling.characters.control.controllers.controller import CharacterController
+from cubeling.characters.control.controllers.graph import GraphController
+from cubeling.characters.control.controllers.walk import NOT_ACTIONS
+from cubeling.characters.control.layers import FOOT_LAYERS, FrameContext
 from tests.bench.feet import (
     BODY_HEIGHT_M,
     FRAME_RATE,

@@ -13,10 +13,10 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters import Character
-from characters.motion.batch.bank import ClipBank
-from characters.motion.batch.crowd import crowd_globals
-from characters.motion.blend import mix
+from cubeling.characters import Character
+from cubeling.characters.motion.batch.bank import ClipBank
+from cubeling.characters.motion.batch.crowd import crowd_globals
+from cubeling.characters.motion.blend import mix
 
 CHARACTERS, CLIPS_EACH, ROUNDS = 256, 3, 300
 

@@ -5,8 +5,8 @@ from collections.abc import Callable
 import cv2
 import numpy as np
 
-from tracking.geometry.arrays import Floats
-from tracking.synthetic.desk import DESK_TEXELS, Colour
+from cubeling.tracking.geometry.arrays import Floats
+from cubeling.tracking.synthetic.desk import DESK_TEXELS, Colour
 
 PHOTOGRAPH_M, PHOTOGRAPH_AT = (0.9, 0.65), (850, 900)
 """Sides of a photograph that lies under the cube [m], and its first column and row [texels]."""

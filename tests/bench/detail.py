@@ -19,11 +19,18 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from characters import Character
-from characters.control.command import PosedCharacter
-from characters.rendering import QUALITIES, Quality, SceneCharacter, Stage, View, create_context
-from characters.rendering.geometry.detail_levels import with_levels
-from characters.rendering.geometry.vertices import CharacterVertices
+from cubeling.characters import Character
+from cubeling.characters.control.command import PosedCharacter
+from cubeling.characters.rendering import (
+    QUALITIES,
+    Quality,
+    SceneCharacter,
+    Stage,
+    View,
+    create_context,
+)
+from cubeling.characters.rendering.geometry.detail_levels import with_levels
+from cubeling.characters.rendering.geometry.vertices import CharacterVertices
 
 TURNS = (0.4, 2.4)
 """Where the camera is, seen from the character [rad]."""

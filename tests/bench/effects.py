@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from app.pipeline.surroundings import APERTURE_M
-from characters.model.character import Character
-from characters.rendering import (
+from cubeling.app.pipeline.surroundings import APERTURE_M
+from cubeling.characters.model.character import Character
+from cubeling.characters.rendering import (
     FULL,
     QUALITIES,
     Effect,
@@ -32,7 +32,7 @@ from characters.rendering import (
     View,
     create_context,
 )
-from characters.rendering.camera_picture.light import LINEAR_FROM_SRGB
+from cubeling.characters.rendering.camera_picture.light import LINEAR_FROM_SRGB
 from tests.bench.picture import SIZE, scene
 from tests.characters.rendering.watch import WatchPass
 

@@ -30,17 +30,17 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from affect import Emotion
-from characters import Animator, Character, CharacterCommand, Pose
-from characters.control.command import SpeechIntent
-from characters.control.layers import FrameContext
-from characters.control.layers.face import FaceLayer
-from characters.face.speech_display import SpeechDisplay
-from characters.face.visemes.coarticulation import DEFAULT, Coarticulation, MouthTrack
-from characters.face.visemes.sets import MOUTH_SHAPES, viseme_set
-from characters.skeleton.pose import Array
-from characters.speech.speech import SILENCE, Phone, Speech, Utterance
-from characters.speech.voices import Voice, VoiceError, espeak
+from cubeling.affect import Emotion
+from cubeling.characters import Animator, Character, CharacterCommand, Pose
+from cubeling.characters.control.command import SpeechIntent
+from cubeling.characters.control.layers import FrameContext
+from cubeling.characters.control.layers.face import FaceLayer
+from cubeling.characters.face.speech_display import SpeechDisplay
+from cubeling.characters.face.visemes.coarticulation import DEFAULT, Coarticulation, MouthTrack
+from cubeling.characters.face.visemes.sets import MOUTH_SHAPES, viseme_set
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.speech.speech import SILENCE, Phone, Speech, Utterance
+from cubeling.characters.speech.voices import Voice, VoiceError, espeak
 from tests.characters.face.mouths import MeasuredMouth
 
 FRAME_RATE = 30.0

@@ -20,15 +20,15 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from characters import Character, CharacterCommand, LocomotionIntent, Pose
-from characters.body.posture import NEUTRAL_EXPRESSIVITY
-from characters.control.controllers.walk import WalkController
-from characters.control.layers import FootLockLayer, FrameContext
-from characters.locomotion.steering import SteeringOutput
-from characters.motion.contacts import spans
-from characters.motion.motion import RootDelta
-from characters.skeleton import rotations
-from characters.skeleton.feet import find_feet
+from cubeling.characters import Character, CharacterCommand, LocomotionIntent, Pose
+from cubeling.characters.body.posture import NEUTRAL_EXPRESSIVITY
+from cubeling.characters.control.controllers.walk import WalkController
+from cubeling.characters.control.layers import FootLockLayer, FrameContext
+from cubeling.characters.locomotion.steering import SteeringOutput
+from cubeling.characters.motion.contacts import spans
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.feet import find_feet
 
 Array = NDArray[np.float64]
 

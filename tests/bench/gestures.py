@@ -36,17 +36,17 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from characters import Character, Clip
-from characters.body.capsules import CapsuleBody
-from characters.skeleton import rotations
-from characters.speech.prosody import utterance_of
-from characters.speech.speech import Accent
-from characters.speech.voices import VoiceError, espeak
-from characters.synthesis.gestures.graph import sweep
-from characters.synthesis.gestures.learning import RATE_HZ, analyse
-from characters.synthesis.gestures.library import GestureLibrary
-from characters.synthesis.gestures.plan import GesturePlan
-from characters.synthesis.gestures.planning import GesturePlanner, GestureSettings
+from cubeling.characters import Character, Clip
+from cubeling.characters.body.capsules import CapsuleBody
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.speech.prosody import utterance_of
+from cubeling.characters.speech.speech import Accent
+from cubeling.characters.speech.voices import VoiceError, espeak
+from cubeling.characters.synthesis.gestures.graph import sweep
+from cubeling.characters.synthesis.gestures.learning import RATE_HZ, analyse
+from cubeling.characters.synthesis.gestures.library import GestureLibrary
+from cubeling.characters.synthesis.gestures.plan import GesturePlan
+from cubeling.characters.synthesis.gestures.planning import GesturePlanner, GestureSettings
 
 SEEDS = 12
 ACCENTS = 60
@@ -87,7 +87,7 @@ class Measured:
 def bundled(name: str = "human") -> GestureLibrary:
     """Return the library of a bundled character."""
     return GestureLibrary.load(
-        Path(str(resources.files("characters") / "assets" / f"{name}.gestures"))
+        Path(str(resources.files("cubeling.characters") / "assets" / f"{name}.gestures"))
     )
 
 

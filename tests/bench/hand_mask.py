@@ -22,16 +22,16 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from app.pipeline.surroundings import cover_of
-from characters.rendering.camera_picture.hand_cover import PictureCover
-from characters.rendering.projection import Rectangle
+from cubeling.app.pipeline.surroundings import cover_of
+from cubeling.characters.rendering.camera_picture.hand_cover import PictureCover
+from cubeling.characters.rendering.projection import Rectangle
+from cubeling.tracking.appearance.hand.finder import HandFinder
+from cubeling.tracking.appearance.hand.mask import HandMask
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.arrays import Floats, Image
+from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.bench.desks import DESKS, desk_picture
 from tests.bench.hand_scenes import CAMERA_HZ, GLOVES, SKINS, HandScene, HandView
-from tracking.appearance.hand.finder import HandFinder
-from tracking.appearance.hand.mask import HandMask
-from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Floats, Image
-from tracking.tracker.tracker import CubeTracker
 
 MIN_IOU, MAX_SPREAD, MAX_TIME_MS = 0.87, 0.02, 2.0
 """Bars: of every skin and glove; between the best and the worst skin; of the mean frame."""

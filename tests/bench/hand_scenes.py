@@ -5,21 +5,21 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
+from cubeling.tracking.appearance.colour_space import LINEAR_FROM_SRGB
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array, Floats, Image
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.synthetic.camera_rays import CameraRays
+from cubeling.tracking.synthetic.choreography import UP, Choreography, SceneState
+from cubeling.tracking.synthetic.desk import draw_objects, render_desk
+from cubeling.tracking.synthetic.exposure import ExposureRenderer, in_colours, shutter_samples
+from cubeling.tracking.synthetic.hand import Capsule, Hand, draw_hand, hand_region
+from cubeling.tracking.synthetic.options import SyntheticOptions
+from cubeling.tracking.synthetic.paper_cube import PaperCube
+from cubeling.tracking.synthetic.source import EYE_M, LOOK_AT_M, look_at, webcam
 from tests.bench.desks import desk_picture
-from tracking.appearance.colour_space import LINEAR_FROM_SRGB
-from tracking.cube.model import CubeModel
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array, Floats, Image
-from tracking.geometry.frame import Frame
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.synthetic.camera_rays import CameraRays
-from tracking.synthetic.choreography import UP, Choreography, SceneState
-from tracking.synthetic.desk import draw_objects, render_desk
-from tracking.synthetic.exposure import ExposureRenderer, in_colours, shutter_samples
-from tracking.synthetic.hand import Capsule, Hand, draw_hand, hand_region
-from tracking.synthetic.options import SyntheticOptions
-from tracking.synthetic.paper_cube import PaperCube
-from tracking.synthetic.source import EYE_M, LOOK_AT_M, look_at, webcam
 
 SKINS = {
     "Monk 01": "f6ede4",

@@ -31,15 +31,15 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from characters import Animator, Character, CharacterCommand, Clip, Pose
-from characters.control.controllers.recordings import read_motions
-from characters.control.layers import FOOT_LAYERS
-from characters.rendering import create_context
-from characters.rendering.portrait import PortraitRenderer
-from characters.synthesis.idle.database import IdleDatabase
-from characters.synthesis.idle.idle_motion import IdleMotion
-from characters.synthesis.idle.posture_space import PostureVectors
-from characters.synthesis.idle.recordings import read_standing
+from cubeling.characters import Animator, Character, CharacterCommand, Clip, Pose
+from cubeling.characters.control.controllers.recordings import read_motions
+from cubeling.characters.control.layers import FOOT_LAYERS
+from cubeling.characters.rendering import create_context
+from cubeling.characters.rendering.portrait import PortraitRenderer
+from cubeling.characters.synthesis.idle.database import IdleDatabase
+from cubeling.characters.synthesis.idle.idle_motion import IdleMotion
+from cubeling.characters.synthesis.idle.posture_space import PostureVectors
+from cubeling.characters.synthesis.idle.recordings import read_standing
 from tests.bench.feet import FRAME_RATE, measure, placed_take
 
 PEOPLE = Path(__file__).parents[3] / "shared" / "data" / "idle"

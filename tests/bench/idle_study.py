@@ -39,13 +39,17 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from characters import Character, Pose
-from characters.control.controllers.recordings import read_motions
-from characters.synthesis.idle.database import IdleDatabase
-from characters.synthesis.idle.idle_motion import IdleMotion, Small
-from characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
-from characters.synthesis.idle.recordings import StandingRecording, find_rests, read_standing
-from characters.synthesis.transitions.comparison import bootstrap_interval
+from cubeling.characters import Character, Pose
+from cubeling.characters.control.controllers.recordings import read_motions
+from cubeling.characters.synthesis.idle.database import IdleDatabase
+from cubeling.characters.synthesis.idle.idle_motion import IdleMotion, Small
+from cubeling.characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
+from cubeling.characters.synthesis.idle.recordings import (
+    StandingRecording,
+    find_rests,
+    read_standing,
+)
+from cubeling.characters.synthesis.transitions.comparison import bootstrap_interval
 
 Array = NDArray[np.float64]
 

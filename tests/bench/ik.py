@@ -25,7 +25,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from app.commands.ik import (
+from cubeling.app.commands.ik import (
     CHAIN_SIZES,
     AloneFigures,
     SureFigures,
@@ -34,14 +34,14 @@ from app.commands.ik import (
     measure_sure,
     sure_table,
 )
-from characters.errors import CharacterError
-from characters.ik.solvers.chains import Chains
-from characters.ik.solvers.measures import Problem, arc, joint_change, violations
-from characters.ik.solvers.single import SingleChain
-from characters.ik.solvers.solving import SOLVERS, TOLERANCE, solve
-from characters.retargeting.recording import load_recording
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.ik.solvers.chains import Chains
+from cubeling.characters.ik.solvers.measures import Problem, arc, joint_change, violations
+from cubeling.characters.ik.solvers.single import SingleChain
+from cubeling.characters.ik.solvers.solving import SOLVERS, TOLERANCE, solve
+from cubeling.characters.retargeting.recording import load_recording
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array
 
 DATA = Path(__file__).parents[3] / "shared" / "data"
 BLOCK = 5000

@@ -14,14 +14,14 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from app.pipeline.playground import Playground
-from app.running.opening import intrinsics_for
-from app.scenarios import SCENARIOS
-from app.session.bundled import bundled
-from characters.rendering import WALL_SHARE, create_context
-from characters.rendering.projection import project
-from tracking import CubeTracker, open_source
-from tracking.synthetic import open_synthetic
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.scenarios import SCENARIOS
+from cubeling.app.session.bundled import bundled
+from cubeling.characters.rendering import WALL_SHARE, create_context
+from cubeling.characters.rendering.projection import project
+from cubeling.tracking import CubeTracker, open_source
+from cubeling.tracking.synthetic import open_synthetic
 
 Array = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 from rich.console import Console
 
+from cubeling.tracking import CubeModel, CubeTracker, Frame, Intrinsics, LensEstimate
 from tests.bench.tracking.sequences import Sequence, sequence
-from tracking import CubeModel, CubeTracker, Frame, Intrinsics, LensEstimate
 
 SEEDS, POSES = range(1, 6), 40
 

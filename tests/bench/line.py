@@ -23,19 +23,19 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from app.pipeline.playground import Playground
-from app.pipeline.scenario import Inputs
-from app.pipeline.step import RobotView, Step
-from app.pipeline.surroundings import REALISM_CHOICES, Surroundings, realism_of
-from app.running.opening import intrinsics_for
-from app.scenarios import SCENARIOS
-from app.session.bundled import bundled
-from app.sound import Mixer, SessionSound, SoundBank
-from app.ui.cards.overlay import overlay, virtual_robot_side
-from app.ui.cards.virtual_robot import VirtualRobot
-from app.ui.video_file import AudioTrack
-from characters.rendering import FULL, QUALITIES, Cover, Quality, create_context
-from tracking import CubeState, Frame, open_source
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.pipeline.surroundings import REALISM_CHOICES, Surroundings, realism_of
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.scenarios import SCENARIOS
+from cubeling.app.session.bundled import bundled
+from cubeling.app.sound import Mixer, SessionSound, SoundBank
+from cubeling.app.ui.cards.overlay import overlay, virtual_robot_side
+from cubeling.app.ui.cards.virtual_robot import VirtualRobot
+from cubeling.app.ui.video_file import AudioTrack
+from cubeling.characters.rendering import FULL, QUALITIES, Cover, Quality, create_context
+from cubeling.tracking import CubeState, Frame, open_source
 
 Look = Callable[[Surroundings, Frame, CubeState], Cover | None]
 """`Surroundings.cover`."""

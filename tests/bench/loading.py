@@ -15,8 +15,8 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters import Character, Clip, Mesh
-from characters.skeleton import rotations
+from cubeling.characters import Character, Clip, Mesh
+from cubeling.characters.skeleton import rotations
 
 FILE_BYTES = 5_000_000
 MAX_CPU_S = 0.5

@@ -15,9 +15,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters.model.character import Character
-from characters.model.mesh import Material, Mesh, Morph
-from characters.rendering import SceneCharacter, Stage, create_context
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.mesh import Material, Mesh, Morph
+from cubeling.characters.rendering import SceneCharacter, Stage, create_context
 from tests.bench.picture import SIZE, scene
 
 FACE_VERTICES = 3000

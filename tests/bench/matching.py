@@ -14,9 +14,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters import Character
-from characters.control.controllers.matching import prepare_database
-from characters.synthesis.matching.nearest import NearestRow
+from cubeling.characters import Character
+from cubeling.characters.control.controllers.matching import prepare_database
+from cubeling.characters.synthesis.matching.nearest import NearestRow
 from tests.bench.controllers import CMU
 
 ROWS, QUERIES, NOISE = 50_000, 300, 0.1

@@ -10,7 +10,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters.formats import load_motion
+from cubeling.characters.formats import load_motion
 
 RATE_HZ = 120
 MINUTES = 10

@@ -24,23 +24,23 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from app.motion_graphs.recordings import fitted
-from app.motion_graphs.tables import SPLIT_PROFILES
-from characters import Character
-from characters.retargeting import load_recording
-from characters.synthesis.distances import thesis_distance
-from characters.synthesis.graphs.candidates import find_candidates
-from characters.synthesis.graphs.graph import EdgeCosts, build_graph
-from characters.synthesis.graphs.parts import PartGraphs
-from characters.synthesis.joint_weights import fit_weights
-from characters.synthesis.library import MotionLibrary
-from characters.synthesis.transitions.comparison import (
+from cubeling.app.motion_graphs.recordings import fitted
+from cubeling.app.motion_graphs.tables import SPLIT_PROFILES
+from cubeling.characters import Character
+from cubeling.characters.retargeting import load_recording
+from cubeling.characters.synthesis.distances import thesis_distance
+from cubeling.characters.synthesis.graphs.candidates import find_candidates
+from cubeling.characters.synthesis.graphs.graph import EdgeCosts, build_graph
+from cubeling.characters.synthesis.graphs.parts import PartGraphs
+from cubeling.characters.synthesis.joint_weights import fit_weights
+from cubeling.characters.synthesis.library import MotionLibrary
+from cubeling.characters.synthesis.transitions.comparison import (
     Comparison,
     bootstrap_interval,
     common_requests,
 )
-from characters.synthesis.transitions.evaluation import requests, together
-from characters.synthesis.transitions.progressive import SearchSettings, TransitionPlanner
+from cubeling.characters.synthesis.transitions.evaluation import requests, together
+from cubeling.characters.synthesis.transitions.progressive import SearchSettings, TransitionPlanner
 
 CMU = Path(__file__).parents[3] / "shared" / "data" / "cmu-mocap"
 FRAMES, MAX_GRAPH_S, MAX_MEMORY_MB, MAX_QUERY_MS = 6600, 10.0, 500.0, 5.0

@@ -16,18 +16,18 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from app.pipeline.frame_times import FrameTimes
-from app.pipeline.playground import Playground
-from app.preferences import Preferences, PreferenceStore
-from app.running.opening import intrinsics_for
-from app.running.robots import RobotLine
-from app.session import SessionOptions
-from app.session.bundled import bundled
-from app.ui.panels import PANELS, SessionMonitor
-from app.ui.panels.drawing.layer import PanelLayer
-from app.ui.window import Window
+from cubeling.app.pipeline.frame_times import FrameTimes
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.preferences import Preferences, PreferenceStore
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.robots import RobotLine
+from cubeling.app.session import SessionOptions
+from cubeling.app.session.bundled import bundled
+from cubeling.app.ui.panels import PANELS, SessionMonitor
+from cubeling.app.ui.panels.drawing.layer import PanelLayer
+from cubeling.app.ui.window import Window
+from cubeling.tracking import open_source
 from tools.offscreen import no_display_needed
-from tracking import open_source
 
 FRAME_S = 1 / 30
 SETTLING_FRAMES = 10

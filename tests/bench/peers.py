@@ -22,17 +22,17 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from app.pipeline.playground import Playground
-from app.pipeline.scenario import Inputs
-from app.running.opening import intrinsics_for
-from app.running.robots import RobotLine
-from app.session.bundled import bundled
-from characters.rendering import create_context
-from robot.protocol import messages as m
-from robot.protocol.schema import pack
-from robot.protocol.wire import encode_frame
-from robot.simulators.cubeling.simulator import Simulator
-from tracking import Frame, Intrinsics, open_source
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.robots import RobotLine
+from cubeling.app.session.bundled import bundled
+from cubeling.characters.rendering import create_context
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.schema import pack
+from cubeling.robot.protocol.wire import encode_frame
+from cubeling.robot.simulators.cubeling.simulator import Simulator
+from cubeling.tracking import Frame, Intrinsics, open_source
 
 KINDS = ("well", "silent", "deaf", "babbling", "hostile")
 NO_ROBOT = ("none", "none again")  # the second shows how much of a difference is noise

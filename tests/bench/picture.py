@@ -19,18 +19,25 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters.control.command import PosedCharacter
-from characters.model.character import Character
-from characters.rendering import Box, FloorPath, SceneCharacter, Stage, View, create_context
-from characters.rendering.camera_picture.light import LightEstimator
-from characters.rendering.camera_picture.undistortion import Undistorter
-from characters.rendering.geometry.skinned_character import SkinnedCharacter
-from characters.rendering.passes.characters import CharacterPass
-from characters.rendering.passes.cube_occlusion import CubeOcclusionPass
-from characters.rendering.passes.floor_paths import FloorPathPass
-from characters.rendering.passes.resolve import ResolvePass
-from characters.rendering.passes.shadows import ShadowPass
-from characters.rendering.target import LayerTarget
+from cubeling.characters.control.command import PosedCharacter
+from cubeling.characters.model.character import Character
+from cubeling.characters.rendering import (
+    Box,
+    FloorPath,
+    SceneCharacter,
+    Stage,
+    View,
+    create_context,
+)
+from cubeling.characters.rendering.camera_picture.light import LightEstimator
+from cubeling.characters.rendering.camera_picture.undistortion import Undistorter
+from cubeling.characters.rendering.geometry.skinned_character import SkinnedCharacter
+from cubeling.characters.rendering.passes.characters import CharacterPass
+from cubeling.characters.rendering.passes.cube_occlusion import CubeOcclusionPass
+from cubeling.characters.rendering.passes.floor_paths import FloorPathPass
+from cubeling.characters.rendering.passes.resolve import ResolvePass
+from cubeling.characters.rendering.passes.shadows import ShadowPass
+from cubeling.characters.rendering.target import LayerTarget
 
 SIZE = (1280, 720)
 TARGET_MS = 12.0

@@ -18,10 +18,10 @@ import parselmouth
 from rich.console import Console
 from rich.table import Table
 
-from characters.speech.audio import read_speech, resampled
-from characters.speech.contours import measure_prosody
-from characters.speech.pitch import PitchSettings, track_pitch
-from characters.speech.speech import Speech
+from cubeling.characters.speech.audio import read_speech, resampled
+from cubeling.characters.speech.contours import measure_prosody
+from cubeling.characters.speech.pitch import PitchSettings, track_pitch
+from cubeling.characters.speech.speech import Speech
 
 RECORDINGS = Path(__file__).parents[3] / "shared" / "data" / "speech"
 GROSS, MAX_GROSS_SHARE = 0.2, 0.01

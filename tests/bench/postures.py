@@ -26,12 +26,12 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from characters import Character
-from characters.control.controllers.recordings import read_motions
-from characters.synthesis.distances import DISTANCES
-from characters.synthesis.idle.posture_space import PostureSpace, PostureVectors, Weights
-from characters.synthesis.joint_weights import rank_correlation
-from characters.synthesis.library import MotionLibrary
+from cubeling.characters import Character
+from cubeling.characters.control.controllers.recordings import read_motions
+from cubeling.characters.synthesis.distances import DISTANCES
+from cubeling.characters.synthesis.idle.posture_space import PostureSpace, PostureVectors, Weights
+from cubeling.characters.synthesis.joint_weights import rank_correlation
+from cubeling.characters.synthesis.library import MotionLibrary
 from tests.bench.upper_body import DATA
 
 Array = NDArray[np.float64]

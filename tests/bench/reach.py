@@ -23,13 +23,13 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters import Animator, Character, CharacterCommand
-from characters.behaviour.intents import BehaviourIntent, ReachIntent, Times
-from characters.control.layers import FOOT_LAYERS, LIVELINESS_LAYERS
-from characters.control.layers.gaze import GazeLayer
-from characters.control.layers.reach import ReachLayer
-from characters.ik.reaching import HandTarget
-from characters.skeleton.pose import Array
+from cubeling.characters import Animator, Character, CharacterCommand
+from cubeling.characters.behaviour.intents import BehaviourIntent, ReachIntent, Times
+from cubeling.characters.control.layers import FOOT_LAYERS, LIVELINESS_LAYERS
+from cubeling.characters.control.layers.gaze import GazeLayer
+from cubeling.characters.control.layers.reach import ReachLayer
+from cubeling.characters.ik.reaching import HandTarget
+from cubeling.characters.skeleton.pose import Array
 
 PERSON_MM, STEP_MM, MAX_MISS_MM = 1700.0, 2.0, 10.0
 PLACES, CALLS, FRAMES = 1500, 3000, 400

@@ -15,17 +15,17 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from characters import Character, CharacterError, Clip
-from characters.model.bind_pose import with_bind_pose
-from characters.retargeting import Recording, load_recording, retarget
-from characters.retargeting.footskate import ball_positions, find_foot_contacts
-from characters.retargeting.ground_motion import find_ground_motion
-from characters.retargeting.locomotion.grading import MAX_BONE_CHANGE, MAX_KNEE_EXCESS_DEG
-from characters.retargeting.locomotion.recorded_gait import extract_gait
-from characters.retargeting.measures import bone_change, knee_quantiles, sole_dip
-from characters.retargeting.rig import Rig, leg_pairs
-from characters.retargeting.root import with_root_joint
-from characters.skeleton import rotations
+from cubeling.characters import Character, CharacterError, Clip
+from cubeling.characters.model.bind_pose import with_bind_pose
+from cubeling.characters.retargeting import Recording, load_recording, retarget
+from cubeling.characters.retargeting.footskate import ball_positions, find_foot_contacts
+from cubeling.characters.retargeting.ground_motion import find_ground_motion
+from cubeling.characters.retargeting.locomotion.grading import MAX_BONE_CHANGE, MAX_KNEE_EXCESS_DEG
+from cubeling.characters.retargeting.locomotion.recorded_gait import extract_gait
+from cubeling.characters.retargeting.measures import bone_change, knee_quantiles, sole_dip
+from cubeling.characters.retargeting.rig import Rig, leg_pairs
+from cubeling.characters.retargeting.root import with_root_joint
+from cubeling.characters.skeleton import rotations
 
 SHARED = Path(__file__).parents[3] / "shared" / "data"
 PERSON_HEIGHT_M = 1.7

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
+from cubeling.tracking.cube.model import FACE_AXES, CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.tracker.several import CubesTracker
 from tests.tracking.drawn import WIDE, held, photograph, scene
-from tracking.cube.model import FACE_AXES, CubeModel
-from tracking.geometry import se3
-from tracking.geometry.frame import Frame
-from tracking.tracker.several import CubesTracker
 
 Array = NDArray[np.float64]
 

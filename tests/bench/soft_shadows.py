@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from characters.model.character import Character
-from characters.rendering import QUALITIES, Stage, View, create_context
-from characters.rendering.deferred.lamp import Lamp
-from characters.rendering.passes.deferred.soft_shadows import TABLE_SIDE, SoftShadowPass
+from cubeling.characters.model.character import Character
+from cubeling.characters.rendering import QUALITIES, Stage, View, create_context
+from cubeling.characters.rendering.deferred.lamp import Lamp
+from cubeling.characters.rendering.passes.deferred.soft_shadows import TABLE_SIDE, SoftShadowPass
 from tests.bench.ambient_occlusion.scenes import posed
 from tests.bench.picture import SIZE, scene
 from tests.characters.rendering.watch import WatchPass

@@ -14,22 +14,22 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from rich.console import Console
 
-from app.speaking.lines import bundled_lines
-from app.speaking.live import LivePerformer
-from app.speaking.microphone import BLOCK, MICROPHONE_HZ
-from app.speaking.moments import LineRequest
-from app.speaking.performance import Direction, performed, write_video
-from app.speaking.speaker import spoken
-from characters import Character
-from characters.control.speech_profile import DEFAULT_PROFILE
-from characters.face.visemes.mouth_morphs import MouthMorphs
-from characters.retargeting.root import with_root_joint
-from characters.speech.audio import resampled
-from characters.speech.voices import Manner, Voice, espeak
+from cubeling.app.speaking.lines import bundled_lines
+from cubeling.app.speaking.live import LivePerformer
+from cubeling.app.speaking.microphone import BLOCK, MICROPHONE_HZ
+from cubeling.app.speaking.moments import LineRequest
+from cubeling.app.speaking.performance import Direction, performed, write_video
+from cubeling.app.speaking.speaker import spoken
+from cubeling.characters import Character
+from cubeling.characters.control.speech_profile import DEFAULT_PROFILE
+from cubeling.characters.face.visemes.mouth_morphs import MouthMorphs
+from cubeling.characters.retargeting.root import with_root_joint
+from cubeling.characters.speech.audio import resampled
+from cubeling.characters.speech.voices import Manner, Voice, espeak
 
 CONSOLE = Console(highlight=False, soft_wrap=True)
 FRAME_S = 1 / 30
-LOUDSPEAKER_S = 0.025  # `app.sound.loudspeaker.LATENCY_S`
+LOUDSPEAKER_S = 0.025  # `cubeling.app.sound.loudspeaker.LATENCY_S`
 TEXT = (
     "Hello and welcome. I am a small paper person, and I live on your table. Today I want to tell "
     "you how a cube, a voice and a robot come together. "

@@ -19,12 +19,12 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters.body.constraints import ConstrainedJoints
-from characters.body.springs import SpringBody
-from characters.model.constraints import JointConstraint
-from characters.model.springs import SpringBone, SpringCollider
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.body.constraints import ConstrainedJoints
+from cubeling.characters.body.springs import SpringBody
+from cubeling.characters.model.constraints import JointConstraint
+from cubeling.characters.model.springs import SpringBone, SpringCollider
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 BODY_JOINTS, HEAD, SECONDS = 40, 10, 3.0
 BALL = SpringCollider("0", (0.0, -0.3, 0.1), (0.0, -0.3, 0.1), 0.12)

@@ -34,13 +34,13 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from affect import NEUTRAL, Emotion
-from affect.regions import SECTOR_WORDS
-from affect.words import WORD_PLACES
-from characters import Animator, Character, CharacterCommand, Pose
-from characters.skeleton.anatomy import SIDES
-from characters.synthesis.idle.posture_space import PostureVectors
-from characters.synthesis.idle.standing import StandingPerson
+from cubeling.affect import NEUTRAL, Emotion
+from cubeling.affect.regions import SECTOR_WORDS
+from cubeling.affect.words import WORD_PLACES
+from cubeling.characters import Animator, Character, CharacterCommand, Pose
+from cubeling.characters.skeleton.anatomy import SIDES
+from cubeling.characters.synthesis.idle.posture_space import PostureVectors
+from cubeling.characters.synthesis.idle.standing import StandingPerson
 from tests.bench.feet import FRAME_RATE, measure, placed_take
 
 Array = NDArray[np.float64]

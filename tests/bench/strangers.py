@@ -41,16 +41,16 @@ from rich.markup import escape
 from rich.progress import track
 from rich.table import Table
 
-from app.ui.contact_sheets import ContactSheets, save
-from characters import Character, CharacterError
-from characters.formats import is_motion_only
-from characters.model.bind_pose import with_bind_pose
-from characters.model.character import CHARACTER_READERS
-from characters.motion.clip import Clip
-from characters.rendering import create_context
-from characters.retargeting import Recording, load_recording, make_locomotion, retarget
-from characters.retargeting.footskate import find_foot_contacts
-from characters.retargeting.locomotion.grading import (
+from cubeling.app.ui.contact_sheets import ContactSheets, save
+from cubeling.characters import Character, CharacterError
+from cubeling.characters.formats import is_motion_only
+from cubeling.characters.model.bind_pose import with_bind_pose
+from cubeling.characters.model.character import CHARACTER_READERS
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.rendering import create_context
+from cubeling.characters.retargeting import Recording, load_recording, make_locomotion, retarget
+from cubeling.characters.retargeting.footskate import find_foot_contacts
+from cubeling.characters.retargeting.locomotion.grading import (
     MAX_BONE_CHANGE,
     MAX_FACING_ERROR_DEG,
     MAX_KNEE_EXCESS_DEG,
@@ -60,13 +60,13 @@ from characters.retargeting.locomotion.grading import (
     PERSON_LEG_M,
     GaitReport,
 )
-from characters.retargeting.measures import (
+from cubeling.characters.retargeting.measures import (
     bone_change,
     facing_error,
     sole_dip,
 )
-from characters.retargeting.rig import Rig
-from characters.retargeting.root import with_root_joint
+from cubeling.characters.retargeting.rig import Rig
+from cubeling.characters.retargeting.root import with_root_joint
 from tests.bench.retarget import PERSON_HEIGHT_M, feet, knees_beyond, on_treadmill
 
 GAIT_NAME = re.compile(r"walk|run|jog|gallop|trot|stroll", re.IGNORECASE)

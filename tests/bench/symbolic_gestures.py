@@ -23,11 +23,11 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters import Character
-from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
-from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.gestures.planning import FLIP_RAD, Performer
-from characters.skeleton import rotations
+from cubeling.characters import Character
+from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
+from cubeling.characters.behaviour.gestures.planning import FLIP_RAD, Performer
+from cubeling.characters.skeleton import rotations
 
 MAX_FRAME_MS = 1.0
 STRONG = GestureExpressivity(spatial=0.3, power=1.0)

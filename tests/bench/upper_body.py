@@ -21,15 +21,15 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters import Character, Pose
-from characters.body.axes import Degrees, body_axes, rotation_vectors
-from characters.body.capsules import CapsuleBody
-from characters.body.dependent_joints import DependentJoints
-from characters.body.self_collision import SafeRanges
-from characters.control.controllers.recordings import read_motions
-from characters.skeleton.pose import Array
-from characters.synthesis.idle.posture_space import PostureVectors
-from characters.synthesis.transitions.comparison import bootstrap_interval
+from cubeling.characters import Character, Pose
+from cubeling.characters.body.axes import Degrees, body_axes, rotation_vectors
+from cubeling.characters.body.capsules import CapsuleBody
+from cubeling.characters.body.dependent_joints import DependentJoints
+from cubeling.characters.body.self_collision import SafeRanges
+from cubeling.characters.control.controllers.recordings import read_motions
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.idle.posture_space import PostureVectors
+from cubeling.characters.synthesis.transitions.comparison import bootstrap_interval
 
 DATA = Path(__file__).parents[3] / "shared" / "data"
 GESTURES = ("wave", "cheer", "jump", "nod", "shake")

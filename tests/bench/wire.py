@@ -11,15 +11,15 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-import robot
-from affect import Emotion
-from robot.drivers.cubeling.host import HostLink
-from robot.protocol.messages import Beat
-from robot.protocol.schema import pack, unpack
-from robot.protocol.wire import FrameReader, encode_frame
-from robot.simulators.cubeling.simulator import Simulator
-from robot.simulators.faults import Faults
-from robot.simulators.faulty import FaultyRobot
+from cubeling import robot
+from cubeling.affect import Emotion
+from cubeling.robot.drivers.cubeling.host import HostLink
+from cubeling.robot.protocol.messages import Beat
+from cubeling.robot.protocol.schema import pack, unpack
+from cubeling.robot.protocol.wire import FrameReader, encode_frame
+from cubeling.robot.simulators.cubeling.simulator import Simulator
+from cubeling.robot.simulators.faults import Faults
+from cubeling.robot.simulators.faulty import FaultyRobot
 
 SAMPLES = 1000
 
@@ -119,7 +119,7 @@ def latency_with_loss(drop: float) -> list[float]:
 
 def codec_time() -> list[float]:
     """Time to encode and decode an EXPRESS [s]; each sample is the mean of 100."""
-    from robot.protocol.messages import Express
+    from cubeling.robot.protocol.messages import Express
 
     message, took = Express(7, 0.5, -0.5), []
     for _ in range(100):

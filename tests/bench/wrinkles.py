@@ -23,13 +23,13 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters.control.command import PosedCharacter
-from characters.face.action_units import WRINKLE_UNITS, ActionUnits
-from characters.model.character import Character
-from characters.model.face_maps import LAYER_NAMES, WRINKLE_LAYERS
-from characters.rendering import SceneCharacter, Stage, View, create_context
-from characters.rendering.geometry.face_texture import FaceTexture
-from characters.skeleton.pose import Array
+from cubeling.characters.control.command import PosedCharacter
+from cubeling.characters.face.action_units import WRINKLE_UNITS, ActionUnits
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.face_maps import LAYER_NAMES, WRINKLE_LAYERS
+from cubeling.characters.rendering import SceneCharacter, Stage, View, create_context
+from cubeling.characters.rendering.geometry.face_texture import FaceTexture
+from cubeling.characters.skeleton.pose import Array
 from tests.bench.picture import SIZE, scene
 from tests.characters.rendering.wrinkle_reference import agreement
 

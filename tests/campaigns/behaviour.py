@@ -25,7 +25,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters.behaviour.bml import (
+from cubeling.characters.behaviour.bml import (
     SYNCS,
     Block,
     BlockProgress,

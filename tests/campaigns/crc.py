@@ -36,7 +36,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from robot.protocol.wire import encode_frame
+from cubeling.robot.protocol.wire import encode_frame
 from tests.campaigns.detected_errors import (
     behind_garbage,
     bursts,

@@ -10,15 +10,15 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from affect import AffectError, Emotion, Personality
-from robot.contract.driver import Driver
-from robot.drivers import DRIVERS
-from robot.drivers.cubeling.host import HostLink
-from robot.errors import RobotError
-from robot.network.messages import MESSAGE_TYPES, MalformedError, decode, encode
-from robot.protocol.fields import MessageError
-from robot.protocol.schema import Sender, pack, unpack
-from robot.protocol.wire import (
+from cubeling.affect import AffectError, Emotion, Personality
+from cubeling.robot.contract.driver import Driver
+from cubeling.robot.drivers import DRIVERS
+from cubeling.robot.drivers.cubeling.host import HostLink
+from cubeling.robot.errors import RobotError
+from cubeling.robot.network.messages import MESSAGE_TYPES, MalformedError, decode, encode
+from cubeling.robot.protocol.fields import MessageError
+from cubeling.robot.protocol.schema import Sender, pack, unpack
+from cubeling.robot.protocol.wire import (
     MAX_BODY,
     MAX_FRAME,
     FrameError,
@@ -28,9 +28,9 @@ from robot.protocol.wire import (
     decode_frame,
     encode_frame,
 )
-from robot.simulators import SIMULATORS, Simulated
-from robot.simulators.cubeling.simulator import Simulator
-from robot.simulators.memory import simulator_of
+from cubeling.robot.simulators import SIMULATORS, Simulated
+from cubeling.robot.simulators.cubeling.simulator import Simulator
+from cubeling.robot.simulators.memory import simulator_of
 
 MAX_HELD_BYTES = 2_000_000
 """Most memory of a driver or a simulator, whatever it received [bytes]."""

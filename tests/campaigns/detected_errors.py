@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from robot.protocol.wire import FrameReader, encode_frame
+from cubeling.robot.protocol.wire import FrameReader, encode_frame
 from tests.campaigns.error_rate import BODIES, ErrorRate
 
 

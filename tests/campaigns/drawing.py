@@ -20,8 +20,15 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters.model.character import Character
-from characters.rendering import QUALITIES, Cover, Focus, SceneCharacter, Stage, create_context
+from cubeling.characters.model.character import Character
+from cubeling.characters.rendering import (
+    QUALITIES,
+    Cover,
+    Focus,
+    SceneCharacter,
+    Stage,
+    create_context,
+)
 from tests.bench.picture import SIZE, scene
 
 MAX_GROWTH_BYTES = 20e6

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 from scipy.stats import binomtest
 
-from robot.protocol import messages as m
-from robot.protocol.schema import pack
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.schema import pack
 
 MIN_P_VALUE = 1e-6
 """Probability of a false alarm of each comparison."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from robot.simulators.faults import Faults, faults_of
+from cubeling.robot.simulators.faults import Faults, faults_of
 
 
 @dataclass(frozen=True)

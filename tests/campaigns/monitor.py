@@ -3,10 +3,10 @@
 from collections import Counter
 from typing import Any, Protocol
 
-from affect import Emotion
-from robot.protocol import messages as m
-from robot.protocol import timing
-from robot.simulators.faulty import FaultyRobot
+from cubeling.affect import Emotion
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
+from cubeling.robot.simulators.faulty import FaultyRobot
 
 BIN_WIDTH_S = 0.0005
 """Bin width of the histogram of latencies [s]."""

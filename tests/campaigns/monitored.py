@@ -2,14 +2,14 @@
 
 from typing import Any
 
-from affect import Emotion
-from robot.contract.catalogue import Catalogue, JointLimits
-from robot.drivers import DRIVERS
-from robot.drivers.cubeling.host import HostLink
-from robot.drivers.cubeling.scheduler import CommandScheduler, RoundTrip
-from robot.protocol import messages as m
-from robot.protocol.wire import FrameReader, encode_frame
-from robot.simulators.cubeling.device import DeviceLink
+from cubeling.affect import Emotion
+from cubeling.robot.contract.catalogue import Catalogue, JointLimits
+from cubeling.robot.drivers import DRIVERS
+from cubeling.robot.drivers.cubeling.host import HostLink
+from cubeling.robot.drivers.cubeling.scheduler import CommandScheduler, RoundTrip
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.wire import FrameReader, encode_frame
+from cubeling.robot.simulators.cubeling.device import DeviceLink
 from tests.campaigns.monitor import InvariantMonitor, InvariantViolationError
 
 NEUTRAL = Emotion(0.0, 0.0)

@@ -20,14 +20,14 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from affect import Emotion
-from robot.contract.driver import Driver
-from robot.drivers import DRIVERS
-from robot.link.exchange import REOPEN_INTERVAL_S
-from robot.protocol import messages as m
-from robot.simulators import SIMULATORS
-from robot.simulators.faults import Faults, Outage
-from robot.simulators.faulty import FaultyRobot
+from cubeling.affect import Emotion
+from cubeling.robot.contract.driver import Driver
+from cubeling.robot.drivers import DRIVERS
+from cubeling.robot.link.exchange import REOPEN_INTERVAL_S
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.simulators import SIMULATORS
+from cubeling.robot.simulators.faults import Faults, Outage
+from cubeling.robot.simulators.faulty import FaultyRobot
 
 SOAK_FAULTS = Faults(
     drop=0.005, flip=0.0001, dup=0.005, delay=0.002, jitter=0.001,

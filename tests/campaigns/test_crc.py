@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from robot.protocol import wire
-from robot.protocol.wire import encode_frame
+from cubeling.robot.protocol import wire
+from cubeling.robot.protocol.wire import encode_frame
 from tests.campaigns.crc import error_rates
 from tests.campaigns.detected_errors import bursts, damaged
 from tests.campaigns.error_rate import BODIES, ErrorRate

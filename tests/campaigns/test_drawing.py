@@ -2,7 +2,7 @@
 
 import pytest
 
-from characters.rendering import create_context
+from cubeling.characters.rendering import create_context
 from tests.campaigns.drawing import Held, grown, held
 
 

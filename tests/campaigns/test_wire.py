@@ -2,10 +2,10 @@
 
 import pytest
 
-from robot.drivers.cubeling.scheduler import CommandScheduler
-from robot.protocol import messages as m
-from robot.protocol import timing, wire
-from robot.simulators.cubeling.device import DeviceLink
+from cubeling.robot.drivers.cubeling.scheduler import CommandScheduler
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing, wire
+from cubeling.robot.simulators.cubeling.device import DeviceLink
 from tests.campaigns.fault_mixes import FAULT_MIXES, FaultMix
 from tests.campaigns.monitor import emotion_of
 from tests.campaigns.wire import add_up, failures, quantile, run_world, runs_for

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from robot.protocol.wire import FrameError, check_bytes, decode_frame, encode_frame
+from cubeling.robot.protocol.wire import FrameError, check_bytes, decode_frame, encode_frame
 from tests.campaigns.error_rate import BODIES, ErrorRate
 
 Bytes = NDArray[np.uint8]

@@ -5,13 +5,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from robot.contract.port import READ_TIMEOUT_S
-from robot.link.exchange import REOPEN_INTERVAL_S
-from robot.protocol import messages as m
-from robot.protocol import timing
-from robot.protocol.wire import MAX_FRAME
-from robot.simulators.channel import MAX_IN_FLIGHT_BYTES
-from robot.simulators.faulty import MAX_INBOX_BYTES, FaultyRobot
+from cubeling.robot.contract.port import READ_TIMEOUT_S
+from cubeling.robot.link.exchange import REOPEN_INTERVAL_S
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
+from cubeling.robot.protocol.wire import MAX_FRAME
+from cubeling.robot.simulators.channel import MAX_IN_FLIGHT_BYTES
+from cubeling.robot.simulators.faulty import MAX_INBOX_BYTES, FaultyRobot
 from tests.campaigns.fault_mixes import FaultMix
 from tests.campaigns.monitor import InvariantMonitor, InvariantViolationError
 from tests.campaigns.monitored import LightRobot, MonitoredScheduler, monitored_host

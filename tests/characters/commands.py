@@ -1,6 +1,6 @@
 """Commands as tests ask for them: what to do by one name."""
 
-from characters import ActionIntent, CharacterCommand, LocomotionIntent
+from cubeling.characters import ActionIntent, CharacterCommand, LocomotionIntent
 
 
 def command(

@@ -6,9 +6,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from characters import Character, Clip, Mesh, Pose, Skeleton
-from characters.motion.motion import RootDelta
-from characters.skeleton import rotations
+from cubeling.characters import Character, Clip, Mesh, Pose, Skeleton
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton import rotations
 from tests.bundled_characters import (
     bundled_characters_are_read_once as bundled_characters_are_read_once,
 )

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from affect import Emotion
-from characters import Character, CharacterCommand, Pose, RootDelta
-from characters.body.posture import ExpressivityFilter
-from characters.control.controllers.controller import ControllerFrame
-from characters.control.layers import LIVELINESS_LAYERS, FrameContext
-from characters.locomotion.gaits import TOP_SPEED
+from cubeling.affect import Emotion
+from cubeling.characters import Character, CharacterCommand, Pose, RootDelta
+from cubeling.characters.body.posture import ExpressivityFilter
+from cubeling.characters.control.controllers.controller import ControllerFrame
+from cubeling.characters.control.layers import LIVELINESS_LAYERS, FrameContext
+from cubeling.characters.locomotion.gaits import TOP_SPEED
 
 
 class AppliedLayers:

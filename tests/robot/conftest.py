@@ -5,12 +5,12 @@ from collections.abc import Callable
 
 import pytest
 
-from affect import Emotion
-from robot.drivers.cubeling.host import HostLink
-from robot.protocol import messages as m
-from robot.simulators.channel import FaultyChannel
-from robot.simulators.cubeling.simulator import Simulator
-from robot.simulators.faults import Faults
+from cubeling.affect import Emotion
+from cubeling.robot.drivers.cubeling.host import HostLink
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.simulators.channel import FaultyChannel
+from cubeling.robot.simulators.cubeling.simulator import Simulator
+from cubeling.robot.simulators.faults import Faults
 
 
 class World:

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from affect import Emotion
-from robot.drivers.cubeling.host import HostLink
-from robot.protocol import messages as m
-from robot.protocol.schema import pack, unpack
-from robot.protocol.wire import FrameReader, encode_frame
-from robot.simulators.cubeling.simulator import Simulator
+from cubeling.affect import Emotion
+from cubeling.robot.drivers.cubeling.host import HostLink
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.schema import pack, unpack
+from cubeling.robot.protocol.wire import FrameReader, encode_frame
+from cubeling.robot.simulators.cubeling.simulator import Simulator
 from tests.robot.firmware.conftest import Dino
 
 TRANSCRIPTS = sorted((Path(__file__).parent / "protocol" / "transcripts").glob("*.txt"))

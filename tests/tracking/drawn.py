@@ -9,10 +9,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.cube.marker import marker_cells
-from tracking.cube.model import CubeModel, Face
-from tracking.geometry import se3
-from tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.cube.marker import marker_cells
+from cubeling.tracking.cube.model import CubeModel, Face
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.intrinsics import Intrinsics
 
 Array = NDArray[np.float64]
 Light = NDArray[np.float32]

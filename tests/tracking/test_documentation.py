@@ -1,6 +1,6 @@
 """Every public name of this room is documented."""
 
-import tracking
+from cubeling import tracking
 
 
 def test_every_public_name_is_there():

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tracking.cube.model import FACE_AXES, CubeModel, Face, aruco_dictionary
-from tracking.detection.partly_hidden_markers import PartlyHiddenMarkerDetector
-from tracking.geometry import se3
-from tracking.geometry.frame import Frame
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.state import CubeState
-from tracking.tracker.tracker import CubeTracker
+from cubeling.tracking.cube.model import FACE_AXES, CubeModel, Face, aruco_dictionary
+from cubeling.tracking.detection.partly_hidden_markers import PartlyHiddenMarkerDetector
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry.state import CubeState
+from cubeling.tracking.tracker.tracker import CubeTracker
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]

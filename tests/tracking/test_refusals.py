@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tracking.cube.faces import face_frame
-from tracking.cube.marker import marker_cells
-from tracking.cube.model import CubeModel
-from tracking.geometry import se3
-from tracking.geometry.frame import Frame
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.state import CubeState
-from tracking.tracker.tracker import CubeTracker
+from cubeling.tracking.cube.faces import face_frame
+from cubeling.tracking.cube.marker import marker_cells
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry.state import CubeState
+from cubeling.tracking.tracker.tracker import CubeTracker
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]

@@ -4,7 +4,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from characters.model.character import Character
+from cubeling.characters.model.character import Character
 from tools.authoring.human.character import build_human
 from tools.authoring.human.face_map import save_face_maps
 from tools.authoring.people import save_standing

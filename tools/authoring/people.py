@@ -4,11 +4,11 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 
-from affect.regions import region_of
-from characters.model.character import Character
-from characters.motion.clip import Clip
-from characters.synthesis.idle.recordings import StandingRecording, read_standing
-from characters.synthesis.idle.storage import save_person
+from cubeling.affect.regions import region_of
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.synthesis.idle.recordings import StandingRecording, read_standing
+from cubeling.characters.synthesis.idle.storage import save_person
 from tools.authoring.human import standing as human
 from tools.authoring.modelling.quadruped import AnimationTracks, loop_clip
 from tools.authoring.modelling.quadruped_standing import standing_tracks

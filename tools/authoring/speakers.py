@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
-from characters.model.character import Character
-from characters.synthesis.gestures.library import GestureLibrary
+from cubeling.characters.model.character import Character
+from cubeling.characters.synthesis.gestures.library import GestureLibrary
 from tools.authoring.gestures.human import human_gestures
 from tools.authoring.vleo.speech_gestures import vleo_gestures
 

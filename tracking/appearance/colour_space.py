@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from tracking.geometry.arrays import Floats, Image
+from cubeling.tracking.geometry.arrays import Floats, Image
 
 LINEAR_FROM_SRGB = np.where(
     np.arange(256) <= 10, np.arange(256) / 3294.6, ((np.arange(256) / 255 + 0.055) / 1.055) ** 2.4

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from tracking.appearance.light_fit import MeasuredLight
-from tracking.appearance.patch_memory import MEMORY_S, ExposureGain, PatchMemory
-from tracking.appearance.patches import PaperSampler
-from tracking.cube.marker import cell_size
-from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Array, Image
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.state import CubeState
+from cubeling.tracking.appearance.light_fit import MeasuredLight
+from cubeling.tracking.appearance.patch_memory import MEMORY_S, ExposureGain, PatchMemory
+from cubeling.tracking.appearance.patches import PaperSampler
+from cubeling.tracking.cube.marker import cell_size
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.arrays import Array, Image
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry.state import CubeState
 
 EXPOSURE_S, MAX_BLUR_CELLS = 0.015, 0.35
 """Expected exposure time, and how far a cube may move during it: beyond, paper and ink mix."""

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array
 
 PRIOR_CONCENTRATION = 1.5
 """How much likelier light comes from above than from elsewhere: as von Mises and Fisher's κ."""

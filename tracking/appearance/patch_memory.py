@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from tracking.appearance.colour_space import LINEAR_FROM_SRGB
-from tracking.appearance.light_fit import SHADOW_SHARE, MeasuredLight, fit_patches, sphere
-from tracking.appearance.patches import MAX_VALUE, Patches
-from tracking.geometry.arrays import Array, Image
+from cubeling.tracking.appearance.colour_space import LINEAR_FROM_SRGB
+from cubeling.tracking.appearance.light_fit import SHADOW_SHARE, MeasuredLight, fit_patches, sphere
+from cubeling.tracking.appearance.patches import MAX_VALUE, Patches
+from cubeling.tracking.geometry.arrays import Array, Image
 
 ORIENTATIONS = sphere(192)
 """Orientations that are remembered apart, (192, 3)."""

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from tracking.appearance.colour_space import LINEAR_FROM_SRGB
-from tracking.cube.faces import FacePlanes, face_frame
-from tracking.cube.icons import FOLD_GAP_SHARE, ICON_SHARE
-from tracking.cube.marker import cell_size, marker_cells
-from tracking.cube.model import CubeModel, Face
-from tracking.geometry.arrays import Array, Flags, Image, Indices
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.projection import MIN_DEPTH, Projection
+from cubeling.tracking.appearance.colour_space import LINEAR_FROM_SRGB
+from cubeling.tracking.cube.faces import FacePlanes, face_frame
+from cubeling.tracking.cube.icons import FOLD_GAP_SHARE, ICON_SHARE
+from cubeling.tracking.cube.marker import cell_size, marker_cells
+from cubeling.tracking.cube.model import CubeModel, Face
+from cubeling.tracking.geometry.arrays import Array, Flags, Image, Indices
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry.projection import MIN_DEPTH, Projection
 
 PAPER_ALBEDO = 0.82
 """Share of the light that printing paper reflects."""

@@ -6,13 +6,13 @@ from dataclasses import astuple, dataclass, replace
 import cv2
 import numpy as np
 
-from tracking.cube.faces import FacePlanes
-from tracking.cube.marker import cell_size
-from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Array, Floats, Image
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.projection import Projection
-from tracking.geometry.state import CubeState
+from cubeling.tracking.cube.faces import FacePlanes
+from cubeling.tracking.cube.marker import cell_size
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.arrays import Array, Floats, Image
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.geometry.state import CubeState
 
 LINES_PER_SIDE = 9
 """Lines that cross each side of a marker."""

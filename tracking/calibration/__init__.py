@@ -1,12 +1,12 @@
 """Intrinsics of a camera from the printed cube itself, or from a ChArUco board."""
 
-from tracking.calibration.board import Board, write_board
-from tracking.calibration.camera_check import CameraCheck, check
-from tracking.calibration.collector import ViewCollector, ViewResult, calibrate_camera
-from tracking.calibration.coverage import ViewCoverage, ViewSample
-from tracking.calibration.solver import Calibration, calibrate, measured_cube
-from tracking.calibration.target_finders import BoardFinder, CubeFinder, TargetFinder
-from tracking.calibration.view import View
+from cubeling.tracking.calibration.board import Board, write_board
+from cubeling.tracking.calibration.camera_check import CameraCheck, check
+from cubeling.tracking.calibration.collector import ViewCollector, ViewResult, calibrate_camera
+from cubeling.tracking.calibration.coverage import ViewCoverage, ViewSample
+from cubeling.tracking.calibration.solver import Calibration, calibrate, measured_cube
+from cubeling.tracking.calibration.target_finders import BoardFinder, CubeFinder, TargetFinder
+from cubeling.tracking.calibration.view import View
 
 __all__ = [
     "Board",

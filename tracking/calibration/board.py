@@ -7,13 +7,13 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from tracking.cube.marker import marker_loops
-from tracking.cube.model import aruco_dictionary
-from tracking.cube.printing.layout import PAPER_SIZES_MM
-from tracking.cube.printing.pdf_page import PdfPage
-from tracking.errors import TrackingError
-from tracking.files import write_whole
-from tracking.geometry.arrays import Array
+from cubeling.tracking.cube.marker import marker_loops
+from cubeling.tracking.cube.model import aruco_dictionary
+from cubeling.tracking.cube.printing.layout import PAPER_SIZES_MM
+from cubeling.tracking.cube.printing.pdf_page import PdfPage
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.files import write_whole
+from cubeling.tracking.geometry.arrays import Array
 
 BLACK = (0, 0, 0)
 

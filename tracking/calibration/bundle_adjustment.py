@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.calibration.model import BLOOM_SIGMA_PX, CalibrationModel
-from tracking.calibration.view import View
-from tracking.geometry.arrays import Array, Indices
+from cubeling.tracking.calibration.model import BLOOM_SIGMA_PX, CalibrationModel
+from cubeling.tracking.calibration.view import View
+from cubeling.tracking.geometry.arrays import Array, Indices
 
 MIN_SIGMA_PX = 0.02
 """Smallest standard deviation that is assumed for a row."""

@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tracking.calibration import camera_vector
-from tracking.calibration.bundle_adjustment import adjust
-from tracking.calibration.model import CalibrationTarget
-from tracking.calibration.solver import fit_poses, solve
-from tracking.calibration.view import View
-from tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.calibration import camera_vector
+from cubeling.tracking.calibration.bundle_adjustment import adjust
+from cubeling.tracking.calibration.model import CalibrationTarget
+from cubeling.tracking.calibration.solver import fit_poses, solve
+from cubeling.tracking.calibration.view import View
+from cubeling.tracking.geometry.intrinsics import Intrinsics
 
 MAX_FOCAL_CHANGE = 0.01
 """Relative change of the focal length that is tolerated, ..."""

@@ -6,9 +6,9 @@ The parameters are fx fy cx cy k1 k2 p1 p2 k3, as in the Jacobian of `cv2.projec
 import cv2
 import numpy as np
 
-from tracking.geometry.arrays import Array, Flags
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.projection import Projection
+from cubeling.tracking.geometry.arrays import Array, Flags
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry.projection import Projection
 
 CENTRE_SIGMA = 0.04
 """Prior standard deviation of the principal point about the image centre [image widths]."""

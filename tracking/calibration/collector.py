@@ -7,17 +7,17 @@ from typing import Literal
 import cv2
 import numpy as np
 
-from tracking.calibration import camera_vector, initialization
-from tracking.calibration.coverage import ViewCoverage, ViewSample
-from tracking.calibration.solver import Calibration, calibrate, measured_cube
-from tracking.calibration.target_finders import CubeFinder, TargetDetection, TargetFinder
-from tracking.calibration.view import View
-from tracking.cube.model import CubeModel
-from tracking.errors import TrackingError
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array
-from tracking.geometry.frame import Frame
-from tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.calibration import camera_vector, initialization
+from cubeling.tracking.calibration.coverage import ViewCoverage, ViewSample
+from cubeling.tracking.calibration.solver import Calibration, calibrate, measured_cube
+from cubeling.tracking.calibration.target_finders import CubeFinder, TargetDetection, TargetFinder
+from cubeling.tracking.calibration.view import View
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.intrinsics import Intrinsics
 
 MAX_SPEED = 0.09
 """A target that moves faster than this is too blurred to measure [image widths/s]."""

@@ -5,11 +5,11 @@ from collections.abc import Iterator, Sequence
 import cv2
 import numpy as np
 
-from tracking.calibration import camera_vector
-from tracking.calibration.view import View
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array
-from tracking.geometry.projection import planar_poses
+from cubeling.tracking.calibration import camera_vector
+from cubeling.tracking.calibration.view import View
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.projection import planar_poses
 
 FIELDS_OF_VIEW_RAD = np.deg2rad(np.linspace(30, 100, 15))
 """Horizontal fields of view to try: telephoto to action camera."""

@@ -11,14 +11,14 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from tracking.calibration.view import View
-from tracking.cube.edges import edge_points
-from tracking.cube.marker import marker_cells
-from tracking.cube.model import CubeModel, Face
-from tracking.detection.markers import Observation
-from tracking.geometry.arrays import Array, Flags, Indices
-from tracking.geometry.image_region import Patch
-from tracking.geometry.robust_statistics import tukey_weight
+from cubeling.tracking.calibration.view import View
+from cubeling.tracking.cube.edges import edge_points
+from cubeling.tracking.cube.marker import marker_cells
+from cubeling.tracking.cube.model import CubeModel, Face
+from cubeling.tracking.detection.markers import Observation
+from cubeling.tracking.geometry.arrays import Array, Flags, Indices
+from cubeling.tracking.geometry.image_region import Patch
+from cubeling.tracking.geometry.robust_statistics import tukey_weight
 
 POINTS_PER_CELL = 2
 """Number of measured points along one cell."""

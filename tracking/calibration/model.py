@@ -6,10 +6,10 @@ from typing import Self
 
 import numpy as np
 
-from tracking.calibration import camera_vector
-from tracking.calibration.view import View, join_views
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array, Flags, Indices
+from cubeling.tracking.calibration import camera_vector
+from cubeling.tracking.calibration.view import View, join_views
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array, Flags, Indices
 
 PLATE_SHIFT_SIGMA_M, PLATE_ROTATION_SIGMA_RAD = 0.0012, np.deg2rad(1.2)
 """Prior standard deviations of a face of a hand-made cube about its nominal pose."""

@@ -5,15 +5,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tracking.calibration import camera_vector
-from tracking.calibration.bundle_adjustment import AdjustmentResult, adjust
-from tracking.calibration.initialization import best_pose, initial_camera
-from tracking.calibration.model import CalibrationModel, CalibrationTarget
-from tracking.calibration.view import View
-from tracking.cube.model import CubeModel
-from tracking.errors import TrackingError
-from tracking.geometry.arrays import Array
-from tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.calibration import camera_vector
+from cubeling.tracking.calibration.bundle_adjustment import AdjustmentResult, adjust
+from cubeling.tracking.calibration.initialization import best_pose, initial_camera
+from cubeling.tracking.calibration.model import CalibrationModel, CalibrationTarget
+from cubeling.tracking.calibration.view import View
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.intrinsics import Intrinsics
 
 MIN_VIEWS = 8
 """Minimum number of views of a calibration."""

@@ -6,14 +6,14 @@ from typing import Protocol
 import cv2
 import numpy as np
 
-from tracking.calibration.board import Board
-from tracking.calibration.marker_edges import MarkerEdgeMeter
-from tracking.calibration.model import CalibrationTarget
-from tracking.calibration.view import View, join_views, view_of_corners
-from tracking.cube.model import CubeModel
-from tracking.detection.markers import MarkerDetector, Observation, markers_of
-from tracking.geometry.arrays import Array, Image
-from tracking.geometry.image_region import Patch
+from cubeling.tracking.calibration.board import Board
+from cubeling.tracking.calibration.marker_edges import MarkerEdgeMeter
+from cubeling.tracking.calibration.model import CalibrationTarget
+from cubeling.tracking.calibration.view import View, join_views, view_of_corners
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.detection.markers import MarkerDetector, Observation, markers_of
+from cubeling.tracking.geometry.arrays import Array, Image
+from cubeling.tracking.geometry.image_region import Patch
 
 MIN_CORNERS = 8
 """Minimum number of detected corners of a board."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.geometry.arrays import Array, Indices
+from cubeling.tracking.geometry.arrays import Array, Indices
 
 
 @dataclass(frozen=True)

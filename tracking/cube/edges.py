@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.cube.marker import marker_cells
-from tracking.cube.model import CubeModel, Face
-from tracking.geometry.arrays import Array, Flags, Indices
+from cubeling.tracking.cube.marker import marker_cells
+from cubeling.tracking.cube.model import CubeModel, Face
+from cubeling.tracking.geometry.arrays import Array, Flags, Indices
 
 POINTS_PER_CELL, STRIDE = 15, 3
 """Points along an edge for each cell: a pixel apart at arm's length. Of two and more faces, which

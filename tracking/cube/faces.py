@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from tracking.cube.model import CubeModel, Face
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array
+from cubeling.tracking.cube.model import CubeModel, Face
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array
 
 
 class FacePlanes:

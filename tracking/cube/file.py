@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from tracking.cube.model import CubeModel, Face, face_corners
-from tracking.errors import TrackingError
-from tracking.files import write_whole
+from cubeling.tracking.cube.model import CubeModel, Face, face_corners
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.files import write_whole
 
 
 def write_cube(cube: CubeModel, path: str | Path) -> None:

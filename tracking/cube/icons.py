@@ -12,7 +12,7 @@ import math
 import cv2
 import numpy as np
 
-from tracking.geometry.arrays import Array, Image
+from cubeling.tracking.geometry.arrays import Array, Image
 
 Point = tuple[float, float]
 

@@ -3,8 +3,8 @@
 import cv2
 import numpy as np
 
-from tracking.cube.model import CubeModel, aruco_dictionary
-from tracking.geometry.arrays import Array, Flags
+from cubeling.tracking.cube.model import CubeModel, aruco_dictionary
+from cubeling.tracking.geometry.arrays import Array, Flags
 
 GRID_STEPS = ((1, 0), (0, 1), (-1, 0), (0, -1))
 """Steps along cell borders, clockwise with y down."""

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from tracking.errors import TrackingError
-from tracking.geometry.arrays import Array
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry.arrays import Array
 
 MAX_DISTORTION = 0.02
 """A marker is a square to this share of its side."""

@@ -8,11 +8,11 @@ from typing import Any, Self
 import cv2
 import numpy as np
 
-from tracking.cube.icons import ICON_COLOURS
-from tracking.cube.measured_corners import measured_corners
-from tracking.cube.values import check_each_once, check_keys, length, text
-from tracking.errors import TrackingError
-from tracking.geometry.arrays import Array
+from cubeling.tracking.cube.icons import ICON_COLOURS
+from cubeling.tracking.cube.measured_corners import measured_corners
+from cubeling.tracking.cube.values import check_each_once, check_keys, length, text
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry.arrays import Array
 
 FACE_AXES: dict[str, tuple[tuple[int, int, int], tuple[int, int, int]]] = {
     "front": ((1, 0, 0), (0, 1, 0)),

@@ -6,7 +6,7 @@ Raises TrackingError; `where` names the file in its message.
 from collections.abc import Sequence
 from typing import Any
 
-from tracking.errors import TrackingError
+from cubeling.tracking.errors import TrackingError
 
 
 def length(document: dict[str, Any], key: str, where: str) -> float:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from tracking.geometry.arrays import Array, Flags, Image, Indices
+from cubeling.tracking.geometry.arrays import Array, Flags, Image, Indices
 
 THRESHOLD_WINDOW_PX, THRESHOLD_OFFSET = 25, 5
 """A dark pixel is this many grey levels below the mean of this window. Larger dark cells become

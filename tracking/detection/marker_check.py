@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.cube.faces import FacePlanes
-from tracking.cube.marker import marker_cells
-from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Array, Flags, Floats
-from tracking.geometry.image_region import Patch
-from tracking.geometry.projection import Projection
-from tracking.geometry.robust_statistics import quantile
+from cubeling.tracking.cube.faces import FacePlanes
+from cubeling.tracking.cube.marker import marker_cells
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.arrays import Array, Flags, Floats
+from cubeling.tracking.geometry.image_region import Patch
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.geometry.robust_statistics import quantile
 
 MIN_FACING_COSINE = 0.2
 """Cosine of the viewing angle below which a marker's cells are too foreshortened to be read."""

@@ -7,8 +7,8 @@ from functools import cached_property
 import cv2
 import numpy as np
 
-from tracking.cube.model import CubeModel, Face, aruco_dictionary
-from tracking.geometry.arrays import Array, Image
+from cubeling.tracking.cube.model import CubeModel, Face, aruco_dictionary
+from cubeling.tracking.geometry.arrays import Array, Image
 
 
 @dataclass(frozen=True)

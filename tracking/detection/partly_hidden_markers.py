@@ -3,13 +3,13 @@
 import cv2
 import numpy as np
 
-from tracking.cube.marker import marker_cells
-from tracking.cube.model import CubeModel
-from tracking.detection.markers import Observation
-from tracking.detection.quads import Quads, find_quads, sampled
-from tracking.detection.smeared_patterns import SmearedPatterns
-from tracking.geometry.arrays import Array, Flags, Image, Indices
-from tracking.geometry.image_region import Region
+from cubeling.tracking.cube.marker import marker_cells
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.detection.markers import Observation
+from cubeling.tracking.detection.quads import Quads, find_quads, sampled
+from cubeling.tracking.detection.smeared_patterns import SmearedPatterns
+from cubeling.tracking.geometry.arrays import Array, Flags, Image, Indices
+from cubeling.tracking.geometry.image_region import Region
 
 UNREAD_BAND = 0.15
 """A cell closer to the middle between black and white than this share of the contrast is unread."""

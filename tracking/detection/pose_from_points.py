@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from tracking.cube.model import CubeModel, Face
-from tracking.detection.markers import Observation
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array
-from tracking.geometry.projection import MIN_DEPTH, Projection, planar_poses
-from tracking.geometry.robust_statistics import quantile
+from cubeling.tracking.cube.model import CubeModel, Face
+from cubeling.tracking.detection.markers import Observation
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.projection import MIN_DEPTH, Projection, planar_poses
+from cubeling.tracking.geometry.robust_statistics import quantile
 
 MIN_FACING_COSINE = 0.05
 """Cosine between a face's normal and the line of sight below which its marker cannot be read."""

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from tracking.detection.borders import BorderSegments, find_border_segments, quadrilaterals
-from tracking.geometry.arrays import Array, Flags, Image
+from cubeling.tracking.detection.borders import BorderSegments, find_border_segments, quadrilaterals
+from cubeling.tracking.geometry.arrays import Array, Flags, Image
 
 MIN_SIDE_PX = 14.0
 """Shortest side of a quad."""

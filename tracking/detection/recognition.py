@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import cv2
 import numpy as np
 
-from tracking.cube.model import CubeModel
-from tracking.detection.markers import MarkerDetector
-from tracking.geometry.arrays import Image
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.detection.markers import MarkerDetector
+from cubeling.tracking.geometry.arrays import Image
 
 
 class CubeRecognizer:

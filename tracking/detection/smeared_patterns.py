@@ -6,10 +6,10 @@ from itertools import product
 import cv2
 import numpy as np
 
-from tracking.cube.marker import marker_cells
-from tracking.cube.model import CubeModel
-from tracking.detection.quads import Quads, sampled
-from tracking.geometry.arrays import Array, Flags, Floats, Image, Indices
+from cubeling.tracking.cube.marker import marker_cells
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.detection.quads import Quads, sampled
+from cubeling.tracking.geometry.arrays import Array, Flags, Floats, Image, Indices
 
 SMEARS_CELLS, DIRECTIONS = (1.0, 1.75, 2.5), 8
 """Lengths of the blur that are compared beside none, and directions, evenly spread over half a

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from tracking.geometry.arrays import Image
+from cubeling.tracking.geometry.arrays import Image
 
 
 @dataclass(frozen=True)

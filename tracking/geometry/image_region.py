@@ -6,7 +6,7 @@ from typing import Self
 import cv2
 import numpy as np
 
-from tracking.geometry.arrays import Array, Floats, Image
+from cubeling.tracking.geometry.arrays import Array, Floats, Image
 
 Region = tuple[int, int, int, int]
 """Left, top, right, bottom [px]; right and bottom are exclusive."""

@@ -11,9 +11,9 @@ import numpy as np
 import yaml
 from numpy.typing import ArrayLike
 
-from tracking.errors import TrackingError
-from tracking.files import write_whole
-from tracking.geometry.arrays import Array
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.files import write_whole
+from cubeling.tracking.geometry.arrays import Array
 
 GUESSED_FIELD_OF_VIEW = math.radians(60)
 """Horizontal field of view of a common webcam [rad]."""

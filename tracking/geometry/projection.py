@@ -5,9 +5,9 @@ from collections.abc import Iterator
 import cv2
 import numpy as np
 
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array
-from tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.intrinsics import Intrinsics
 
 MIN_DEPTH = 0.03
 """A cube closer to the camera than this [m] is not seen whole; such a pose is wrong."""

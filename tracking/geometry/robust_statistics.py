@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.arrays import Array
 
 
 def quantile(values: NDArray[np.floating[Any]], share: float) -> float:

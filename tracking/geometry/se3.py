@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.arrays import Array
 
 SMALL_ANGLE = 1e-6
 """Below this angle [rad] the series is used; its first dropped term is below 1e-24."""

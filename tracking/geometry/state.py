@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.arrays import Array
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class CubeControls:
 
     gestures: tuple[str, ...] = ()
     """Gestures that are recognised in this one frame, by name: "shaken" and any others that
-    `tracking.gestures.detectors` registers."""
+    `cubeling.tracking.gestures.detectors` registers."""
 
     @property
     def shaken(self) -> bool:

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import Protocol
 
-from tracking.geometry.arrays import Array
-from tracking.gestures.shaking import ShakeDetector
+from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.gestures.shaking import ShakeDetector
 
 
 class GestureDetector(Protocol):

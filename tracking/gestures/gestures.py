@@ -6,14 +6,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tracking.cube.model import CubeModel
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array
-from tracking.geometry.state import CubeControls, CubeState
-from tracking.gestures.detectors import DETECTORS
-from tracking.gestures.stillness import StillnessDetector
-from tracking.gestures.table import ALL_NORMALS, SIDE_NORMALS, TableEstimator, TablePlane
-from tracking.gestures.turning import TurnCounter, clockwise_angle, clockwise_angle_of, wrap_angle
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.state import CubeControls, CubeState
+from cubeling.tracking.gestures.detectors import DETECTORS
+from cubeling.tracking.gestures.stillness import StillnessDetector
+from cubeling.tracking.gestures.table import ALL_NORMALS, SIDE_NORMALS, TableEstimator, TablePlane
+from cubeling.tracking.gestures.turning import (
+    TurnCounter,
+    clockwise_angle,
+    clockwise_angle_of,
+    wrap_angle,
+)
 
 MAX_REST_TILT = np.deg2rad(10.0)
 """A face that is tilted less than this lies on the table [rad] (M11)."""

@@ -5,7 +5,7 @@ from collections import deque
 
 import numpy as np
 
-from tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.arrays import Array
 
 MIN_REVERSALS, WINDOW_S = 4, 0.8
 """This many reversals within this time make a shake."""

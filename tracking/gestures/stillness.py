@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array
 
 WINDOW_S = 0.3
 """How long the cube must keep still to count as still."""

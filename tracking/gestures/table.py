@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.cube.model import FACE_AXES
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array
+from cubeling.tracking.cube.model import FACE_AXES
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array
 
 PRIOR_UP = np.array([0.0, -np.cos(np.deg2rad(35)), -np.sin(np.deg2rad(35))])
 """Up in the camera frame for an upright camera that looks down by 35°."""

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from tracking.geometry.arrays import Array
-from tracking.gestures.table import SIDE_NORMALS
+from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.gestures.table import SIDE_NORMALS
 
 
 def wrap_angle(angle: float) -> float:

@@ -2,16 +2,16 @@
 
 import numpy as np
 
-from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Array
-from tracking.geometry.image_region import Patch
-from tracking.geometry.projection import Projection
-from tracking.refinement.camera_model import CameraModel
-from tracking.refinement.candidate import Candidate
-from tracking.refinement.edge_search import EdgeSearch
-from tracking.refinement.footprint import Footprint
-from tracking.refinement.photometry.motion_blur_alignment import MotionBlurAligner
-from tracking.refinement.photometry.photometric_fit import Alignment
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.image_region import Patch
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.camera_model import CameraModel
+from cubeling.tracking.refinement.candidate import Candidate
+from cubeling.tracking.refinement.edge_search import EdgeSearch
+from cubeling.tracking.refinement.footprint import Footprint
+from cubeling.tracking.refinement.photometry.motion_blur_alignment import MotionBlurAligner
+from cubeling.tracking.refinement.photometry.photometric_fit import Alignment
 
 MAX_EDGE_BLUR_CELLS, VISIBLE_EDGE_BLUR_CELLS = 0.6, 0.3
 """Blur extents up to which edges can be measured, and below which they must be found."""

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.geometry.arrays import Array, Floats
-from tracking.refinement.photometry.photometric_fit import Alignment
+from cubeling.tracking.geometry.arrays import Array, Floats
+from cubeling.tracking.refinement.photometry.photometric_fit import Alignment
 
 FIRST_EXPOSURE_S, MAX_EXPOSURE_S = 0.010, 0.05
 """Exposure that is assumed before it is measured, that of a webcam indoors, and the longest."""

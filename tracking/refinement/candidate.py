@@ -5,10 +5,10 @@ from typing import Literal
 
 import numpy as np
 
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array
-from tracking.refinement.edges.edge_fit import FittedEdges
-from tracking.refinement.evidence import Evidence
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.refinement.edges.edge_fit import FittedEdges
+from cubeling.tracking.refinement.evidence import Evidence
 
 MIN_LOG_LIKELIHOOD_RATIO = 8.0
 """Twice the logarithm of a likelihood ratio, by the residuals of edges, from which on the better of

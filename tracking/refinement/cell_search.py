@@ -5,15 +5,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tracking.cube.faces import FacePlanes
-from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Array, Floats, Image
-from tracking.geometry.image_region import Patch
-from tracking.geometry.projection import Projection
-from tracking.refinement.candidate import Candidate
-from tracking.refinement.evidence import Evidence
-from tracking.refinement.footprint import Footprint
-from tracking.refinement.photometry.still_alignment import (
+from cubeling.tracking.cube.faces import FacePlanes
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.arrays import Array, Floats, Image
+from cubeling.tracking.geometry.image_region import Patch
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.candidate import Candidate
+from cubeling.tracking.refinement.evidence import Evidence
+from cubeling.tracking.refinement.footprint import Footprint
+from cubeling.tracking.refinement.photometry.still_alignment import (
     EXPECTED_BLUR_PX,
     MEASURED_STIFFNESS,
     StillAligner,

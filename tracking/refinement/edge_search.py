@@ -4,20 +4,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.cube.faces import FacePlanes
-from tracking.cube.model import CubeModel
-from tracking.detection.marker_check import CellReader, CellReading
-from tracking.geometry.arrays import Array
-from tracking.geometry.image_region import Patch
-from tracking.geometry.projection import Projection
-from tracking.refinement.candidate import Candidate
-from tracking.refinement.edges.edge_refinement import (
+from cubeling.tracking.cube.faces import FacePlanes
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.detection.marker_check import CellReader, CellReading
+from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.image_region import Patch
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.candidate import Candidate
+from cubeling.tracking.refinement.edges.edge_refinement import (
     BlurMotion,
     EdgeRefinement,
     EdgeRefiner,
     at_rest,
 )
-from tracking.refinement.footprint import Footprint
+from cubeling.tracking.refinement.footprint import Footprint
 
 MIN_EDGE_SUPPORT, MIN_EDGE_SUPPORT_WITH_MARKERS = 0.55, 0.25
 """Share of the edges in view that must be found for the edges alone to prove the cube, and where

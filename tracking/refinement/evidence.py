@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.arrays import Array
 
 MIN_LEAD, MIN_DEVIATIONS, SURE_DEVIATIONS = 2.0, 1.645, 3.2
 """Lead in total evidence, and the same in its own standard deviations, from which on the better of

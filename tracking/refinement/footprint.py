@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 
-from tracking.cube.marker import cell_size
-from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Array, Floats, Image
-from tracking.geometry.image_region import Patch, Region
-from tracking.geometry.projection import MIN_DEPTH, Projection
+from cubeling.tracking.cube.marker import cell_size
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.arrays import Array, Floats, Image
+from cubeling.tracking.geometry.image_region import Patch, Region
+from cubeling.tracking.geometry.projection import MIN_DEPTH, Projection
 
 MARGIN_SHARE, MARGIN_PX = 0.15, 12
 """Margin for the acceleration of a hand: a share of the cube's size, and [px] besides."""

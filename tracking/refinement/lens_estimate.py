@@ -11,13 +11,13 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Array, Indices
-from tracking.geometry.projection import Projection
-from tracking.geometry.robust_statistics import quantile
-from tracking.refinement.edges.edge_fit import PRIOR_INFORMATION, FittedEdges
-from tracking.refinement.edges.profiles import EdgeProfiles
-from tracking.refinement.systematic_error import (
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.arrays import Array, Indices
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.geometry.robust_statistics import quantile
+from cubeling.tracking.refinement.edges.edge_fit import PRIOR_INFORMATION, FittedEdges
+from cubeling.tracking.refinement.edges.profiles import EdgeProfiles
+from cubeling.tracking.refinement.systematic_error import (
     CLAIMED_K1,
     CORNER_ERROR_M,
     CORNER_ERROR_PX,

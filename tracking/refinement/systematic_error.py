@@ -8,10 +8,10 @@ pose moves and the residuals stay small.
 
 import numpy as np
 
-from tracking.cube.model import CubeModel
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array
-from tracking.geometry.projection import Projection, radial_bend
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.projection import Projection, radial_bend
 
 CORNER_ERROR_PX, CORNER_ERROR_M = 0.1, 0.00012
 """Displacement of a marker's corner along each axis, one standard deviation: by light, blur and

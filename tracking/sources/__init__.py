@@ -9,22 +9,22 @@ import time
 from importlib import import_module
 from pathlib import PurePath
 
-from tracking.errors import TrackingError
-from tracking.sources.base import FrameSource, LiveFrames, StoredFrames
-from tracking.sources.device import Clock, Health
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.sources.base import FrameSource, LiveFrames, StoredFrames
+from cubeling.tracking.sources.device import Clock, Health
 
 SCHEME_MODULES = {
-    "camera": "tracking.sources.camera",
-    "http": "tracking.sources.http",
-    "https": "tracking.sources.http",
-    "synthetic": "tracking.synthetic.source",
+    "camera": "cubeling.tracking.sources.camera",
+    "http": "cubeling.tracking.sources.http",
+    "https": "cubeling.tracking.sources.http",
+    "synthetic": "cubeling.tracking.synthetic.source",
 }
 """Module that opens the URIs of a scheme."""
 
-SUFFIX_MODULES = {".mcap": "tracking.sources.session"}
+SUFFIX_MODULES = {".mcap": "cubeling.tracking.sources.session"}
 """Module that opens files with a suffix."""
 
-OTHER_FILES_MODULE = "tracking.sources.video"
+OTHER_FILES_MODULE = "cubeling.tracking.sources.video"
 """Module that opens all other files."""
 
 

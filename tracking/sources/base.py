@@ -4,10 +4,10 @@ import math
 from collections.abc import Generator, Iterator
 from typing import Protocol, Self, runtime_checkable
 
-from tracking.errors import TrackingError
-from tracking.geometry.frame import Frame
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.sources.device import Health
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.sources.device import Health
 
 
 @runtime_checkable

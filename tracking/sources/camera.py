@@ -10,13 +10,18 @@ from typing import ClassVar, TypeAlias
 import cv2
 import numpy as np
 
-from tracking.errors import TrackingError
-from tracking.geometry.arrays import Image
-from tracking.sources.camera_controls import EXPOSURE, FOCUS, ControlLock
-from tracking.sources.device import Clock, DeviceSetting
-from tracking.sources.live import LiveSource
-from tracking.sources.options import UriOptions
-from tracking.sources.video_device import VideoCapture, check_present, open_capture, persistent_path
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry.arrays import Image
+from cubeling.tracking.sources.camera_controls import EXPOSURE, FOCUS, ControlLock
+from cubeling.tracking.sources.device import Clock, DeviceSetting
+from cubeling.tracking.sources.live import LiveSource
+from cubeling.tracking.sources.options import UriOptions
+from cubeling.tracking.sources.video_device import (
+    VideoCapture,
+    check_present,
+    open_capture,
+    persistent_path,
+)
 
 MJPG = cv2.VideoWriter.fourcc(*"MJPG")
 """The only format in which most cameras reach 30 frames/s at 1280x720."""

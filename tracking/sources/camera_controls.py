@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from tracking.geometry.arrays import Image
-from tracking.sources.device import DeviceSetting
-from tracking.sources.video_device import VideoCapture
+from cubeling.tracking.geometry.arrays import Image
+from cubeling.tracking.sources.device import DeviceSetting
+from cubeling.tracking.sources.video_device import VideoCapture
 
 SETTLING_IMAGES = 30
 """Number of images before anything is locked, so that the automatic controls can settle."""

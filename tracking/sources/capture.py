@@ -6,10 +6,16 @@ from contextlib import closing
 
 import numpy as np
 
-from tracking.errors import TrackingError
-from tracking.geometry.arrays import Image
-from tracking.sources.capture_timing import ExposureClock, QueueGauge
-from tracking.sources.device import CapturedImage, Clock, Device, DeviceSetting, SourceState
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry.arrays import Image
+from cubeling.tracking.sources.capture_timing import ExposureClock, QueueGauge
+from cubeling.tracking.sources.device import (
+    CapturedImage,
+    Clock,
+    Device,
+    DeviceSetting,
+    SourceState,
+)
 
 SILENCE_S = 0.8
 """A source without a new image for this time is lost; so a loss is reported within a second."""

@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 from av.codec.context import Flags
 
-from tracking.geometry.arrays import Image
-from tracking.sources.device import decode_jpeg
+from cubeling.tracking.geometry.arrays import Image
+from cubeling.tracking.sources.device import decode_jpeg
 
 START_CODE = b"\x00\x00\x01"
 """Begins every NAL unit of an Annex B stream (ITU-T H.264, annex B)."""

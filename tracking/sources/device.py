@@ -7,7 +7,7 @@ from typing import Literal, Protocol, TypeAlias
 import cv2
 import numpy as np
 
-from tracking.geometry.arrays import Image
+from cubeling.tracking.geometry.arrays import Image
 
 Clock: TypeAlias = Callable[[], float]
 """Returns the time [s]."""

@@ -7,10 +7,10 @@ import time
 from http.client import HTTPConnection, HTTPException, HTTPResponse, HTTPSConnection
 from urllib.parse import SplitResult, unquote, urlsplit
 
-from tracking.errors import TrackingError
-from tracking.sources.device import Clock, DeviceSetting
-from tracking.sources.live import LiveSource
-from tracking.sources.multipart import MultipartError, MultipartParser
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.sources.device import Clock, DeviceSetting
+from cubeling.tracking.sources.live import LiveSource
+from cubeling.tracking.sources.multipart import MultipartError, MultipartParser
 
 READ_SIZE_BYTES = 64 * 1024
 

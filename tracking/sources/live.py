@@ -5,18 +5,25 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator
 
-from tracking.errors import TrackingError
-from tracking.geometry.frame import Frame
-from tracking.sources.base import FrameSource, Timeline
-from tracking.sources.capture import (
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.sources.base import FrameSource, Timeline
+from cubeling.tracking.sources.capture import (
     FIRST_IMAGE_TIMEOUT_S,
     OPEN_TIMEOUT_S,
     POLL_S,
     SILENCE_S,
     CaptureThread,
 )
-from tracking.sources.capture_timing import RECENT_IMAGES
-from tracking.sources.device import CapturedImage, Clock, Device, Health, SourceState, decode_jpeg
+from cubeling.tracking.sources.capture_timing import RECENT_IMAGES
+from cubeling.tracking.sources.device import (
+    CapturedImage,
+    Clock,
+    Device,
+    Health,
+    SourceState,
+    decode_jpeg,
+)
 
 MAX_ITERATION_GAP_S = 30.0
 """How long a plain iteration waits for a lost device."""

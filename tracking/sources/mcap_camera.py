@@ -13,10 +13,10 @@ from mcap.reader import make_reader
 from mcap.records import Channel, McapRecord, Message, Schema
 from mcap.stream_reader import MAGIC_SIZE, StreamReader
 
-from tracking.errors import TrackingError
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.sources.base import seconds_of
-from tracking.sources.decoding import BrokenFileError, EncodedImage
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.sources.base import seconds_of
+from cubeling.tracking.sources.decoding import BrokenFileError, EncodedImage
 
 IMAGE_TOPIC = "/camera/image"
 CALIBRATION_TOPIC = "/camera/calibration"

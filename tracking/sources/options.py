@@ -4,7 +4,7 @@ from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Self
 from urllib.parse import parse_qsl
 
-from tracking.errors import TrackingError
+from cubeling.tracking.errors import TrackingError
 
 
 @dataclass(frozen=True)

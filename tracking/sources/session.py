@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from tracking.errors import TrackingError
-from tracking.geometry.frame import Frame
-from tracking.sources.base import StoredFrames, Timeline, readable_frames
-from tracking.sources.decoding import BrokenFileError, EncodedImage, decode
-from tracking.sources.device import Clock
-from tracking.sources.mcap_camera import IMAGE_TOPIC, CameraChannels
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.sources.base import StoredFrames, Timeline, readable_frames
+from cubeling.tracking.sources.decoding import BrokenFileError, EncodedImage, decode
+from cubeling.tracking.sources.device import Clock
+from cubeling.tracking.sources.mcap_camera import IMAGE_TOPIC, CameraChannels
 
 PEEKED_IMAGES = 30
 """Number of images read while opening, to find the rate and the calibration."""

@@ -6,11 +6,11 @@ from pathlib import Path
 import av
 from av.container import InputContainer
 
-from tracking.errors import TrackingError
-from tracking.geometry.frame import Frame
-from tracking.sources.base import StoredFrames, Timeline, readable_frames
-from tracking.sources.decoding import bgr_of
-from tracking.sources.device import Clock
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.sources.base import StoredFrames, Timeline, readable_frames
+from cubeling.tracking.sources.decoding import bgr_of
+from cubeling.tracking.sources.device import Clock
 
 
 class VideoSource(StoredFrames):

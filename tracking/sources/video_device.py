@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 import cv2
 
-from tracking.errors import TrackingError
+from cubeling.tracking.errors import TrackingError
 
 BACKENDS = {"linux": cv2.CAP_V4L2, "win32": cv2.CAP_DSHOW, "darwin": cv2.CAP_AVFOUNDATION}
 """OpenCV's backend on each system: trying all of them takes seconds and prints warnings, and Media

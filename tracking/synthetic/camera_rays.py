@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from tracking.geometry.arrays import Array, Floats
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.projection import Projection
+from cubeling.tracking.geometry.arrays import Array, Floats
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry.projection import Projection
 
 
 class CameraRays:

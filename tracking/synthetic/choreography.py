@@ -6,9 +6,9 @@ from typing import Self
 
 import numpy as np
 
-from tracking.cube.model import FACE_AXES
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array
+from cubeling.tracking.cube.model import FACE_AXES
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array
 
 Move = Callable[[Array, float], None]
 """Changes the initial pose of a segment, in place, to that at a share 0…1 of its time."""

@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.geometry.arrays import Array, Flags, Floats, Image
-from tracking.synthetic.camera_rays import CameraRays
+from cubeling.tracking.geometry.arrays import Array, Flags, Floats, Image
+from cubeling.tracking.synthetic.camera_rays import CameraRays
 
 Colour = tuple[float, float, float]
 """Blue, green, red, 0…255."""

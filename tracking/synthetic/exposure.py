@@ -3,13 +3,13 @@
 import cv2
 import numpy as np
 
-from tracking.geometry.arrays import Array, Floats, Image
-from tracking.synthetic.camera_rays import CameraRays, PixelRegion
-from tracking.synthetic.choreography import SceneState
-from tracking.synthetic.desk import desk_texture, draw_objects, render_desk
-from tracking.synthetic.hand import Hand, draw_hand, hand_at, hand_region
-from tracking.synthetic.options import SyntheticOptions
-from tracking.synthetic.paper_cube import TO_LIGHT, PaperCube
+from cubeling.tracking.geometry.arrays import Array, Floats, Image
+from cubeling.tracking.synthetic.camera_rays import CameraRays, PixelRegion
+from cubeling.tracking.synthetic.choreography import SceneState
+from cubeling.tracking.synthetic.desk import desk_texture, draw_objects, render_desk
+from cubeling.tracking.synthetic.hand import Hand, draw_hand, hand_at, hand_region
+from cubeling.tracking.synthetic.options import SyntheticOptions
+from cubeling.tracking.synthetic.paper_cube import TO_LIGHT, PaperCube
 
 MAX_STEP_PX = 0.6
 """Maximum motion of a corner between two samples of one exposure."""

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from tracking.cube.model import CubeModel, face_corners
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array
+from cubeling.tracking.cube.model import CubeModel, face_corners
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array
 
 
 def fold_cube(cube: CubeModel, millimetres: float, seed: int) -> CubeModel:

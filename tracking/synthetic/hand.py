@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from tracking.geometry.arrays import Array, Floats
-from tracking.synthetic.camera_rays import CameraRays, PixelRegion
+from cubeling.tracking.geometry.arrays import Array, Floats
+from cubeling.tracking.synthetic.camera_rays import CameraRays, PixelRegion
 
 Shader = Callable[[Floats, Floats, Floats, Floats], Floats]
 """From light, slope towards the camera, blush and position along the capsule to a BGR colour."""

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from tracking.sources.options import UriOptions
+from cubeling.tracking.sources.options import UriOptions
 
 
 @dataclass(frozen=True)

@@ -3,13 +3,13 @@
 import cv2
 import numpy as np
 
-from tracking.cube.icons import FOLD_GAP_SHARE, ICON_COLOURS, ICON_SHARE, icon_mask, icons
-from tracking.cube.marker import black_texels, marker_cells
-from tracking.cube.model import FACE_AXES, CubeModel, Face
-from tracking.geometry.arrays import Array, Floats
-from tracking.geometry.projection import MIN_DEPTH
-from tracking.synthetic.camera_rays import CameraRays, PixelRegion, averaged
-from tracking.synthetic.folding import face_poses
+from cubeling.tracking.cube.icons import FOLD_GAP_SHARE, ICON_COLOURS, ICON_SHARE, icon_mask, icons
+from cubeling.tracking.cube.marker import black_texels, marker_cells
+from cubeling.tracking.cube.model import FACE_AXES, CubeModel, Face
+from cubeling.tracking.geometry.arrays import Array, Floats
+from cubeling.tracking.geometry.projection import MIN_DEPTH
+from cubeling.tracking.synthetic.camera_rays import CameraRays, PixelRegion, averaged
+from cubeling.tracking.synthetic.folding import face_poses
 
 FACE_TEXELS = 640
 """Texels along the edge of a face's texture."""

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.cube.model import FACE_AXES
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array
-from tracking.synthetic.choreography import Choreography, SceneState, minimum_jerk
-from tracking.synthetic.options import SyntheticOptions
+from cubeling.tracking.cube.model import FACE_AXES
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.synthetic.choreography import Choreography, SceneState, minimum_jerk
+from cubeling.tracking.synthetic.options import SyntheticOptions
 
 TOP, BOTTOM = (0, 1, 0), (0, -1, 0)
 FRONT, BACK = (0, 0, 1), (0, 0, -1)

@@ -5,21 +5,21 @@ from functools import cached_property
 
 import numpy as np
 
-from tracking.cube.model import CubeModel
-from tracking.errors import TrackingError
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array
-from tracking.geometry.frame import Frame
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.sources.base import FrameSource
-from tracking.sources.device import Clock
-from tracking.synthetic.camera_rays import CameraRays
-from tracking.synthetic.choreography import SceneState
-from tracking.synthetic.exposure import ExposureRenderer, shutter_samples
-from tracking.synthetic.folding import fold_cube
-from tracking.synthetic.options import SyntheticOptions
-from tracking.synthetic.paper_cube import PaperCube
-from tracking.synthetic.scripts import SCRIPTS, Script
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.sources.base import FrameSource
+from cubeling.tracking.sources.device import Clock
+from cubeling.tracking.synthetic.camera_rays import CameraRays
+from cubeling.tracking.synthetic.choreography import SceneState
+from cubeling.tracking.synthetic.exposure import ExposureRenderer, shutter_samples
+from cubeling.tracking.synthetic.folding import fold_cube
+from cubeling.tracking.synthetic.options import SyntheticOptions
+from cubeling.tracking.synthetic.paper_cube import PaperCube
+from cubeling.tracking.synthetic.scripts import SCRIPTS, Script
 
 EYE_M = np.array([0.0, 0.37, 0.53])
 """Position of the camera in the table frame."""

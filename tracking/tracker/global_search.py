@@ -7,20 +7,20 @@ from typing import Literal
 import cv2
 import numpy as np
 
-from tracking.cube.model import CubeModel
-from tracking.detection.markers import Marker, MarkerDetector, Observation, markers_of
-from tracking.detection.partly_hidden_markers import PartlyHiddenMarkerDetector
-from tracking.geometry.arrays import Array, Floats, Image
-from tracking.geometry.frame import Frame
-from tracking.geometry.image_region import Region
-from tracking.geometry.projection import Projection
-from tracking.refinement.blur_search import BlurSearch
-from tracking.refinement.candidate import Candidate
-from tracking.refinement.cell_search import CellSearch
-from tracking.refinement.edge_search import EdgeSearch
-from tracking.refinement.footprint import Footprint
-from tracking.tracker.marker_poses import MarkerPoses
-from tracking.tracker.verdict import is_unambiguous
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.detection.markers import Marker, MarkerDetector, Observation, markers_of
+from cubeling.tracking.detection.partly_hidden_markers import PartlyHiddenMarkerDetector
+from cubeling.tracking.geometry.arrays import Array, Floats, Image
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.image_region import Region
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.blur_search import BlurSearch
+from cubeling.tracking.refinement.candidate import Candidate
+from cubeling.tracking.refinement.cell_search import CellSearch
+from cubeling.tracking.refinement.edge_search import EdgeSearch
+from cubeling.tracking.refinement.footprint import Footprint
+from cubeling.tracking.tracker.marker_poses import MarkerPoses
+from cubeling.tracking.tracker.verdict import is_unambiguous
 
 MIN_HALVED_HEIGHT_PX = 600
 """Images of at least this height are searched at half their size first."""

@@ -2,18 +2,22 @@
 
 from dataclasses import dataclass
 
-from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Array, Image
-from tracking.geometry.image_region import Patch
-from tracking.geometry.projection import Projection
-from tracking.refinement.blur_search import MAX_EDGE_BLUR_CELLS, MIN_CORRELATION_ALONE, BlurSearch
-from tracking.refinement.camera_model import BlurObservation, CameraModel, shows_exposure
-from tracking.refinement.candidate import Candidate
-from tracking.refinement.cell_search import CellSearch
-from tracking.refinement.edge_search import EdgeSearch
-from tracking.refinement.footprint import Footprint
-from tracking.refinement.photometry.photometric_fit import Alignment
-from tracking.tracker.prediction import Prediction, Track
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.arrays import Array, Image
+from cubeling.tracking.geometry.image_region import Patch
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.blur_search import (
+    MAX_EDGE_BLUR_CELLS,
+    MIN_CORRELATION_ALONE,
+    BlurSearch,
+)
+from cubeling.tracking.refinement.camera_model import BlurObservation, CameraModel, shows_exposure
+from cubeling.tracking.refinement.candidate import Candidate
+from cubeling.tracking.refinement.cell_search import CellSearch
+from cubeling.tracking.refinement.edge_search import EdgeSearch
+from cubeling.tracking.refinement.footprint import Footprint
+from cubeling.tracking.refinement.photometry.photometric_fit import Alignment
+from cubeling.tracking.tracker.prediction import Prediction, Track
 
 MAX_MOTION_SURPRISE_CELLS = 0.07
 """The edges are measured again where the measured blur motion differs by more from the expected."""

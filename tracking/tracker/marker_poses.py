@@ -4,16 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from tracking.cube.model import CubeModel
-from tracking.detection.markers import Observation
-from tracking.detection.pose_from_points import CornerPose, CornerPoseSolver
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array, Floats, Image
-from tracking.geometry.projection import Projection
-from tracking.refinement.candidate import Candidate
-from tracking.refinement.cell_search import CellMatch, CellSearch
-from tracking.refinement.edge_search import EdgeSearch
-from tracking.refinement.footprint import Footprint
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.detection.markers import Observation
+from cubeling.tracking.detection.pose_from_points import CornerPose, CornerPoseSolver
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array, Floats, Image
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.candidate import Candidate
+from cubeling.tracking.refinement.cell_search import CellMatch, CellSearch
+from cubeling.tracking.refinement.edge_search import EdgeSearch
+from cubeling.tracking.refinement.footprint import Footprint
 
 MIN_EDGE_CELL_PX = 6.0
 """From this size of a cell on, single edges are more precise than whole cells, whose blur and light

@@ -5,8 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array
 
 MAX_PREDICTION_S = 0.2
 """A pose is extrapolated for this long at most; after that the cube may be anywhere."""

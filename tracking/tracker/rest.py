@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array
 
 MAX_REST_FRAMES = 6
 """So many frames are averaged at most: the jitter falls to about 60 % (`test_rest`)."""

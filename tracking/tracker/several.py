@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 
-from tracking.cube.model import CubeModel
-from tracking.detection.markers import MarkerDetector
-from tracking.errors import TrackingError
-from tracking.geometry.frame import Frame
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.state import CubeState
-from tracking.tracker.global_search import FrameMarkers
-from tracking.tracker.tracker import CubeTracker
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.detection.markers import MarkerDetector
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry.state import CubeState
+from cubeling.tracking.tracker.global_search import FrameMarkers
+from cubeling.tracking.tracker.tracker import CubeTracker
 
 
 class CubesTracker:

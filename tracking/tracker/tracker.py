@@ -4,24 +4,24 @@ from dataclasses import replace
 
 import numpy as np
 
-from tracking.cube.model import CubeModel
-from tracking.detection.markers import MarkerDetector
-from tracking.errors import TrackingError
-from tracking.geometry.frame import Frame
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.projection import Projection
-from tracking.geometry.state import CubeState
-from tracking.refinement.blur_search import BlurSearch
-from tracking.refinement.camera_model import CameraModelEstimator
-from tracking.refinement.cell_search import CellSearch
-from tracking.refinement.edge_search import EdgeSearch
-from tracking.refinement.lens_estimate import LensEstimate, LensEstimator
-from tracking.refinement.systematic_error import SystematicError
-from tracking.tracker.global_search import FrameMarkers, GlobalDetector
-from tracking.tracker.local_search import LocalMatch, LocalTracker
-from tracking.tracker.prediction import TrackedPose
-from tracking.tracker.rest import Rest
-from tracking.tracker.verdict import FollowedPoseJudge, Past, is_uncertain, judge_detected
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.detection.markers import MarkerDetector
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.geometry.state import CubeState
+from cubeling.tracking.refinement.blur_search import BlurSearch
+from cubeling.tracking.refinement.camera_model import CameraModelEstimator
+from cubeling.tracking.refinement.cell_search import CellSearch
+from cubeling.tracking.refinement.edge_search import EdgeSearch
+from cubeling.tracking.refinement.lens_estimate import LensEstimate, LensEstimator
+from cubeling.tracking.refinement.systematic_error import SystematicError
+from cubeling.tracking.tracker.global_search import FrameMarkers, GlobalDetector
+from cubeling.tracking.tracker.local_search import LocalMatch, LocalTracker
+from cubeling.tracking.tracker.prediction import TrackedPose
+from cubeling.tracking.tracker.rest import Rest
+from cubeling.tracking.tracker.verdict import FollowedPoseJudge, Past, is_uncertain, judge_detected
 
 MAX_THOROUGH_FRAMES, THOROUGH_INTERVAL = 30, 5
 """Frames without the cube in which partly hidden markers are detected, then the interval."""

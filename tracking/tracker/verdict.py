@@ -5,15 +5,15 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tracking.cube.model import CubeModel
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array, Floats, Image
-from tracking.geometry.projection import Projection
-from tracking.refinement.candidate import Candidate
-from tracking.refinement.cell_search import CellSearch
-from tracking.refinement.edge_search import EdgeSearch
-from tracking.refinement.footprint import Footprint
-from tracking.tracker.prediction import MAX_PREDICTION_S, Prediction, Track, TrackedPose
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array, Floats, Image
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.candidate import Candidate
+from cubeling.tracking.refinement.cell_search import CellSearch
+from cubeling.tracking.refinement.edge_search import EdgeSearch
+from cubeling.tracking.refinement.footprint import Footprint
+from cubeling.tracking.tracker.prediction import MAX_PREDICTION_S, Prediction, Track, TrackedPose
 
 MIN_DISTINCT_ANGLE, MIN_HARMFUL_ANGLE, MIN_LASTING_ANGLE = np.deg2rad((3, 7, 10))
 """Angle between the two poses of one face [rad]: below the first they need not be told apart, below

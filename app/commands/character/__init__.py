@@ -2,9 +2,9 @@
 
 import typer
 
-from app.commands.character.graph import graph
-from app.commands.character.inspection import inspect_command
-from app.commands.character.locomotion import locomotion
+from cubeling.app.commands.character.graph import graph
+from cubeling.app.commands.character.inspection import inspect_command
+from cubeling.app.commands.character.locomotion import locomotion
 
 app = typer.Typer(
     help="Inspect characters and motions, and make clips to walk with.",

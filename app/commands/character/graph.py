@@ -8,13 +8,13 @@ from rich.console import Console
 from rich.markup import escape
 from rich.tree import Tree
 
-from app.commands.output import OverwriteOption
-from app.errors import AppError
-from app.output_path import check_output, whole_file
-from characters import Animator, Character
-from characters.control.builtin_tree import built_in
-from characters.motion.trees.dot import to_dot
-from characters.motion.trees.plan import Node, Plan, Transition
+from cubeling.app.commands.output import OverwriteOption
+from cubeling.app.errors import AppError
+from cubeling.app.output_path import check_output, whole_file
+from cubeling.characters import Animator, Character
+from cubeling.characters.control.builtin_tree import built_in
+from cubeling.characters.motion.trees.dot import to_dot
+from cubeling.characters.motion.trees.plan import Node, Plan, Transition
 
 
 def graph(

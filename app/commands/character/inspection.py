@@ -15,14 +15,14 @@ from rich.progress import Progress
 from rich.table import Table
 from rich.tree import Tree
 
-from app.counted import counted
-from app.errors import AppError
-from app.ui.contact_sheets import CLIP_COLUMNS, TURNTABLE_COLUMNS, ContactSheets, save
-from characters import Character, CharacterWarning, Skeleton, load_motion
-from characters.formats import Performance, is_motion_only
-from characters.model.inspection import ClipStats, FootContactStats, Inspection, inspect
-from characters.model.stick_figure import stick_figure
-from characters.rendering import create_context
+from cubeling.app.counted import counted
+from cubeling.app.errors import AppError
+from cubeling.app.ui.contact_sheets import CLIP_COLUMNS, TURNTABLE_COLUMNS, ContactSheets, save
+from cubeling.characters import Character, CharacterWarning, Skeleton, load_motion
+from cubeling.characters.formats import Performance, is_motion_only
+from cubeling.characters.model.inspection import ClipStats, FootContactStats, Inspection, inspect
+from cubeling.characters.model.stick_figure import stick_figure
+from cubeling.characters.rendering import create_context
 
 MIN_FOLDED_JOINTS = 4
 """Branches of at least this number of unrecognised joints are shown as one line."""

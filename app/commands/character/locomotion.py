@@ -12,10 +12,10 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from app.commands.output import OverwriteOption, chosen_output
-from app.errors import AppError
-from characters import Character
-from characters.retargeting import (
+from cubeling.app.commands.output import OverwriteOption, chosen_output
+from cubeling.app.errors import AppError
+from cubeling.characters import Character
+from cubeling.characters.retargeting import (
     YAW_RATE_PER_ANGULAR,
     GaitReport,
     LocomotionResult,

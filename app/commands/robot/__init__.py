@@ -2,10 +2,10 @@
 
 import typer
 
-from app.commands.robot.conform import conform
-from app.commands.robot.ports import list_
-from app.commands.robot.simulate import simulate
-from app.commands.robot.trial import try_
+from cubeling.app.commands.robot.conform import conform
+from cubeling.app.commands.robot.ports import list_
+from cubeling.app.commands.robot.simulate import simulate
+from cubeling.app.commands.robot.trial import try_
 
 app = typer.Typer(
     help="Simulate, try out and test robots, and list the serial ports.",

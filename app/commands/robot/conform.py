@@ -10,9 +10,15 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from app.commands.robot.conformance_report import SVG_TEMPLATE, as_json, listing, show, verdict
-from app.errors import AppError
-from robot.conformance import (
+from cubeling.app.commands.robot.conformance_report import (
+    SVG_TEMPLATE,
+    as_json,
+    listing,
+    show,
+    verdict,
+)
+from cubeling.app.errors import AppError
+from cubeling.robot.conformance import (
     Check,
     ConformanceReport,
     PortChannel,
@@ -20,10 +26,10 @@ from robot.conformance import (
     run_checks,
     select_checks,
 )
-from robot.errors import RobotError
-from robot.link.connection import protocol_of
-from robot.link.transport import opener
-from tracking.files import write_whole
+from cubeling.robot.errors import RobotError
+from cubeling.robot.link.connection import protocol_of
+from cubeling.robot.link.transport import opener
+from cubeling.tracking.files import write_whole
 
 PICTURE_COLUMNS = 100
 """Width of a picture of the output."""

@@ -8,8 +8,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from app.ui.literal_text import literal_text
-from robot.conformance import Check, CheckResult, ConformanceReport, all_checks
+from cubeling.app.ui.literal_text import literal_text
+from cubeling.robot.conformance import Check, CheckResult, ConformanceReport, all_checks
 
 VERDICT_LABELS = {
     "ok": ("ok", "green"),

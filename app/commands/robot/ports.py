@@ -3,8 +3,8 @@
 from rich.console import Console
 from rich.table import Table
 
-from app.ui.literal_text import literal_text
-from robot import serial_ports
+from cubeling.app.ui.literal_text import literal_text
+from cubeling.robot import serial_ports
 
 
 def list_() -> None:

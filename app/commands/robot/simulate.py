@@ -9,9 +9,9 @@ from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
-from robot import RobotError, SimulatedPort
-from robot.simulators import Simulated
-from robot.simulators.memory import simulator_of
+from cubeling.robot import RobotError, SimulatedPort
+from cubeling.robot.simulators import Simulated
+from cubeling.robot.simulators.memory import simulator_of
 
 
 def simulate(

@@ -12,11 +12,11 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from affect import Emotion
-from app.commands.robot.trials import Trial, trials_of
-from app.counted import counted
-from app.ui.literal_text import literal_text
-from robot import Robot, RobotError, Telemetry, connect
+from cubeling.affect import Emotion
+from cubeling.app.commands.robot.trials import Trial, trials_of
+from cubeling.app.counted import counted
+from cubeling.app.ui.literal_text import literal_text
+from cubeling.robot import Robot, RobotError, Telemetry, connect
 
 POLL_INTERVAL_S = 0.05
 """How often the telemetry is read."""

@@ -8,25 +8,25 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from app.commands.output import OverwriteOption
-from app.commands.session.part import EndOption, LoopOption, StartOption
-from app.commands.session.play import (
+from cubeling.app.commands.output import OverwriteOption
+from cubeling.app.commands.session.part import EndOption, LoopOption, StartOption
+from cubeling.app.commands.session.play import (
     DEFAULT_CAMERA,
     FolderOption,
     OutputOption,
     PersonalityOption,
     ScenarioArgument,
 )
-from app.commands.session.preference_options import GivenPreferences, with_preferences
-from app.commands.session.progress import play_session
-from app.errors import AppError
-from app.running.opening import check_output_paths
-from app.scenarios import SCENARIOS, scenario_cube
-from app.session import SessionOptions, session_info
-from app.session.bundled import bundled
-from app.ui.display import has_display
-from app.ui.playback.status import EndCard
-from tracking import FrameSource, TrackingError, open_source
+from cubeling.app.commands.session.preference_options import GivenPreferences, with_preferences
+from cubeling.app.commands.session.progress import play_session
+from cubeling.app.errors import AppError
+from cubeling.app.running.opening import check_output_paths
+from cubeling.app.scenarios import SCENARIOS, scenario_cube
+from cubeling.app.session import SessionOptions, session_info
+from cubeling.app.session.bundled import bundled
+from cubeling.app.ui.display import has_display
+from cubeling.app.ui.playback.status import EndCard
+from cubeling.tracking import FrameSource, TrackingError, open_source
 
 DEFAULT_VIDEO = Path("demo.mp4")
 """The program's own output: it is overwritten without being asked."""

@@ -8,11 +8,11 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from app.errors import AppError
-from app.exporting import ExportedSession
-from app.exporting import export as write_tables
-from app.exporting.writing import EXPORT_FILES
-from app.output_path import check_output_folder
+from cubeling.app.errors import AppError
+from cubeling.app.exporting import ExportedSession
+from cubeling.app.exporting import export as write_tables
+from cubeling.app.exporting.writing import EXPORT_FILES
+from cubeling.app.output_path import check_output_folder
 
 Labels = Annotated[
     list[str] | None,

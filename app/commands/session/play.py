@@ -6,23 +6,23 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
-from app.commands.output import OverwriteOption
-from app.commands.session.preference_options import GivenPreferences, with_preferences
-from app.commands.session.progress import play_session
-from app.errors import AppError
-from app.pipeline.cube_window import INSIDE_CHOICES, inside_of
-from app.pipeline.surroundings import NO_REALISM, REALISM_CHOICES, realism_of
-from app.running.network import DEFAULT_SITE
-from app.running.quality_control import AUTO_QUALITY, checked_quality
-from app.scenarios import find_scenario, scenario_names
-from app.scenarios.roles import check_cubes
-from app.session import SessionOptions
-from app.speaking.voices import VOICE_VARIABLE
-from app.ui.display import has_display
-from characters import CONTROLLER_CHOICES
-from characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
-from characters.rendering import QUALITIES
+from cubeling.app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
+from cubeling.app.commands.output import OverwriteOption
+from cubeling.app.commands.session.preference_options import GivenPreferences, with_preferences
+from cubeling.app.commands.session.progress import play_session
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.cube_window import INSIDE_CHOICES, inside_of
+from cubeling.app.pipeline.surroundings import NO_REALISM, REALISM_CHOICES, realism_of
+from cubeling.app.running.network import DEFAULT_SITE
+from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
+from cubeling.app.scenarios import find_scenario, scenario_names
+from cubeling.app.scenarios.roles import check_cubes
+from cubeling.app.session import SessionOptions
+from cubeling.app.speaking.voices import VOICE_VARIABLE
+from cubeling.app.ui.display import has_display
+from cubeling.characters import CONTROLLER_CHOICES
+from cubeling.characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
+from cubeling.characters.rendering import QUALITIES
 
 DEFAULT_CAMERA = "camera:0"
 

@@ -9,12 +9,12 @@ from typing import Annotated, Any
 
 import typer
 
-from affect import Emotion
-from affect.words import WORD_PLACES
-from app.errors import AppError
-from app.preferences import PreferenceStore
-from app.session import SessionOptions
-from app.ui.panels import PANELS
+from cubeling.affect import Emotion
+from cubeling.affect.words import WORD_PLACES
+from cubeling.app.errors import AppError
+from cubeling.app.preferences import PreferenceStore
+from cubeling.app.session import SessionOptions
+from cubeling.app.ui.panels import PANELS
 
 DEFAULT_FILE = Path(typer.get_app_dir("cubeling")) / "preferences.toml"
 """Where the system keeps such files: in ~/.config, ~/Library/Application Support, or %APPDATA%."""

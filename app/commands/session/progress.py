@@ -11,19 +11,19 @@ from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from app.counted import counted
-from app.errors import AppError
-from app.pipeline.step import Step
-from app.preferences import PreferenceStore
-from app.running.opened_session import OpenedSession
-from app.running.opening import open_session
-from app.running.players import PlayerPublisher
-from app.running.runner import run
-from app.running.summary import Summary
-from app.session import SessionOptions, session_info
-from app.ui.notice import lens_notice
-from app.ui.playback.status import EndCard
-from tracking import FrameSource
+from cubeling.app.counted import counted
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.step import Step
+from cubeling.app.preferences import PreferenceStore
+from cubeling.app.running.opened_session import OpenedSession
+from cubeling.app.running.opening import open_session
+from cubeling.app.running.players import PlayerPublisher
+from cubeling.app.running.runner import run
+from cubeling.app.running.summary import Summary
+from cubeling.app.session import SessionOptions, session_info
+from cubeling.app.ui.notice import lens_notice
+from cubeling.app.ui.playback.status import EndCard
+from cubeling.tracking import FrameSource
 
 LINE_INTERVAL_S = 5.0
 """Time between two lines of progress outside a terminal [s]."""

@@ -7,10 +7,10 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
-from app.commands.output import OverwriteOption
-from app.commands.session.part import EndOption, LoopOption, StartOption
-from app.commands.session.play import (
+from cubeling.app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
+from cubeling.app.commands.output import OverwriteOption
+from cubeling.app.commands.session.part import EndOption, LoopOption, StartOption
+from cubeling.app.commands.session.play import (
     ALL_REALISM,
     INSIDE_HELP,
     CharacterOption,
@@ -28,16 +28,16 @@ from app.commands.session.play import (
     RobotSettingsOption,
     SoundsOption,
 )
-from app.commands.session.preference_options import GivenPreferences, with_preferences
-from app.commands.session.progress import ProgressLines, play_session
-from app.errors import AppError
-from app.pipeline.cube_window import inside_of
-from app.pipeline.surroundings import realism_of
-from app.running.network import DEFAULT_SITE
-from app.running.quality_control import AUTO_QUALITY, checked_quality
-from app.running.replay_check import check_session
-from app.session import session_info
-from app.ui.display import has_display
+from cubeling.app.commands.session.preference_options import GivenPreferences, with_preferences
+from cubeling.app.commands.session.progress import ProgressLines, play_session
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.cube_window import inside_of
+from cubeling.app.pipeline.surroundings import realism_of
+from cubeling.app.running.network import DEFAULT_SITE
+from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
+from cubeling.app.running.replay_check import check_session
+from cubeling.app.session import session_info
+from cubeling.app.ui.display import has_display
 
 
 @with_preferences

@@ -4,8 +4,8 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Any, Literal
 
-from app.gesture_editor.editing.document import GestureDocument, Key, Row
-from characters.behaviour.symbolic_gesture import (
+from cubeling.app.gesture_editor.editing.document import GestureDocument, Key, Row
+from cubeling.characters.behaviour.symbolic_gesture import (
     SECTORS_X,
     SECTORS_Y,
     BodyKey,

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from app.gesture_editor.editing.document import EMPTY, GestureDocument
+from cubeling.app.gesture_editor.editing.document import EMPTY, GestureDocument
 
 MAX_UNDO = 200
 """Steps that are kept."""

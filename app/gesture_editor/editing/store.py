@@ -4,12 +4,12 @@ from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
-from app.gesture_editor.editing.document import moves
-from app.output_path import short_path
-from characters.behaviour.gestures.collection import GestureCollection, gestures_in
-from characters.behaviour.gestures.files import load_gesture, save_gesture
-from characters.behaviour.symbolic_gesture import SymbolicGesture
-from characters.errors import CharacterError
+from cubeling.app.gesture_editor.editing.document import moves
+from cubeling.app.output_path import short_path
+from cubeling.characters.behaviour.gestures.collection import GestureCollection, gestures_in
+from cubeling.characters.behaviour.gestures.files import load_gesture, save_gesture
+from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
+from cubeling.characters.errors import CharacterError
 
 RECOVERY_FILE = ".unsaved.toml"
 """Where changes are kept until they are saved; the library does not list it."""

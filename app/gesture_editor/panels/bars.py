@@ -3,8 +3,8 @@
 from dataclasses import replace
 from pathlib import Path
 
-from app.gesture_editor.editing.document import GestureDocument
-from app.gesture_editor.editing.edits import (
+from cubeling.app.gesture_editor.editing.document import GestureDocument
+from cubeling.app.gesture_editor.editing.edits import (
     MAX_REPEATS,
     add_key,
     change_gesture,
@@ -13,7 +13,7 @@ from app.gesture_editor.editing.edits import (
     performers,
     remove_key,
 )
-from app.gesture_editor.editing.state import (
+from cubeling.app.gesture_editor.editing.state import (
     Action,
     EditorState,
     New,
@@ -25,9 +25,9 @@ from app.gesture_editor.editing.state import (
     unless_unsaved,
     with_text,
 )
-from app.gesture_editor.editing.timing import duration, nearest_moment
-from app.gesture_editor.panels.fields import TextField
-from app.gesture_editor.panels.widgets import (
+from cubeling.app.gesture_editor.editing.timing import duration, nearest_moment
+from cubeling.app.gesture_editor.panels.fields import TextField
+from cubeling.app.gesture_editor.panels.widgets import (
     SMALL,
     SUBTLE,
     Button,

@@ -2,13 +2,21 @@
 
 from dataclasses import replace
 
-from app.gesture_editor.editing.edits import change_expressivity, change_key
-from app.gesture_editor.editing.state import EditorState, edited
-from app.gesture_editor.panels.fields import Slider
-from app.gesture_editor.panels.widgets import NORMAL, SMALL, Button, Label, Rect, Sheet, Widget
-from app.ui.palette import RULE
-from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
-from characters.behaviour.symbolic_gesture import BodyKey
+from cubeling.app.gesture_editor.editing.edits import change_expressivity, change_key
+from cubeling.app.gesture_editor.editing.state import EditorState, edited
+from cubeling.app.gesture_editor.panels.fields import Slider
+from cubeling.app.gesture_editor.panels.widgets import (
+    NORMAL,
+    SMALL,
+    Button,
+    Label,
+    Rect,
+    Sheet,
+    Widget,
+)
+from cubeling.app.ui.palette import RULE
+from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
+from cubeling.characters.behaviour.symbolic_gesture import BodyKey
 
 LEFT, MIDDLE, RIGHT = 756.0, 1016.0, 1264.0
 """Left edges of the panel's two columns, and the right edge of the second."""

@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from dataclasses import replace
 
-from app.counted import counted
-from app.gesture_editor.editing.edits import change_place, gesture_name
-from app.gesture_editor.editing.state import (
+from cubeling.app.counted import counted
+from cubeling.app.gesture_editor.editing.edits import change_place, gesture_name
+from cubeling.app.gesture_editor.editing.state import (
     Action,
     CardName,
     EditorState,
@@ -19,8 +19,8 @@ from app.gesture_editor.editing.state import (
     unless_unsaved,
     with_text,
 )
-from app.gesture_editor.panels.fields import TextField
-from app.gesture_editor.panels.widgets import (
+from cubeling.app.gesture_editor.panels.fields import TextField
+from cubeling.app.gesture_editor.panels.widgets import (
     LARGE,
     NORMAL,
     SMALL,
@@ -33,8 +33,8 @@ from app.gesture_editor.panels.widgets import (
     Widget,
     button_row,
 )
-from app.ui.palette import INK
-from characters.behaviour.gestures.contacts import CONTACTS
+from cubeling.app.ui.palette import INK
+from cubeling.characters.behaviour.gestures.contacts import CONTACTS
 
 WIDTH, HEIGHT = 1280.0, 720.0
 """Of the window, in units of the canvas."""

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.gesture_editor.editing.state import EditorState
-from app.gesture_editor.panels.widgets import (
+from cubeling.app.gesture_editor.editing.state import EditorState
+from cubeling.app.gesture_editor.panels.widgets import (
     ACCENT,
     CARD,
     NORMAL,
@@ -15,8 +15,8 @@ from app.gesture_editor.panels.widgets import (
     fitting,
     rounded,
 )
-from app.ui.canvas import Canvas, text_width
-from app.ui.palette import INK, PAPER, QUIET, RULE, between
+from cubeling.app.ui.canvas import Canvas, text_width
+from cubeling.app.ui.palette import INK, PAPER, QUIET, RULE, between
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,11 @@
 from dataclasses import replace
 from typing import Any
 
-from app.gesture_editor.editing.document import GestureDocument
-from app.gesture_editor.editing.edits import change_key, change_place, move_key
-from app.gesture_editor.editing.state import EditorState, edited
-from app.gesture_editor.editing.words import DIRECTION_NAMES, PATH_NAMES, combined
-from app.gesture_editor.panels.body_panel import (
+from cubeling.app.gesture_editor.editing.document import GestureDocument
+from cubeling.app.gesture_editor.editing.edits import change_key, change_place, move_key
+from cubeling.app.gesture_editor.editing.state import EditorState, edited
+from cubeling.app.gesture_editor.editing.words import DIRECTION_NAMES, PATH_NAMES, combined
+from cubeling.app.gesture_editor.panels.body_panel import (
     BUTTON_PX,
     COLUMN,
     LEFT,
@@ -16,10 +16,10 @@ from app.gesture_editor.panels.body_panel import (
     body_sliders,
     expressivity_sliders,
 )
-from app.gesture_editor.panels.fields import Slider
-from app.gesture_editor.panels.space_map import SpaceMap
-from app.gesture_editor.panels.time_line_parts import ROW_NAMES
-from app.gesture_editor.panels.widgets import (
+from cubeling.app.gesture_editor.panels.fields import Slider
+from cubeling.app.gesture_editor.panels.space_map import SpaceMap
+from cubeling.app.gesture_editor.panels.time_line_parts import ROW_NAMES
+from cubeling.app.gesture_editor.panels.widgets import (
     LARGE,
     NORMAL,
     SMALL,
@@ -30,8 +30,8 @@ from app.gesture_editor.panels.widgets import (
     Widget,
     button_row,
 )
-from characters.behaviour.symbolic_gesture import SECTORS_Z, HandKey
-from characters.ik.reaching.hand_shapes import HAND_SHAPES
+from cubeling.characters.behaviour.symbolic_gesture import SECTORS_Z, HandKey
+from cubeling.characters.ik.reaching.hand_shapes import HAND_SHAPES
 
 MAX_RADIUS, MAX_TURNS = 0.6, 8.0
 """Greatest amplitude of a path, over the length of the arm, and most turns."""

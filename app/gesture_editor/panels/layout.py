@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from app.gesture_editor.editing.state import EditorState
-from app.gesture_editor.panels.bars import lower_bar, upper_bar
-from app.gesture_editor.panels.cards import HEIGHT, WIDTH, card
-from app.gesture_editor.panels.inspector import inspector
-from app.gesture_editor.panels.time_line import draw_playhead, time_line
-from app.gesture_editor.panels.time_line_parts import KeyMark
-from app.gesture_editor.panels.widgets import (
+from cubeling.app.gesture_editor.editing.state import EditorState
+from cubeling.app.gesture_editor.panels.bars import lower_bar, upper_bar
+from cubeling.app.gesture_editor.panels.cards import HEIGHT, WIDTH, card
+from cubeling.app.gesture_editor.panels.inspector import inspector
+from cubeling.app.gesture_editor.panels.time_line import draw_playhead, time_line
+from cubeling.app.gesture_editor.panels.time_line_parts import KeyMark
+from cubeling.app.gesture_editor.panels.widgets import (
     CARD,
     SMALL,
     Label,
@@ -21,8 +21,8 @@ from app.gesture_editor.panels.widgets import (
     Widget,
     rounded,
 )
-from app.ui.canvas import Canvas, text_width
-from app.ui.palette import ANGRY, INK, PAPER, RULE, between
+from cubeling.app.ui.canvas import Canvas, text_width
+from cubeling.app.ui.palette import ANGRY, INK, PAPER, RULE, between
 
 Picture = NDArray[np.uint8]
 

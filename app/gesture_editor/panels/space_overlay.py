@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from app.gesture_editor.panels.widgets import ACCENT
-from characters.behaviour.gestures.space import (
+from cubeling.app.gesture_editor.panels.widgets import ACCENT
+from cubeling.characters.behaviour.gestures.space import (
     CENTRES_X_CM,
     CENTRES_Y_CM,
     CENTRES_Z_CM,
@@ -17,8 +17,8 @@ from characters.behaviour.gestures.space import (
     REFERENCE_ARM_M,
     GestureSpace,
 )
-from characters.behaviour.symbolic_gesture import Place
-from characters.rendering.portrait_camera import PortraitCamera
+from cubeling.characters.behaviour.symbolic_gesture import Place
+from cubeling.characters.rendering.portrait_camera import PortraitCamera
 
 Array = NDArray[np.float64]
 

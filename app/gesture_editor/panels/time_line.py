@@ -1,9 +1,9 @@
 """The time line: phases with borders to drag, and keys of hands, trunk and head."""
 
-from app.gesture_editor.editing.document import ROWS, GestureDocument, keys_of
-from app.gesture_editor.editing.edits import Phase, change_gesture, change_phase
-from app.gesture_editor.editing.state import EditorState, edited
-from app.gesture_editor.editing.timing import (
+from cubeling.app.gesture_editor.editing.document import ROWS, GestureDocument, keys_of
+from cubeling.app.gesture_editor.editing.edits import Phase, change_gesture, change_phase
+from cubeling.app.gesture_editor.editing.state import EditorState, edited
+from cubeling.app.gesture_editor.editing.timing import (
     duration,
     moment_at,
     phase_at,
@@ -12,7 +12,7 @@ from app.gesture_editor.editing.timing import (
     time_line_span,
     time_of,
 )
-from app.gesture_editor.panels.time_line_parts import (
+from cubeling.app.gesture_editor.panels.time_line_parts import (
     LEFT,
     PHASE_HEIGHT,
     PHASE_TOP,
@@ -25,9 +25,9 @@ from app.gesture_editor.panels.time_line_parts import (
     Phases,
     TimeAxis,
 )
-from app.gesture_editor.panels.widgets import SMALL, SUBTLE, Label, Rect, Widget
-from app.ui.canvas import Canvas
-from app.ui.palette import INK, PAPER
+from cubeling.app.gesture_editor.panels.widgets import SMALL, SUBTLE, Label, Rect, Widget
+from cubeling.app.ui.canvas import Canvas
+from cubeling.app.ui.palette import INK, PAPER
 
 NOW = (156.0, 581.0)
 """Where the time of the preview is written."""

@@ -5,13 +5,27 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.gesture_editor.editing.document import GestureDocument, Row
-from app.gesture_editor.editing.edits import Phase, move_key
-from app.gesture_editor.editing.state import EditorState, edited
-from app.gesture_editor.editing.timing import duration, moment_at, period, phase_spans, time_of
-from app.gesture_editor.panels.widgets import ACCENT, CARD, SMALL, SUBTLE, Look, Widget, rounded
-from app.ui.canvas import Canvas, text_width
-from app.ui.palette import HAPPY, INK, NEUTRAL, PAPER, QUIET, RULE, Color, between
+from cubeling.app.gesture_editor.editing.document import GestureDocument, Row
+from cubeling.app.gesture_editor.editing.edits import Phase, move_key
+from cubeling.app.gesture_editor.editing.state import EditorState, edited
+from cubeling.app.gesture_editor.editing.timing import (
+    duration,
+    moment_at,
+    period,
+    phase_spans,
+    time_of,
+)
+from cubeling.app.gesture_editor.panels.widgets import (
+    ACCENT,
+    CARD,
+    SMALL,
+    SUBTLE,
+    Look,
+    Widget,
+    rounded,
+)
+from cubeling.app.ui.canvas import Canvas, text_width
+from cubeling.app.ui.palette import HAPPY, INK, NEUTRAL, PAPER, QUIET, RULE, Color, between
 
 LEFT, RIGHT = 150.0, 1256.0
 """Where the time line starts and ends."""

@@ -10,9 +10,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from app.gesture_editor.editing.state import Action, EditorState
-from app.ui.canvas import UNIT_CIRCLE, Canvas, text_width
-from app.ui.palette import ACTION_COLORS, INK, PAPER, QUIET, RULE, Color, between, bgr
+from cubeling.app.gesture_editor.editing.state import Action, EditorState
+from cubeling.app.ui.canvas import UNIT_CIRCLE, Canvas, text_width
+from cubeling.app.ui.palette import ACTION_COLORS, INK, PAPER, QUIET, RULE, Color, between, bgr
 
 Rect = tuple[float, float, float, float]
 """Left, top, width and height, in units of the canvas."""

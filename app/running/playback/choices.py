@@ -4,17 +4,17 @@ import threading
 from dataclasses import replace
 from typing import Any
 
-from affect import AffectError
-from app.errors import AppError
-from app.running.opened_session import OpenedSession
-from app.running.playback.background import BackgroundCall
-from app.running.playback.parts import PARTS, discard
-from app.running.playback.transport import Transport
-from app.ui.playback.requests import Choose
-from app.ui.playback.status import Choice
-from characters import CharacterError
-from robot import RobotError
-from tracking import TrackingError
+from cubeling.affect import AffectError
+from cubeling.app.errors import AppError
+from cubeling.app.running.opened_session import OpenedSession
+from cubeling.app.running.playback.background import BackgroundCall
+from cubeling.app.running.playback.parts import PARTS, discard
+from cubeling.app.running.playback.transport import Transport
+from cubeling.app.ui.playback.requests import Choose
+from cubeling.app.ui.playback.status import Choice
+from cubeling.characters import CharacterError
+from cubeling.robot import RobotError
+from cubeling.tracking import TrackingError
 
 ROOM_ERRORS = (AppError, AffectError, CharacterError, RobotError, TrackingError)
 

@@ -4,10 +4,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice
 
-from app.running.opened_session import OpenedSession
-from app.session.replay_inputs import read_replay_inputs
-from tracking import Frame, Health, LiveFrames, StoredFrames, open_source
-from tracking.sources.base import Timeline
+from cubeling.app.running.opened_session import OpenedSession
+from cubeling.app.session.replay_inputs import read_replay_inputs
+from cubeling.tracking import Frame, Health, LiveFrames, StoredFrames, open_source
+from cubeling.tracking.sources.base import Timeline
 
 SCREEN_UPDATE_INTERVAL_S = 0.05
 """While no frame comes, the screen is updated at least this often."""

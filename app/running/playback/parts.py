@@ -6,16 +6,16 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from app.errors import AppError
-from app.running.opened_session import OpenedSession
-from app.running.opening import intrinsics_for
-from app.running.playback.transport import Transport
-from app.running.robots import RobotLine
-from app.running.wire_tap import WireTap
-from app.ui.playback.status import Choice
-from characters import Character
-from robot import serial_ports
-from tracking import FrameSource, Intrinsics, TrackingError, open_source
+from cubeling.app.errors import AppError
+from cubeling.app.running.opened_session import OpenedSession
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.playback.transport import Transport
+from cubeling.app.running.robots import RobotLine
+from cubeling.app.running.wire_tap import WireTap
+from cubeling.app.ui.playback.status import Choice
+from cubeling.characters import Character
+from cubeling.robot import serial_ports
+from cubeling.tracking import FrameSource, Intrinsics, TrackingError, open_source
 
 MAX_CAMERAS = 4
 """Numbers of cameras that are tried where the system does not list them."""

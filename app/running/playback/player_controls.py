@@ -4,13 +4,13 @@ from collections.abc import Callable
 from datetime import datetime
 from typing import Any
 
-from affect import AffectError
-from app.errors import AppError
-from app.output_path import dated_file, default_folder, short_path
-from app.running.opened_session import OpenedSession
-from app.running.playback.choices import Choices
-from app.running.playback.transport import Transport
-from app.ui.playback.requests import (
+from cubeling.affect import AffectError
+from cubeling.app.errors import AppError
+from cubeling.app.output_path import dated_file, default_folder, short_path
+from cubeling.app.running.opened_session import OpenedSession
+from cubeling.app.running.playback.choices import Choices
+from cubeling.app.running.playback.transport import Transport
+from cubeling.app.ui.playback.requests import (
     ChangeSetting,
     ChangeSound,
     ChangeSpeech,
@@ -24,7 +24,7 @@ from app.ui.playback.requests import (
     SessionRequest,
     StepFrames,
 )
-from app.ui.playback.status import EndCard, SessionStatus
+from cubeling.app.ui.playback.status import EndCard, SessionStatus
 
 
 class PlayerControls:

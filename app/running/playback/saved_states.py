@@ -4,9 +4,9 @@ import math
 import pickle
 from dataclasses import dataclass
 
-from app.pipeline.checkpoint import Checkpoint
-from app.pipeline.playground import Playground
-from tracking import Frame
+from cubeling.app.pipeline.checkpoint import Checkpoint
+from cubeling.app.pipeline.playground import Playground
+from cubeling.tracking import Frame
 
 FIRST_INTERVAL_S, MAX_STATES = 1.0, 64
 """Time between two states at first, and how many are kept: of more, every second one is forgotten,

@@ -4,13 +4,13 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.running.opened_session import OpenedSession
-from app.running.opening import is_seekable
-from app.running.playback.frame_feed import FrameFeed
-from app.running.playback.saved_states import SavedStates
-from app.session import events
-from app.ui.playback.status import Mark, Position
-from tracking import Frame, Health, LiveFrames
+from cubeling.app.running.opened_session import OpenedSession
+from cubeling.app.running.opening import is_seekable
+from cubeling.app.running.playback.frame_feed import FrameFeed
+from cubeling.app.running.playback.saved_states import SavedStates
+from cubeling.app.session import events
+from cubeling.app.ui.playback.status import Mark, Position
+from cubeling.tracking import Frame, Health, LiveFrames
 
 
 @dataclass(frozen=True)

@@ -10,11 +10,21 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from app.ui.calibration.orientation_icons import draw_board, draw_cube, draw_screen
-from app.ui.calibration.session import Advice
-from app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
-from app.ui.palette import ACTION_COLORS, HAPPY, INK, NEUTRAL, PAPER, QUIET, RULE, Color, between
-from tracking.calibration import ViewCoverage
+from cubeling.app.ui.calibration.orientation_icons import draw_board, draw_cube, draw_screen
+from cubeling.app.ui.calibration.session import Advice
+from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
+from cubeling.app.ui.palette import (
+    ACTION_COLORS,
+    HAPPY,
+    INK,
+    NEUTRAL,
+    PAPER,
+    QUIET,
+    RULE,
+    Color,
+    between,
+)
+from cubeling.tracking.calibration import ViewCoverage
 
 Picture = NDArray[np.uint8]
 Array = NDArray[np.float64]

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from app.counted import counted
-from app.errors import AppError
-from app.output_path import whole_file
-from app.ui.calibration.coach import draw_coverage, words_of
-from app.ui.calibration.session import Advice, CalibrationSession
+from cubeling.app.counted import counted
+from cubeling.app.errors import AppError
+from cubeling.app.output_path import whole_file
+from cubeling.app.ui.calibration.coach import draw_coverage, words_of
+from cubeling.app.ui.calibration.session import Advice, CalibrationSession
 
 Picture = NDArray[np.uint8]
 

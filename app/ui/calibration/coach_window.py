@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from app.ui.calibration.coach import CoachView
-from app.ui.calibration.session import Advice
-from app.ui.window.surface import Surface
+from cubeling.app.ui.calibration.coach import CoachView
+from cubeling.app.ui.calibration.session import Advice
+from cubeling.app.ui.window.surface import Surface
 
 Picture = NDArray[np.uint8]
 

@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from app.ui.canvas import Canvas
-from app.ui.palette import ACTION_COLORS, INK, PAPER, RULE, Color, between
-from tracking.geometry import se3
+from cubeling.app.ui.canvas import Canvas
+from cubeling.app.ui.palette import ACTION_COLORS, INK, PAPER, RULE, Color, between
+from cubeling.tracking.geometry import se3
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]

@@ -7,9 +7,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from app.errors import AppError
-from tracking import Frame, FrameSource, LiveFrames, TrackingError
-from tracking.calibration import (
+from cubeling.app.errors import AppError
+from cubeling.tracking import Frame, FrameSource, LiveFrames, TrackingError
+from cubeling.tracking.calibration import (
     Calibration,
     TargetFinder,
     ViewCollector,

@@ -11,8 +11,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pipeline.step import Rect
-from app.ui.canvas import PICTURE_HEIGHT
+from cubeling.app.pipeline.step import Rect
+from cubeling.app.ui.canvas import PICTURE_HEIGHT
 
 Corner = Literal["bottom right", "bottom left", "top right", "top left"]
 CORNERS: tuple[Corner, ...] = ("bottom right", "bottom left", "top right", "top left")

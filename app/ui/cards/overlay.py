@@ -7,9 +7,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pipeline.step import RobotView, Step
-from app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
-from app.ui.cards.layout import (
+from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
+from cubeling.app.ui.cards.layout import (
     CARD_GAP,
     CARD_MARGIN,
     HINT_HEIGHT,
@@ -19,12 +19,22 @@ from app.ui.cards.layout import (
     Corner,
     card_box,
 )
-from app.ui.cards.robot_face import draw_face
-from app.ui.cards.subtitles import draw_subtitle, subtitle, subtitle_place, subtitle_room
-from app.ui.cards.virtual_robot import VirtualRobot
-from app.ui.notice import Notice
-from app.ui.palette import ACTION_COLORS, ANGRY, INK, PAPER, QUIET, RULE, Color, between, mood_color
-from tracking.cube.icons import ICON_COLOURS
+from cubeling.app.ui.cards.robot_face import draw_face
+from cubeling.app.ui.cards.subtitles import draw_subtitle, subtitle, subtitle_place, subtitle_room
+from cubeling.app.ui.cards.virtual_robot import VirtualRobot
+from cubeling.app.ui.notice import Notice
+from cubeling.app.ui.palette import (
+    ACTION_COLORS,
+    ANGRY,
+    INK,
+    PAPER,
+    QUIET,
+    RULE,
+    Color,
+    between,
+    mood_color,
+)
+from cubeling.tracking.cube.icons import ICON_COLOURS
 
 CARD_HEIGHT = 108.0
 BAR_Y = 70.0

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from app.ui.canvas import Canvas
-from app.ui.palette import INK, PAPER, between, mood_color
+from cubeling.app.ui.canvas import Canvas
+from cubeling.app.ui.palette import INK, PAPER, between, mood_color
 
 
 def draw_face(canvas: Canvas, x: float, y: float, radius: float, mood: float) -> None:

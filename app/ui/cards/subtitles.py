@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 from functools import lru_cache
 
-from app.pipeline.step import Rect
-from app.ui.canvas import PICTURE_HEIGHT, Canvas, can_be_written, text_width
-from app.ui.cards.layout import CARD_GAP, CARD_MARGIN, are_apart
-from app.ui.palette import INK
-from characters.control.command import SpeechIntent
-from characters.speech.speech import Utterance
+from cubeling.app.pipeline.step import Rect
+from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, can_be_written, text_width
+from cubeling.app.ui.cards.layout import CARD_GAP, CARD_MARGIN, are_apart
+from cubeling.app.ui.palette import INK
+from cubeling.characters.control.command import SpeechIntent
+from cubeling.characters.speech.speech import Utterance
 
 SIZE, LINE_HEIGHT = 24.0, 32.0
 """Height of the letters, and distance between the lines."""

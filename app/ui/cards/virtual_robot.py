@@ -7,14 +7,14 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from affect import Emotion
-from affect.hysteresis import HAPPY_ABOVE
-from affect.words import closest_word
-from app.pipeline.scenario import EmotionTarget
-from app.ui.display import is_software_renderer
-from app.ui.palette import PAPER, between, mood_color
-from characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
-from characters.rendering import SceneCharacter, Stage, View
+from cubeling.affect import Emotion
+from cubeling.affect.hysteresis import HAPPY_ABOVE
+from cubeling.affect.words import closest_word
+from cubeling.app.pipeline.scenario import EmotionTarget
+from cubeling.app.ui.display import is_software_renderer
+from cubeling.app.ui.palette import PAPER, between, mood_color
+from cubeling.characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
+from cubeling.characters.rendering import SceneCharacter, Stage, View
 
 MAX_SIDE_PX = 216
 """Largest picture that is drawn [px]; a larger one is scaled up, to spare software rendering."""

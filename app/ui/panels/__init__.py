@@ -3,15 +3,15 @@
 A new panel is one module: list it in `PANELS`.
 """
 
-from app.ui.panels.content import Panel
-from app.ui.panels.emotion import EMOTION
-from app.ui.panels.frame_time import FRAME_TIME
-from app.ui.panels.monitor import SessionMonitor
-from app.ui.panels.scenario import SCENARIO
-from app.ui.panels.serial import SERIAL
-from app.ui.panels.sound import SOUND
-from app.ui.panels.speech import SPEECH
-from app.ui.panels.tracking import TRACKING
+from cubeling.app.ui.panels.content import Panel
+from cubeling.app.ui.panels.emotion import EMOTION
+from cubeling.app.ui.panels.frame_time import FRAME_TIME
+from cubeling.app.ui.panels.monitor import SessionMonitor
+from cubeling.app.ui.panels.scenario import SCENARIO
+from cubeling.app.ui.panels.serial import SERIAL
+from cubeling.app.ui.panels.sound import SOUND
+from cubeling.app.ui.panels.speech import SPEECH
+from cubeling.app.ui.panels.tracking import TRACKING
 
 PANELS: dict[str, Panel] = {
     panel.name: panel for panel in (TRACKING, SCENARIO, EMOTION, SERIAL, FRAME_TIME, SOUND, SPEECH)

@@ -7,9 +7,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from app.ui.palette import Color
-from app.ui.panels.monitor import SessionMonitor
-from app.ui.playback.requests import ChangeSetting, SessionRequest
+from cubeling.app.ui.palette import Color
+from cubeling.app.ui.panels.monitor import SessionMonitor
+from cubeling.app.ui.playback.requests import ChangeSetting, SessionRequest
 
 Tone = Literal["plain", "good", "warning", "bad", "quiet"]
 """How a value is meant."""

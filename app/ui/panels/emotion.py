@@ -1,9 +1,9 @@
 """What character and robot feel, over the last minute."""
 
-from affect import Emotion
-from app.ui.palette import INK, ROBOT_COLOR, bgr
-from app.ui.panels.content import Curve, Fact, Panel, Plot, Widget
-from app.ui.panels.monitor import EMOTION_SPAN_S, SessionMonitor
+from cubeling.affect import Emotion
+from cubeling.app.ui.palette import INK, ROBOT_COLOR, bgr
+from cubeling.app.ui.panels.content import Curve, Fact, Panel, Plot, Widget
+from cubeling.app.ui.panels.monitor import EMOTION_SPAN_S, SessionMonitor
 
 AROUSAL_COLOR = bgr("#d55e00")
 """Colour of the character's arousal, as in the mood plot."""

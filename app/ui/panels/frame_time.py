@@ -1,8 +1,17 @@
 """Where the time of a frame goes."""
 
-from app.ui.palette import ACTION_COLORS, ANGRY, HAPPY, NEUTRAL, QUIET, ROBOT_COLOR, RULE, bgr
-from app.ui.panels.content import Fact, Note, Panel, Share, ShareBar, Widget
-from app.ui.panels.monitor import SessionMonitor
+from cubeling.app.ui.palette import (
+    ACTION_COLORS,
+    ANGRY,
+    HAPPY,
+    NEUTRAL,
+    QUIET,
+    ROBOT_COLOR,
+    RULE,
+    bgr,
+)
+from cubeling.app.ui.panels.content import Fact, Note, Panel, Share, ShareBar, Widget
+from cubeling.app.ui.panels.monitor import SessionMonitor
 
 PARTS = {
     "capture": bgr("#2f6f8f"),

@@ -2,16 +2,16 @@
 
 import numpy as np
 
-from app.pipeline.frame_times import FrameTimes
-from app.pipeline.playground import Playground
-from app.pipeline.step import RobotView, Step
-from app.session import SessionOptions
-from app.ui.panels.trace import Trace
-from app.ui.panels.wire_log import WireLog
-from characters.control.speech_profile import DEFAULT_PROFILE
-from characters.rendering import FULL
-from characters.synthesis.gestures.graph import GestureGraph
-from tracking import Intrinsics, LensEstimate
+from cubeling.app.pipeline.frame_times import FrameTimes
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.session import SessionOptions
+from cubeling.app.ui.panels.trace import Trace
+from cubeling.app.ui.panels.wire_log import WireLog
+from cubeling.characters.control.speech_profile import DEFAULT_PROFILE
+from cubeling.characters.rendering import FULL
+from cubeling.characters.synthesis.gestures.graph import GestureGraph
+from cubeling.tracking import Intrinsics, LensEstimate
 
 EMOTION_SPAN_S, EMOTION_INTERVAL_S = 60.0, 0.1
 """How long emotions are kept, and the least time between two of them."""

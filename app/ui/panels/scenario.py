@@ -3,13 +3,13 @@
 from collections.abc import Callable
 from functools import cache
 
-from affect.personality_file import bundled
-from app.pipeline.attention import LOOK_CHOICES
-from app.pipeline.scenario import SPEED_MAP_NAMES
-from app.scenarios import find_scenario
-from app.session import SessionOptions
-from app.ui.panels.content import Choice, Fact, Note, Panel, Slider, Widget
-from app.ui.panels.monitor import SessionMonitor
+from cubeling.affect.personality_file import bundled
+from cubeling.app.pipeline.attention import LOOK_CHOICES
+from cubeling.app.pipeline.scenario import SPEED_MAP_NAMES
+from cubeling.app.scenarios import find_scenario
+from cubeling.app.session import SessionOptions
+from cubeling.app.ui.panels.content import Choice, Fact, Note, Panel, Slider, Widget
+from cubeling.app.ui.panels.monitor import SessionMonitor
 
 PERSONALITIES = bundled()
 """The personalities that can be chosen, besides the user's own."""

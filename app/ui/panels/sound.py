@@ -1,8 +1,8 @@
 """How a session sounds."""
 
-from app.ui.panels.content import Note, Panel, Slider, Switch, Widget
-from app.ui.panels.monitor import SessionMonitor
-from app.ui.playback.requests import ChangeSound
+from cubeling.app.ui.panels.content import Note, Panel, Slider, Switch, Widget
+from cubeling.app.ui.panels.monitor import SessionMonitor
+from cubeling.app.ui.playback.requests import ChangeSound
 
 
 def content(monitor: SessionMonitor) -> tuple[Widget, ...]:

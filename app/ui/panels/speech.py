@@ -1,11 +1,11 @@
 """BodySpeech: what the character says, and how its face and hands say it."""
 
-from app.ui.palette import ACTION_COLORS, QUIET
-from app.ui.panels.content import Choice, Curve, Fact, Note, Panel, Plot, Slider, Widget
-from app.ui.panels.monitor import SPEECH_SPAN_S, SessionMonitor
-from app.ui.playback.requests import ChangeSpeech
-from characters.control.speech_profile import DATABASES, RANGES, SpeechProfile
-from characters.face.visemes.sets import viseme_sets
+from cubeling.app.ui.palette import ACTION_COLORS, QUIET
+from cubeling.app.ui.panels.content import Choice, Curve, Fact, Note, Panel, Plot, Slider, Widget
+from cubeling.app.ui.panels.monitor import SPEECH_SPAN_S, SessionMonitor
+from cubeling.app.ui.playback.requests import ChangeSpeech
+from cubeling.characters.control.speech_profile import DATABASES, RANGES, SpeechProfile
+from cubeling.characters.face.visemes.sets import viseme_sets
 
 SLIDERS = {
     "gesture_emphasis": "Gestures",

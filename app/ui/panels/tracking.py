@@ -3,11 +3,11 @@
 import numpy as np
 from rich.text import Text
 
-from app.ui.notice import lens_notice
-from app.ui.palette import ACTION_COLORS
-from app.ui.panels.content import Curve, Fact, Note, Panel, Plot, Tone, Widget
-from app.ui.panels.monitor import TRACKING_SPAN_S, SessionMonitor
-from tracking import CubeState
+from cubeling.app.ui.notice import lens_notice
+from cubeling.app.ui.palette import ACTION_COLORS
+from cubeling.app.ui.panels.content import Curve, Fact, Note, Panel, Plot, Tone, Widget
+from cubeling.app.ui.panels.monitor import TRACKING_SPAN_S, SessionMonitor
+from cubeling.tracking import CubeState
 
 REFUSALS = {
     "ambiguous": "one face may lean either way",

@@ -3,9 +3,9 @@
 from collections import deque
 from dataclasses import dataclass
 
-from app.ui.panels.wire_words import DECODERS, LineDecoder, WireDecoder, Words
-from robot import Catalogue
-from robot.link.exchange import Direction
+from cubeling.app.ui.panels.wire_words import DECODERS, LineDecoder, WireDecoder, Words
+from cubeling.robot import Catalogue
+from cubeling.robot.link.exchange import Direction
 
 BOTH_DIRECTIONS: tuple[Direction, ...] = ("tx", "rx")
 """To the robot, and from it."""

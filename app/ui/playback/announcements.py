@@ -2,10 +2,10 @@
 
 from collections.abc import Callable
 
-from app.ui.canvas import Card
-from app.ui.palette import ANGRY, QUIET, Color
-from app.ui.playback.cards import draw_pills
-from app.ui.playback.status import SessionStatus
+from cubeling.app.ui.canvas import Card
+from cubeling.app.ui.palette import ANGRY, QUIET, Color
+from cubeling.app.ui.playback.cards import draw_pills
+from cubeling.app.ui.playback.status import SessionStatus
 
 NOTICE_S = 4.0
 """How long a notice is shown."""

@@ -2,10 +2,10 @@
 
 from functools import lru_cache
 
-from app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
-from app.ui.palette import ACTION_COLORS, INK, QUIET, RULE, Color
-from app.ui.playback.keys import KeyRow, key_rows
-from app.ui.playback.status import EndCard
+from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
+from cubeling.app.ui.palette import ACTION_COLORS, INK, QUIET, RULE, Color
+from cubeling.app.ui.playback.keys import KeyRow, key_rows
+from cubeling.app.ui.playback.status import EndCard
 
 ACCENT = ACTION_COLORS["walk"]
 """Colour of what can be chosen or typed."""

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from itertools import groupby
 
-from app.ui.playback.requests import (
+from cubeling.app.ui.playback.requests import (
     MarkMoment,
     OpenCube,
     Pause,

@@ -11,16 +11,16 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from app.errors import AppError
-from app.output_path import dated_file, short_path
-from app.pipeline.scenario import Inputs
-from app.ui.canvas import PICTURE_HEIGHT
-from app.ui.playback import timeline
-from app.ui.playback.announcements import Announcements
-from app.ui.playback.cards import draw_ending, draw_keys
-from app.ui.playback.keys import find_binding
-from app.ui.playback.menu import MENU_KEYS, Menu
-from app.ui.playback.requests import (
+from cubeling.app.errors import AppError
+from cubeling.app.output_path import dated_file, short_path
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.ui.canvas import PICTURE_HEIGHT
+from cubeling.app.ui.playback import timeline
+from cubeling.app.ui.playback.announcements import Announcements
+from cubeling.app.ui.playback.cards import draw_ending, draw_keys
+from cubeling.app.ui.playback.keys import find_binding
+from cubeling.app.ui.playback.menu import MENU_KEYS, Menu
+from cubeling.app.ui.playback.requests import (
     ListChoices,
     OpenCube,
     Pause,
@@ -31,7 +31,7 @@ from app.ui.playback.requests import (
     StartOver,
     WindowRequest,
 )
-from app.ui.playback.status import NO_STATUS, SessionStatus
+from cubeling.app.ui.playback.status import NO_STATUS, SessionStatus
 
 Picture = NDArray[np.uint8]
 

@@ -1,10 +1,10 @@
 """The menu in which the player chooses camera, character and robot while a session runs."""
 
-from app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
-from app.ui.palette import INK, PAPER, QUIET, Color, between
-from app.ui.playback.cards import ACCENT
-from app.ui.playback.requests import Choose
-from app.ui.playback.status import Choice
+from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
+from cubeling.app.ui.palette import INK, PAPER, QUIET, Color, between
+from cubeling.app.ui.playback.cards import ACCENT
+from cubeling.app.ui.playback.requests import Choose
+from cubeling.app.ui.playback.status import Choice
 
 COLUMN_WIDTH, SIDE = 286.0, 28.0
 ROWS_TOP, ROW_HEIGHT = 84.0, 38.0

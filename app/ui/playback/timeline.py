@@ -5,9 +5,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
-from app.ui.palette import ACTION_COLORS, ANGRY, INK, PAPER, QUIET, RULE, Color, between
-from app.ui.playback.status import Mark, Position
+from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
+from cubeling.app.ui.palette import ACTION_COLORS, ANGRY, INK, PAPER, QUIET, RULE, Color, between
+from cubeling.app.ui.playback.status import Mark, Position
 
 STRIP_HEIGHT = 56.0
 """Height of the strip, in units of the canvas."""

@@ -1,5 +1,5 @@
 """The live window."""
 
-from app.ui.window.window import Window
+from cubeling.app.ui.window.window import Window
 
 __all__ = ["Window"]

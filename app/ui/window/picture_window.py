@@ -4,7 +4,7 @@ import glfw
 import numpy as np
 from numpy.typing import NDArray
 
-from app.ui.window.window import Window
+from cubeling.app.ui.window.window import Window
 
 
 class PictureWindow(Window):

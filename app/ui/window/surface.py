@@ -8,8 +8,8 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from app.errors import AppError
-from characters.rendering import create_context
+from cubeling.app.errors import AppError
+from cubeling.characters.rendering import create_context
 
 VERTEX_SHADER = """
 #version 330

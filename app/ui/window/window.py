@@ -8,21 +8,21 @@ import glfw
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pipeline.registry import scenario_names
-from app.pipeline.scenario import Inputs
-from app.pipeline.step import Rect, RobotView, Step
-from app.preferences import PreferenceStore
-from app.ui.canvas import PICTURE_HEIGHT
-from app.ui.cards.layout import CardLayout
-from app.ui.cards.overlay import interrupted, overlay, virtual_robot_side
-from app.ui.cards.virtual_robot import VirtualRobot
-from app.ui.notice import Notice
-from app.ui.panels import SessionMonitor
-from app.ui.panels.drawing.layer import PanelLayer
-from app.ui.playback.layer import PlaybackLayer
-from app.ui.playback.requests import SessionRequest, WindowRequest
-from app.ui.playback.status import SessionStatus
-from app.ui.window.surface import Surface
+from cubeling.app.pipeline.registry import scenario_names
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.step import Rect, RobotView, Step
+from cubeling.app.preferences import PreferenceStore
+from cubeling.app.ui.canvas import PICTURE_HEIGHT
+from cubeling.app.ui.cards.layout import CardLayout
+from cubeling.app.ui.cards.overlay import interrupted, overlay, virtual_robot_side
+from cubeling.app.ui.cards.virtual_robot import VirtualRobot
+from cubeling.app.ui.notice import Notice
+from cubeling.app.ui.panels import SessionMonitor
+from cubeling.app.ui.panels.drawing.layer import PanelLayer
+from cubeling.app.ui.playback.layer import PlaybackLayer
+from cubeling.app.ui.playback.requests import SessionRequest, WindowRequest
+from cubeling.app.ui.playback.status import SessionStatus
+from cubeling.app.ui.window.surface import Surface
 
 Picture = NDArray[np.uint8]
 

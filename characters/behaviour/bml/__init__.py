@@ -1,6 +1,6 @@
 """BML 1.0: blocks of behaviours, their schedule, their realizer and its feedback."""
 
-from characters.behaviour.bml.document import (
+from cubeling.characters.behaviour.bml.document import (
     BML,
     BMLA,
     FACE_SYNCS,
@@ -15,7 +15,7 @@ from characters.behaviour.bml.document import (
     Mark,
     SyncReference,
 )
-from characters.behaviour.bml.feedback import (
+from cubeling.characters.behaviour.bml.feedback import (
     BlockProgress,
     BmlWarning,
     Feedback,
@@ -24,8 +24,8 @@ from characters.behaviour.bml.feedback import (
     SyncPointProgress,
     feedback_xml,
 )
-from characters.behaviour.bml.parser import parse
-from characters.behaviour.bml.performer import (
+from cubeling.characters.behaviour.bml.parser import parse
+from cubeling.characters.behaviour.bml.performer import (
     CannotPerform,
     Performer,
     Scheduled,
@@ -33,7 +33,7 @@ from characters.behaviour.bml.performer import (
     elastic,
     rigid,
 )
-from characters.behaviour.bml.realizer import Realizer
+from cubeling.characters.behaviour.bml.realizer import Realizer
 
 __all__ = [
     "BML",

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from characters.behaviour.bml.document import Behaviour, Block, Constraint, SyncReference
-from characters.behaviour.bml.performer import Timing
+from cubeling.characters.behaviour.bml.document import Behaviour, Block, Constraint, SyncReference
+from cubeling.characters.behaviour.bml.performer import Timing
 
 Moment = tuple[str, int]
 """A sync point: a behaviour's id, and the index in its `Timing.syncs`."""

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Literal
 from xml.sax.saxutils import escape, quoteattr
 
-from characters.behaviour.bml.document import BML
+from cubeling.characters.behaviour.bml.document import BML
 
 WarningType = Literal[
     "PARSING_FAILURE",

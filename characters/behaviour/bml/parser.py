@@ -5,7 +5,7 @@ import re
 from collections.abc import Collection, Iterable
 from typing import Literal
 
-from characters.behaviour.bml.document import (
+from cubeling.characters.behaviour.bml.document import (
     BML,
     BMLA,
     SYNC_NAMES,
@@ -17,8 +17,8 @@ from characters.behaviour.bml.document import (
     Mark,
     SyncReference,
 )
-from characters.behaviour.bml.xml_elements import OpenElement, read_xml
-from characters.errors import CharacterError
+from cubeling.characters.behaviour.bml.xml_elements import OpenElement, read_xml
+from cubeling.characters.errors import CharacterError
 
 MAX_BEHAVIOURS = 200
 """Behaviours of a block that is read: more are too many to schedule between two frames."""

@@ -5,13 +5,13 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from typing import Literal
 
-from characters.behaviour.bml.constraints import External, Resolver
-from characters.behaviour.bml.document import Block, Constraint
-from characters.behaviour.bml.feedback import PredictedBehaviour, Prediction
-from characters.behaviour.bml.performer import Scheduled
-from characters.behaviour.bml.planner import plan
-from characters.behaviour.bml.problem import Problem
-from characters.behaviour.bml.schedule import Track
+from cubeling.characters.behaviour.bml.constraints import External, Resolver
+from cubeling.characters.behaviour.bml.document import Block, Constraint
+from cubeling.characters.behaviour.bml.feedback import PredictedBehaviour, Prediction
+from cubeling.characters.behaviour.bml.performer import Scheduled
+from cubeling.characters.behaviour.bml.planner import plan
+from cubeling.characters.behaviour.bml.problem import Problem
+from cubeling.characters.behaviour.bml.schedule import Track
 
 State = Literal["preplanned", "waiting", "running", "over"]
 

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
-from characters.behaviour.bml.document import Behaviour, Block
-from characters.behaviour.bml.feedback import WarningType
+from cubeling.characters.behaviour.bml.document import Behaviour, Block
+from cubeling.characters.behaviour.bml.feedback import WarningType
 
 
 class CannotPerform(Exception):  # noqa: N818 -- a verdict on a document, not a bug

@@ -10,9 +10,9 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from characters.behaviour.bml.constraints import Contradictory, Link, Moment, Order, Unmet
-from characters.behaviour.bml.problem import Problem, check, sequence
-from characters.behaviour.bml.spans import TOLERANCE, fits, stretched
+from cubeling.characters.behaviour.bml.constraints import Contradictory, Link, Moment, Order, Unmet
+from cubeling.characters.behaviour.bml.problem import Problem, check, sequence
+from cubeling.characters.behaviour.bml.spans import TOLERANCE, fits, stretched
 
 LATENESS = 0.1
 """A sync point that should have been so many seconds ago may be now: the standard's tolerance."""

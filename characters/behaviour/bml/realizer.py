@@ -10,19 +10,19 @@ import math
 from collections.abc import Iterable
 from contextlib import suppress
 
-from characters.behaviour.bml.document import BMLA, Behaviour, Block, SyncReference
-from characters.behaviour.bml.feedback import (
+from cubeling.characters.behaviour.bml.document import BMLA, Behaviour, Block, SyncReference
+from cubeling.characters.behaviour.bml.feedback import (
     BlockProgress,
     BmlWarning,
     Feedback,
     SyncPointProgress,
     WarningType,
 )
-from characters.behaviour.bml.parser import parse
-from characters.behaviour.bml.performance import Performance
-from characters.behaviour.bml.performer import Performer, Scheduled
-from characters.behaviour.bml.schedule import BlockFailed, Scheduler, Track, lead_over
-from characters.errors import CharacterError
+from cubeling.characters.behaviour.bml.parser import parse
+from cubeling.characters.behaviour.bml.performance import Performance
+from cubeling.characters.behaviour.bml.performer import Performer, Scheduled
+from cubeling.characters.behaviour.bml.schedule import BlockFailed, Scheduler, Track, lead_over
+from cubeling.characters.errors import CharacterError
 
 
 class Realizer:

@@ -3,13 +3,26 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from characters.behaviour.bml.constraints import Contradictory, External, Link, Order, Resolver
-from characters.behaviour.bml.document import BML, BMLA, SYNCS, Behaviour, Block, Constraint
-from characters.behaviour.bml.feedback import WarningType
-from characters.behaviour.bml.performer import CannotPerform, Performer, Timing
-from characters.behaviour.bml.planner import plan
-from characters.behaviour.bml.problem import Problem
-from characters.behaviour.bml.spans import TOLERANCE
+from cubeling.characters.behaviour.bml.constraints import (
+    Contradictory,
+    External,
+    Link,
+    Order,
+    Resolver,
+)
+from cubeling.characters.behaviour.bml.document import (
+    BML,
+    BMLA,
+    SYNCS,
+    Behaviour,
+    Block,
+    Constraint,
+)
+from cubeling.characters.behaviour.bml.feedback import WarningType
+from cubeling.characters.behaviour.bml.performer import CannotPerform, Performer, Timing
+from cubeling.characters.behaviour.bml.planner import plan
+from cubeling.characters.behaviour.bml.problem import Problem
+from cubeling.characters.behaviour.bml.spans import TOLERANCE
 
 CONTROLS = {
     "interrupt": Timing(("start", "end"), (0.0,), (0.0,), (0.0,)),

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from characters.behaviour.bml.document import BML
-from characters.errors import CharacterError
+from cubeling.characters.behaviour.bml.document import BML
+from cubeling.characters.errors import CharacterError
 
 MAX_BYTES = 1 << 20
 """Size of a document that is read."""

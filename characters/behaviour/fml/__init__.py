@@ -1,6 +1,6 @@
 """FML: intentions and emotions, and the behaviours that show them by a lexicon."""
 
-from characters.behaviour.fml.lexicon import Lexicon, Shown
-from characters.behaviour.fml.planner import behaviours_of
+from cubeling.characters.behaviour.fml.lexicon import Lexicon, Shown
+from cubeling.characters.behaviour.fml.planner import behaviours_of
 
 __all__ = ["Lexicon", "Shown", "behaviours_of"]

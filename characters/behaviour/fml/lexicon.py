@@ -25,10 +25,10 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from characters.behaviour.bml.document import SYNC_NAMES, SYNCS
-from characters.behaviour.bml.parser import SECONDS
-from characters.errors import CharacterError
-from characters.model.files import read_text
+from cubeling.characters.behaviour.bml.document import SYNC_NAMES, SYNCS
+from cubeling.characters.behaviour.bml.parser import SECONDS
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.files import read_text
 
 MAX_BYTES = 1_000_000
 """Larger files are no lexicons."""

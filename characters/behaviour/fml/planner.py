@@ -16,10 +16,10 @@ What is not an intention, speech above all, is BML and stays as it is. An elemen
 
 from dataclasses import replace
 
-from characters.behaviour.bml.document import BML, SYNCS, Behaviour, Block, SyncReference
-from characters.behaviour.bml.parser import parse_as
-from characters.behaviour.fml.lexicon import Lexicon, Shown
-from characters.errors import CharacterError
+from cubeling.characters.behaviour.bml.document import BML, SYNCS, Behaviour, Block, SyncReference
+from cubeling.characters.behaviour.bml.parser import parse_as
+from cubeling.characters.behaviour.fml.lexicon import Lexicon, Shown
+from cubeling.characters.errors import CharacterError
 
 FML = "urn:cubeling:fml"
 """Namespace of intentions that a lexicon does not have: realizers warn of them."""

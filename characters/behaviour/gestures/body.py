@@ -7,15 +7,15 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.behaviour.gestures.contacts import BodySurface
-from characters.behaviour.gestures.space import GestureSpace
-from characters.behaviour.gestures.trunk import TrunkTurns, chest_part
-from characters.ik.reaching import UpperBody
-from characters.ik.sitting_up import SittingUp
-from characters.model.character import Character
-from characters.model.standing import idle_clips
-from characters.skeleton.masks import subtree
-from characters.skeleton.pose import Pose
+from cubeling.characters.behaviour.gestures.contacts import BodySurface
+from cubeling.characters.behaviour.gestures.space import GestureSpace
+from cubeling.characters.behaviour.gestures.trunk import TrunkTurns, chest_part
+from cubeling.characters.ik.reaching import UpperBody
+from cubeling.characters.ik.sitting_up import SittingUp
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.standing import idle_clips
+from cubeling.characters.skeleton.masks import subtree
+from cubeling.characters.skeleton.pose import Pose
 
 SIDES = {"left": True, "right": False}
 """Sides of hands, and whether they are left."""

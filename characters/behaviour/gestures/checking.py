@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from dataclasses import fields
 from itertools import pairwise
 
-from characters.behaviour.expressivity import GestureExpressivity
-from characters.behaviour.gestures.contacts import CONTACTS
-from characters.behaviour.gestures.directions import DIRECTIONS, across
-from characters.behaviour.symbolic_gesture import (
+from cubeling.characters.behaviour.expressivity import GestureExpressivity
+from cubeling.characters.behaviour.gestures.contacts import CONTACTS
+from cubeling.characters.behaviour.gestures.directions import DIRECTIONS, across
+from cubeling.characters.behaviour.symbolic_gesture import (
     SECTORS_X,
     SECTORS_Y,
     SECTORS_Z,
@@ -17,8 +17,8 @@ from characters.behaviour.symbolic_gesture import (
     HandKey,
     SymbolicGesture,
 )
-from characters.errors import CharacterError
-from characters.ik.reaching import HAND_SHAPES
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.ik.reaching import HAND_SHAPES
 
 MAX_SECONDS = 60.0
 """Longest phase of a gesture [s]."""
@@ -64,10 +64,10 @@ def check_gesture(gesture: SymbolicGesture) -> None:
 def check_known(what: str, words: Iterable[str], known: Iterable[str]) -> None:
     """Refuse words that are not known.
 
-    >>> check_known("the palm is", ["dwn"], ["up", "down"])
+    >>> check_known("palm", ["dwn"], ["up", "down"])
     Traceback (most recent call last):
     ...
-    characters.errors.CharacterError: the palm is 'dwn'; did you mean 'down'? There are up, down
+    cubeling.characters.errors.CharacterError: palm 'dwn'; did you mean 'down'? There are up, down
     """
     known = list(known)
     for word in words:

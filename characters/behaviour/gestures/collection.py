@@ -6,9 +6,9 @@ from functools import lru_cache
 from importlib import resources
 from pathlib import Path
 
-from characters.behaviour.gestures.files import SUFFIX, load_gesture, save_gesture
-from characters.behaviour.symbolic_gesture import SymbolicGesture
-from characters.errors import CharacterError
+from cubeling.characters.behaviour.gestures.files import SUFFIX, load_gesture, save_gesture
+from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
+from cubeling.characters.errors import CharacterError
 
 
 class GestureCollection:
@@ -97,7 +97,7 @@ def gestures_in(folder: Path) -> dict[str, SymbolicGesture]:
 
 @lru_cache(maxsize=1)
 def _bundled() -> dict[str, SymbolicGesture]:
-    return gestures_in(Path(str(resources.files("characters.behaviour") / "library")))
+    return gestures_in(Path(str(resources.files("cubeling.characters.behaviour") / "library")))
 
 
 def _key(name: str) -> str:

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from characters.model.mesh import Mesh
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 CONE = 0.92
 """Cosine of the angle within which vertices are in a direction."""

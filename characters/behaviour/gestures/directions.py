@@ -1,6 +1,6 @@
 """Words for where palms and fingers point, for either hand."""
 
-from characters.skeleton.scalar_quaternions import Vector, cross, dot, length
+from cubeling.characters.skeleton.scalar_quaternions import Vector, cross, dot, length
 
 DIRECTIONS: dict[str, Vector] = {
     "up": (0.0, 1.0, 0.0),

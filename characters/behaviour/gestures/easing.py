@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.behaviour.expressivity import GestureExpressivity
+from cubeling.characters.behaviour.expressivity import GestureExpressivity
 
 Time = TypeVar("Time", float, NDArray[np.float64])
 

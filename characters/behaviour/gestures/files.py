@@ -24,11 +24,11 @@ from typing import Any
 
 import msgspec
 
-from characters.behaviour.expressivity import GestureExpressivity
-from characters.behaviour.gestures.checking import check_gesture, check_known
-from characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
-from characters.errors import CharacterError
-from characters.model.files import read_text
+from cubeling.characters.behaviour.expressivity import GestureExpressivity
+from cubeling.characters.behaviour.gestures.checking import check_gesture, check_known
+from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.files import read_text
 
 SUFFIX = ".toml"
 """Suffix of files of gestures."""

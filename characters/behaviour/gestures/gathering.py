@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from characters.skeleton.pose import Array
+from cubeling.characters.skeleton.pose import Array
 
 Fill = Literal["complex", "lazy"]
 """All parts at every key frame, or only those that have a key there and the important ones."""

@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.behaviour.gestures.timing import Repeats
-from characters.motion.motion import RootDelta
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters.behaviour.gestures.timing import Repeats
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
 
 
 @dataclass(frozen=True, eq=False)

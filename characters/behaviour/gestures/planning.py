@@ -12,30 +12,30 @@ from itertools import pairwise
 
 import numpy as np
 
-from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
-from characters.behaviour.gestures.body import SIDES, GestureBody
-from characters.behaviour.gestures.contacts import OTHER_HAND
-from characters.behaviour.gestures.gathering import KeyFrame, gather
-from characters.behaviour.gestures.motion import GestureMotion
-from characters.behaviour.gestures.postures import KeyPostures
-from characters.behaviour.gestures.space import GestureSpace
-from characters.behaviour.gestures.timing import Repeats, stroke_length
-from characters.behaviour.gestures.tracks import (
+from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
+from cubeling.characters.behaviour.gestures.body import SIDES, GestureBody
+from cubeling.characters.behaviour.gestures.contacts import OTHER_HAND
+from cubeling.characters.behaviour.gestures.gathering import KeyFrame, gather
+from cubeling.characters.behaviour.gestures.motion import GestureMotion
+from cubeling.characters.behaviour.gestures.postures import KeyPostures
+from cubeling.characters.behaviour.gestures.space import GestureSpace
+from cubeling.characters.behaviour.gestures.timing import Repeats, stroke_length
+from cubeling.characters.behaviour.gestures.tracks import (
     POSITION,
     HandTrack,
     hand_track,
     one_period,
     sided,
 )
-from characters.behaviour.gestures.trunk import body_track
-from characters.behaviour.intents import Hand
-from characters.behaviour.symbolic_gesture import BodyKey, HandKey, SymbolicGesture
-from characters.errors import CharacterWarning
-from characters.ik.reaching import ReachStyle
-from characters.model.character import Character
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array
-from characters.smoothing import smoothstep
+from cubeling.characters.behaviour.gestures.trunk import body_track
+from cubeling.characters.behaviour.intents import Hand
+from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, SymbolicGesture
+from cubeling.characters.errors import CharacterWarning
+from cubeling.characters.ik.reaching import ReachStyle
+from cubeling.characters.model.character import Character
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.smoothing import smoothstep
 
 NEGLIGIBLE = 1e-6
 """Sine of half an angle below which a joint of the trunk is not turned."""

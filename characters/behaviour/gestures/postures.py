@@ -8,12 +8,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from characters.behaviour.gestures.body import GestureBody
-from characters.behaviour.gestures.gathering import KeyFrame
-from characters.behaviour.gestures.tracks import ORIENTATION, POSITION, SHAPES
-from characters.ik.reaching import HandTarget, ReachStyle
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters.behaviour.gestures.body import GestureBody
+from cubeling.characters.behaviour.gestures.gathering import KeyFrame
+from cubeling.characters.behaviour.gestures.tracks import ORIENTATION, POSITION, SHAPES
+from cubeling.characters.ik.reaching import HandTarget, ReachStyle
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
 
 EASY, STRETCHED = 0.75, 0.95
 """Distances of a wrist from its shoulder ÷ the arm's length: as asked for below, never above."""

@@ -11,17 +11,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.behaviour.gestures.body import SIDES, arm_length
-from characters.behaviour.gestures.directions import words_of
-from characters.behaviour.gestures.space import GestureSpace
-from characters.behaviour.gestures.trunk import chest_part
-from characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
-from characters.errors import CharacterError
-from characters.ik.reaching import HAND_SHAPES, UpperBody
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.behaviour.gestures.body import SIDES, arm_length
+from cubeling.characters.behaviour.gestures.directions import words_of
+from cubeling.characters.behaviour.gestures.space import GestureSpace
+from cubeling.characters.behaviour.gestures.trunk import chest_part
+from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.ik.reaching import HAND_SHAPES, UpperBody
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 RATE_HZ = 50.0
 """Frames of a recording that are looked at."""

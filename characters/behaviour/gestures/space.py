@@ -8,8 +8,14 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from characters.behaviour.symbolic_gesture import SECTORS_X, SECTORS_Y, SECTORS_Z, Place, Vector3
-from characters.skeleton.pose import Array
+from cubeling.characters.behaviour.symbolic_gesture import (
+    SECTORS_X,
+    SECTORS_Y,
+    SECTORS_Z,
+    Place,
+    Vector3,
+)
+from cubeling.characters.skeleton.pose import Array
 
 REFERENCE_ARM_M = 0.55
 """Length of the arm, shoulder to wrist, to which the centimetres below belong [m]."""

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
-from characters.skeleton.pose import Array
+from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
+from cubeling.characters.skeleton.pose import Array
 
 
 @dataclass(frozen=True, eq=False)

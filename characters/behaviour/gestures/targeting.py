@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from characters.behaviour.symbolic_gesture import HandKey
-from characters.skeleton.pose import Array
+from cubeling.characters.behaviour.symbolic_gesture import HandKey
+from cubeling.characters.skeleton.pose import Array
 
 SAMPLES_PER_TURN = 8
 """Points of a circle, and of a wave to and fro."""

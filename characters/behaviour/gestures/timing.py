@@ -3,9 +3,9 @@
 import math
 from dataclasses import dataclass
 
-from characters.behaviour.intents import StrokeTimes
-from characters.behaviour.symbolic_gesture import SymbolicGesture
-from characters.smoothing import interpolate
+from cubeling.characters.behaviour.intents import StrokeTimes
+from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
+from cubeling.characters.smoothing import interpolate
 
 RETURN_SHARE = 0.4
 """Share of each stroke but the last that is the way back, if it does not end where it starts."""
@@ -72,7 +72,7 @@ def stroke_length(gesture: SymbolicGesture) -> float:
 def natural_times(gesture: SymbolicGesture, start: float = 0.0) -> StrokeTimes:
     """Return the times of a gesture as it is written, from a start [s].
 
-    >>> from characters.behaviour.symbolic_gesture import HandKey
+    >>> from cubeling.characters.behaviour.symbolic_gesture import HandKey
     >>> times = natural_times(SymbolicGesture("NOW", right=(HandKey(1.0),)), 1.0)
     >>> times.ready, round(times.stroke_end, 6), round(times.end, 6)
     (1.5, 2.1, 2.9)

@@ -7,20 +7,20 @@ from typing import TypeVar
 
 import numpy as np
 
-from characters.behaviour.expressivity import GestureExpressivity
-from characters.behaviour.gestures.directions import direction
-from characters.behaviour.gestures.easing import eased
-from characters.behaviour.gestures.gathering import PartKeys
-from characters.behaviour.gestures.space import GestureSpace
-from characters.behaviour.gestures.splines import TcbSpline
-from characters.behaviour.gestures.targeting import PathFormula, ramped, samples
-from characters.behaviour.gestures.timing import Repeats
-from characters.behaviour.intents import Hand
-from characters.behaviour.symbolic_gesture import BodyKey, HandKey, SymbolicGesture
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array
-from characters.skeleton.scalar_quaternions import cross
-from characters.smoothing import smoothstep
+from cubeling.characters.behaviour.expressivity import GestureExpressivity
+from cubeling.characters.behaviour.gestures.directions import direction
+from cubeling.characters.behaviour.gestures.easing import eased
+from cubeling.characters.behaviour.gestures.gathering import PartKeys
+from cubeling.characters.behaviour.gestures.space import GestureSpace
+from cubeling.characters.behaviour.gestures.splines import TcbSpline
+from cubeling.characters.behaviour.gestures.targeting import PathFormula, ramped, samples
+from cubeling.characters.behaviour.gestures.timing import Repeats
+from cubeling.characters.behaviour.intents import Hand
+from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, SymbolicGesture
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.skeleton.scalar_quaternions import cross
+from cubeling.characters.smoothing import smoothstep
 
 Key = TypeVar("Key", HandKey, BodyKey)
 

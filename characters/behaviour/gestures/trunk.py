@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.behaviour.expressivity import GestureExpressivity
-from characters.behaviour.gestures.gathering import PartKeys
-from characters.behaviour.gestures.splines import TcbSpline
-from characters.behaviour.symbolic_gesture import BodyKey
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.behaviour.expressivity import GestureExpressivity
+from cubeling.characters.behaviour.gestures.gathering import PartKeys
+from cubeling.characters.behaviour.gestures.splines import TcbSpline
+from cubeling.characters.behaviour.symbolic_gesture import BodyKey
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 SHRUG_DEG = 24.0
 """Turn of raised shoulders [degrees]."""

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 
-from characters.behaviour.bml import (
+from cubeling.characters.behaviour.bml import (
     HOLD_SYNCS,
     SHIFT_SYNCS,
     Behaviour,
@@ -12,9 +12,9 @@ from characters.behaviour.bml import (
     Timing,
     elastic,
 )
-from characters.behaviour.intents import GestureIntent, PostureIntent, StrokeTimes, Times
-from characters.behaviour.performing.hand_kinds import held
-from characters.behaviour.performing.performed import (
+from cubeling.characters.behaviour.intents import GestureIntent, PostureIntent, StrokeTimes, Times
+from cubeling.characters.behaviour.performing.hand_kinds import held
+from cubeling.characters.behaviour.performing.performed import (
     Going,
     Manner,
     Performed,
@@ -23,7 +23,7 @@ from characters.behaviour.performing.performed import (
     shift_times_of,
     times_of,
 )
-from characters.behaviour.symbolic_gesture import SymbolicGesture
+from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
 
 POSTURE_SPANS_S = (0.9, 1.5, 0.9)
 """Times between the sync points of a posture [s]."""

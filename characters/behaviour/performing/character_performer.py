@@ -3,19 +3,26 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from characters.behaviour.bml import BML, Behaviour, Block, CannotPerform, Scheduled, Timing
-from characters.behaviour.performing.body_kinds import (
+from cubeling.characters.behaviour.bml import (
+    BML,
+    Behaviour,
+    Block,
+    CannotPerform,
+    Scheduled,
+    Timing,
+)
+from cubeling.characters.behaviour.performing.body_kinds import (
     LocomotionKind,
     PostureKind,
     PostureShiftKind,
     WaitKind,
 )
-from characters.behaviour.performing.face_kinds import FaceKind, FaceShiftKind
-from characters.behaviour.performing.hand_kinds import GestureKind, PointingKind
-from characters.behaviour.performing.head_kinds import GazeKind, GazeShiftKind, HeadKind
-from characters.behaviour.performing.kinds import BehaviourKind
-from characters.behaviour.performing.performed import Going, Performed, Performing
-from characters.behaviour.performing.speech_kind import SpeechKind
+from cubeling.characters.behaviour.performing.face_kinds import FaceKind, FaceShiftKind
+from cubeling.characters.behaviour.performing.hand_kinds import GestureKind, PointingKind
+from cubeling.characters.behaviour.performing.head_kinds import GazeKind, GazeShiftKind, HeadKind
+from cubeling.characters.behaviour.performing.kinds import BehaviourKind
+from cubeling.characters.behaviour.performing.performed import Going, Performed, Performing
+from cubeling.characters.behaviour.performing.speech_kind import SpeechKind
 
 KINDS: Mapping[str, BehaviourKind] = {
     "speech": SpeechKind(),

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping
 
-from characters.behaviour.bml import (
+from cubeling.characters.behaviour.bml import (
     FACE_SYNCS,
     SHIFT_SYNCS,
     Behaviour,
@@ -13,14 +13,14 @@ from characters.behaviour.bml import (
     Timing,
     elastic,
 )
-from characters.behaviour.intents import FaceIntent
-from characters.behaviour.performing.performed import (
+from cubeling.characters.behaviour.intents import FaceIntent
+from cubeling.characters.behaviour.performing.performed import (
     Performed,
     Performing,
     shift_times_of,
     times_of,
 )
-from characters.behaviour.performing.surroundings import numbers_of
+from cubeling.characters.behaviour.performing.surroundings import numbers_of
 
 FACE_SPANS_S = (0.4, 1.2, 0.5)
 """Times between the sync points of an expression [s]."""

@@ -10,12 +10,12 @@ from functools import cached_property
 
 import numpy as np
 
-from characters.behaviour.intents import FaceIntent
-from characters.behaviour.performing.planned_values import presence
-from characters.face.affect_display import FACE_RECIPES
-from characters.face.expressions import EXPRESSIONS, ExpressionMorphs
-from characters.face.lids import Lids, numbers_by_name
-from characters.skeleton.pose import Array
+from cubeling.characters.behaviour.intents import FaceIntent
+from cubeling.characters.behaviour.performing.planned_values import presence
+from cubeling.characters.face.affect_display import FACE_RECIPES
+from cubeling.characters.face.expressions import EXPRESSIONS, ExpressionMorphs
+from cubeling.characters.face.lids import Lids, numbers_by_name
+from cubeling.characters.skeleton.pose import Array
 
 Mix = Mapping[str, float]
 """Parts of a face, or expressions, with their weights."""

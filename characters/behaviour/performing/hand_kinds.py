@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from characters.behaviour.bml import (
+from cubeling.characters.behaviour.bml import (
     GESTURE_SYNCS,
     Behaviour,
     CannotPerform,
@@ -10,14 +10,14 @@ from characters.behaviour.bml import (
     Timing,
     elastic,
 )
-from characters.behaviour.intents import GestureIntent, Hand, ReachIntent
-from characters.behaviour.performing.performed import (
+from cubeling.characters.behaviour.intents import GestureIntent, Hand, ReachIntent
+from cubeling.characters.behaviour.performing.performed import (
     Performed,
     Performing,
     stroke_times_of,
     times_of,
 )
-from characters.behaviour.symbolic_gesture import SymbolicGesture
+from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
 
 HANDS: dict[str, Hand] = {
     "LEFT_HAND": "left",

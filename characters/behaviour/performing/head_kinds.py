@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 from typing import get_args
 
-from characters.behaviour.bml import (
+from cubeling.characters.behaviour.bml import (
     GESTURE_SYNCS,
     HOLD_SYNCS,
     SHIFT_SYNCS,
@@ -14,9 +14,9 @@ from characters.behaviour.bml import (
     Timing,
     elastic,
 )
-from characters.behaviour.intents import GazeIntent, HeadIntent, Influence, Times
-from characters.behaviour.performing.head_movements import HALF_AMOUNT, HEAD_MOVEMENTS
-from characters.behaviour.performing.performed import (
+from cubeling.characters.behaviour.intents import GazeIntent, HeadIntent, Influence, Times
+from cubeling.characters.behaviour.performing.head_movements import HALF_AMOUNT, HEAD_MOVEMENTS
+from cubeling.characters.behaviour.performing.performed import (
     Performed,
     Performing,
     number,
@@ -24,8 +24,8 @@ from characters.behaviour.performing.performed import (
     stroke_times_of,
     times_of,
 )
-from characters.behaviour.performing.surroundings import DIRECTIONS
-from characters.skeleton.pose import Array
+from cubeling.characters.behaviour.performing.surroundings import DIRECTIONS
+from cubeling.characters.skeleton.pose import Array
 
 SWING_S = 0.45
 """Time of one nod, or of one turn to and fro [s]."""

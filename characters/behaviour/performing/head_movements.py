@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.behaviour.intents import HeadIntent, StrokeTimes
-from characters.behaviour.performing.planned_values import presence
-from characters.motion.curves import ease
-from characters.skeleton.pose import Array
+from cubeling.characters.behaviour.intents import HeadIntent, StrokeTimes
+from cubeling.characters.behaviour.performing.planned_values import presence
+from cubeling.characters.motion.curves import ease
+from cubeling.characters.skeleton.pose import Array
 
 HALF_AMOUNT = 0.5
 """The amount of a movement that has the sizes of `HEAD_MOVEMENTS`."""

@@ -2,8 +2,8 @@
 
 from typing import Protocol
 
-from characters.behaviour.bml import Behaviour, Scheduled, Timing
-from characters.behaviour.performing.performed import Performed, Performing
+from cubeling.characters.behaviour.bml import Behaviour, Scheduled, Timing
+from cubeling.characters.behaviour.performing.performed import Performed, Performing
 
 
 class BehaviourKind(Protocol):

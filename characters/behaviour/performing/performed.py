@@ -5,10 +5,10 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
-from characters.behaviour.bml import Behaviour, CannotPerform, Scheduled
-from characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
-from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.intents import (
+from cubeling.characters.behaviour.bml import Behaviour, CannotPerform, Scheduled
+from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
+from cubeling.characters.behaviour.intents import (
     BehaviourIntent,
     FaceIntent,
     GazeIntent,
@@ -19,14 +19,14 @@ from characters.behaviour.intents import (
     StrokeTimes,
     Times,
 )
-from characters.behaviour.performing.face_names import FaceNames
-from characters.behaviour.performing.stances import StanceJoints
-from characters.behaviour.performing.surroundings import Surroundings, numbers_of
-from characters.ik.reaching.hands import find_hand
-from characters.model.character import Character
-from characters.skeleton.anatomy import SIDES
-from characters.skeleton.pose import Array
-from characters.speech.speech import Utterance
+from cubeling.characters.behaviour.performing.face_names import FaceNames
+from cubeling.characters.behaviour.performing.stances import StanceJoints
+from cubeling.characters.behaviour.performing.surroundings import Surroundings, numbers_of
+from cubeling.characters.ik.reaching.hands import find_hand
+from cubeling.characters.model.character import Character
+from cubeling.characters.skeleton.anatomy import SIDES
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.speech.speech import Utterance
 
 CUBELING = "urn:cubeling:behaviour"
 """Namespace of attributes named after the fields of `GestureExpressivity`."""

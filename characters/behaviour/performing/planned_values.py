@@ -4,10 +4,10 @@ from collections.abc import Callable, Hashable
 
 import numpy as np
 
-from characters.behaviour.intents import Times
-from characters.motion.curves import ease
-from characters.motion.inertialization import OffsetDecay
-from characters.skeleton.pose import Array
+from cubeling.characters.behaviour.intents import Times
+from cubeling.characters.motion.curves import ease
+from cubeling.characters.motion.inertialization import OffsetDecay
+from cubeling.characters.skeleton.pose import Array
 
 BLEND_S = 0.4
 """Time in which values go over from one plan to another [s]."""

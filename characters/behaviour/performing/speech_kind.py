@@ -3,9 +3,16 @@
 import math
 from itertools import pairwise
 
-from characters.behaviour.bml import Behaviour, CannotPerform, Realizer, Scheduled, Timing, rigid
-from characters.behaviour.performing.performed import Performed, Performing, Saying
-from characters.speech.speech import Utterance, Word
+from cubeling.characters.behaviour.bml import (
+    Behaviour,
+    CannotPerform,
+    Realizer,
+    Scheduled,
+    Timing,
+    rigid,
+)
+from cubeling.characters.behaviour.performing.performed import Performed, Performing, Saying
+from cubeling.characters.speech.speech import Utterance, Word
 
 LETTER_S, WORD_S = 0.06, 0.06
 """Time of a letter, and what each word takes besides [s]: about 170 words a minute."""

@@ -9,14 +9,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.behaviour.intents import PostureIntent
-from characters.behaviour.performing.planned_values import presence
-from characters.body.axes import Degrees, body_axes, rotation_vectors
-from characters.ik.legs import LegIK, find_legs, find_paws
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.skeleton.scalar_quaternions import (
+from cubeling.characters.behaviour.intents import PostureIntent
+from cubeling.characters.behaviour.performing.planned_values import presence
+from cubeling.characters.body.axes import Degrees, body_axes, rotation_vectors
+from cubeling.characters.ik.legs import LegIK, find_legs, find_paws
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
     Quaternion,
     conjugate,

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from characters.behaviour.bml import CannotPerform
-from characters.skeleton.pose import Array
+from cubeling.characters.behaviour.bml import CannotPerform
+from cubeling.characters.skeleton.pose import Array
 
 SAME_AS_VIEWER = ("camera", "user", "listener", "audience")
 """Names of the place that is called "viewer", unless they have one of their own."""

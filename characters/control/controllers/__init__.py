@@ -4,15 +4,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from characters.control.controllers.controller import CharacterController
-from characters.control.controllers.graph import graph_factory
-from characters.control.controllers.in_place import InPlaceController
-from characters.control.controllers.matching import matching_factory
-from characters.control.controllers.tree import TreeController
-from characters.control.controllers.walk import WalkController
-from characters.errors import CharacterError
-from characters.model.character import Character
-from characters.motion.motion import RootDelta
+from cubeling.characters.control.controllers.controller import CharacterController
+from cubeling.characters.control.controllers.graph import graph_factory
+from cubeling.characters.control.controllers.in_place import InPlaceController
+from cubeling.characters.control.controllers.matching import matching_factory
+from cubeling.characters.control.controllers.tree import TreeController
+from cubeling.characters.control.controllers.walk import WalkController
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.motion import RootDelta
 
 WALKER_HEIGHT_M = 0.17
 """Default height on the table of a character that walks [m]."""

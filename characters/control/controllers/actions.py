@@ -2,14 +2,14 @@
 
 from collections.abc import Iterable, Mapping
 
-from characters.control.command import ActionIntent
-from characters.errors import CharacterError
-from characters.face.affect_display import EMOTIONAL_WORDS
-from characters.model.character import Character
-from characters.motion.blend import BlendSpace1D
-from characters.motion.clip import Clip
-from characters.motion.phase import PhasedMotion, RetimedMotion
-from characters.motion.state_machine import StateMachine
+from cubeling.characters.control.command import ActionIntent
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.face.affect_display import EMOTIONAL_WORDS
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.blend import BlendSpace1D
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.phase import PhasedMotion, RetimedMotion
+from cubeling.characters.motion.state_machine import StateMachine
 
 WEIGHT_OF_SUFFIX = {"head": -1.0, "legs": 0.0, "tail": 1.0}
 """Weights that the suffixes of an action's clips stand for (thesis, section 5.3)."""

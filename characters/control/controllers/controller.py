@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 from typing import Protocol
 
-from characters.control.command import CharacterCommand
-from characters.locomotion.gaits import TOP_SPEED
-from characters.model.character import Character
-from characters.motion.motion import RootDelta
-from characters.skeleton.pose import Pose
+from cubeling.characters.control.command import CharacterCommand
+from cubeling.characters.locomotion.gaits import TOP_SPEED
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton.pose import Pose
 
 
 @dataclass(frozen=True)

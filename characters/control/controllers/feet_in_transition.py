@@ -8,11 +8,11 @@ straight from where they were to where the new motion has them.
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.character import Character
-from characters.motion.inertialization import Inertialization
-from characters.skeleton import rotations
-from characters.skeleton.feet import find_feet
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.inertialization import Inertialization
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.feet import find_feet
+from cubeling.characters.skeleton.pose import Array, Pose
 
 _MAX_HEIGHT, _MAX_WAY = 0.01, 0.05
 """Of a foot that stands in both motions: its height above the rest pose's, and how far it goes in

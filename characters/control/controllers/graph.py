@@ -8,31 +8,31 @@ from typing import TypeAlias
 
 import numpy as np
 
-from characters.control.command import CharacterCommand
-from characters.control.controllers.controller import ControllerFrame
-from characters.control.controllers.recordings import read_motions
-from characters.control.controllers.walk import NOT_ACTIONS, WalkController
-from characters.errors import CharacterError
-from characters.locomotion.steering import ARRIVAL_DISTANCE_M, STANDSTILL, SteeringOutput
-from characters.model.character import Character
-from characters.motion.motion import Motion, RootDelta
-from characters.motion.state_machine import StateMachine
-from characters.retargeting.retarget import retarget
-from characters.smoothing import low_pass
-from characters.synthesis.archive import skeleton_identity
-from characters.synthesis.behaviours import STANDING_M_S, Behaviours
-from characters.synthesis.graphs.building import analyse, part_graphs, standard_graph
-from characters.synthesis.graphs.graph import EdgeCosts, MotionGraph
-from characters.synthesis.graphs.search import CostToGo
-from characters.synthesis.graphs.storage import StoredGraph, load_graph
-from characters.synthesis.library import MotionLibrary
-from characters.synthesis.transitions.live import (
+from cubeling.characters.control.command import CharacterCommand
+from cubeling.characters.control.controllers.controller import ControllerFrame
+from cubeling.characters.control.controllers.recordings import read_motions
+from cubeling.characters.control.controllers.walk import NOT_ACTIONS, WalkController
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M, STANDSTILL, SteeringOutput
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.motion import Motion, RootDelta
+from cubeling.characters.motion.state_machine import StateMachine
+from cubeling.characters.retargeting.retarget import retarget
+from cubeling.characters.smoothing import low_pass
+from cubeling.characters.synthesis.archive import skeleton_identity
+from cubeling.characters.synthesis.behaviours import STANDING_M_S, Behaviours
+from cubeling.characters.synthesis.graphs.building import analyse, part_graphs, standard_graph
+from cubeling.characters.synthesis.graphs.graph import EdgeCosts, MotionGraph
+from cubeling.characters.synthesis.graphs.search import CostToGo
+from cubeling.characters.synthesis.graphs.storage import StoredGraph, load_graph
+from cubeling.characters.synthesis.library import MotionLibrary
+from cubeling.characters.synthesis.transitions.live import (
     FrameSource,
     LiveMotion,
     PartsSource,
     StandardSource,
 )
-from characters.synthesis.transitions.progressive import TransitionPlanner
+from cubeling.characters.synthesis.transitions.progressive import TransitionPlanner
 
 YAW_RATE_PER_ANGULAR = -1.5
 """Yaw rate [rad/s] for each radian of Angular, as the clips of the bundled characters turn."""

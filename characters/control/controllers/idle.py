@@ -3,14 +3,14 @@
 from dataclasses import replace
 from pathlib import Path
 
-from characters.errors import CharacterError
-from characters.model.bind_pose import with_bind_pose
-from characters.model.character import Character
-from characters.model.standing import standing_factory
-from characters.retargeting import retarget
-from characters.synthesis.archive import skeleton_identity
-from characters.synthesis.idle.recordings import read_standing
-from characters.synthesis.idle.storage import as_clips, load_person
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.bind_pose import with_bind_pose
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.standing import standing_factory
+from cubeling.characters.retargeting import retarget
+from cubeling.characters.synthesis.archive import skeleton_identity
+from cubeling.characters.synthesis.idle.recordings import read_standing
+from cubeling.characters.synthesis.idle.storage import as_clips, load_person
 
 
 def standing_as(character: Character, path: Path) -> Character:

@@ -4,18 +4,18 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from characters.control.command import CharacterCommand, LocomotionIntent
-from characters.control.controllers.actions import WEIGHT_LAG_S, actions_of, next_action
-from characters.control.controllers.controller import ControllerFrame
-from characters.control.controllers.feet_in_transition import FeetInTransition
-from characters.model.character import Character
-from characters.motion.curves import ease
-from characters.motion.motion import Motion, RootDelta
-from characters.motion.phase import StaticPose
-from characters.motion.state_machine import StateMachine
-from characters.skeleton.pose import Pose
-from characters.skeleton.rotations import wrap
-from characters.smoothing import damped_spring, low_pass
+from cubeling.characters.control.command import CharacterCommand, LocomotionIntent
+from cubeling.characters.control.controllers.actions import WEIGHT_LAG_S, actions_of, next_action
+from cubeling.characters.control.controllers.controller import ControllerFrame
+from cubeling.characters.control.controllers.feet_in_transition import FeetInTransition
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.curves import ease
+from cubeling.characters.motion.motion import Motion, RootDelta
+from cubeling.characters.motion.phase import StaticPose
+from cubeling.characters.motion.state_machine import StateMachine
+from cubeling.characters.skeleton.pose import Pose
+from cubeling.characters.skeleton.rotations import wrap
+from cubeling.characters.smoothing import damped_spring, low_pass
 
 TURN_LAG_S = 0.9  # of small turns, without a hop
 MIN_HOP_M, MAX_HOP_M = 0.015, 0.05

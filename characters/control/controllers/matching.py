@@ -7,38 +7,38 @@ from functools import partial
 
 import numpy as np
 
-from characters.control.command import CharacterCommand, LocomotionIntent
-from characters.control.controllers.actions import (
+from cubeling.characters.control.command import CharacterCommand, LocomotionIntent
+from cubeling.characters.control.controllers.actions import (
     WEIGHT_LAG_S,
     ActionMotion,
     actions_of,
     next_action,
 )
-from characters.control.controllers.controller import ControllerFrame
-from characters.control.controllers.in_place import idle_clip
-from characters.control.controllers.own_takes import standing_take, walking_take
-from characters.control.controllers.recordings import read_motions
-from characters.control.controllers.walk import (
+from cubeling.characters.control.controllers.controller import ControllerFrame
+from cubeling.characters.control.controllers.in_place import idle_clip
+from cubeling.characters.control.controllers.own_takes import standing_take, walking_take
+from cubeling.characters.control.controllers.recordings import read_motions
+from cubeling.characters.control.controllers.walk import (
     NOT_ACTIONS,
     TURN_END_RAD,
     TURN_START_RAD,
     WalkController,
 )
-from characters.errors import CharacterError
-from characters.locomotion.gaits import IDLE_SPEED, RUN_SPEED, TOP_SPEED
-from characters.locomotion.steering import ARRIVAL_DISTANCE_M, has_arrived
-from characters.model.character import Character
-from characters.model.mirroring import mirror_of
-from characters.motion.contacts import find_contacts
-from characters.motion.mirror import Mirror
-from characters.motion.motion import RootDelta
-from characters.motion.state_machine import StateMachine
-from characters.skeleton.feet import find_feet
-from characters.skeleton.pose import Array
-from characters.smoothing import interpolate, low_pass
-from characters.synthesis.matching.database import MotionDatabase
-from characters.synthesis.matching.matched_motion import MatchedMotion
-from characters.synthesis.matching.prediction import Impulse, Wish, predict
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.locomotion.gaits import IDLE_SPEED, RUN_SPEED, TOP_SPEED
+from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M, has_arrived
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.mirroring import mirror_of
+from cubeling.characters.motion.contacts import find_contacts
+from cubeling.characters.motion.mirror import Mirror
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.motion.state_machine import StateMachine
+from cubeling.characters.skeleton.feet import find_feet
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.smoothing import interpolate, low_pass
+from cubeling.characters.synthesis.matching.database import MotionDatabase
+from cubeling.characters.synthesis.matching.matched_motion import MatchedMotion
+from cubeling.characters.synthesis.matching.prediction import Impulse, Wish, predict
 
 SPEED_KNOTS = (IDLE_SPEED, 1.0, 2.0, RUN_SPEED, 3.5, 4.0, TOP_SPEED)
 """AvatAR's Speeds."""

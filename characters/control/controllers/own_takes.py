@@ -3,14 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from characters.control.controllers.walk import TURN_SPEED, WalkController
-from characters.locomotion.gaits import IDLE_SPEED, MAX_ANGULAR_RAD
-from characters.locomotion.steering import STANDSTILL, SteeringOutput
-from characters.model.character import Character
-from characters.motion.baking import placed_clip
-from characters.motion.clip import Clip
-from characters.motion.motion import RootDelta
-from characters.skeleton.pose import Pose
+from cubeling.characters.control.controllers.walk import TURN_SPEED, WalkController
+from cubeling.characters.locomotion.gaits import IDLE_SPEED, MAX_ANGULAR_RAD
+from cubeling.characters.locomotion.steering import STANDSTILL, SteeringOutput
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.baking import placed_clip
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton.pose import Pose
 
 TAKE_RATE_HZ = 60.0
 """Rate of the takes [Hz]."""

@@ -3,12 +3,12 @@
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from characters.errors import CharacterError
-from characters.formats.loading import MOTION_READERS
-from characters.model.bind_pose import with_bind_pose
-from characters.model.character import CHARACTER_READERS, Character
-from characters.motion.clip import Clip
-from characters.retargeting import load_recording, retarget
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.formats.loading import MOTION_READERS
+from cubeling.characters.model.bind_pose import with_bind_pose
+from cubeling.characters.model.character import CHARACTER_READERS, Character
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.retargeting import load_recording, retarget
 
 
 def read_motions(names: Sequence[str], character: Character) -> list[Clip]:

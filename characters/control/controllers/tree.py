@@ -2,19 +2,19 @@
 
 import math
 
-from characters.control.command import CharacterCommand, LocomotionIntent
-from characters.control.controllers.controller import ControllerFrame
-from characters.face.affect_display import EMOTIONAL_WORDS
-from characters.locomotion.gaits import TOP_SPEED
-from characters.locomotion.steering import ARRIVAL_DISTANCE_M, has_arrived
-from characters.model.character import Character
-from characters.model.mirroring import mirror_of
-from characters.motion.motion import Motion, RootDelta
-from characters.motion.state_machine import StateMachine
-from characters.motion.trees.building import Builder
-from characters.motion.trees.parametric import ParameterBindings
-from characters.motion.trees.plan import PARAMETERS, Plan, Transition
-from characters.smoothing import low_pass
+from cubeling.characters.control.command import CharacterCommand, LocomotionIntent
+from cubeling.characters.control.controllers.controller import ControllerFrame
+from cubeling.characters.face.affect_display import EMOTIONAL_WORDS
+from cubeling.characters.locomotion.gaits import TOP_SPEED
+from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M, has_arrived
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.mirroring import mirror_of
+from cubeling.characters.motion.motion import Motion, RootDelta
+from cubeling.characters.motion.state_machine import StateMachine
+from cubeling.characters.motion.trees.building import Builder
+from cubeling.characters.motion.trees.parametric import ParameterBindings
+from cubeling.characters.motion.trees.plan import PARAMETERS, Plan, Transition
+from cubeling.characters.smoothing import low_pass
 
 DEFAULT_LAGS_S = {"speed": 0.15, "angular": 0.15, "weight": 0.12}
 """Time constants of the parameters where the file has none [s]."""

@@ -4,15 +4,15 @@ import math
 
 import numpy as np
 
-from characters.control.command import CharacterCommand
-from characters.control.controllers.actions import (
+from cubeling.characters.control.command import CharacterCommand
+from cubeling.characters.control.controllers.actions import (
     WEIGHT_LAG_S,
     ActionMotion,
     actions_of,
     next_action,
 )
-from characters.control.controllers.controller import ControllerFrame
-from characters.locomotion.gaits import (
+from cubeling.characters.control.controllers.controller import ControllerFrame
+from cubeling.characters.locomotion.gaits import (
     IDLE_SPEED,
     MAX_ANGULAR_RAD,
     MIN_CYCLE_LENGTH,
@@ -21,14 +21,14 @@ from characters.locomotion.gaits import (
     TOP_SPEED,
     WALK_CLIPS,
 )
-from characters.locomotion.steering import STANDSTILL, Steering, SteeringOutput
-from characters.locomotion.stride_blending import StrideBlend
-from characters.model.character import Character
-from characters.motion.motion import Motion, RootDelta
-from characters.motion.phase import Cyclic, RetimedMotion
-from characters.motion.state_machine import StateMachine
-from characters.skeleton.pose import Pose, Skeleton
-from characters.smoothing import low_pass
+from cubeling.characters.locomotion.steering import STANDSTILL, Steering, SteeringOutput
+from cubeling.characters.locomotion.stride_blending import StrideBlend
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.motion import Motion, RootDelta
+from cubeling.characters.motion.phase import Cyclic, RetimedMotion
+from cubeling.characters.motion.state_machine import StateMachine
+from cubeling.characters.skeleton.pose import Pose, Skeleton
+from cubeling.characters.smoothing import low_pass
 
 SPEED_LAG_S = 0.15
 ANGULAR_LAG_S = 0.15

@@ -1,20 +1,20 @@
 """The pose layers, a file each, in the order in which they are applied."""
 
-from characters.control.layers.behaviour import FaceShiftLayer, StanceLayer
-from characters.control.layers.breath import BreathLayer
-from characters.control.layers.constraints import ConstraintLayer
-from characters.control.layers.face import FaceLayer
-from characters.control.layers.foot_lock import FootLockLayer
-from characters.control.layers.gaze import GazeLayer
-from characters.control.layers.gestures import GestureLayer
-from characters.control.layers.layer import FrameContext, LayerFactory
-from characters.control.layers.posture import PostureLayer
-from characters.control.layers.reach import ReachLayer
-from characters.control.layers.sitting_up import SittingUpLayer
-from characters.control.layers.speech import SpeechLayer
-from characters.control.layers.springs import SpringLayer
-from characters.control.layers.upper_body import DependentJointsLayer, SelfCollisionLayer
-from characters.model.character import Character
+from cubeling.characters.control.layers.behaviour import FaceShiftLayer, StanceLayer
+from cubeling.characters.control.layers.breath import BreathLayer
+from cubeling.characters.control.layers.constraints import ConstraintLayer
+from cubeling.characters.control.layers.face import FaceLayer
+from cubeling.characters.control.layers.foot_lock import FootLockLayer
+from cubeling.characters.control.layers.gaze import GazeLayer
+from cubeling.characters.control.layers.gestures import GestureLayer
+from cubeling.characters.control.layers.layer import FrameContext, LayerFactory
+from cubeling.characters.control.layers.posture import PostureLayer
+from cubeling.characters.control.layers.reach import ReachLayer
+from cubeling.characters.control.layers.sitting_up import SittingUpLayer
+from cubeling.characters.control.layers.speech import SpeechLayer
+from cubeling.characters.control.layers.springs import SpringLayer
+from cubeling.characters.control.layers.upper_body import DependentJointsLayer, SelfCollisionLayer
+from cubeling.characters.model.character import Character
 
 FOOT_LAYERS: tuple[LayerFactory, ...] = (FootLockLayer,)
 """What a character needs besides its clips."""

@@ -4,15 +4,15 @@ import math
 
 import numpy as np
 
-from characters.behaviour.intents import GazeIntent, Influence
-from characters.behaviour.performing.face_names import FaceNames
-from characters.behaviour.performing.planned_values import PlannedValues
-from characters.behaviour.performing.stances import StanceJoints
-from characters.control.layers.layer import FrameContext
-from characters.control.layers.posture import posture_share
-from characters.model.character import Character
-from characters.skeleton.pose import Array, Pose
-from characters.smoothing import damped_spring
+from cubeling.characters.behaviour.intents import GazeIntent, Influence
+from cubeling.characters.behaviour.performing.face_names import FaceNames
+from cubeling.characters.behaviour.performing.planned_values import PlannedValues
+from cubeling.characters.behaviour.performing.stances import StanceJoints
+from cubeling.characters.control.layers.layer import FrameContext
+from cubeling.characters.control.layers.posture import posture_share
+from cubeling.characters.model.character import Character
+from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.smoothing import damped_spring
 
 TURN_SHARES: dict[Influence, tuple[float, float]] = {
     "SHOULDER": (0.0, 0.45),

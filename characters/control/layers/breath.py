@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from characters.control.layers.layer import FrameContext
-from characters.model.character import Character
-from characters.skeleton.pose import Pose
+from cubeling.characters.control.layers.layer import FrameContext
+from cubeling.characters.model.character import Character
+from cubeling.characters.skeleton.pose import Pose
 
 BREATH_MORPH = "breath"
 """The morph of a full chest."""

@@ -1,9 +1,9 @@
 """Constraints: twist bones and the like, that turn as other joints do."""
 
-from characters.body.constraints import ConstrainedJoints
-from characters.control.layers.layer import FrameContext
-from characters.model.character import Character
-from characters.skeleton.pose import Pose
+from cubeling.characters.body.constraints import ConstrainedJoints
+from cubeling.characters.control.layers.layer import FrameContext
+from cubeling.characters.model.character import Character
+from cubeling.characters.skeleton.pose import Pose
 
 
 class ConstraintLayer:

@@ -2,16 +2,16 @@
 
 import numpy as np
 
-from affect import Emotion
-from affect.words import WORD_LABELS
-from characters.control.layers.layer import FrameContext
-from characters.face.affect_display import EMOTIONAL_WORDS, FACE_RECIPES, AffectDisplay
-from characters.face.blink import BlinkTimer
-from characters.face.jaw import JawJoint
-from characters.face.lids import Lids, blink_shares
-from characters.face.speech_display import SpeechDisplay
-from characters.model.character import Character
-from characters.skeleton.pose import Pose
+from cubeling.affect import Emotion
+from cubeling.affect.words import WORD_LABELS
+from cubeling.characters.control.layers.layer import FrameContext
+from cubeling.characters.face.affect_display import EMOTIONAL_WORDS, FACE_RECIPES, AffectDisplay
+from cubeling.characters.face.blink import BlinkTimer
+from cubeling.characters.face.jaw import JawJoint
+from cubeling.characters.face.lids import Lids, blink_shares
+from cubeling.characters.face.speech_display import SpeechDisplay
+from cubeling.characters.model.character import Character
+from cubeling.characters.skeleton.pose import Pose
 
 WIDE_EYES_MORPH = "surprised"
 """A morph that opens the eyes wide, and keeps them from closing."""

@@ -1,11 +1,11 @@
 """Feet that stay where they landed."""
 
-from characters.control.layers.layer import FrameContext
-from characters.ik.legs import find_legs
-from characters.locomotion.foot_lock import FootLock
-from characters.model.character import Character
-from characters.motion.motion import RootDelta
-from characters.skeleton.pose import Pose
+from cubeling.characters.control.layers.layer import FrameContext
+from cubeling.characters.ik.legs import find_legs
+from cubeling.characters.locomotion.foot_lock import FootLock
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton.pose import Pose
 
 
 class FootLockLayer:

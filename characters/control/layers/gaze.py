@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from characters.behaviour.performing.head_movements import turned_head
-from characters.behaviour.performing.planned_values import PlannedValues
-from characters.body.gaze import HEAD_LAG_S, Gaze
-from characters.control.layers.behaviour import lag_of, looked_at
-from characters.control.layers.layer import FrameContext
-from characters.control.layers.posture import posture_share
-from characters.model.character import Character
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters.behaviour.performing.head_movements import turned_head
+from cubeling.characters.behaviour.performing.planned_values import PlannedValues
+from cubeling.characters.body.gaze import HEAD_LAG_S, Gaze
+from cubeling.characters.control.layers.behaviour import lag_of, looked_at
+from cubeling.characters.control.layers.layer import FrameContext
+from cubeling.characters.control.layers.posture import posture_share
+from cubeling.characters.model.character import Character
+from cubeling.characters.skeleton.pose import Array, Pose
 
 HEAD_SHARE_IN_ACTION = 0.2
 """Part of its turn that the head makes while an action needs it."""

@@ -4,22 +4,22 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from characters.behaviour.expressivity import NEUTRAL
-from characters.behaviour.gestures.easing import eased
-from characters.behaviour.gestures.planning import Performer
-from characters.behaviour.gestures.timing import (
+from cubeling.characters.behaviour.expressivity import NEUTRAL
+from cubeling.characters.behaviour.gestures.easing import eased
+from cubeling.characters.behaviour.gestures.planning import Performer
+from cubeling.characters.behaviour.gestures.timing import (
     GONE,
     PREPARED,
     STROKE_END,
     apex_share,
     phase_at,
 )
-from characters.behaviour.intents import BehaviourIntent, GestureIntent, Hand, StrokeTimes
-from characters.control.layers.layer import FrameContext
-from characters.control.layers.sitting_up import STANDING_REST
-from characters.model.character import Character
-from characters.skeleton.pose import Pose
-from characters.smoothing import low_pass, smoothstep
+from cubeling.characters.behaviour.intents import BehaviourIntent, GestureIntent, Hand, StrokeTimes
+from cubeling.characters.control.layers.layer import FrameContext
+from cubeling.characters.control.layers.sitting_up import STANDING_REST
+from cubeling.characters.model.character import Character
+from cubeling.characters.skeleton.pose import Pose
+from cubeling.characters.smoothing import low_pass, smoothstep
 
 FADE_S = 0.3
 """How long a gesture takes to go that is left out before its end, or to join in late [s]."""

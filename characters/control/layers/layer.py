@@ -6,12 +6,12 @@ from typing import Protocol
 
 import numpy as np
 
-from affect import Emotion
-from characters.body.posture import Expressivity
-from characters.control.command import CharacterCommand
-from characters.control.controllers.controller import ControllerFrame
-from characters.model.character import Character
-from characters.skeleton.pose import Array, Pose
+from cubeling.affect import Emotion
+from cubeling.characters.body.posture import Expressivity
+from cubeling.characters.control.command import CharacterCommand
+from cubeling.characters.control.controllers.controller import ControllerFrame
+from cubeling.characters.model.character import Character
+from cubeling.characters.skeleton.pose import Array, Pose
 
 
 @dataclass

@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from characters.control.layers.layer import FrameContext
-from characters.face.jaw import JawJoint
-from characters.face.visemes.mouth_morphs import MouthMorphs, jaw_opening
-from characters.face.visemes.sets import MOUTH_SHAPES
-from characters.model.character import Character
-from characters.skeleton.pose import Pose
-from characters.speech.mouth import MouthWeights
+from cubeling.characters.control.layers.layer import FrameContext
+from cubeling.characters.face.jaw import JawJoint
+from cubeling.characters.face.visemes.mouth_morphs import MouthMorphs, jaw_opening
+from cubeling.characters.face.visemes.sets import MOUTH_SHAPES
+from cubeling.characters.model.character import Character
+from cubeling.characters.skeleton.pose import Pose
+from cubeling.characters.speech.mouth import MouthWeights
 
 SHAPE_OF = {"open": "aa", "spread": "I", "rounded": "U", "hiss": "SS"}
 """The shape for each of `MouthWeights`."""

@@ -1,11 +1,11 @@
 """Posture, breath and sway of the body."""
 
-from characters.body.posture import NEUTRAL_EXPRESSIVITY, Posture
-from characters.body.sway import BodySway
-from characters.control.layers.layer import FrameContext
-from characters.model.character import Character
-from characters.skeleton import rotations
-from characters.skeleton.pose import Pose
+from cubeling.characters.body.posture import NEUTRAL_EXPRESSIVITY, Posture
+from cubeling.characters.body.sway import BodySway
+from cubeling.characters.control.layers.layer import FrameContext
+from cubeling.characters.model.character import Character
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Pose
 
 SHARE_IN_ACTION = 0.5
 """Share of a posture that stays in the midst of an action."""

@@ -8,22 +8,22 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.behaviour.intents import ReachIntent, Times
-from characters.behaviour.performing.planned_values import PlannedValues
-from characters.body.capsules import fitted_capsules
-from characters.control.layers.layer import FrameContext
-from characters.errors import CharacterError
-from characters.ik.reaching import HandTarget, ReachStyle, UpperBody
-from characters.ik.reaching.arms import scaled
-from characters.ik.reaching.surface import BodySurface
-from characters.model.character import Character
-from characters.model.standing import idle_clips
-from characters.motion.curves import ease
-from characters.motion.inertialization import OffsetDecay
-from characters.skeleton import rotations
-from characters.skeleton.pose import Pose
-from characters.skeleton.scalar_quaternions import Vector, add, length, subtract
-from characters.smoothing import low_pass
+from cubeling.characters.behaviour.intents import ReachIntent, Times
+from cubeling.characters.behaviour.performing.planned_values import PlannedValues
+from cubeling.characters.body.capsules import fitted_capsules
+from cubeling.characters.control.layers.layer import FrameContext
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.ik.reaching import HandTarget, ReachStyle, UpperBody
+from cubeling.characters.ik.reaching.arms import scaled
+from cubeling.characters.ik.reaching.surface import BodySurface
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.standing import idle_clips
+from cubeling.characters.motion.curves import ease
+from cubeling.characters.motion.inertialization import OffsetDecay
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Pose
+from cubeling.characters.skeleton.scalar_quaternions import Vector, add, length, subtract
+from cubeling.characters.smoothing import low_pass
 
 FADE_S = 0.3
 """How long a hand takes to go that is not asked for any more [s]."""

@@ -1,10 +1,10 @@
 """Four-legged bodies that sit up to use their front legs as arms."""
 
-from characters.control.layers.layer import FrameContext
-from characters.ik.sitting_up import SittingUp
-from characters.model.character import Character
-from characters.skeleton.pose import Pose
-from characters.smoothing import damped_spring
+from cubeling.characters.control.layers.layer import FrameContext
+from cubeling.characters.ik.sitting_up import SittingUp
+from cubeling.characters.model.character import Character
+from cubeling.characters.skeleton.pose import Pose
+from cubeling.characters.smoothing import damped_spring
 
 LAG_S = 0.3
 """Lag with which a body sits up, and comes down [s]."""

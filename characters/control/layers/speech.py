@@ -6,20 +6,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from characters.body.head_beats import HeadBeats
-from characters.body.head_joints import HeadJoints
-from characters.control.command import SpeechIntent
-from characters.control.layers.layer import FrameContext
-from characters.face.expressions import EXPRESSIONS
-from characters.model.character import Character
-from characters.motion.curves import Curve, FadeCurve, ease
-from characters.motion.modifiers import Stretch
-from characters.motion.motion import Motion
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
-from characters.smoothing import low_pass
-from characters.speech.speech import GestureSpan
-from characters.synthesis.gestures.library import gesture_joints
+from cubeling.characters.body.head_beats import HeadBeats
+from cubeling.characters.body.head_joints import HeadJoints
+from cubeling.characters.control.command import SpeechIntent
+from cubeling.characters.control.layers.layer import FrameContext
+from cubeling.characters.face.expressions import EXPRESSIONS
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.curves import Curve, FadeCurve, ease
+from cubeling.characters.motion.modifiers import Stretch
+from cubeling.characters.motion.motion import Motion
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.smoothing import low_pass
+from cubeling.characters.speech.speech import GestureSpan
+from cubeling.characters.synthesis.gestures.library import gesture_joints
 
 CUT_S = 0.3
 """How long hands take to leave a speech that is cut off [s]."""

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from characters.body.springs import SpringBody
-from characters.control.layers.layer import FrameContext
-from characters.model.character import Character
-from characters.skeleton.pose import Pose
+from cubeling.characters.body.springs import SpringBody
+from cubeling.characters.control.layers.layer import FrameContext
+from cubeling.characters.model.character import Character
+from cubeling.characters.skeleton.pose import Pose
 
 
 class SpringLayer:

@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from characters.body.capsules import CapsuleBody
-from characters.body.dependent_joints import DependentJoints
-from characters.body.self_collision import SafeRanges
-from characters.control.layers.layer import FrameContext
-from characters.errors import CharacterError
-from characters.model.character import Character
-from characters.model.standing import idle_clips
-from characters.skeleton.pose import Pose
-from characters.synthesis.idle.posture_space import PostureVectors
+from cubeling.characters.body.capsules import CapsuleBody
+from cubeling.characters.body.dependent_joints import DependentJoints
+from cubeling.characters.body.self_collision import SafeRanges
+from cubeling.characters.control.layers.layer import FrameContext
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.standing import idle_clips
+from cubeling.characters.skeleton.pose import Pose
+from cubeling.characters.synthesis.idle.posture_space import PostureVectors
 
 
 def dependent_joints_of(character: Character) -> DependentJoints:

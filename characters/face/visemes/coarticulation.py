@@ -19,10 +19,15 @@ from itertools import accumulate, pairwise
 
 import numpy as np
 
-from characters.face.visemes.sets import MOUTH_SHAPES, SoundingViseme, VisemeSet, viseme_set
-from characters.motion.curves import ease
-from characters.skeleton.pose import Array
-from characters.speech.speech import SILENCE, Phone, Utterance
+from cubeling.characters.face.visemes.sets import (
+    MOUTH_SHAPES,
+    SoundingViseme,
+    VisemeSet,
+    viseme_set,
+)
+from cubeling.characters.motion.curves import ease
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.speech.speech import SILENCE, Phone, Utterance
 
 EMPHASIS_LEVELS = ("low", "neutral", "high")
 """The versions of the shape of a vowel."""

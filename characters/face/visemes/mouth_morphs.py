@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.face.lids import numbers_by_name
-from characters.face.visemes.sets import MOUTH_SHAPES, VOWEL_SHAPES
-from characters.skeleton.pose import Array
+from cubeling.characters.face.lids import numbers_by_name
+from cubeling.characters.face.visemes.sets import MOUTH_SHAPES, VOWEL_SHAPES
+from cubeling.characters.skeleton.pose import Array
 
 LEVEL_GAINS: Mapping[str, tuple[float, float, float]] = {
     "jaw": (0.45, 0.75, 1.0),

@@ -11,8 +11,8 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from characters.errors import CharacterError
-from characters.face.visemes.ipa import SEGMENTS, most_alike, parts_of
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.face.visemes.ipa import SEGMENTS, most_alike, parts_of
 
 MOUTH_SHAPES = (
     "sil",

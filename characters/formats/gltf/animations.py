@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.formats.gltf.document import DamagedFileError, Json, error_context, label
-from characters.formats.gltf.file import GltfFile
-from characters.formats.gltf.morphs import MorphTable
-from characters.formats.gltf.nodes import NodeTree, unique_names, unit_quaternions
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.formats.gltf.document import DamagedFileError, Json, error_context, label
+from cubeling.characters.formats.gltf.file import GltfFile
+from cubeling.characters.formats.gltf.morphs import MorphTable
+from cubeling.characters.formats.gltf.nodes import NodeTree, unique_names, unit_quaternions
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 _COMMON_RATES_HZ = (24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0)
 _FALLBACK_RATE_HZ = 120.0  # for keys at no common rate; animators use nothing finer

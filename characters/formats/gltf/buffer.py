@@ -6,8 +6,14 @@ import struct
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from characters.formats.gltf.document import Json
-from characters.formats.gltf.file import BIN_CHUNK, COMPONENT_TYPES, JSON_CHUNK, MAGIC, TYPE_WIDTHS
+from cubeling.characters.formats.gltf.document import Json
+from cubeling.characters.formats.gltf.file import (
+    BIN_CHUNK,
+    COMPONENT_TYPES,
+    JSON_CHUNK,
+    MAGIC,
+    TYPE_WIDTHS,
+)
 
 ARRAY_BUFFER, ELEMENT_BUFFER = 34962, 34963
 """Target of a buffer view: vertex attributes, or vertex indices."""

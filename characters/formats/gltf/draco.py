@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.formats.gltf.document import DamagedFileError, Json, error_context, label
-from characters.formats.gltf.file import COMPONENT_TYPES, GltfFile
+from cubeling.characters.formats.gltf.document import DamagedFileError, Json, error_context, label
+from cubeling.characters.formats.gltf.file import COMPONENT_TYPES, GltfFile
 
 EXTENSION = "KHR_draco_mesh_compression"
 _TRIANGLES = 4

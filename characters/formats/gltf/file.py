@@ -10,10 +10,10 @@ from urllib.parse import unquote, unquote_to_bytes, urlsplit
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.formats.gltf.document import DamagedFileError, Json, error_context, parse
-from characters.model.files import read_file
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.formats.gltf.document import DamagedFileError, Json, error_context, parse
+from cubeling.characters.model.files import read_file
+from cubeling.characters.skeleton.pose import Array
 
 MAGIC, JSON_CHUNK, BIN_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
 _MAX_EMPTY_ROWS = 2_000_000  # of an accessor without data

@@ -6,7 +6,7 @@ They are written as extras, since VRM's extensions need a whole humanoid, and ch
 from dataclasses import asdict, replace
 from typing import Any, get_args
 
-from characters.formats.gltf.document import (
+from cubeling.characters.formats.gltf.document import (
     REAL,
     TEXT,
     VECTOR,
@@ -15,10 +15,10 @@ from characters.formats.gltf.document import (
     check,
     error_context,
 )
-from characters.model.character import Character
-from characters.model.constraints import ConstraintKind, JointConstraint, constraint_levels
-from characters.model.look_at import LookAt, RangeMap
-from characters.model.springs import SpringBone, SpringCollider
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.constraints import ConstraintKind, JointConstraint, constraint_levels
+from cubeling.characters.model.look_at import LookAt, RangeMap
+from cubeling.characters.model.springs import SpringBone, SpringCollider
 
 EXTRA = "cubelingFollowers"
 """Name of the extra of the scene."""

@@ -14,13 +14,13 @@ import PIL.Image
 from numpy.typing import NDArray
 from PIL import UnidentifiedImageError
 
-from characters.errors import CharacterWarning
-from characters.formats.gltf.buffer import GlbBuilder
-from characters.formats.gltf.document import DamagedFileError, Json, error_context, label
-from characters.formats.gltf.file import GltfFile
-from characters.formats.gltf.vrm import mtoon
-from characters.model.mesh import Material, ToonShading
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterWarning
+from cubeling.characters.formats.gltf.buffer import GlbBuilder
+from cubeling.characters.formats.gltf.document import DamagedFileError, Json, error_context, label
+from cubeling.characters.formats.gltf.file import GltfFile
+from cubeling.characters.formats.gltf.vrm import mtoon
+from cubeling.characters.model.mesh import Material, ToonShading
+from cubeling.characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
 """(height, width, 3 or 4), RGB or RGBA."""

@@ -5,21 +5,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.formats.gltf.document import DamagedFileError, Json, error_context, label
-from characters.formats.gltf.file import GltfFile
-from characters.formats.gltf.materials import MappedMaterial, read_materials
-from characters.formats.gltf.morphs import (
+from cubeling.characters.formats.gltf.document import DamagedFileError, Json, error_context, label
+from cubeling.characters.formats.gltf.file import GltfFile
+from cubeling.characters.formats.gltf.materials import MappedMaterial, read_materials
+from cubeling.characters.formats.gltf.morphs import (
     MorphTable,
     read_morphs,
     renumbered_morph,
     transformed_morph,
 )
-from characters.formats.gltf.nodes import NodeTree
-from characters.formats.gltf.skins import VertexSkin, read_skin, rigid_skin
-from characters.model.mesh import Material, Mesh, Morph
-from characters.skeleton import rotations
-from characters.skeleton.masks import subtree_sizes
-from characters.skeleton.pose import Array
+from cubeling.characters.formats.gltf.nodes import NodeTree
+from cubeling.characters.formats.gltf.skins import VertexSkin, read_skin, rigid_skin
+from cubeling.characters.model.mesh import Material, Mesh, Morph
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.masks import subtree_sizes
+from cubeling.characters.skeleton.pose import Array
 
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _SAME_TURN, _SAME_PLACE = 1e-3, 1e-3  # of joints bound in the rest pose; the latter per size

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.formats.gltf.document import DamagedFileError, Json, error_context, label
-from characters.formats.gltf.file import GltfFile
-from characters.formats.gltf.nodes import NodeTree
-from characters.model.mesh import Morph
-from characters.skeleton.pose import Array
+from cubeling.characters.formats.gltf.document import DamagedFileError, Json, error_context, label
+from cubeling.characters.formats.gltf.file import GltfFile
+from cubeling.characters.formats.gltf.nodes import NodeTree
+from cubeling.characters.model.mesh import Morph
+from cubeling.characters.skeleton.pose import Array
 
 _MIN_DISPLACEMENT = 1e-9  # in the file's unit; smaller ones are rounded zeros
 

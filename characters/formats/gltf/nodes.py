@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.errors import CharacterWarning
-from characters.formats.gltf.document import DamagedFileError, Json, error_context, label
-from characters.formats.gltf.file import GltfFile
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.errors import CharacterWarning
+from cubeling.characters.formats.gltf.document import DamagedFileError, Json, error_context, label
+from cubeling.characters.formats.gltf.file import GltfFile
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 _MAX_JOINTS = 4096
 _MAX_LENGTH_ERROR = 1e-2  # of a quaternion: rounding to bytes causes less

@@ -5,23 +5,27 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
-from characters.errors import CharacterError
-from characters.formats.gltf.animations import read_clips
-from characters.formats.gltf.document import DamagedFileError
-from characters.formats.gltf.draco import with_unpacked_meshes
-from characters.formats.gltf.file import GltfFile, open_gltf
-from characters.formats.gltf.followers import EXTRA, with_followers
-from characters.formats.gltf.meshes import read_meshes
-from characters.formats.gltf.morphs import read_morph_table
-from characters.formats.gltf.nodes import NodeTree, read_node_tree
-from characters.formats.gltf.vrm.constraints import read_constraints
-from characters.formats.gltf.vrm.humanoid import VrmHumanoid, mixed_expressions, read_humanoid
-from characters.formats.gltf.vrm.look_at import read_look_at
-from characters.formats.gltf.vrm.springs import read_springs
-from characters.formats.loading import MotionOptions, Performance
-from characters.model.character import Character
-from characters.model.mesh import Mesh
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.formats.gltf.animations import read_clips
+from cubeling.characters.formats.gltf.document import DamagedFileError
+from cubeling.characters.formats.gltf.draco import with_unpacked_meshes
+from cubeling.characters.formats.gltf.file import GltfFile, open_gltf
+from cubeling.characters.formats.gltf.followers import EXTRA, with_followers
+from cubeling.characters.formats.gltf.meshes import read_meshes
+from cubeling.characters.formats.gltf.morphs import read_morph_table
+from cubeling.characters.formats.gltf.nodes import NodeTree, read_node_tree
+from cubeling.characters.formats.gltf.vrm.constraints import read_constraints
+from cubeling.characters.formats.gltf.vrm.humanoid import (
+    VrmHumanoid,
+    mixed_expressions,
+    read_humanoid,
+)
+from cubeling.characters.formats.gltf.vrm.look_at import read_look_at
+from cubeling.characters.formats.gltf.vrm.springs import read_springs
+from cubeling.characters.formats.loading import MotionOptions, Performance
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 
 def load_character(path: Path) -> Character:

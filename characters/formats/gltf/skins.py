@@ -6,11 +6,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterWarning
-from characters.formats.gltf.document import DamagedFileError, Json, error_context
-from characters.formats.gltf.file import GltfFile
-from characters.formats.gltf.nodes import NodeTree
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterWarning
+from cubeling.characters.formats.gltf.document import DamagedFileError, Json, error_context
+from cubeling.characters.formats.gltf.file import GltfFile
+from cubeling.characters.formats.gltf.nodes import NodeTree
+from cubeling.characters.skeleton.pose import Array
 
 _MAX_WEIGHT_ERROR = 0.02  # of the sum of a vertex: rounding of four bytes causes less
 

@@ -5,15 +5,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.formats.gltf.buffer import ARRAY_BUFFER, ELEMENT_BUFFER, GlbBuilder
-from characters.formats.gltf.document import Json
-from characters.formats.gltf.followers import EXTRA, followers_of
-from characters.formats.gltf.materials import MaterialWriter
-from characters.model.character import Character
-from characters.model.mesh import Mesh, Morph
-from characters.motion.clip import Clip
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.formats.gltf.buffer import ARRAY_BUFFER, ELEMENT_BUFFER, GlbBuilder
+from cubeling.characters.formats.gltf.document import Json
+from cubeling.characters.formats.gltf.followers import EXTRA, followers_of
+from cubeling.characters.formats.gltf.materials import MaterialWriter
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.mesh import Mesh, Morph
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 MIN_CHANGE = 1e-7  # [m or part of a quaternion]: smaller changes are not written
 

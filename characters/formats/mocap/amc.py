@@ -8,13 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.formats.loading import MotionOptions, Performance
-from characters.formats.mocap.asf import AcclaimSkeleton, load_skeleton
-from characters.formats.mocap.axes_and_units import metric_performance
-from characters.formats.mocap.text import CUT_OFF, TextFile, numbers, parse_numbers, quoted
-from characters.motion.clip import Clip
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.formats.loading import MotionOptions, Performance
+from cubeling.characters.formats.mocap.asf import AcclaimSkeleton, load_skeleton
+from cubeling.characters.formats.mocap.axes_and_units import metric_performance
+from cubeling.characters.formats.mocap.text import CUT_OFF, TextFile, numbers, parse_numbers, quoted
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton.pose import Array
 
 BLOCK_CHARACTERS = 1 << 22
 """Length of text that is split into words at once."""

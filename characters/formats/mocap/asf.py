@@ -11,13 +11,13 @@ from pathlib import Path
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.formats.loading import MotionOptions, Performance
-from characters.formats.mocap.asf_bones import AsfBone, Line, read_bones, read_sections
-from characters.formats.mocap.channels import AxisChannel, ChannelLayout
-from characters.formats.mocap.text import TextFile, quoted
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.formats.loading import MotionOptions, Performance
+from cubeling.characters.formats.mocap.asf_bones import AsfBone, Line, read_bones, read_sections
+from cubeling.characters.formats.mocap.channels import AxisChannel, ChannelLayout
+from cubeling.characters.formats.mocap.text import TextFile, quoted
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 INCH_M = 0.0254
 

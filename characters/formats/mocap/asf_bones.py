@@ -6,10 +6,10 @@ from typing import TypeAlias
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.formats.mocap.text import CUT_OFF, TextFile, quoted
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.formats.mocap.text import CUT_OFF, TextFile, quoted
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array
 
 _DOFS = ("tx", "ty", "tz", "rx", "ry", "rz", "l")
 _ROTATION_ORDERS = ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.formats.loading import MotionOptions, Performance
-from characters.motion.clip import Clip
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.formats.loading import MotionOptions, Performance
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 ADULT_HEIGHT_M = 1.7
 PLAUSIBLE_HEIGHT_M = (0.5, 2.5)

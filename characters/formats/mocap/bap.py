@@ -12,18 +12,18 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.formats.loading import MotionOptions, Performance
-from characters.formats.mocap.hanim import (
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.formats.loading import MotionOptions, Performance
+from cubeling.characters.formats.mocap.hanim import (
     BAP_COUNT,
     FINGERS,
     hanim_skeleton,
     parameters,
 )
-from characters.formats.mocap.text import CUT_OFF, EXPORT_AGAIN, TextFile
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters.formats.mocap.text import CUT_OFF, EXPORT_AGAIN, TextFile
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
 
 UNIT_RAD = 1e-5
 """What 1 stands for in a parameter of an angle [rad]."""

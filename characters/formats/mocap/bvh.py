@@ -11,14 +11,14 @@ from pathlib import Path
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.formats.loading import MotionOptions, Performance
-from characters.formats.mocap.axes_and_units import metric_performance
-from characters.formats.mocap.channels import AxisChannel, ChannelLayout
-from characters.formats.mocap.text import CUT_OFF, TextFile, numbers, parse_numbers, quoted
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.formats.loading import MotionOptions, Performance
+from cubeling.characters.formats.mocap.axes_and_units import metric_performance
+from cubeling.characters.formats.mocap.channels import AxisChannel, ChannelLayout
+from cubeling.characters.formats.mocap.text import CUT_OFF, TextFile, numbers, parse_numbers, quoted
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 _FRAME_TIME_RANGE_S = (1e-5, 100.0)
 

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.masks import subtree
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.masks import subtree
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 ROTATION_ORDER = "ZXY"
 """Axes of a joint's rotations in the file, the last one applied first."""

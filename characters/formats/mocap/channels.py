@@ -12,8 +12,8 @@ from itertools import zip_longest
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
 
 _BLOCK_FRAMES = 1024  # computed at once: a block fits in the processor's cache
 

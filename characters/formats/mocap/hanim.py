@@ -9,9 +9,9 @@ from functools import cache
 
 import numpy as np
 
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import SIDES, Anatomy
-from characters.skeleton.pose import Pose, Skeleton
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
+from cubeling.characters.skeleton.pose import Pose, Skeleton
 
 BAP_COUNT = 296
 """Parameters of a frame: 186 of the standard's bodies, and 110 for extensions, which stay 0."""

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.model.files import read_file
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.files import read_file
+from cubeling.characters.skeleton.pose import Array
 
 MAX_ABS_NUMBER = 1e9  # beyond any recording in any unit, and sums of such numbers stay finite
 MAX_POSED_JOINTS = 30_000_000  # joints × frames; two hours at 120 Hz with 35 joints

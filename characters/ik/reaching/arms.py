@@ -11,12 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from characters.ik.reaching.hands import Hand, part_names
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.joint_chains import chains_to_root
-from characters.skeleton.pose import Array, Skeleton
-from characters.skeleton.scalar_quaternions import (
+from cubeling.characters.ik.reaching.hands import Hand, part_names
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.joint_chains import chains_to_root
+from cubeling.characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.skeleton.scalar_quaternions import (
     Quaternion,
     Vector,
     add,

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from characters.ik.reaching.arms import (
+from cubeling.characters.ik.reaching.arms import (
     SWIVEL_DEG,
     Arm,
     BentArm,
@@ -16,8 +16,8 @@ from characters.ik.reaching.arms import (
     swivel_of,
     to_vector,
 )
-from characters.ik.reaching.targets import HandTarget
-from characters.skeleton.scalar_quaternions import (
+from cubeling.characters.ik.reaching.targets import HandTarget
+from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
     Quaternion,
     Vector,
@@ -34,7 +34,7 @@ from characters.skeleton.scalar_quaternions import (
     subtract,
     to_rotation_vector,
 )
-from characters.smoothing import smoothstep
+from cubeling.characters.smoothing import smoothstep
 
 POINT_EXTENSION = 0.97
 """Extension of an arm that points to what is far ÷ its length."""

@@ -5,8 +5,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.ik.reaching.upper_body import UpperBody
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.ik.reaching.upper_body import UpperBody
+from cubeling.characters.skeleton.pose import Skeleton
 
 
 class Reacher(Protocol):

@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.ik.reaching.hands import Hand, find_hand, fingertip
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import SIDES, Anatomy
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.ik.reaching.hands import Hand, find_hand, fingertip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.joint_chains import children_of
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.joint_chains import children_of
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
 """Names of the fingers, as in `Anatomy`."""

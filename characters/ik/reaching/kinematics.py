@@ -10,12 +10,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.ik.reaching.arms import Arm, to_quaternion, turns_of
-from characters.ik.reaching.torso import FOUR_LEGS, PlacedTorso
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.joint_chains import chains_to_root
-from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.skeleton.scalar_quaternions import (
+from cubeling.characters.ik.reaching.arms import Arm, to_quaternion, turns_of
+from cubeling.characters.ik.reaching.torso import FOUR_LEGS, PlacedTorso
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.joint_chains import chains_to_root
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
     Quaternion,
     Vector,

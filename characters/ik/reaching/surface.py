@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from characters.ik.reaching.arms import scaled
-from characters.skeleton.scalar_quaternions import Vector, add, dot, length, subtract
+from cubeling.characters.ik.reaching.arms import scaled
+from cubeling.characters.skeleton.scalar_quaternions import Vector, add, dot, length, subtract
 
 _ROUNDS = 2
 

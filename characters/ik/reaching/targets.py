@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from characters.skeleton.pose import Array
+from cubeling.characters.skeleton.pose import Array
 
 ReachKind = Literal["reach", "touch", "point", "grasp"]
 

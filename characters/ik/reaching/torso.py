@@ -10,8 +10,8 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from characters.ik.reaching.arms import CONE_RAD, Arm, clamped_aim, cone_axis, scaled
-from characters.skeleton.scalar_quaternions import (
+from cubeling.characters.ik.reaching.arms import CONE_RAD, Arm, clamped_aim, cone_axis, scaled
+from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
     Quaternion,
     Vector,

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.ik.reaching.arms import (
+from cubeling.characters.ik.reaching.arms import (
     Arm,
     BentArm,
     Effector,
@@ -25,7 +25,7 @@ from characters.ik.reaching.arms import (
     swivel_of,
     to_vector,
 )
-from characters.ik.reaching.bending import (
+from cubeling.characters.ik.reaching.bending import (
     NEUTRAL_SWIVEL,
     Bearer,
     HandOnItsWay,
@@ -35,25 +35,25 @@ from characters.ik.reaching.bending import (
     pointed,
     twisted,
 )
-from characters.ik.reaching.hand_shapes import HandShapes
-from characters.ik.reaching.kinematics import Frames, UpperBodyKinematics
-from characters.ik.reaching.targets import (
+from cubeling.characters.ik.reaching.hand_shapes import HandShapes
+from cubeling.characters.ik.reaching.kinematics import Frames, UpperBodyKinematics
+from cubeling.characters.ik.reaching.targets import (
     NEUTRAL_REACH,
     SHAPE_OF_KIND,
     HandTarget,
     ReachKind,
     ReachStyle,
 )
-from characters.ik.reaching.torso import (
+from cubeling.characters.ik.reaching.torso import (
     PlacedTorso,
     Reaching,
     follow_torso,
     turn_torso,
 )
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.skeleton.scalar_quaternions import (
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
     Quaternion,
     Vector,

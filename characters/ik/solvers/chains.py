@@ -6,10 +6,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.skeleton import rotations
-from characters.skeleton.joint_limits import JointLimits
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.joint_limits import JointLimits
+from cubeling.characters.skeleton.pose import Array
 
 
 @dataclass(frozen=True)

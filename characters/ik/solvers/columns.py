@@ -6,7 +6,7 @@ the components last, as in `characters.skeleton.rotations`, it takes two to four
 
 import numpy as np
 
-from characters.skeleton.pose import Array
+from cubeling.characters.skeleton.pose import Array
 
 TINY = 1e-12
 """A length [m] below which a direction is undefined."""

@@ -7,10 +7,10 @@ FABRIK warns of the zig-zag).
 
 import numpy as np
 
-from characters.ik.solvers import columns
-from characters.ik.solvers.orientation import oriented
-from characters.ik.solvers.task import Task
-from characters.skeleton.pose import Array
+from cubeling.characters.ik.solvers import columns
+from cubeling.characters.ik.solvers.orientation import oriented
+from cubeling.characters.ik.solvers.task import Task
+from cubeling.characters.skeleton.pose import Array
 
 NEAR_BASE = 0.3
 """A target nearer than this is near the base, in lengths of the chain."""

@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.ik.solvers import columns
-from characters.ik.solvers.positional import PositionalSolver
-from characters.ik.solvers.rules import Rule
-from characters.ik.solvers.task import Arrays, Bounds, Solved, Task, until_done
-from characters.skeleton.pose import Array
+from cubeling.characters.ik.solvers import columns
+from cubeling.characters.ik.solvers.positional import PositionalSolver
+from cubeling.characters.ik.solvers.rules import Rule
+from cubeling.characters.ik.solvers.task import Arrays, Bounds, Solved, Task, until_done
+from cubeling.characters.skeleton.pose import Array
 
 MAX_STEPS = 60
 """Most steps of a Jacobian method."""

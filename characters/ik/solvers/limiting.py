@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from characters.ik.solvers import columns
-from characters.ik.solvers.task import Task
-from characters.skeleton.pose import Array
+from cubeling.characters.ik.solvers import columns
+from cubeling.characters.ik.solvers.task import Task
+from cubeling.characters.skeleton.pose import Array
 
 MAX_LEVER_RATIO = 2.0
 """Most that a parent turns for each radian of its child: near the target the ratio has no bound."""

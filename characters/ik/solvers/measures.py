@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.ik.solvers.chains import Chains, Solution
-from characters.skeleton import rotations
-from characters.skeleton.joint_limits import EDGE_RAD, JointLimits
-from characters.skeleton.pose import Array
+from cubeling.characters.ik.solvers.chains import Chains, Solution
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.joint_limits import EDGE_RAD, JointLimits
+from cubeling.characters.skeleton.pose import Array
 
 REACH_M = 0.6
 """Length of the chains: about that of an arm."""

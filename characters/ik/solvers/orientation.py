@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from characters.ik.solvers import columns
-from characters.ik.solvers.task import Task
-from characters.skeleton.pose import Array
+from cubeling.characters.ik.solvers import columns
+from cubeling.characters.ik.solvers.task import Task
+from cubeling.characters.skeleton.pose import Array
 
 
 def oriented(task: Task, frames: Array, before: Array, after: Array) -> Array:
@@ -42,7 +42,7 @@ def horn(start: Array, end: Array, weights: Array | None = None) -> Array:
     Horn, "Closed-form solution of absolute orientation using unit quaternions", 1987: the
     eigenvector of the largest eigenvalue. `weights` are (…, vectors).
 
-    >>> from characters.skeleton import rotations
+    >>> from cubeling.characters.skeleton import rotations
     >>> turn = rotations.about([0.6, 0.0, 0.8], 2.0)
     >>> vectors = np.array([[1.0, 0.0, 0.0], [0.0, 2.0, 0.0]])
     >>> np.allclose(horn(vectors, rotations.rotate(turn, vectors)), turn)

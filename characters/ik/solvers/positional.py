@@ -10,11 +10,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.ik.solvers import columns
-from characters.ik.solvers.limiting import limited
-from characters.ik.solvers.orientation import oriented, rigid
-from characters.ik.solvers.task import Arrays, Solved, Task, until_done
-from characters.skeleton.pose import Array
+from cubeling.characters.ik.solvers import columns
+from cubeling.characters.ik.solvers.limiting import limited
+from cubeling.characters.ik.solvers.orientation import oriented, rigid
+from cubeling.characters.ik.solvers.task import Arrays, Solved, Task, until_done
+from cubeling.characters.skeleton.pose import Array
 
 MAX_LOOPS = 20
 """Most rounds of points, rotations and limits."""

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.ik.solvers import columns
-from characters.skeleton.pose import Array
-from characters.skeleton.scalar_quaternions import Vector
+from cubeling.characters.ik.solvers import columns
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.skeleton.scalar_quaternions import Vector
 
 Rule = Callable[[Array, Array], Array]
 """From J Jᵀ (6, batch) and errors (3, batch) to the vectors that Jᵀ multiplies, (3, batch)."""

@@ -11,11 +11,11 @@ from itertools import accumulate
 
 import numpy as np
 
-from characters.ik.solvers.chains import Chains
-from characters.ik.solvers.rules import damped_pull
-from characters.ik.solvers.single_limits import LimitedJoints, solve_angles
-from characters.ik.solvers.solving import TOLERANCE, solve
-from characters.skeleton.scalar_quaternions import (
+from cubeling.characters.ik.solvers.chains import Chains
+from cubeling.characters.ik.solvers.rules import damped_pull
+from cubeling.characters.ik.solvers.single_limits import LimitedJoints, solve_angles
+from cubeling.characters.ik.solvers.solving import TOLERANCE, solve
+from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
     Quaternion,
     Vector,

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from characters.ik.solvers.rules import damped_pull
-from characters.skeleton.joint_limits import EDGE_RAD, JointLimits
-from characters.skeleton.scalar_quaternions import (
+from cubeling.characters.ik.solvers.rules import damped_pull
+from cubeling.characters.skeleton.joint_limits import EDGE_RAD, JointLimits
+from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
     Quaternion,
     Vector,

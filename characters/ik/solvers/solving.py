@@ -5,19 +5,19 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.ik.solvers import columns
-from characters.ik.solvers.ccd import CyclicCoordinateDescent
-from characters.ik.solvers.chains import Chains, Solution
-from characters.ik.solvers.curling import curled
-from characters.ik.solvers.fabrik import Fabrik
-from characters.ik.solvers.jacobian import JacobianSolver
-from characters.ik.solvers.orientation import oriented, straight
-from characters.ik.solvers.positional import PositionalSolver
-from characters.ik.solvers.rules import Damped, pseudo_inverse, transpose
-from characters.ik.solvers.springs import MassSprings
-from characters.ik.solvers.task import Limiting, Solver, Task
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.ik.solvers import columns
+from cubeling.characters.ik.solvers.ccd import CyclicCoordinateDescent
+from cubeling.characters.ik.solvers.chains import Chains, Solution
+from cubeling.characters.ik.solvers.curling import curled
+from cubeling.characters.ik.solvers.fabrik import Fabrik
+from cubeling.characters.ik.solvers.jacobian import JacobianSolver
+from cubeling.characters.ik.solvers.orientation import oriented, straight
+from cubeling.characters.ik.solvers.positional import PositionalSolver
+from cubeling.characters.ik.solvers.rules import Damped, pseudo_inverse, transpose
+from cubeling.characters.ik.solvers.springs import MassSprings
+from cubeling.characters.ik.solvers.task import Limiting, Solver, Task
+from cubeling.characters.skeleton.pose import Array
 
 SOLVERS: dict[str, Solver] = {
     "springs-force": PositionalSolver(MassSprings(pinned=False)),

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.ik.solvers import columns
-from characters.ik.solvers.task import Arrays, Task, until_done
-from characters.skeleton.pose import Array
+from cubeling.characters.ik.solvers import columns
+from cubeling.characters.ik.solvers.task import Arrays, Task, until_done
+from cubeling.characters.skeleton.pose import Array
 
 
 def verlet(now: Array, before: Array, acceleration: Array, damping: float = 0.0) -> Array:

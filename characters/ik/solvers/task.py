@@ -7,10 +7,10 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.ik.solvers import columns
-from characters.ik.solvers.chains import Chains
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array
+from cubeling.characters.ik.solvers import columns
+from cubeling.characters.ik.solvers.chains import Chains
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array
 
 Limiting = Literal["propagate", "clamp"]
 """What becomes of a rotation beyond a limit: passed on to the parent (S16), or cut off."""

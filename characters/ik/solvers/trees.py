@@ -14,11 +14,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.ik.solvers.orientation import horn
-from characters.ik.solvers.springs import verlet
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.ik.solvers.orientation import horn
+from cubeling.characters.ik.solvers.springs import verlet
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array
 
 _STIFFNESS, _PULL, _DAMPING = 0.3, 0.3, 0.4  # a joint with many springs is stable below 0.4
 _MAX_STEPS, _MAX_LOOPS = 400, 12

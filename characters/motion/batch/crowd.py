@@ -12,8 +12,8 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from characters.motion.batch.bank import ClipBank
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.motion.batch.bank import ClipBank
+from cubeling.characters.skeleton.pose import Skeleton
 
 Floats = NDArray[Any]
 Indices = NDArray[np.intp]

@@ -6,27 +6,34 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.motion.blend import Blend, BlendSpace1D, BlendSpace2D, TimeScaled, shares
-from characters.motion.clip import Clip
-from characters.motion.crossfade import CrossFade
-from characters.motion.curves import FadeCurve, Product, Weight
-from characters.motion.layers import AdditiveLayer, MaskedLayer
-from characters.motion.mirror import Mirror, Mirrored
-from characters.motion.modifiers import Loop, RootOffset, Stretch, TimeCurve, Warped, Window
-from characters.motion.motion import Motion, RootDelta
-from characters.motion.phase import StaticPose, as_cyclic, phased
-from characters.motion.schedule import Action, Schedule
-from characters.motion.trees.parametric import (
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.blend import Blend, BlendSpace1D, BlendSpace2D, TimeScaled, shares
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.crossfade import CrossFade
+from cubeling.characters.motion.curves import FadeCurve, Product, Weight
+from cubeling.characters.motion.layers import AdditiveLayer, MaskedLayer
+from cubeling.characters.motion.mirror import Mirror, Mirrored
+from cubeling.characters.motion.modifiers import (
+    Loop,
+    RootOffset,
+    Stretch,
+    TimeCurve,
+    Warped,
+    Window,
+)
+from cubeling.characters.motion.motion import Motion, RootDelta
+from cubeling.characters.motion.phase import StaticPose, as_cyclic, phased
+from cubeling.characters.motion.schedule import Action, Schedule
+from cubeling.characters.motion.trees.parametric import (
     ParameterBindings,
     ParametricMotion,
     ParametricWeight,
     Values,
 )
-from characters.motion.trees.plan import Node, Plan
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.masks import Mask, mask_of
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.motion.trees.plan import Node, Plan
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.masks import Mask, mask_of
+from cubeling.characters.skeleton.pose import Skeleton
 
 
 class Builder:

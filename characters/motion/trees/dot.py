@@ -1,6 +1,6 @@
 """Plans as graphs in Graphviz's DOT language."""
 
-from characters.motion.trees.plan import Node, Plan, StateGraph
+from cubeling.characters.motion.trees.plan import Node, Plan, StateGraph
 
 _FILL_COLOURS = {
     "state": "#fde7c8",

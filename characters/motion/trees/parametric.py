@@ -2,8 +2,8 @@
 
 from collections.abc import Callable, Mapping
 
-from characters.motion.motion import Motion
-from characters.motion.phase import RetimedMotion, as_cyclic
+from cubeling.characters.motion.motion import Motion
+from cubeling.characters.motion.phase import RetimedMotion, as_cyclic
 
 Values = Mapping[str, float]
 """Values of parameters by name."""

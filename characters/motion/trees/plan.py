@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal
 
-from characters.motion.trees.conditions import Condition
+from cubeling.characters.motion.trees.conditions import Condition
 
 PARAMETERS: Mapping[str, str] = {
     "speed": "requested Speed of AvatAR, 0 to 5; 0 after arrival",
@@ -107,7 +107,7 @@ NODE_KINDS: Mapping[str, NodeKind] = {
         group="mix",
     ),
 }
-"""All kinds of nodes. `characters.motion.trees.building` builds a motion for each."""
+"""All kinds of nodes. `cubeling.characters.motion.trees.building` builds a motion for each."""
 
 
 @dataclass(frozen=True)
@@ -255,7 +255,7 @@ class Plan:
 
     lags: Mapping[str, float] = field(default_factory=dict)
     """Time constants of parameters by name [s]; defaults are
-    `characters.control.controllers.tree.DEFAULT_LAGS_S`."""
+    `cubeling.characters.control.controllers.tree.DEFAULT_LAGS_S`."""
 
     @property
     def roots(self) -> tuple[Node, ...]:

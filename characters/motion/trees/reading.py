@@ -6,10 +6,10 @@ from collections.abc import Collection, Mapping
 from contextlib import suppress
 from typing import Any, NoReturn, get_args
 
-from characters.errors import CharacterError
-from characters.motion.curves import Ease
-from characters.motion.trees.conditions import Condition, ConditionError
-from characters.motion.trees.plan import (
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.curves import Ease
+from cubeling.characters.motion.trees.conditions import Condition, ConditionError
+from cubeling.characters.motion.trees.plan import (
     NODE_KINDS,
     PARAMETERS,
     Field,

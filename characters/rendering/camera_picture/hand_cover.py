@@ -7,9 +7,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.projection import Rectangle
-from characters.rendering.scene import Cover
-from characters.skeleton.pose import Array
+from cubeling.characters.rendering.projection import Rectangle
+from cubeling.characters.rendering.scene import Cover
+from cubeling.characters.skeleton.pose import Array
 
 Maps = tuple[NDArray[np.float32], NDArray[np.float32]]
 """Columns and rows of the frame at each pixel of the picture, (height, width) each [px]."""

@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.camera_picture.light import LINEAR_FROM_SRGB
-from characters.rendering.scene import Softness
+from cubeling.characters.rendering.camera_picture.light import LINEAR_FROM_SRGB
+from cubeling.characters.rendering.scene import Softness
 
 Image = NDArray[np.uint8]
 

@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.camera_picture.hand_cover import PictureCover
-from characters.rendering.projection import Rectangle
+from cubeling.characters.rendering.camera_picture.hand_cover import PictureCover
+from cubeling.characters.rendering.projection import Rectangle
 
 
 def hidden_table(

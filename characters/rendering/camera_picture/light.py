@@ -8,15 +8,15 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.projection import (
+from cubeling.characters.rendering.projection import (
     NEAR_M,
     is_invertible,
     is_pinhole,
     project,
     usable_distortion,
 )
-from characters.rendering.scene import Box, MeasuredLight, View
-from characters.skeleton.pose import Array
+from cubeling.characters.rendering.scene import Box, MeasuredLight, View
+from cubeling.characters.skeleton.pose import Array
 
 TO_LIGHT = np.array([-0.42, 1.0, 0.34]) / np.linalg.norm([-0.42, 1.0, 0.34])
 """Direction to the key light in the table frame where none was measured: from above, from the left,

@@ -8,15 +8,15 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.projection import (
+from cubeling.characters.rendering.projection import (
     NEAR_M,
     Rectangle,
     bounding_rectangle,
     is_invertible,
     project,
 )
-from characters.rendering.scene import Box
-from characters.skeleton.pose import Array
+from cubeling.characters.rendering.scene import Box
+from cubeling.characters.skeleton.pose import Array
 
 _FACE = np.array([(-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, -1, 1), (1, 1, 1), (-1, 1, 1)]) / 2
 UNIT_CUBE = np.concatenate([s * np.roll(_FACE, axis, axis=1) for axis in range(3) for s in (1, -1)])

@@ -6,11 +6,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.rendering.camera_picture.hand_cover import Maps, PictureCover, cropped
-from characters.rendering.projection import Rectangle, is_pinhole, usable_distortion
-from characters.rendering.scene import Cover, View
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.rendering.camera_picture.hand_cover import Maps, PictureCover, cropped
+from cubeling.characters.rendering.projection import Rectangle, is_pinhole, usable_distortion
+from cubeling.characters.rendering.scene import Cover, View
+from cubeling.characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
 

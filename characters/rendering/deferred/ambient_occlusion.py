@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.rendering.deferred.buffers import GrowingBuffer, OcclusionBuffer
-from characters.rendering.deferred.cells import cell_count, cell_uniforms
-from characters.rendering.deferred.sample_patterns import PATTERNS, sample_pattern
-from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.rendering.deferred.buffers import GrowingBuffer, OcclusionBuffer
+from cubeling.characters.rendering.deferred.cells import cell_count, cell_uniforms
+from cubeling.characters.rendering.deferred.sample_patterns import PATTERNS, sample_pattern
+from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
+from cubeling.characters.skeleton.pose import Array
 
 
 @dataclass(frozen=True)

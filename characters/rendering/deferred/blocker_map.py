@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 import moderngl
 
-from characters.rendering.deferred.lamp import Lamp
-from characters.rendering.geometry.character_cache import CharacterInstance
-from characters.rendering.geometry.surfaces import CASTER
-from characters.rendering.programs import set_uniforms
-from characters.skeleton.pose import Array
+from cubeling.characters.rendering.deferred.lamp import Lamp
+from cubeling.characters.rendering.geometry.character_cache import CharacterInstance
+from cubeling.characters.rendering.geometry.surfaces import CASTER
+from cubeling.characters.rendering.programs import set_uniforms
+from cubeling.characters.skeleton.pose import Array
 
 MAP_SIDE = 256
 """Texels along each side of the map."""

@@ -6,10 +6,10 @@ from typing import Generic, TypeVar
 import moderngl
 import numpy as np
 
-from characters.rendering.geometry.character_cache import CharacterInstance
-from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.projection import grown_size
-from characters.skeleton.pose import Array
+from cubeling.characters.rendering.geometry.character_cache import CharacterInstance
+from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
+from cubeling.characters.rendering.projection import grown_size
+from cubeling.characters.skeleton.pose import Array
 
 BUFFER_UNITS = {
     **{"normal_id": 0, "position": 1, "albedo_rough": 2, "shade_metal": 3},

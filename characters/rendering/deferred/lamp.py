@@ -5,7 +5,7 @@ from typing import Self
 
 import numpy as np
 
-from characters.skeleton.pose import Array
+from cubeling.characters.skeleton.pose import Array
 
 LAMP_DISTANCE_M = 3.0
 """Distance of the lamp from the characters: a window or a ceiling light [m]."""

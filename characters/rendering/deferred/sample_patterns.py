@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.skeleton.pose import Array
+from cubeling.characters.skeleton.pose import Array
 
 PATTERN_SEED = 3
 """Of the patterns with random numbers: the same picture each time."""

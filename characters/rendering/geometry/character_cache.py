@@ -9,13 +9,13 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
-from characters.rendering.camera_picture.occlusion import is_usable
-from characters.rendering.geometry.detail_levels import LEVEL_TOLERANCES
-from characters.rendering.geometry.skinned_character import SkinnedCharacter
-from characters.rendering.programs import ShaderPrograms
-from characters.rendering.projection import is_invertible
-from characters.rendering.scene import Box, Drawable, SceneCharacter
-from characters.skeleton.pose import Array
+from cubeling.characters.rendering.camera_picture.occlusion import is_usable
+from cubeling.characters.rendering.geometry.detail_levels import LEVEL_TOLERANCES
+from cubeling.characters.rendering.geometry.skinned_character import SkinnedCharacter
+from cubeling.characters.rendering.programs import ShaderPrograms
+from cubeling.characters.rendering.projection import is_invertible
+from cubeling.characters.rendering.scene import Box, Drawable, SceneCharacter
+from cubeling.characters.skeleton.pose import Array
 
 MAX_CHARACTERS = 8
 """Characters that stay on the graphics card; more only if one picture shows more."""

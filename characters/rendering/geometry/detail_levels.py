@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.mesh import Material
-from characters.rendering.geometry.edge_collapse import Tolerance, collapsed_levels
-from characters.rendering.geometry.places import are_whole, places_of
-from characters.rendering.geometry.vertices import CharacterVertices
-from characters.rendering.projection import is_invertible
+from cubeling.characters.model.mesh import Material
+from cubeling.characters.rendering.geometry.edge_collapse import Tolerance, collapsed_levels
+from cubeling.characters.rendering.geometry.places import are_whole, places_of
+from cubeling.characters.rendering.geometry.vertices import CharacterVertices
+from cubeling.characters.rendering.projection import is_invertible
 
 LEVEL_TOLERANCES = (
     *map(Tolerance, (1 / 850, 1 / 600, 1 / 500, 1 / 350, 1 / 240, 1 / 170)),

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.geometry.places import are_whole, connected, places_of
-from characters.rendering.geometry.quadrics import (
+from cubeling.characters.rendering.geometry.places import are_whole, connected, places_of
+from cubeling.characters.rendering.geometry.quadrics import (
     Floats,
     Indices,
     error_terms,

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.mesh import FaceMaps
-from characters.rendering.geometry.vertices import CharacterVertices
+from cubeling.characters.model.mesh import FaceMaps
+from cubeling.characters.rendering.geometry.vertices import CharacterVertices
 
 
 @dataclass(frozen=True)

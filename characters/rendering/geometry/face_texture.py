@@ -13,11 +13,11 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.face.action_units import ActionUnits, layer_intensities
-from characters.face.complexion import added_density
-from characters.model.mesh import FaceMaps
-from characters.rendering.projection import Rectangle
-from characters.skeleton.pose import Array
+from cubeling.characters.face.action_units import ActionUnits, layer_intensities
+from cubeling.characters.face.complexion import added_density
+from cubeling.characters.model.mesh import FaceMaps
+from cubeling.characters.rendering.projection import Rectangle
+from cubeling.characters.skeleton.pose import Array
 
 INTENSITY_STEPS = 64
 """Steps of a layer's intensity, too small to be seen: layers are composed again for whole ones."""

@@ -12,9 +12,9 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.model.mesh import Mesh, Morph
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.mesh import Mesh, Morph
+from cubeling.characters.skeleton.pose import Array
 
 
 @dataclass(frozen=True)

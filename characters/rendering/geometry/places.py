@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.geometry.quadrics import Indices
+from cubeling.characters.rendering.geometry.quadrics import Indices
 
 CELL_SHARE = 1e-5
 """Side of the cells in which all vertices are at one place, as a share of the mesh's largest side.

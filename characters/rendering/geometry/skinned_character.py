@@ -8,23 +8,28 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.face.action_units import ActionUnits
-from characters.rendering.geometry.detail_levels import (
+from cubeling.characters.face.action_units import ActionUnits
+from cubeling.characters.rendering.geometry.detail_levels import (
     LEVEL_TOLERANCES,
     chosen_level,
     shape_only,
     with_levels,
 )
-from characters.rendering.geometry.edge_collapse import Tolerance
-from characters.rendering.geometry.extreme_vertices import SkinnedPoints
-from characters.rendering.geometry.face_split import split_faces
-from characters.rendering.geometry.face_texture import FaceTexture
-from characters.rendering.geometry.morph_mixer import MorphMixer
-from characters.rendering.geometry.surfaces import BEHIND, VERTEX_LIT, Surface, SurfaceBuffers
-from characters.rendering.geometry.vertices import CasterRun, CharacterVertices
-from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.scene import Drawable
-from characters.skeleton.pose import Array
+from cubeling.characters.rendering.geometry.edge_collapse import Tolerance
+from cubeling.characters.rendering.geometry.extreme_vertices import SkinnedPoints
+from cubeling.characters.rendering.geometry.face_split import split_faces
+from cubeling.characters.rendering.geometry.face_texture import FaceTexture
+from cubeling.characters.rendering.geometry.morph_mixer import MorphMixer
+from cubeling.characters.rendering.geometry.surfaces import (
+    BEHIND,
+    VERTEX_LIT,
+    Surface,
+    SurfaceBuffers,
+)
+from cubeling.characters.rendering.geometry.vertices import CasterRun, CharacterVertices
+from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
+from cubeling.characters.rendering.scene import Drawable
+from cubeling.characters.skeleton.pose import Array
 
 SHADOW_CELLS = 44
 """Grid cells along a character's height to which the mesh for its shadow is simplified; a shadow

@@ -8,10 +8,10 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.mesh import Material
-from characters.rendering.geometry.face_split import FaceSplit
-from characters.rendering.geometry.face_texture import FaceTexture
-from characters.rendering.programs import ShaderPrograms, set_uniforms
+from cubeling.characters.model.mesh import Material
+from cubeling.characters.rendering.geometry.face_split import FaceSplit
+from cubeling.characters.rendering.geometry.face_texture import FaceTexture
+from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
 
 GL_SRGB8_ALPHA8 = 0x8C43
 """OpenGL's texture format that is decoded from sRGB when it is sampled."""

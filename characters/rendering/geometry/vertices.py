@@ -7,12 +7,12 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.model.mesh import Material, Mesh, Morph
-from characters.rendering.geometry.extreme_vertices import extreme_vertices
-from characters.rendering.geometry.morph_mixer import merge_morphs
-from characters.rendering.geometry.places import are_whole
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.mesh import Material, Mesh, Morph
+from cubeling.characters.rendering.geometry.extreme_vertices import extreme_vertices
+from cubeling.characters.rendering.geometry.morph_mixer import merge_morphs
+from cubeling.characters.rendering.geometry.places import are_whole
+from cubeling.characters.skeleton.pose import Array
 
 
 @dataclass(frozen=True)

@@ -2,25 +2,25 @@
 
 import moderngl
 
-from characters.rendering.deferred.blocker_map import BlockerMap
-from characters.rendering.passes.characters import CharacterPass
-from characters.rendering.passes.cube_occlusion import CubeOcclusionPass
-from characters.rendering.passes.cube_window import CubeWindowPass
-from characters.rendering.passes.deferred.composite import DeferredCompositePass
-from characters.rendering.passes.deferred.depth_of_field import DepthOfFieldPass
-from characters.rendering.passes.deferred.geometry import DeferredGeometryPass
-from characters.rendering.passes.deferred.lighting import DeferredLightingPass
-from characters.rendering.passes.deferred.occlusion import DeferredOcclusionPass
-from characters.rendering.passes.deferred.scattering import DeferredScatteringPass
-from characters.rendering.passes.deferred.soft_shadows import SoftShadowPass
-from characters.rendering.passes.deferred.visibility import DeferredVisibilityPass
-from characters.rendering.passes.floor_paths import FloorPathPass
-from characters.rendering.passes.hand_occlusion import HandOcclusionPass
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.passes.resolve import ResolvePass
-from characters.rendering.passes.shadows import ShadowPass
-from characters.rendering.programs import ShaderPrograms
-from characters.rendering.quality import Effect, Quality
+from cubeling.characters.rendering.deferred.blocker_map import BlockerMap
+from cubeling.characters.rendering.passes.characters import CharacterPass
+from cubeling.characters.rendering.passes.cube_occlusion import CubeOcclusionPass
+from cubeling.characters.rendering.passes.cube_window import CubeWindowPass
+from cubeling.characters.rendering.passes.deferred.composite import DeferredCompositePass
+from cubeling.characters.rendering.passes.deferred.depth_of_field import DepthOfFieldPass
+from cubeling.characters.rendering.passes.deferred.geometry import DeferredGeometryPass
+from cubeling.characters.rendering.passes.deferred.lighting import DeferredLightingPass
+from cubeling.characters.rendering.passes.deferred.occlusion import DeferredOcclusionPass
+from cubeling.characters.rendering.passes.deferred.scattering import DeferredScatteringPass
+from cubeling.characters.rendering.passes.deferred.soft_shadows import SoftShadowPass
+from cubeling.characters.rendering.passes.deferred.visibility import DeferredVisibilityPass
+from cubeling.characters.rendering.passes.floor_paths import FloorPathPass
+from cubeling.characters.rendering.passes.hand_occlusion import HandOcclusionPass
+from cubeling.characters.rendering.passes.render_pass import RenderPass
+from cubeling.characters.rendering.passes.resolve import ResolvePass
+from cubeling.characters.rendering.passes.shadows import ShadowPass
+from cubeling.characters.rendering.programs import ShaderPrograms
+from cubeling.characters.rendering.quality import Effect, Quality
 
 
 def passes_for(

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 import moderngl
 
-from characters.rendering.camera_picture.occlusion import unit_cube_from_table
-from characters.rendering.geometry.surfaces import CLIPPED, VERTEX_LIT
-from characters.rendering.passes.cube_window import set_clipping
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.resources import CharacterLayer, FrameResources
-from characters.skeleton.pose import Array
+from cubeling.characters.rendering.camera_picture.occlusion import unit_cube_from_table
+from cubeling.characters.rendering.geometry.surfaces import CLIPPED, VERTEX_LIT
+from cubeling.characters.rendering.passes.cube_window import set_clipping
+from cubeling.characters.rendering.passes.render_pass import RenderPass
+from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
+from cubeling.characters.skeleton.pose import Array
 
 
 class CharacterPass(RenderPass):

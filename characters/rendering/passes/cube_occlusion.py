@@ -2,10 +2,10 @@
 
 import moderngl
 
-from characters.rendering.camera_picture.occlusion import UNIT_CUBE, camera_from_unit_cube
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.resources import CharacterLayer, FrameResources
+from cubeling.characters.rendering.camera_picture.occlusion import UNIT_CUBE, camera_from_unit_cube
+from cubeling.characters.rendering.passes.render_pass import RenderPass
+from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
+from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
 
 
 class CubeOcclusionPass(RenderPass):

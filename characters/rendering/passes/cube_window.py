@@ -5,14 +5,14 @@ from dataclasses import replace
 import moderngl
 import numpy as np
 
-from characters.rendering.camera_picture.occlusion import UNIT_CUBE, camera_from_unit_cube
-from characters.rendering.geometry.character_cache import CharacterInstance
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.passes.shadows import ShadowMap, key_share
-from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.resources import CharacterLayer, FrameResources
-from characters.rendering.scene import Box
-from characters.skeleton.pose import Array
+from cubeling.characters.rendering.camera_picture.occlusion import UNIT_CUBE, camera_from_unit_cube
+from cubeling.characters.rendering.geometry.character_cache import CharacterInstance
+from cubeling.characters.rendering.passes.render_pass import RenderPass
+from cubeling.characters.rendering.passes.shadows import ShadowMap, key_share
+from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
+from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
+from cubeling.characters.rendering.scene import Box
+from cubeling.characters.skeleton.pose import Array
 
 OPEN_COSINES = (0.02, 0.25)
 """Cosines of a wall's angle to the camera from which on light comes in through it, and all of it:

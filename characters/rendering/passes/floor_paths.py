@@ -12,15 +12,15 @@ from itertools import chain, repeat
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.camera_picture.hand_cover import PictureCover
-from characters.rendering.camera_picture.hidden_table import hidden_table
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.passes.shadows import DISPLAY_GAMMA
-from characters.rendering.passes.table_image import TableImage
-from characters.rendering.projection import NEAR_M, Rectangle
-from characters.rendering.resources import FrameResources
-from characters.rendering.scene import FloorPath
-from characters.skeleton.pose import Array
+from cubeling.characters.rendering.camera_picture.hand_cover import PictureCover
+from cubeling.characters.rendering.camera_picture.hidden_table import hidden_table
+from cubeling.characters.rendering.passes.render_pass import RenderPass
+from cubeling.characters.rendering.passes.shadows import DISPLAY_GAMMA
+from cubeling.characters.rendering.passes.table_image import TableImage
+from cubeling.characters.rendering.projection import NEAR_M, Rectangle
+from cubeling.characters.rendering.resources import FrameResources
+from cubeling.characters.rendering.scene import FloorPath
+from cubeling.characters.skeleton.pose import Array
 
 POINT_RADIUS_M, HIGHLIGHT_RADIUS_M = 0.005, 0.0075
 """Radii of a point, and of the highlighted one [m]."""

@@ -3,13 +3,13 @@
 import moderngl
 import numpy as np
 
-from characters.rendering.camera_picture.hand_cover import PictureCover
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.projection import NEAR_M
-from characters.rendering.resources import FrameResources
-from characters.rendering.share_texture import ShareTexture
-from characters.skeleton.pose import Array
+from cubeling.characters.rendering.camera_picture.hand_cover import PictureCover
+from cubeling.characters.rendering.passes.render_pass import RenderPass
+from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
+from cubeling.characters.rendering.projection import NEAR_M
+from cubeling.characters.rendering.resources import FrameResources
+from cubeling.characters.rendering.share_texture import ShareTexture
+from cubeling.characters.skeleton.pose import Array
 
 COVER_UNIT = 7
 """Texture unit of the cover."""

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import Protocol
 
-from characters.rendering.camera_picture.hand_cover import PictureCover
-from characters.rendering.resources import CharacterLayer, FrameResources
+from cubeling.characters.rendering.camera_picture.hand_cover import PictureCover
+from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
 
 
 class Releasable(Protocol):

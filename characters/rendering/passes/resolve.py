@@ -9,10 +9,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.camera_picture.hand_cover import PictureCover
-from characters.rendering.camera_picture.haze import hazy
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.resources import FrameResources
+from cubeling.characters.rendering.camera_picture.hand_cover import PictureCover
+from cubeling.characters.rendering.camera_picture.haze import hazy
+from cubeling.characters.rendering.passes.render_pass import RenderPass
+from cubeling.characters.rendering.resources import FrameResources
 
 Image = NDArray[np.uint8]
 

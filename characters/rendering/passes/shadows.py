@@ -9,16 +9,16 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.camera_picture.hand_cover import PictureCover
-from characters.rendering.camera_picture.light import Light
-from characters.rendering.geometry.character_cache import CharacterInstance
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.passes.table_factors import darken
-from characters.rendering.passes.table_image import TableImage
-from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.resources import CharacterLayer, FrameResources
-from characters.rendering.target import read_bytes
-from characters.skeleton.pose import Array
+from cubeling.characters.rendering.camera_picture.hand_cover import PictureCover
+from cubeling.characters.rendering.camera_picture.light import Light
+from cubeling.characters.rendering.geometry.character_cache import CharacterInstance
+from cubeling.characters.rendering.passes.render_pass import RenderPass
+from cubeling.characters.rendering.passes.table_factors import darken
+from cubeling.characters.rendering.passes.table_image import TableImage
+from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
+from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
+from cubeling.characters.rendering.target import read_bytes
+from cubeling.characters.skeleton.pose import Array
 
 MAP_SIDE = 80
 """Texels along each side of a shadow map; a character covers about half of them."""

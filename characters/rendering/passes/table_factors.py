@@ -3,11 +3,11 @@
 import cv2
 import numpy as np
 
-from characters.rendering.camera_picture.hand_cover import PictureCover
-from characters.rendering.camera_picture.haze import darkened
-from characters.rendering.camera_picture.hidden_table import hidden_table
-from characters.rendering.passes.table_image import TableImage
-from characters.rendering.resources import FrameResources
+from cubeling.characters.rendering.camera_picture.hand_cover import PictureCover
+from cubeling.characters.rendering.camera_picture.haze import darkened
+from cubeling.characters.rendering.camera_picture.hidden_table import hidden_table
+from cubeling.characters.rendering.passes.table_image import TableImage
+from cubeling.characters.rendering.resources import FrameResources
 
 UNSEEN_LEVEL = 254
 """Least factor, of 255, that is not seen where a shadow ends."""

@@ -10,9 +10,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.projection import Rectangle
-from characters.rendering.resources import FrameResources
-from characters.skeleton.pose import Array
+from cubeling.characters.rendering.projection import Rectangle
+from cubeling.characters.rendering.resources import FrameResources
+from cubeling.characters.skeleton.pose import Array
 
 
 @dataclass(frozen=True)

@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.motion.clip import Clip
-from characters.retargeting.rig import Rig
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.retargeting.rig import Rig
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
 
 _CYCLE_DURATION_S = (0.3, 2.4)
 _PAUSE_DURATION_S = (2.0, 10.0)

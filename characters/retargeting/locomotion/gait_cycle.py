@@ -8,18 +8,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from characters.motion.clip import Clip
-from characters.motion.motion import RootDelta
-from characters.retargeting.footskate import (
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.retargeting.footskate import (
     FootContacts,
     ball_positions,
     hold_feet_in_contact,
 )
-from characters.retargeting.ground_motion import GroundMotion, arc, transform
-from characters.retargeting.rig import LegJoints, Rig, global_rotations
-from characters.retargeting.root import moved_to_trajectory
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters.retargeting.ground_motion import GroundMotion, arc, transform
+from cubeling.characters.retargeting.rig import LegJoints, Rig, global_rotations
+from cubeling.characters.retargeting.root import moved_to_trajectory
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
 
 _GRAVITY = 9.81 / 0.92  # [leg lengths/s²], for legs of 0.92 m
 _LEAN_SHARE, _MAX_LEAN = 0.6, 0.22  # of the angle that balances a curve; [rad]

@@ -6,10 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.model.mesh import Mesh
-from characters.retargeting.locomotion.gait_cycle import ArcPath, GaitCycle
-from characters.retargeting.measures import bone_change, facing_error, knee_quantiles, sole_dip
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.retargeting.locomotion.gait_cycle import ArcPath, GaitCycle
+from cubeling.characters.retargeting.measures import (
+    bone_change,
+    facing_error,
+    knee_quantiles,
+    sole_dip,
+)
 
 YAW_RATE_PER_ANGULAR = 1.5
 """Yaw rate of the movement trees [°/s], for each degree of their parameter Angular."""

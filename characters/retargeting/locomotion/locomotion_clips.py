@@ -11,27 +11,36 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS
-from characters.model.bind_pose import with_bind_pose
-from characters.model.character import Character
-from characters.model.mirroring import mirror_of
-from characters.motion.clip import Clip
-from characters.motion.mirror import Mirror
-from characters.retargeting.footskate import FootContacts
-from characters.retargeting.locomotion.cycle import LoopCut, close_loop, find_pause, resample_loop
-from characters.retargeting.locomotion.gait_cycle import ArcPath, GaitCycle
-from characters.retargeting.locomotion.grading import (
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS
+from cubeling.characters.model.bind_pose import with_bind_pose
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.mirroring import mirror_of
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.mirror import Mirror
+from cubeling.characters.retargeting.footskate import FootContacts
+from cubeling.characters.retargeting.locomotion.cycle import (
+    LoopCut,
+    close_loop,
+    find_pause,
+    resample_loop,
+)
+from cubeling.characters.retargeting.locomotion.gait_cycle import ArcPath, GaitCycle
+from cubeling.characters.retargeting.locomotion.grading import (
     YAW_RATE_PER_ANGULAR,
     GaitReport,
     angular_of,
 )
-from characters.retargeting.locomotion.looking_ahead import facing_ahead
-from characters.retargeting.locomotion.recorded_gait import MAX_RATE_HZ, extract_gait, on_character
-from characters.retargeting.recording import Recording
-from characters.retargeting.rig import Rig
-from characters.retargeting.root import moved_to_trajectory, with_root_joint
-from characters.skeleton.pose import Pose
+from cubeling.characters.retargeting.locomotion.looking_ahead import facing_ahead
+from cubeling.characters.retargeting.locomotion.recorded_gait import (
+    MAX_RATE_HZ,
+    extract_gait,
+    on_character,
+)
+from cubeling.characters.retargeting.recording import Recording
+from cubeling.characters.retargeting.rig import Rig
+from cubeling.characters.retargeting.root import moved_to_trajectory, with_root_joint
+from cubeling.characters.skeleton.pose import Pose
 
 _MAX_STRAIGHT_ANGULAR = 8.0  # degrees; less is straight
 _MIRROR_COST = 1.0  # degrees of Angular by which a gait that needs no mirror is preferred

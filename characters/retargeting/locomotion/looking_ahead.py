@@ -9,13 +9,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from characters.motion.clip import Clip
-from characters.retargeting.measures import facing_error
-from characters.retargeting.rig import Rig
-from characters.retargeting.root import with_root_trajectory
-from characters.retargeting.transfer import turns_from_rest, with_turns_from_rest
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.retargeting.measures import facing_error
+from cubeling.characters.retargeting.rig import Rig
+from cubeling.characters.retargeting.root import with_root_trajectory
+from cubeling.characters.retargeting.transfer import turns_from_rest, with_turns_from_rest
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array
 
 _MAX_DOWNWARD = np.radians(5.0)  # that the head looks down in most of a clip
 _PARTS = ("neck", "head")

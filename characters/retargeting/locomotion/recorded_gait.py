@@ -7,28 +7,33 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.locomotion.gaits import MIN_CYCLE_LENGTH
-from characters.model.character import Character
-from characters.motion.clip import Clip
-from characters.motion.motion import RootDelta
-from characters.retargeting.footskate import FootContacts, find_foot_contacts
-from characters.retargeting.ground_motion import find_ground_motion
-from characters.retargeting.locomotion.cycle import LoopCut, close_loop, find_cycle, resample_loop
-from characters.retargeting.locomotion.gait_cycle import ArcPath, GaitCycle
-from characters.retargeting.locomotion.grading import refuse_other_motion
-from characters.retargeting.locomotion.looking_ahead import looking_ahead
-from characters.retargeting.measures import knee_quantiles
-from characters.retargeting.recording import Recording
-from characters.retargeting.retarget import retarget
-from characters.retargeting.rig import Rig, leg_pairs
-from characters.retargeting.root import (
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.locomotion.gaits import MIN_CYCLE_LENGTH
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.retargeting.footskate import FootContacts, find_foot_contacts
+from cubeling.characters.retargeting.ground_motion import find_ground_motion
+from cubeling.characters.retargeting.locomotion.cycle import (
+    LoopCut,
+    close_loop,
+    find_cycle,
+    resample_loop,
+)
+from cubeling.characters.retargeting.locomotion.gait_cycle import ArcPath, GaitCycle
+from cubeling.characters.retargeting.locomotion.grading import refuse_other_motion
+from cubeling.characters.retargeting.locomotion.looking_ahead import looking_ahead
+from cubeling.characters.retargeting.measures import knee_quantiles
+from cubeling.characters.retargeting.recording import Recording
+from cubeling.characters.retargeting.retarget import retarget
+from cubeling.characters.retargeting.rig import Rig, leg_pairs
+from cubeling.characters.retargeting.root import (
     clip_with_root,
     has_root_joint,
     moved_to_trajectory,
     with_root_trajectory,
 )
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 MAX_RATE_HZ = 60.0
 """Finer recordings are resampled."""

@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from characters.skeleton.body_parts.joint_tree import JointTree
-from characters.skeleton.joint_chains import longest_chain_below, longest_chain_of
-from characters.skeleton.pose import Array
+from cubeling.characters.skeleton.body_parts.joint_tree import JointTree
+from cubeling.characters.skeleton.joint_chains import longest_chain_below, longest_chain_of
+from cubeling.characters.skeleton.pose import Array
 
 _FINGERS = ("Index", "Middle", "Ring", "Little")
 _THREE_FINGERS = ("Index", "Middle", "Little")

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
-from characters.skeleton.body_parts.joint_words import (
+from cubeling.characters.skeleton.body_parts.joint_words import (
     ARM_FIT,
     AUXILIARY_WORDS,
     END_WORDS,

@@ -6,9 +6,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from characters.skeleton.body_parts.joint_names import JointName, read_names
-from characters.skeleton.joint_chains import chains_to_root, children_of, longest_chain_below
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.skeleton.body_parts.joint_names import JointName, read_names
+from cubeling.characters.skeleton.joint_chains import (
+    chains_to_root,
+    children_of,
+    longest_chain_below,
+)
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 _MIN_SIDE_OFFSET = 0.02  # body sizes from the middle: beyond it, a joint has a side
 _MAX_FOOT_HEIGHT = 0.2  # body heights: limbs that end below it are legs

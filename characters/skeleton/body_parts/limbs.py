@@ -9,10 +9,10 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from characters.skeleton.body_parts.joint_names import JointName
-from characters.skeleton.body_parts.joint_tree import JointTree
-from characters.skeleton.body_parts.joint_words import ARM_ROLES, LEG_ROLES
-from characters.skeleton.joint_chains import assign, longest_chain_below
+from cubeling.characters.skeleton.body_parts.joint_names import JointName
+from cubeling.characters.skeleton.body_parts.joint_tree import JointTree
+from cubeling.characters.skeleton.body_parts.joint_words import ARM_ROLES, LEG_ROLES
+from cubeling.characters.skeleton.joint_chains import assign, longest_chain_below
 
 FORELEG_ROLES = ("Shoulder", *LEG_ROLES)
 """Joints of a front leg from the shoulder blade down."""

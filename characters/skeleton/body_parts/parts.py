@@ -4,12 +4,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from characters.skeleton.body_parts.fingers import find_fingers
-from characters.skeleton.body_parts.joint_tree import JointTree
-from characters.skeleton.body_parts.joint_words import SIDES
-from characters.skeleton.body_parts.limbs import limbs_by_name, limbs_by_shape
-from characters.skeleton.body_parts.trunk import find_trunk
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.skeleton.body_parts.fingers import find_fingers
+from cubeling.characters.skeleton.body_parts.joint_tree import JointTree
+from cubeling.characters.skeleton.body_parts.joint_words import SIDES
+from cubeling.characters.skeleton.body_parts.limbs import limbs_by_name, limbs_by_shape
+from cubeling.characters.skeleton.body_parts.trunk import find_trunk
+from cubeling.characters.skeleton.pose import Skeleton
 
 _MAX_TRUNK_SLOPE = 1.0  # rise over run: below it, the trunk is horizontal
 _MAX_HOVERING = 0.5  # hip heights: paws that are farther above the hind feet are hands

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from characters.skeleton.body_parts.joint_tree import JointTree
-from characters.skeleton.joint_chains import longest_chain_of
+from cubeling.characters.skeleton.body_parts.joint_tree import JointTree
+from cubeling.characters.skeleton.joint_chains import longest_chain_of
 
 _MAX_FARTHER_HIPS = 0.15  # body sizes: how much farther from the thighs a joint named hips may be
 

@@ -11,15 +11,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.speech.alignment.mfcc import HOP_S, cepstra
-from characters.speech.alignment.warping import warp
-from characters.speech.closures import with_closures
-from characters.speech.frames import runs
-from characters.speech.phones import fill_pauses
-from characters.speech.speech import SILENCE, Phone, Speech, Word
-from characters.speech.voices import Voice, VoiceError
-from characters.speech.words import with_every_word
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.speech.alignment.mfcc import HOP_S, cepstra
+from cubeling.characters.speech.alignment.warping import warp
+from cubeling.characters.speech.closures import with_closures
+from cubeling.characters.speech.frames import runs
+from cubeling.characters.speech.phones import fill_pauses
+from cubeling.characters.speech.speech import SILENCE, Phone, Speech, Word
+from cubeling.characters.speech.voices import Voice, VoiceError
+from cubeling.characters.speech.words import with_every_word
 
 MAX_S = 1200.0
 """Longest recording [s]; as long as what a voice says at once."""

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.speech.audio import resampled
-from characters.speech.frames import frame_blocks
-from characters.speech.speech import Samples
+from cubeling.characters.speech.audio import resampled
+from cubeling.characters.speech.frames import frame_blocks
+from cubeling.characters.speech.speech import Samples
 
 RATE = 16_000
 """Sample rate of the analysis [Hz]."""

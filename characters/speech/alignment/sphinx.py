@@ -7,12 +7,12 @@ dictionary lacks are pronounced as the voice does.
 from dataclasses import replace
 from typing import Any
 
-from characters.errors import CharacterError
-from characters.speech.audio import resampled
-from characters.speech.phones import arpabet_of_ipa, fill_pauses, ipa_of_arpabet
-from characters.speech.speech import SILENCE, Phone, Speech, Word
-from characters.speech.voices import Voice
-from characters.speech.words import written_words
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.speech.audio import resampled
+from cubeling.characters.speech.phones import arpabet_of_ipa, fill_pauses, ipa_of_arpabet
+from cubeling.characters.speech.speech import SILENCE, Phone, Speech, Word
+from cubeling.characters.speech.voices import Voice
+from cubeling.characters.speech.words import written_words
 
 RATE = 16_000
 """Sample rate of its model [Hz]."""

@@ -1,6 +1,6 @@
 """Voices: programs that speak a text and say when each word and phone is heard."""
 
-from characters.speech.voices.espeak import espeak
-from characters.speech.voices.voice import Manner, Voice, VoiceError
+from cubeling.characters.speech.voices.espeak import espeak
+from cubeling.characters.speech.voices.voice import Manner, Voice, VoiceError
 
 __all__ = ["Manner", "Voice", "VoiceError", "espeak"]

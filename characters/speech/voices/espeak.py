@@ -6,7 +6,7 @@ import shutil
 import sys
 from pathlib import Path
 
-from characters.speech.voices.voice import Voice, VoiceError
+from cubeling.characters.speech.voices.voice import Voice, VoiceError
 
 PROGRAM = Path(__file__).with_name("espeak_process.py")
 """The program that loads the library; nothing else does."""

@@ -4,8 +4,8 @@ The signs are those of Scherer, "Vocal communication of emotion", 2003, table 1:
 faster, higher and wider, sadness is slower, lower and narrower. The sizes are ours.
 """
 
-from affect import Emotion
-from characters.speech.voices.voice import Manner
+from cubeling.affect import Emotion
+from cubeling.characters.speech.voices.voice import Manner
 
 RATE, PITCH, RANGE = (0.03, 0.18), (0.06, 0.12), (0.18, 0.40)
 """How much of each a valence of 1 and an arousal of 1 add, as a part."""

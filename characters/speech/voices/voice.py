@@ -25,8 +25,8 @@ from typing import IO, Any
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.speech.speech import SILENCE, Phone, Speech, Word
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.speech.speech import SILENCE, Phone, Speech, Word
 
 TIMEOUT_S = 10.0
 """How long a voice may be silent before it counts as dead [s]."""

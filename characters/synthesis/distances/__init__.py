@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 
-from characters.synthesis.body import default_body_plan
-from characters.synthesis.distances.ahn_wohn import AhnWohn
-from characters.synthesis.distances.angles import JointAngles
-from characters.synthesis.distances.distance import FrameDistance, matrix
-from characters.synthesis.distances.points import PointClouds
-from characters.synthesis.library import MotionLibrary
+from cubeling.characters.synthesis.body import default_body_plan
+from cubeling.characters.synthesis.distances.ahn_wohn import AhnWohn
+from cubeling.characters.synthesis.distances.angles import JointAngles
+from cubeling.characters.synthesis.distances.distance import FrameDistance, matrix
+from cubeling.characters.synthesis.distances.points import PointClouds
+from cubeling.characters.synthesis.library import MotionLibrary
 
 LEE_JOINTS = (
     *("leftUpperArm", "rightUpperArm", "leftLowerArm", "rightLowerArm", "hips", "spine"),

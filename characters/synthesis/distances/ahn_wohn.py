@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Skeleton
-from characters.synthesis.distances.distance import Block
-from characters.synthesis.library import Frames, MotionLibrary
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.synthesis.distances.distance import Block
+from cubeling.characters.synthesis.library import Frames, MotionLibrary
 
 _STRETCH = 1.0 + 4e-7  # as in `angles`
 

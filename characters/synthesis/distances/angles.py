@@ -4,10 +4,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array
-from characters.synthesis.distances.distance import Block, squared_differences
-from characters.synthesis.library import Frames, MotionLibrary
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.distances.distance import Block, squared_differences
+from cubeling.characters.synthesis.library import Frames, MotionLibrary
 
 _STRETCH = 1.0 + 4e-7
 """Factor of the quaternions of a block: rounding then cannot make equal poses unlike."""

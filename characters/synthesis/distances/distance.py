@@ -6,8 +6,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.skeleton.pose import Array
-from characters.synthesis.library import Frames
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.library import Frames
 
 Block = NDArray[np.float32]
 """Distances of some frames (rows) to others (columns)."""

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from characters.motion.motion import RootDelta
-from characters.skeleton.pose import Array
-from characters.synthesis.distances.distance import Block
-from characters.synthesis.library import Frames, MotionLibrary
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.distances.distance import Block
+from cubeling.characters.synthesis.library import Frames, MotionLibrary
 
 WINDOW_S = 1 / 3
 """Length of motion that a frame stands for [s]; it makes velocities count."""

@@ -9,9 +9,9 @@ from typing import Literal
 
 import numpy as np
 
-from characters.skeleton.pose import Array
-from characters.synthesis.gestures.graph import GestureGraph
-from characters.synthesis.gestures.nodes import GestureNode
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.gestures.graph import GestureGraph
+from cubeling.characters.synthesis.gestures.nodes import GestureNode
 
 CostModel = Literal["bodyspeech", "thesis"]
 """Which costs and warps: those of BodySpeech (M9), or those of the gesture motion graph (M7)."""

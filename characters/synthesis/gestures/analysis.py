@@ -9,11 +9,11 @@ from typing import Literal
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import SIDES, Anatomy
-from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.smoothing import gaussian_smoothed
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.smoothing import gaussian_smoothed
 
 ARM_MASSES = {"LowerArm": 2.0, "UpperArm": 3.0, "Shoulder": 3.0}
 """Mass that each joint of an arm moves (M4)."""

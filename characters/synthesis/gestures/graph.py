@@ -10,15 +10,15 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.skeleton.pose import Array
-from characters.synthesis.gestures.library import GestureLibrary
-from characters.synthesis.gestures.nodes import (
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.gestures.library import GestureLibrary
+from cubeling.characters.synthesis.gestures.nodes import (
     JOINT_WEIGHTS,
     GestureNode,
     NodeMeasures,
     phrase_nodes,
 )
-from characters.synthesis.graphs.components import largest_component
+from cubeling.characters.synthesis.graphs.components import largest_component
 
 BRANCHING_SHARE = 0.5
 """Share of the phrases that may follow a phrase, on average, at the threshold that is chosen."""

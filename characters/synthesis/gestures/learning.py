@@ -5,13 +5,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.motion.baking import bake
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import SIDES, Anatomy
-from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.synthesis.gestures.analysis import (
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.baking import bake
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.synthesis.gestures.analysis import (
     bimanual_strength,
     find_apex,
     gesture_strength,
@@ -19,14 +19,14 @@ from characters.synthesis.gestures.analysis import (
     hand_speed,
     masses,
 )
-from characters.synthesis.gestures.library import (
+from cubeling.characters.synthesis.gestures.library import (
     GestureLibrary,
     GesturePhrase,
     GestureRecording,
     Hand,
     gesture_joints,
 )
-from characters.synthesis.gestures.segmentation import (
+from cubeling.characters.synthesis.gestures.segmentation import (
     REST,
     STROKE,
     Labels,

@@ -7,12 +7,12 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import SIDES, Anatomy
-from characters.skeleton.masks import Mask, mask_of, subtree
-from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.synthesis.archive import (
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
+from cubeling.characters.skeleton.masks import Mask, mask_of, subtree
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.synthesis.archive import (
     ArchiveFormat,
     Arrays,
     Content,

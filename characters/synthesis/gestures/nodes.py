@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array
-from characters.synthesis.distances.angles import JointAngles
-from characters.synthesis.gestures.library import GestureLibrary, GesturePhrase
-from characters.synthesis.library import MotionLibrary
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.distances.angles import JointAngles
+from cubeling.characters.synthesis.gestures.library import GestureLibrary, GesturePhrase
+from cubeling.characters.synthesis.library import MotionLibrary
 
 JOINT_WEIGHTS = dict.fromkeys(
     (

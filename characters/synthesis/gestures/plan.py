@@ -7,12 +7,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from characters.speech.speech import Accent
-from characters.synthesis.gestures.alignment import INVALID_COST, Timings
-from characters.synthesis.gestures.graph import GestureGraph
-from characters.synthesis.gestures.library import PHASES
-from characters.synthesis.gestures.nodes import GestureNode
-from characters.synthesis.gestures.playing import (
+from cubeling.characters.speech.speech import Accent
+from cubeling.characters.synthesis.gestures.alignment import INVALID_COST, Timings
+from cubeling.characters.synthesis.gestures.graph import GestureGraph
+from cubeling.characters.synthesis.gestures.library import PHASES
+from cubeling.characters.synthesis.gestures.nodes import GestureNode
+from cubeling.characters.synthesis.gestures.playing import (
     Ends,
     GestureMotion,
     GestureSpan,

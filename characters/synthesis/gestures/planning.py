@@ -9,14 +9,19 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from characters.skeleton.pose import Array
-from characters.speech.speech import Accent
-from characters.synthesis.gestures.alignment import INVALID_COST, CostModel, Timings
-from characters.synthesis.gestures.graph import GestureGraph
-from characters.synthesis.gestures.library import Database, GestureLibrary
-from characters.synthesis.gestures.plan import GestureCosts, GesturePlan, PlannedGesture, knots_of
-from characters.synthesis.gestures.rules import IntensityRule, SynchronyRule
-from characters.synthesis.gestures.search import BeamSearch, SearchWeights, Step
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.speech.speech import Accent
+from cubeling.characters.synthesis.gestures.alignment import INVALID_COST, CostModel, Timings
+from cubeling.characters.synthesis.gestures.graph import GestureGraph
+from cubeling.characters.synthesis.gestures.library import Database, GestureLibrary
+from cubeling.characters.synthesis.gestures.plan import (
+    GestureCosts,
+    GesturePlan,
+    PlannedGesture,
+    knots_of,
+)
+from cubeling.characters.synthesis.gestures.rules import IntensityRule, SynchronyRule
+from cubeling.characters.synthesis.gestures.search import BeamSearch, SearchWeights, Step
 
 EQUAL_COST = 1e-3
 """Gestures whose costs differ by less are equals [of a cost]."""

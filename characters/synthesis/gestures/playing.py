@@ -7,13 +7,13 @@ from functools import cached_property
 
 import numpy as np
 
-from characters.motion.curves import Keyed
-from characters.motion.motion import RootDelta
-from characters.skeleton import rotations
-from characters.skeleton.masks import Mask
-from characters.skeleton.pose import Array, Pose
-from characters.smoothing import smoothstep
-from characters.synthesis.gestures.library import GestureLibrary
+from cubeling.characters.motion.curves import Keyed
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.masks import Mask
+from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.smoothing import smoothstep
+from cubeling.characters.synthesis.gestures.library import GestureLibrary
 
 RAMP_S = 0.3
 """How long the weight takes from 0 in rest to 1, and back [s]."""

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton.pose import Array
 
 LEAST_PSI = 0.01
 """Strengths of accents below this count as this: their logarithm has no end."""

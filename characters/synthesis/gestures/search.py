@@ -10,10 +10,10 @@ from typing import get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.skeleton.pose import Array
-from characters.synthesis.gestures.alignment import Timings, warp_cost
-from characters.synthesis.gestures.graph import GestureGraph
-from characters.synthesis.gestures.library import Hand
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.gestures.alignment import Timings, warp_cost
+from cubeling.characters.synthesis.gestures.graph import GestureGraph
+from cubeling.characters.synthesis.gestures.library import Hand
 
 MIN_REST_S = 0.25
 """Shortest stay in rest between two gestures [s]."""

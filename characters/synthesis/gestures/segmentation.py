@@ -13,9 +13,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.motion.contacts import spans
-from characters.skeleton.pose import Array
-from characters.synthesis.gestures.analysis import hand_speed
+from cubeling.characters.motion.contacts import spans
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.gestures.analysis import hand_speed
 
 REST, RETRACTION, HOLD, PREPARATION, STROKE = range(5)
 """Labels of frames; of two hands the higher one counts (M4)."""

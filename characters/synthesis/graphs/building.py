@@ -5,20 +5,20 @@ from collections.abc import Callable
 
 import numpy as np
 
-from characters.errors import CharacterError
-from characters.skeleton.pose import Array
-from characters.synthesis.body import default_body_plan
-from characters.synthesis.distances import DISTANCES, FrameDistance, JointAngles
-from characters.synthesis.graphs.candidates import Candidates, find_candidates
-from characters.synthesis.graphs.graph import EdgeCosts, MotionGraph, build_graph
-from characters.synthesis.graphs.parts import (
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.body import default_body_plan
+from cubeling.characters.synthesis.distances import DISTANCES, FrameDistance, JointAngles
+from cubeling.characters.synthesis.graphs.candidates import Candidates, find_candidates
+from cubeling.characters.synthesis.graphs.graph import EdgeCosts, MotionGraph, build_graph
+from cubeling.characters.synthesis.graphs.parts import (
     PartGraphs,
     part_candidates,
     part_distance,
     threshold_shares,
 )
-from characters.synthesis.graphs.storage import WHOLE_BODY, StoredGraph
-from characters.synthesis.library import MotionLibrary
+from cubeling.characters.synthesis.graphs.storage import WHOLE_BODY, StoredGraph
+from cubeling.characters.synthesis.library import MotionLibrary
 
 DEFAULT_PROFILE = "SP4b"
 """The split profile of evaluation I of the thesis (erratum 4)."""

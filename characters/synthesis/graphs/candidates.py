@@ -6,9 +6,9 @@ from itertools import combinations_with_replacement, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.skeleton.pose import Array
-from characters.synthesis.distances.distance import Block, FrameDistance, tiles
-from characters.synthesis.library import Frames, MotionLibrary
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.distances.distance import Block, FrameDistance, tiles
+from cubeling.characters.synthesis.library import Frames, MotionLibrary
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.skeleton.pose import Array
+from cubeling.characters.skeleton.pose import Array
 
 _FOLD = 16
 """Edges to a node whose costs are compared together; from 8 to 16 the search is fastest."""

@@ -11,14 +11,14 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.skeleton.pose import Array
-from characters.synthesis.distances.distance import FrameDistance
-from characters.synthesis.graphs.candidates import Candidates
-from characters.synthesis.graphs.components import largest_component
-from characters.synthesis.graphs.edges import Edges, Nodes
-from characters.synthesis.graphs.search import CostToGo, cost_to_go
-from characters.synthesis.library import MotionLibrary
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.distances.distance import FrameDistance
+from cubeling.characters.synthesis.graphs.candidates import Candidates
+from cubeling.characters.synthesis.graphs.components import largest_component
+from cubeling.characters.synthesis.graphs.edges import Edges, Nodes
+from cubeling.characters.synthesis.graphs.search import CostToGo, cost_to_go
+from cubeling.characters.synthesis.library import MotionLibrary
 
 EdgeRule = Literal["successor", "same"]
 

@@ -10,11 +10,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.synthesis.body import BodyPart
-from characters.synthesis.distances.angles import JointAngles
-from characters.synthesis.graphs.candidates import Candidates, find_candidates
-from characters.synthesis.graphs.graph import EdgeCosts, MotionGraph, build_graph
-from characters.synthesis.library import MotionLibrary
+from cubeling.characters.synthesis.body import BodyPart
+from cubeling.characters.synthesis.distances.angles import JointAngles
+from cubeling.characters.synthesis.graphs.candidates import Candidates, find_candidates
+from cubeling.characters.synthesis.graphs.graph import EdgeCosts, MotionGraph, build_graph
+from cubeling.characters.synthesis.library import MotionLibrary
 
 
 def part_distance(library: MotionLibrary, part: BodyPart, velocity: float = 0.0) -> JointAngles:

@@ -7,7 +7,7 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.synthesis.graphs.edges import Edges, Nodes
+from cubeling.characters.synthesis.graphs.edges import Edges, Nodes
 
 
 @dataclass(frozen=True)

@@ -7,17 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from characters.skeleton import rotations
-from characters.skeleton.pose import Pose
-from characters.synthesis.archive import (
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Pose
+from cubeling.characters.synthesis.archive import (
     ArchiveFormat,
     Arrays,
     Content,
     read_skeleton,
     skeleton_content,
 )
-from characters.synthesis.graphs.candidates import Candidates
-from characters.synthesis.library import MotionLibrary
+from cubeling.characters.synthesis.graphs.candidates import Candidates
+from cubeling.characters.synthesis.library import MotionLibrary
 
 GRAPH_FORMAT = ArchiveFormat("cubeling motion graph", 1, "motion graph", "cubeling motions build")
 """The .graph file."""

@@ -8,8 +8,8 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array
 
 Alignment = Literal["feet", "full", "turn", "place", "none"]
 """What is taken from a recording: the mean place of the feet and where they face (our own way);

@@ -7,11 +7,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from characters.skeleton.pose import Array
-from characters.smoothing import smoothstep
-from characters.synthesis.idle.database import BalanceShift, IdleDatabase, RestingPosture
-from characters.synthesis.idle.fitting import fit, nearest_clip
-from characters.synthesis.idle.variations import COMPONENTS
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.smoothing import smoothstep
+from cubeling.characters.synthesis.idle.database import BalanceShift, IdleDatabase, RestingPosture
+from cubeling.characters.synthesis.idle.fitting import fit, nearest_clip
+from cubeling.characters.synthesis.idle.variations import COMPONENTS
 
 NEAR_RAD = 0.4
 """Postures nearer than this are joined without a shift [rad]; such a difference is "visible, but

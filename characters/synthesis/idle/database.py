@@ -11,14 +11,14 @@ from typing import TypeVar
 
 import numpy as np
 
-from affect import Emotion
-from affect.regions import Region
-from characters.errors import CharacterError
-from characters.skeleton.pose import Array
-from characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
-from characters.synthesis.idle.recordings import StandingRecording
-from characters.synthesis.idle.stretches import Stretches
-from characters.synthesis.idle.variations import COMPONENTS, Variations
+from cubeling.affect import Emotion
+from cubeling.affect.regions import Region
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
+from cubeling.characters.synthesis.idle.recordings import StandingRecording
+from cubeling.characters.synthesis.idle.stretches import Stretches
+from cubeling.characters.synthesis.idle.variations import COMPONENTS, Variations
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from characters.skeleton.pose import Array
+from cubeling.characters.skeleton.pose import Array
 
 
 def fit(clip: Array, keys: Sequence[tuple[int, Array]]) -> Array:

@@ -9,14 +9,19 @@ from typing import Literal
 
 import numpy as np
 
-from affect import NEUTRAL, Emotion
-from characters.motion.motion import RootDelta
-from characters.skeleton.pose import Array, Pose
-from characters.smoothing import hermite
-from characters.synthesis.idle.bridges import bridge, fitted_shift, hurried, nearest_balance
-from characters.synthesis.idle.database import IdleDatabase, RestingPosture
-from characters.synthesis.idle.stretches import StretchStream
-from characters.synthesis.idle.variations import VariationStream
+from cubeling.affect import NEUTRAL, Emotion
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.smoothing import hermite
+from cubeling.characters.synthesis.idle.bridges import (
+    bridge,
+    fitted_shift,
+    hurried,
+    nearest_balance,
+)
+from cubeling.characters.synthesis.idle.database import IdleDatabase, RestingPosture
+from cubeling.characters.synthesis.idle.stretches import StretchStream
+from cubeling.characters.synthesis.idle.variations import VariationStream
 
 Small = Literal["recorded", "extrema", "none"]
 """How small variations are made: of recorded stretches, or of clustered extrema as published; with

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.motion.motion import Motion, RootDelta
-from characters.skeleton.pose import Pose
-from characters.synthesis.idle.database import IdleDatabase
-from characters.synthesis.idle.stretches import StretchStream
+from cubeling.characters.motion.motion import Motion, RootDelta
+from cubeling.characters.skeleton.pose import Pose
+from cubeling.characters.synthesis.idle.database import IdleDatabase
+from cubeling.characters.synthesis.idle.stretches import StretchStream
 
 
 @dataclass

@@ -10,10 +10,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import SIDES, Anatomy
-from characters.skeleton.masks import subtree
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
+from cubeling.characters.skeleton.masks import subtree
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 Region = Literal["whole", "upper", "lower"]
 """The part of the body that a posture vector describes."""

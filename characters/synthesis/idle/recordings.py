@@ -8,17 +8,17 @@ from itertools import pairwise
 
 import numpy as np
 
-from affect.regions import Region
-from characters.errors import CharacterError
-from characters.motion.clip import Clip
-from characters.motion.contacts import find_contacts, spans
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.feet import find_feet
-from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.smoothing import gaussian_smoothed
-from characters.synthesis.idle.alignment import Alignment, align
-from characters.synthesis.idle.posture_space import PostureVectors
+from cubeling.affect.regions import Region
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.contacts import find_contacts, spans
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.feet import find_feet
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.smoothing import gaussian_smoothed
+from cubeling.characters.synthesis.idle.alignment import Alignment, align
+from cubeling.characters.synthesis.idle.posture_space import PostureVectors
 
 BALANCES = ("left", "both", "right")
 """Categories of resting postures: on which foot she stands."""

@@ -11,16 +11,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from affect import NEUTRAL, Emotion
-from affect.regions import region_of
-from characters.ik.legs import LegFrames, LegIK, find_paws
-from characters.motion.clip import Clip
-from characters.motion.motion import RootDelta
-from characters.motion.state_machine import StateMachine
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.skeleton.scalar_quaternions import conjugate, multiply
-from characters.synthesis.idle.idle_motion import IdleMotion
+from cubeling.affect import NEUTRAL, Emotion
+from cubeling.affect.regions import region_of
+from cubeling.characters.ik.legs import LegFrames, LegIK, find_paws
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.motion.state_machine import StateMachine
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.skeleton.scalar_quaternions import conjugate, multiply
+from cubeling.characters.synthesis.idle.idle_motion import IdleMotion
 
 PAUSE_S = 10.0, 24.0
 """Shortest and longest time between acts [s]."""

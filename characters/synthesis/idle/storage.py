@@ -6,19 +6,19 @@ from typing import Any
 
 import numpy as np
 
-from affect.regions import Box, Region, Sector
-from characters.motion.clip import Clip
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Skeleton
-from characters.synthesis.archive import (
+from cubeling.affect.regions import Box, Region, Sector
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Skeleton
+from cubeling.characters.synthesis.archive import (
     ArchiveFormat,
     Arrays,
     Content,
     read_skeleton,
     skeleton_content,
 )
-from characters.synthesis.idle.posture_space import PostureVectors
-from characters.synthesis.idle.recordings import BALANCES, Rest, StandingRecording
+from cubeling.characters.synthesis.idle.posture_space import PostureVectors
+from cubeling.characters.synthesis.idle.recordings import BALANCES, Rest, StandingRecording
 
 IDLE_FORMAT = ArchiveFormat("cubeling idle motion", 2, "idle motion", "cubeling idle learn")
 """The .idle file."""

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.skeleton.pose import Array
-from characters.smoothing import hermite
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.smoothing import hermite
 
 MIN_REST_S = 3.0
 """Shorter rests are left out, unless all are [s]."""

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.skeleton.pose import Array
-from characters.smoothing import smoothstep
-from characters.synthesis.idle.posture_space import PostureSpace
-from characters.synthesis.library import Frames
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.smoothing import smoothstep
+from cubeling.characters.synthesis.idle.posture_space import PostureSpace
+from cubeling.characters.synthesis.library import Frames
 
 COMPONENTS, CLUSTERS, ERROR = 10, 8, 0.1
 """Components that vary; clusters of each; and how far a signal goes back, in its standard

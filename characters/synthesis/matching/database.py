@@ -7,22 +7,22 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.motion.clip import Clip
-from characters.motion.contacts import find_contacts
-from characters.motion.mirror import Mirror
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.feet import find_feet
-from characters.skeleton.masks import subtree
-from characters.skeleton.pose import Array, Skeleton
-from characters.synthesis.matching.features import (
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.contacts import find_contacts
+from cubeling.characters.motion.mirror import Mirror
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.feet import find_feet
+from cubeling.characters.skeleton.masks import subtree
+from cubeling.characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.synthesis.matching.features import (
     ROW_RATE_HZ,
     FeatureJoints,
     FeatureSpace,
     clip_features,
     row_times,
 )
-from characters.synthesis.matching.nearest import NearestRow
+from cubeling.characters.synthesis.matching.nearest import NearestRow
 
 LEG_WEIGHTS = {"feet": 0.75, "foot velocities": 1.0, "hips velocity": 1.0, "path": 2.0}
 LEG_WEIGHTS |= {"facing": 2.0}

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 ROW_RATE_HZ = 30.0
 """Rate at which the frames of a motion are compared [Hz]; motions play at any rate."""
@@ -62,7 +62,7 @@ def clip_features(clip: Clip, skeleton: Skeleton, joints: FeatureJoints) -> dict
 def row_times(clip: Clip) -> Array:
     """Return the times of a clip at which its frames are compared, (rows,) [s].
 
-    >>> from characters.skeleton.pose import Pose
+    >>> from cubeling.characters.skeleton.pose import Pose
     >>> clip = Clip("c", 60.0, Pose(np.zeros((7, 1, 3)), np.zeros((7, 1, 4))), loop=False)
     >>> row_times(clip).round(3).tolist()
     [0.0, 0.033, 0.067, 0.1]

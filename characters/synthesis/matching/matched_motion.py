@@ -4,10 +4,10 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from characters.motion.motion import Motion, RootDelta
-from characters.motion.state_machine import StateMachine
-from characters.skeleton.pose import Array, Pose
-from characters.synthesis.matching.database import MotionDatabase, Playhead
+from cubeling.characters.motion.motion import Motion, RootDelta
+from cubeling.characters.motion.state_machine import StateMachine
+from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.synthesis.matching.database import MotionDatabase, Playhead
 
 SEARCH_INTERVAL_S = 0.1
 """Time between searches without a reason [s]."""

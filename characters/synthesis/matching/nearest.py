@@ -10,7 +10,7 @@ Method: the two layers of boxes of "Motion matching" in Unreal Engine and Ponton
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.skeleton.pose import Array
+from cubeling.characters.skeleton.pose import Array
 
 _Array32 = NDArray[np.float32]
 

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.motion.motion import RootDelta
-from characters.skeleton.pose import Array
-from characters.smoothing import damped_spring
-from characters.synthesis.matching.features import HORIZONS_S
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.smoothing import damped_spring
+from cubeling.characters.synthesis.matching.features import HORIZONS_S
 
 SPEED_LAG_S = 0.35
 """Time constant with which the wished speed is taken up [s]."""

@@ -6,20 +6,20 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from characters.skeleton.pose import Array
-from characters.synthesis.body import BodyPart, default_body_plan
-from characters.synthesis.distances import JointAngles, thesis_distance
-from characters.synthesis.graphs.building import LARGEST_THRESHOLD, critical_threshold
-from characters.synthesis.graphs.candidates import Candidates, find_candidates
-from characters.synthesis.graphs.graph import EdgeCosts, MotionGraph, build_graph
-from characters.synthesis.graphs.parts import (
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.body import BodyPart, default_body_plan
+from cubeling.characters.synthesis.distances import JointAngles, thesis_distance
+from cubeling.characters.synthesis.graphs.building import LARGEST_THRESHOLD, critical_threshold
+from cubeling.characters.synthesis.graphs.candidates import Candidates, find_candidates
+from cubeling.characters.synthesis.graphs.graph import EdgeCosts, MotionGraph, build_graph
+from cubeling.characters.synthesis.graphs.parts import (
     PartGraphs,
     part_candidates,
     part_distance,
     threshold_shares,
 )
-from characters.synthesis.library import MotionLibrary
-from characters.synthesis.transitions.evaluation import (
+from cubeling.characters.synthesis.library import MotionLibrary
+from cubeling.characters.synthesis.transitions.evaluation import (
     Answers,
     Requests,
     by_pair,
@@ -27,7 +27,7 @@ from characters.synthesis.transitions.evaluation import (
     requests,
     standard_outcome,
 )
-from characters.synthesis.transitions.progressive import SearchSettings, TransitionPlanner
+from cubeling.characters.synthesis.transitions.progressive import SearchSettings, TransitionPlanner
 
 LOWEST_THRESHOLD = 1e-4
 

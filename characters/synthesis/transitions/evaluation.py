@@ -10,10 +10,10 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.synthesis.graphs.graph import MotionGraph
-from characters.synthesis.library import MotionLibrary
-from characters.synthesis.transitions.progressive import TransitionPlanner, cheapest_plan
-from characters.synthesis.transitions.stitching import consecutive_distances, played_cost
+from cubeling.characters.synthesis.graphs.graph import MotionGraph
+from cubeling.characters.synthesis.library import MotionLibrary
+from cubeling.characters.synthesis.transitions.progressive import TransitionPlanner, cheapest_plan
+from cubeling.characters.synthesis.transitions.stitching import consecutive_distances, played_cost
 
 Goals = NDArray[np.bool_]
 """Which frames meet a request, (frames,)."""

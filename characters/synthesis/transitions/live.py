@@ -6,16 +6,16 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.motion.blend import mix
-from characters.motion.inertialization import Inertialization, OffsetDecay
-from characters.motion.motion import RootDelta
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
-from characters.synthesis.graphs.graph import MotionGraph
-from characters.synthesis.library import MotionLibrary
-from characters.synthesis.transitions.playback import GraphPlayer
-from characters.synthesis.transitions.progressive import TransitionPlanner
-from characters.synthesis.transitions.stitching import LowPass, StitchedMotion, stitch
+from cubeling.characters.motion.blend import mix
+from cubeling.characters.motion.inertialization import Inertialization, OffsetDecay
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.synthesis.graphs.graph import MotionGraph
+from cubeling.characters.synthesis.library import MotionLibrary
+from cubeling.characters.synthesis.transitions.playback import GraphPlayer
+from cubeling.characters.synthesis.transitions.progressive import TransitionPlanner
+from cubeling.characters.synthesis.transitions.stitching import LowPass, StitchedMotion, stitch
 
 Goals = NDArray[np.bool_]
 """Which frames meet a request, (frames,)."""

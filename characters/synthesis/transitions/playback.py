@@ -7,14 +7,14 @@ that the root has then; this accumulates the planar alignments of all jumps.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from characters.errors import CharacterError
-from characters.motion.baking import placed_clip
-from characters.motion.clip import Clip
-from characters.motion.curves import ease
-from characters.motion.motion import RootDelta
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
-from characters.synthesis.library import MotionLibrary
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.motion.baking import placed_clip
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.curves import ease
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.synthesis.library import MotionLibrary
 
 BLEND_S = 0.3
 """Length of the blend after a jump [s] (M1.3, [GAP]); over 0.25 s some joints jump."""

@@ -11,13 +11,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.synthesis.graphs.edges import Nodes
-from characters.synthesis.graphs.graph import MotionGraph
-from characters.synthesis.graphs.parts import PartGraphs
-from characters.synthesis.graphs.search import HopCosts
-from characters.synthesis.transitions.stitching import played_cost
-from characters.synthesis.transitions.transition import PartMove, Transition
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.synthesis.graphs.edges import Nodes
+from cubeling.characters.synthesis.graphs.graph import MotionGraph
+from cubeling.characters.synthesis.graphs.parts import PartGraphs
+from cubeling.characters.synthesis.graphs.search import HopCosts
+from cubeling.characters.synthesis.transitions.stitching import played_cost
+from cubeling.characters.synthesis.transitions.transition import PartMove, Transition
 
 Goals = NDArray[np.bool_]
 """Which frames meet a request, (frames,)."""

@@ -7,17 +7,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from characters.motion.baking import placed_clip
-from characters.motion.clip import Clip
-from characters.motion.motion import RootDelta
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose
-from characters.smoothing import gaussian_smoothed, smoothstep
-from characters.synthesis.distances import thesis_distance
-from characters.synthesis.graphs.edges import Nodes
-from characters.synthesis.graphs.parts import PartGraphs
-from characters.synthesis.library import MotionLibrary
-from characters.synthesis.transitions.transition import PartStreams, Transition
+from cubeling.characters.motion.baking import placed_clip
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.smoothing import gaussian_smoothed, smoothstep
+from cubeling.characters.synthesis.distances import thesis_distance
+from cubeling.characters.synthesis.graphs.edges import Nodes
+from cubeling.characters.synthesis.graphs.parts import PartGraphs
+from cubeling.characters.synthesis.library import MotionLibrary
+from cubeling.characters.synthesis.transitions.transition import PartStreams, Transition
 
 
 @dataclass(frozen=True)

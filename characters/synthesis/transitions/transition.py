@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.skeleton.pose import Array
-from characters.synthesis.graphs.edges import Nodes
-from characters.synthesis.library import Frames, MotionLibrary
+from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.graphs.edges import Nodes
+from cubeling.characters.synthesis.library import Frames, MotionLibrary
 
 
 @dataclass(frozen=True)

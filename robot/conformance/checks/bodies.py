@@ -1,11 +1,11 @@
 """Checks of section 3: which bodies are skipped, and which are used."""
 
-from robot.conformance.check import CheckGroup
-from robot.conformance.checks.moods import expect_mood, mood_to_name
-from robot.conformance.probe import Probe
-from robot.protocol import messages as m
-from robot.protocol.schema import MESSAGES, pack, spec_of
-from robot.protocol.wire import MAX_BODY, encode_frame
+from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.checks.moods import expect_mood, mood_to_name
+from cubeling.robot.conformance.probe import Probe
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.schema import MESSAGES, pack, spec_of
+from cubeling.robot.protocol.wire import MAX_BODY, encode_frame
 
 BODIES = CheckGroup("Bodies", 3)
 

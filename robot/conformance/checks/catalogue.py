@@ -1,9 +1,9 @@
 """Checks of the catalogue (sections 4 and 5): joints, motions, sounds and moods."""
 
-from robot.conformance.check import CheckGroup
-from robot.conformance.errors import CheckFailed
-from robot.conformance.probe import Probe
-from robot.protocol import messages as m
+from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.errors import CheckFailed
+from cubeling.robot.conformance.probe import Probe
+from cubeling.robot.protocol import messages as m
 
 CATALOGUE = CheckGroup("Catalogue", 5)
 

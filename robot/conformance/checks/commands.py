@@ -2,10 +2,10 @@
 
 from dataclasses import replace
 
-from robot.conformance.check import CheckGroup
-from robot.conformance.errors import CheckFailed, NotApplicableError
-from robot.conformance.probe import EFFECT_WITHIN_S, EMOTION_CHANGE, Probe
-from robot.protocol import messages as m
+from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
+from cubeling.robot.conformance.probe import EFFECT_WITHIN_S, EMOTION_CHANGE, Probe
+from cubeling.robot.protocol import messages as m
 
 COMMANDS = CheckGroup("Commands", 6)
 

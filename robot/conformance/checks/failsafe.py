@@ -1,13 +1,13 @@
 """Checks of the failsafe and of BYE (section 7): a robot without a host ends its session."""
 
-from robot.conformance.check import CheckGroup
-from robot.conformance.errors import CheckFailed
-from robot.conformance.exchange import REPLY_WITHIN_S
-from robot.conformance.probe import EFFECT_WITHIN_S, EMOTION_CHANGE, TIMING_SLACK_S, Probe
-from robot.conformance.received import describe_frames
-from robot.protocol import messages as m
-from robot.protocol import timing
-from robot.protocol.schema import spec_of
+from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.errors import CheckFailed
+from cubeling.robot.conformance.exchange import REPLY_WITHIN_S
+from cubeling.robot.conformance.probe import EFFECT_WITHIN_S, EMOTION_CHANGE, TIMING_SLACK_S, Probe
+from cubeling.robot.conformance.received import describe_frames
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
+from cubeling.robot.protocol.schema import spec_of
 
 FAILSAFE = CheckGroup("Failsafe", 7)
 

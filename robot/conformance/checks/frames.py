@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from robot.conformance.check import CheckGroup
-from robot.conformance.errors import CheckFailed
-from robot.conformance.probe import Probe
-from robot.protocol import messages as m
-from robot.protocol.schema import pack
-from robot.protocol.wire import MAX_BODY, crc16, encode_frame
+from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.errors import CheckFailed
+from cubeling.robot.conformance.probe import Probe
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.schema import pack
+from cubeling.robot.protocol.wire import MAX_BODY, crc16, encode_frame
 
 FRAMES = CheckGroup("Frames", 2)
 

@@ -1,23 +1,23 @@
 """Checks of section 7: a robot without its host goes to neutral."""
 
-from robot.conformance.check import CheckGroup
-from robot.conformance.checks.catalogue import ITEM_WORDS
-from robot.conformance.checks.failsafe import FAILSAFE_NOT_BEFORE_S, SILENCE_S
-from robot.conformance.checks.playing import (
+from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.checks.catalogue import ITEM_WORDS
+from cubeling.robot.conformance.checks.failsafe import FAILSAFE_NOT_BEFORE_S, SILENCE_S
+from cubeling.robot.conformance.checks.playing import (
     expect_still_played,
     long_entries,
     play,
     played_item,
     start,
 )
-from robot.conformance.checks.stopping import (
+from cubeling.robot.conformance.checks.stopping import (
     REST_TOLERANCE_RAD,
     expect_stop_pose,
     known_stop_pose,
     largest_movement,
 )
-from robot.conformance.errors import CheckFailed, NotApplicableError
-from robot.conformance.probe import (
+from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
+from cubeling.robot.conformance.probe import (
     EFFECT_WITHIN_S,
     EMOTION_CHANGE,
     EMOTION_WITHIN_S,
@@ -25,7 +25,7 @@ from robot.conformance.probe import (
     emotion_distance,
     is_neutral,
 )
-from robot.protocol import messages as m
+from cubeling.robot.protocol import messages as m
 
 NEUTRALITY = CheckGroup("Going to neutral", 7)
 

@@ -3,12 +3,17 @@
 from itertools import pairwise
 from statistics import median
 
-from robot.conformance.check import CheckGroup
-from robot.conformance.checks.moods import expect_emotion
-from robot.conformance.errors import CheckFailed
-from robot.conformance.probe import EMOTION_TOLERANCE, TIMING_SLACK_S, Probe, emotion_distance
-from robot.protocol import messages as m
-from robot.protocol import timing
+from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.checks.moods import expect_emotion
+from cubeling.robot.conformance.errors import CheckFailed
+from cubeling.robot.conformance.probe import (
+    EMOTION_TOLERANCE,
+    TIMING_SLACK_S,
+    Probe,
+    emotion_distance,
+)
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
 
 HEARTBEAT = CheckGroup("Heartbeat and state", 7)
 

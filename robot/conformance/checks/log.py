@@ -2,11 +2,11 @@
 
 from itertools import pairwise
 
-from robot.conformance.check import CheckGroup
-from robot.conformance.errors import CheckFailed, NotApplicableError
-from robot.conformance.probe import TIMING_SLACK_S, Probe
-from robot.protocol import messages as m
-from robot.protocol import timing
+from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
+from cubeling.robot.conformance.probe import TIMING_SLACK_S, Probe
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
 
 LOG = CheckGroup("Clock and log", 7)
 

@@ -1,15 +1,15 @@
 """Checks of section 6: the robot shows the mood that the host names."""
 
-from robot.conformance.check import CheckGroup
-from robot.conformance.errors import CheckFailed, NotApplicableError
-from robot.conformance.probe import (
+from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
+from cubeling.robot.conformance.probe import (
     EFFECT_WITHIN_S,
     EMOTION_TOLERANCE,
     EMOTION_WITHIN_S,
     Probe,
     emotion_distance,
 )
-from robot.protocol import messages as m
+from cubeling.robot.protocol import messages as m
 
 MOODS = CheckGroup("Moods", 6)
 

@@ -3,12 +3,12 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from robot.conformance.check import CheckGroup
-from robot.conformance.checks.catalogue import known_joints
-from robot.conformance.checks.failsafe import SILENCE_S
-from robot.conformance.errors import CheckFailed, NotApplicableError
-from robot.conformance.probe import EFFECT_WITHIN_S, Probe
-from robot.protocol import messages as m
+from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.checks.catalogue import known_joints
+from cubeling.robot.conformance.checks.failsafe import SILENCE_S
+from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
+from cubeling.robot.conformance.probe import EFFECT_WITHIN_S, Probe
+from cubeling.robot.protocol import messages as m
 
 MOVING = CheckGroup("Joints", 6)
 

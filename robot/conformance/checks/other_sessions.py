@@ -1,13 +1,13 @@
 """Checks of section 5: messages outside the open session."""
 
-from robot.conformance.check import CheckGroup
-from robot.conformance.errors import CheckFailed
-from robot.conformance.exchange import REPLY_WITHIN_S
-from robot.conformance.probe import TIMING_SLACK_S, Probe
-from robot.conformance.received import ReceivedFrame, describe_frames
-from robot.protocol import messages as m
-from robot.protocol import timing
-from robot.protocol.schema import spec_of
+from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.errors import CheckFailed
+from cubeling.robot.conformance.exchange import REPLY_WITHIN_S
+from cubeling.robot.conformance.probe import TIMING_SLACK_S, Probe
+from cubeling.robot.conformance.received import ReceivedFrame, describe_frames
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
+from cubeling.robot.protocol.schema import spec_of
 
 OTHER_SESSIONS = CheckGroup("Messages of other sessions", 5)
 

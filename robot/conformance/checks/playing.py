@@ -2,12 +2,12 @@
 
 from math import inf
 
-from robot.conformance.check import CheckGroup
-from robot.conformance.checks.catalogue import ITEM_WORDS
-from robot.conformance.errors import CheckFailed, NotApplicableError
-from robot.conformance.probe import EFFECT_WITHIN_S, Probe
-from robot.protocol import messages as m
-from robot.protocol import timing
+from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.checks.catalogue import ITEM_WORDS
+from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
+from cubeling.robot.conformance.probe import EFFECT_WITHIN_S, Probe
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
 
 PLAYING = CheckGroup("Motions and sounds", 6)
 

@@ -1,10 +1,10 @@
 """Checks of everything that the robot sent during the suite; so they come last."""
 
-from robot.conformance.check import CheckGroup
-from robot.conformance.checks.catalogue import known_joints
-from robot.conformance.errors import CheckFailed, NotApplicableError
-from robot.conformance.probe import TIMING_SLACK_S, Probe
-from robot.protocol import messages as m
+from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.checks.catalogue import known_joints
+from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
+from cubeling.robot.conformance.probe import TIMING_SLACK_S, Probe
+from cubeling.robot.protocol import messages as m
 
 RECORDED = CheckGroup("Everything received", 0)
 

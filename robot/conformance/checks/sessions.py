@@ -1,12 +1,12 @@
 """Checks of section 5: how sessions begin, and what is kept from one to the next."""
 
-from robot.conformance.check import CheckGroup
-from robot.conformance.errors import CheckFailed, NotApplicableError
-from robot.conformance.exchange import REPLY_WITHIN_S
-from robot.conformance.probe import EMOTION_WITHIN_S, TIMING_SLACK_S, Probe
-from robot.conformance.received import ReceivedFrame, describe_frames
-from robot.protocol import messages as m
-from robot.protocol import timing
+from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
+from cubeling.robot.conformance.exchange import REPLY_WITHIN_S
+from cubeling.robot.conformance.probe import EMOTION_WITHIN_S, TIMING_SLACK_S, Probe
+from cubeling.robot.conformance.received import ReceivedFrame, describe_frames
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
 
 SESSIONS = CheckGroup("Sessions", 5)
 

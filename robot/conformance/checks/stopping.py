@@ -2,16 +2,16 @@
 
 from collections.abc import Sequence
 
-from robot.conformance.check import CheckGroup
-from robot.conformance.errors import CheckFailed, NotApplicableError
-from robot.conformance.probe import (
+from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
+from cubeling.robot.conformance.probe import (
     EFFECT_WITHIN_S,
     EMOTION_CHANGE,
     EMOTION_WITHIN_S,
     Probe,
     is_neutral,
 )
-from robot.protocol import messages as m
+from cubeling.robot.protocol import messages as m
 
 STOPPING = CheckGroup("Stop", 6)
 

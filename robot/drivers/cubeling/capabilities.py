@@ -2,8 +2,8 @@
 
 from collections.abc import Sized
 
-from robot.contract.catalogue import Catalogue, JointLimits
-from robot.protocol import messages as m
+from cubeling.robot.contract.catalogue import Catalogue, JointLimits
+from cubeling.robot.protocol import messages as m
 
 
 class CapabilityQuery:

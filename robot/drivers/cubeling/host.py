@@ -8,21 +8,21 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
-from affect import Emotion
-from robot.contract.catalogue import Catalogue
-from robot.contract.driver import Driver, DriverKind
-from robot.contract.moves import JointMove, JointMover
-from robot.contract.port import SendBuffer
-from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
-from robot.drivers.cubeling.capabilities import CapabilityQuery
-from robot.drivers.cubeling.reports import RobotReports
-from robot.drivers.cubeling.scheduler import Action, CommandScheduler, RoundTrip
-from robot.errors import RobotError
-from robot.protocol import messages as m
-from robot.protocol import timing
-from robot.protocol.fields import MessageError
-from robot.protocol.schema import pack, unpack
-from robot.protocol.wire import FrameReader, encode_frame
+from cubeling.affect import Emotion
+from cubeling.robot.contract.catalogue import Catalogue
+from cubeling.robot.contract.driver import Driver, DriverKind
+from cubeling.robot.contract.moves import JointMove, JointMover
+from cubeling.robot.contract.port import SendBuffer
+from cubeling.robot.contract.telemetry import LinkCounts, LinkState, Telemetry
+from cubeling.robot.drivers.cubeling.capabilities import CapabilityQuery
+from cubeling.robot.drivers.cubeling.reports import RobotReports
+from cubeling.robot.drivers.cubeling.scheduler import Action, CommandScheduler, RoundTrip
+from cubeling.robot.errors import RobotError
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
+from cubeling.robot.protocol.fields import MessageError
+from cubeling.robot.protocol.schema import pack, unpack
+from cubeling.robot.protocol.wire import FrameReader, encode_frame
 
 Phase = Literal["port", "greeting", "asking", "open", "closed"]
 """port: there is none. greeting: HELLO was sent. asking: the catalogue is incomplete."""

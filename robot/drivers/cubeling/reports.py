@@ -4,9 +4,9 @@ from collections import deque
 from dataclasses import replace
 from types import MappingProxyType
 
-from affect import Emotion
-from robot.contract.catalogue import Catalogue
-from robot.contract.telemetry import (
+from cubeling.affect import Emotion
+from cubeling.robot.contract.catalogue import Catalogue
+from cubeling.robot.contract.telemetry import (
     MAX_LOG_LINES,
     ClockEstimate,
     LogLine,
@@ -14,9 +14,9 @@ from robot.contract.telemetry import (
     Telemetry,
     complaint_of,
 )
-from robot.drivers.cubeling.scheduler import Refusal
-from robot.protocol import messages as m
-from robot.protocol.clock import ClockSample, RobotClock
+from cubeling.robot.drivers.cubeling.scheduler import Refusal
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.clock import ClockSample, RobotClock
 
 SEVERITIES: tuple[Severity, ...] = ("information", "warning", "error")
 """The words for LOG.severity."""

@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass, replace
 
-from affect import Emotion
-from affect.words import closest_word
-from robot.drivers.commands import CommandQueue, DesiredState
-from robot.protocol import messages as m
-from robot.protocol import timing
+from cubeling.affect import Emotion
+from cubeling.affect.words import closest_word
+from cubeling.robot.drivers.commands import CommandQueue, DesiredState
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
 
 Action = m.Play | m.Move
 """The commands that are events: dropped with their session, and never restored."""

@@ -2,12 +2,12 @@
 
 from collections import deque
 
-from affect import Emotion
-from affect.words import closest_word
-from robot.drivers.commands import DesiredState
-from robot.drivers.opencat import tokens
-from robot.drivers.opencat.echo import BoardCommand
-from robot.drivers.opencat.settings import Behaviour, OpenCatMood
+from cubeling.affect import Emotion
+from cubeling.affect.words import closest_word
+from cubeling.robot.drivers.commands import DesiredState
+from cubeling.robot.drivers.opencat import tokens
+from cubeling.robot.drivers.opencat.echo import BoardCommand
+from cubeling.robot.drivers.opencat.settings import Behaviour, OpenCatMood
 
 POSTURE_TIMEOUT_S = 5.0
 """Longest time of a posture [s]; a joint moves from end to end in less than 2 s."""

@@ -17,7 +17,7 @@ when it is reached, a skill when it has been played. An echo has no sequence num
 from dataclasses import dataclass
 from typing import Literal
 
-from robot.drivers.opencat import tokens
+from cubeling.robot.drivers.opencat import tokens
 
 QUESTION_TIMEOUT_S = 2.0
 """Time after which a question without an echo is repeated [s]; a board may be busy this long."""

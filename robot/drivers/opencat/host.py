@@ -4,19 +4,19 @@ import math
 from types import MappingProxyType
 from typing import Literal
 
-from affect import Emotion
-from robot.contract.catalogue import Catalogue
-from robot.contract.driver import DriverKind
-from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
-from robot.drivers.lines import LineReader
-from robot.drivers.opencat import tokens
-from robot.drivers.opencat.echo import MAX_QUESTION_TRIES, EchoMatcher, PendingLine
-from robot.drivers.opencat.handshake import STARTUP_LINE_PREFIXES, Handshake
-from robot.drivers.opencat.models import model_of
-from robot.drivers.opencat.scheduler import REST_COMMAND, SkillScheduler
-from robot.drivers.opencat.settings import OpenCatSettings, load_settings
-from robot.drivers.opencat.telemetry_parser import TelemetryParser
-from robot.protocol import messages as m
+from cubeling.affect import Emotion
+from cubeling.robot.contract.catalogue import Catalogue
+from cubeling.robot.contract.driver import DriverKind
+from cubeling.robot.contract.telemetry import LinkCounts, LinkState, Telemetry
+from cubeling.robot.drivers.lines import LineReader
+from cubeling.robot.drivers.opencat import tokens
+from cubeling.robot.drivers.opencat.echo import MAX_QUESTION_TRIES, EchoMatcher, PendingLine
+from cubeling.robot.drivers.opencat.handshake import STARTUP_LINE_PREFIXES, Handshake
+from cubeling.robot.drivers.opencat.models import model_of
+from cubeling.robot.drivers.opencat.scheduler import REST_COMMAND, SkillScheduler
+from cubeling.robot.drivers.opencat.settings import OpenCatSettings, load_settings
+from cubeling.robot.drivers.opencat.telemetry_parser import TelemetryParser
+from cubeling.robot.protocol import messages as m
 
 MAX_LINE_BYTES = 200
 """Longest line that is read [bytes]; the longest that matters, 16 angles, has about 90."""

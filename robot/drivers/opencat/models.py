@@ -7,8 +7,8 @@ four shoulders, four knees; each four go clockwise from the left front, seen fro
 import math
 from dataclasses import dataclass
 
-from robot.contract.catalogue import JointLimits
-from robot.drivers.opencat.tokens import MAX_ANGLE_DEG
+from cubeling.robot.contract.catalogue import JointLimits
+from cubeling.robot.drivers.opencat.tokens import MAX_ANGLE_DEG
 
 ASSUMED_SPEED_DEG_PER_S = 240.0
 """Assumed top speed of every servo [°/s]: Petoi states none, and no command depends on it."""

@@ -4,13 +4,13 @@ The desired state is taken again after whatever displaced it: a gesture, a reboo
 commands are sent at most once. Skills keep their dwell time, and an idle robot is let lie down.
 """
 
-from affect import Emotion
-from robot.contract.driver import MAX_QUEUED_ACTIONS
-from robot.drivers.commands import CommandQueue
-from robot.drivers.opencat import tokens
-from robot.drivers.opencat.desired_posture import POSTURE_TIMEOUT_S, DesiredPosture
-from robot.drivers.opencat.echo import BoardCommand
-from robot.drivers.opencat.settings import Behaviour, OpenCatSettings
+from cubeling.affect import Emotion
+from cubeling.robot.contract.driver import MAX_QUEUED_ACTIONS
+from cubeling.robot.drivers.commands import CommandQueue
+from cubeling.robot.drivers.opencat import tokens
+from cubeling.robot.drivers.opencat.desired_posture import POSTURE_TIMEOUT_S, DesiredPosture
+from cubeling.robot.drivers.opencat.echo import BoardCommand
+from cubeling.robot.drivers.opencat.settings import Behaviour, OpenCatSettings
 
 GESTURE_TIMEOUT_S = 15.0
 """Longest time of a skill [s]; an earlier question would interrupt it on new boards."""

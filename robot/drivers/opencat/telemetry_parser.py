@@ -4,9 +4,9 @@ import math
 import re
 from typing import Literal
 
-from robot.contract.telemetry import complaint_of
-from robot.drivers.opencat.models import MODELS
-from robot.drivers.opencat.tokens import JOINTS
+from cubeling.robot.contract.telemetry import complaint_of
+from cubeling.robot.drivers.opencat.models import MODELS
+from cubeling.robot.drivers.opencat.tokens import JOINTS
 
 _ANGLES = re.compile(r"-?\d{1,3},\s*" * (JOINTS - 1) + r"-?\d{1,3},?")
 

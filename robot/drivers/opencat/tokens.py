@@ -8,8 +8,8 @@ import math
 import re
 from collections.abc import Iterable, Mapping
 
-from robot.contract.port import SendBuffer
-from robot.errors import RobotError
+from cubeling.robot.contract.port import SendBuffer
+from cubeling.robot.errors import RobotError
 
 MAX_LINE_BYTES = 30
 """Longest line with its end [bytes]; the limit that older boards report."""

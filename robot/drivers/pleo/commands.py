@@ -6,7 +6,7 @@ A test compares these functions with a list.
 
 from dataclasses import dataclass
 
-from robot.drivers.pleo import timing
+from cubeling.robot.drivers.pleo import timing
 
 
 @dataclass(frozen=True)

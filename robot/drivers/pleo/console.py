@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from robot.contract.port import SendBuffer
-from robot.drivers.pleo import timing
-from robot.drivers.pleo.commands import NUDGE, Command
-from robot.drivers.pleo.console_reader import Answer, ConsoleReader
+from cubeling.robot.contract.port import SendBuffer
+from cubeling.robot.drivers.pleo import timing
+from cubeling.robot.drivers.pleo.commands import NUDGE, Command
+from cubeling.robot.drivers.pleo.console_reader import Answer, ConsoleReader
 
 Outcome = Literal["answered", "unsure", "silent"]
 """answered: the prompt came. unsure: it came only after a nudge and without text, so the command or

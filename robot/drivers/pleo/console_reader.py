@@ -13,8 +13,8 @@ lines may cut into it anywhere, and a read may end anywhere. The rule:
 import re
 from dataclasses import dataclass
 
-from robot.contract.telemetry import complaint_of
-from robot.drivers.pleo import timing
+from cubeling.robot.contract.telemetry import complaint_of
+from cubeling.robot.drivers.pleo import timing
 
 MAX_LINE_CHARS = 512
 """Number of characters of a line that are kept, the last ones."""

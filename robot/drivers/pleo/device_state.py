@@ -6,10 +6,10 @@ It is what was sent, not what Pleo does: the console reports neither speeds nor 
 from collections.abc import Iterator, Mapping
 from typing import Literal, NamedTuple
 
-from robot.drivers.pleo import commands
-from robot.drivers.pleo.commands import Command
-from robot.drivers.pleo.joints import JOINTS
-from robot.drivers.pleo.settings import PleoMood
+from cubeling.robot.drivers.pleo import commands
+from cubeling.robot.drivers.pleo.commands import Command
+from cubeling.robot.drivers.pleo.joints import JOINTS
+from cubeling.robot.drivers.pleo.settings import PleoMood
 
 _MOVES = tuple(f"JOINT MOVE {number}" for number in range(len(JOINTS)))
 

@@ -9,16 +9,16 @@ import math
 from collections import deque
 from typing import Literal
 
-from affect import Emotion
-from robot.contract.catalogue import Catalogue
-from robot.contract.driver import DriverKind
-from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
-from robot.drivers.pleo import commands, timing
-from robot.drivers.pleo.commands import Command
-from robot.drivers.pleo.console import CommandResult, Console
-from robot.drivers.pleo.scheduler import StepScheduler
-from robot.drivers.pleo.settings import PleoSettings, load_settings
-from robot.protocol import messages as m
+from cubeling.affect import Emotion
+from cubeling.robot.contract.catalogue import Catalogue
+from cubeling.robot.contract.driver import DriverKind
+from cubeling.robot.contract.telemetry import LinkCounts, LinkState, Telemetry
+from cubeling.robot.drivers.pleo import commands, timing
+from cubeling.robot.drivers.pleo.commands import Command
+from cubeling.robot.drivers.pleo.console import CommandResult, Console
+from cubeling.robot.drivers.pleo.scheduler import StepScheduler
+from cubeling.robot.drivers.pleo.settings import PleoSettings, load_settings
+from cubeling.robot.protocol import messages as m
 
 Phase = Literal["port", "searching", "starting", "open", "closed"]
 """port: there is none. searching: for a prompt. starting: the first commands are sent."""

@@ -6,7 +6,7 @@ Source: OliverHoffmann/PleoCommand (2010), firmware 1.1.
 import math
 from dataclasses import dataclass
 
-from robot.contract.catalogue import JointLimits
+from cubeling.robot.contract.catalogue import JointLimits
 
 ASSUMED_SPEED_DEG_PER_S = 50.0
 """Top speed of a joint without a published one [°/s]: about that of the joints next to it."""

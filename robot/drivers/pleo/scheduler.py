@@ -8,15 +8,20 @@ again until it is answered: at worst the motion starts again. A sound, and a mot
 from collections import deque
 from collections.abc import Iterator
 
-from affect import Emotion
-from affect.words import closest_word
-from robot.contract.driver import MAX_QUEUED_ACTIONS
-from robot.drivers.commands import CommandQueue, DesiredState
-from robot.drivers.pleo import commands, timing
-from robot.drivers.pleo.commands import Command
-from robot.drivers.pleo.console import CommandResult
-from robot.drivers.pleo.device_state import CommandStep, DeviceState, body_steps, sound_steps
-from robot.drivers.pleo.settings import MotionFile, PleoMood, PleoSettings
+from cubeling.affect import Emotion
+from cubeling.affect.words import closest_word
+from cubeling.robot.contract.driver import MAX_QUEUED_ACTIONS
+from cubeling.robot.drivers.commands import CommandQueue, DesiredState
+from cubeling.robot.drivers.pleo import commands, timing
+from cubeling.robot.drivers.pleo.commands import Command
+from cubeling.robot.drivers.pleo.console import CommandResult
+from cubeling.robot.drivers.pleo.device_state import (
+    CommandStep,
+    DeviceState,
+    body_steps,
+    sound_steps,
+)
+from cubeling.robot.drivers.pleo.settings import MotionFile, PleoMood, PleoSettings
 
 STOP_WORD = ""
 """Takes the place of a mood's word for the neutral pose; no mood has an empty word."""

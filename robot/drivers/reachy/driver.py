@@ -12,19 +12,19 @@ from typing import Any
 
 import numpy as np
 
-from affect import Emotion
-from affect.words import closest_word
-from robot.contract.catalogue import Catalogue
-from robot.contract.driver import MAX_QUEUED_ACTIONS, Driver, DriverKind
-from robot.contract.motions import Array, SineMotion
-from robot.contract.port import SendBuffer
-from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
-from robot.drivers.commands import CommandQueue, DesiredState
-from robot.drivers.lines import LineReader
-from robot.drivers.reachy import motions
-from robot.drivers.reachy.port import open_reachy
-from robot.errors import RobotError
-from robot.protocol import messages as m
+from cubeling.affect import Emotion
+from cubeling.affect.words import closest_word
+from cubeling.robot.contract.catalogue import Catalogue
+from cubeling.robot.contract.driver import MAX_QUEUED_ACTIONS, Driver, DriverKind
+from cubeling.robot.contract.motions import Array, SineMotion
+from cubeling.robot.contract.port import SendBuffer
+from cubeling.robot.contract.telemetry import LinkCounts, LinkState, Telemetry
+from cubeling.robot.drivers.commands import CommandQueue, DesiredState
+from cubeling.robot.drivers.lines import LineReader
+from cubeling.robot.drivers.reachy import motions
+from cubeling.robot.drivers.reachy.port import open_reachy
+from cubeling.robot.errors import RobotError
+from cubeling.robot.protocol import messages as m
 
 TARGET_INTERVAL_S = 0.040
 """Time between two targets [s]; the robot's own loop runs at 50 Hz."""

@@ -4,8 +4,8 @@ from math import radians
 
 import numpy as np
 
-from robot.contract.catalogue import Catalogue, JointLimits
-from robot.contract.motions import Array, JointSine, SineMotion
+from cubeling.robot.contract.catalogue import Catalogue, JointLimits
+from cubeling.robot.contract.motions import Array, JointSine, SineMotion
 
 _LIMITS_DEG = (
     ("head roll", -25, 25, 60),

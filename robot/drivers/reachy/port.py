@@ -13,9 +13,9 @@ from typing import Any
 
 import serial
 
-from robot.contract.port import READ_TIMEOUT_S, Clock, Port
-from robot.drivers.reachy.sdk import CONNECT_TIMEOUT_S, SdkRobot
-from robot.errors import RobotError
+from cubeling.robot.contract.port import READ_TIMEOUT_S, Clock, Port
+from cubeling.robot.drivers.reachy.sdk import CONNECT_TIMEOUT_S, SdkRobot
+from cubeling.robot.errors import RobotError
 
 DEFAULT_TCP_PORT = 8000
 """Port of the daemon if the URL names none."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import SplitResult, unquote, urlsplit
 
-from robot.errors import RobotError
+from cubeling.robot.errors import RobotError
 
 DEFAULT_PORTS = {"mqtt": 1883, "mqtts": 8883}
 """Default port of each scheme (IANA)."""

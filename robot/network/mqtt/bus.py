@@ -13,10 +13,10 @@ from paho.mqtt.properties import Properties
 from paho.mqtt.reasoncodes import ReasonCode
 from paho.mqtt.subscribeoptions import SubscribeOptions
 
-from robot.errors import RobotError
-from robot.network.bus import Bus, BusState, Message
-from robot.network.mqtt.access import Address
-from robot.network.topics import topic_matches
+from cubeling.robot.errors import RobotError
+from cubeling.robot.network.bus import Bus, BusState, Message
+from cubeling.robot.network.mqtt.access import Address
+from cubeling.robot.network.topics import topic_matches
 
 KEEPALIVE_S = 4
 """Keepalive interval [s]: the broker drops a client after 1.5 times as long without a packet."""

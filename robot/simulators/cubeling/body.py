@@ -4,12 +4,12 @@ from math import hypot
 
 import numpy as np
 
-from affect import Emotion
-from affect.hysteresis import THESIS_LABELS, next_label
-from robot.contract.motions import Array, SineMotion
-from robot.protocol import messages as m
-from robot.simulators.cubeling import dinosaur
-from robot.simulators.cubeling.held_joints import HeldJoints
+from cubeling.affect import Emotion
+from cubeling.affect.hysteresis import THESIS_LABELS, next_label
+from cubeling.robot.contract.motions import Array, SineMotion
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.simulators.cubeling import dinosaur
+from cubeling.robot.simulators.cubeling.held_joints import HeldJoints
 
 STEP_S = 0.020
 """Step of the simulation [s], as of hobby servos; the result does not depend on how often `advance`

@@ -3,16 +3,16 @@
 from dataclasses import replace
 from typing import Any, Protocol
 
-from affect import Emotion
-from robot.contract.catalogue import Catalogue
-from robot.contract.port import SendBuffer
-from robot.protocol import messages as m
-from robot.protocol import timing
-from robot.protocol.fields import MessageError
-from robot.protocol.schema import pack, unpack
-from robot.protocol.wire import FrameReader, crc16, encode_frame
-from robot.simulators.cubeling.log import LogQueue
-from robot.simulators.cubeling.refusals import entry_names, refusal
+from cubeling.affect import Emotion
+from cubeling.robot.contract.catalogue import Catalogue
+from cubeling.robot.contract.port import SendBuffer
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
+from cubeling.robot.protocol.fields import MessageError
+from cubeling.robot.protocol.schema import pack, unpack
+from cubeling.robot.protocol.wire import FrameReader, crc16, encode_frame
+from cubeling.robot.simulators.cubeling.log import LogQueue
+from cubeling.robot.simulators.cubeling.refusals import entry_names, refusal
 
 
 class Body(Protocol):

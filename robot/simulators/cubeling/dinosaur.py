@@ -5,9 +5,9 @@ Joints, limits and speeds are those of `robot.drivers.pleo.joints`; the motions 
 
 import numpy as np
 
-from robot.contract.catalogue import Catalogue
-from robot.contract.motions import JointSine, SineMotion
-from robot.drivers.pleo.joints import JOINTS as PLEO_JOINTS
+from cubeling.robot.contract.catalogue import Catalogue
+from cubeling.robot.contract.motions import JointSine, SineMotion
+from cubeling.robot.drivers.pleo.joints import JOINTS as PLEO_JOINTS
 
 _LIMITS = tuple(joint.limits for joint in PLEO_JOINTS)
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from robot.contract.motions import Array
-from robot.protocol import messages as m
+from cubeling.robot.contract.motions import Array
+from cubeling.robot.protocol import messages as m
 
 
 class HeldJoints:

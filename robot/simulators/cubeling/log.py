@@ -2,8 +2,8 @@
 
 from collections import deque
 
-from robot.protocol import messages as m
-from robot.protocol.schema import spec_of
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.schema import spec_of
 
 MAX_WAITING = 8
 """Lines that wait; when there are more, the new ones are dropped and counted."""

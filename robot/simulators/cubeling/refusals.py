@@ -1,7 +1,7 @@
 """Which commands a robot refuses because its catalogue says so."""
 
-from robot.contract.catalogue import Catalogue
-from robot.protocol import messages as m
+from cubeling.robot.contract.catalogue import Catalogue
+from cubeling.robot.protocol import messages as m
 
 TAKEN = (m.RESULT_TAKEN, "")
 

@@ -1,7 +1,7 @@
 """The simulated dinosaur: the robot side of the protocol and a body."""
 
-from robot.simulators.cubeling.body import DinosaurBody
-from robot.simulators.cubeling.device import DeviceLink
+from cubeling.robot.simulators.cubeling.body import DinosaurBody
+from cubeling.robot.simulators.cubeling.device import DeviceLink
 
 
 class Simulator:

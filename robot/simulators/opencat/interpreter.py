@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robot.drivers.opencat.tokens import JOINTS
-from robot.simulators.opencat.body import REST_SKILL, SKILLS, OpenCatBody
-from robot.simulators.opencat.quirks import BoardQuirks
+from cubeling.robot.drivers.opencat.tokens import JOINTS
+from cubeling.robot.simulators.opencat.body import REST_SKILL, SKILLS, OpenCatBody
+from cubeling.robot.simulators.opencat.quirks import BoardQuirks
 
 FORBIDDEN_TOKENS = frozenset("acsS!gGnwWKTXzpRxMLIfFoqtlvVzhuPrBCmU;:")
 """Tokens that a driver must not send: they calibrate, write memory, change lasting settings, stop

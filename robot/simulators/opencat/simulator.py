@@ -9,10 +9,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from robot.contract.port import SendBuffer
-from robot.simulators.opencat.body import SKILLS
-from robot.simulators.opencat.interpreter import Interpreter, Job
-from robot.simulators.opencat.quirks import CALIBRATION_QUESTION, BoardQuirks, startup
+from cubeling.robot.contract.port import SendBuffer
+from cubeling.robot.simulators.opencat.body import SKILLS
+from cubeling.robot.simulators.opencat.interpreter import Interpreter, Job
+from cubeling.robot.simulators.opencat.quirks import CALIBRATION_QUESTION, BoardQuirks, startup
 
 LINE_TIMEOUT_S = 0.010
 """Pause after which a line without an end is read [s]."""

@@ -7,8 +7,8 @@ from zlib import crc32
 
 import numpy as np
 
-from affect.words import WORD_PLACES
-from robot.drivers.pleo.joints import JOINTS, PleoJoint
+from cubeling.affect.words import WORD_PLACES
+from cubeling.robot.drivers.pleo.joints import JOINTS, PleoJoint
 
 MOTION_LENGTH_RANGE_S = (2.0, 5.0)
 """Shortest and longest motion [s]; the name of a motion determines its length."""

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robot.drivers.pleo.joints import JOINTS
-from robot.simulators.pleo.body import PleoBody
+from cubeling.robot.drivers.pleo.joints import JOINTS
+from cubeling.robot.simulators.pleo.body import PleoBody
 
 Answer = tuple[list[str], float]
 """The lines of an answer, and its duration [s]."""

@@ -5,9 +5,9 @@ from collections import deque
 
 import numpy as np
 
-from affect.words import WORD_PLACES
-from robot.simulators.pleo.body import PleoBody
-from robot.simulators.pleo.monitor import Monitor
+from cubeling.affect.words import WORD_PLACES
+from cubeling.robot.simulators.pleo.body import PleoBody
+from cubeling.robot.simulators.pleo.monitor import Monitor
 
 MAX_TIME_STEP_S = 2.0
 """A longer time between two calls counts as sleep of the computer and is skipped [s]."""

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from app.behaving.player import BehaviourPlayer
-from app.behaving.voice import PatientSource, spoken
-from app.pipeline.spoken_line import SpokenLine
-from characters import Character
-from characters.speech.speech import Speech, Word
+from cubeling.app.behaving.player import BehaviourPlayer
+from cubeling.app.behaving.voice import PatientSource, spoken
+from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.characters import Character
+from cubeling.characters.speech.speech import Speech, Word
 from tests.bundled_characters import bundled_character
 
 VOICE_HZ = 16_000

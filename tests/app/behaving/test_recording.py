@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from app.behaving.recording import TAIL_S, perform
-from app.sound import SAMPLE_RATE
-from characters.behaviour.bml import BlockProgress, BmlWarning, SyncPointProgress
-from characters.control.controllers import default_height
-from characters.skeleton import rotations
+from cubeling.app.behaving.recording import TAIL_S, perform
+from cubeling.app.sound import SAMPLE_RATE
+from cubeling.characters.behaviour.bml import BlockProgress, BmlWarning, SyncPointProgress
+from cubeling.characters.control.controllers import default_height
+from cubeling.characters.skeleton import rotations
 from tests.app.behaving.performances import HUMAN, LateSource, block, player
 
 RATE = 25.0

@@ -6,9 +6,9 @@ from contextlib import closing
 
 import pytest
 
-from app.behaving.live import NoOutput, play_live
-from app.behaving.server import MAX_UNSENT, BlockServer
-from app.errors import AppError
+from cubeling.app.behaving.live import NoOutput, play_live
+from cubeling.app.behaving.server import MAX_UNSENT, BlockServer
+from cubeling.app.errors import AppError
 from tests.app.behaving.performances import block, player
 
 WAIT_S = 20.0

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.behaving.splitting import MAX_BYTES, DocumentSplitter, StreamBroken
+from cubeling.app.behaving.splitting import MAX_BYTES, DocumentSplitter, StreamBroken
 
 DOCUMENTS = [
     b'<bml id="a"/>',

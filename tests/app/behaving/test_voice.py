@@ -5,10 +5,10 @@ from contextlib import closing
 
 import pytest
 
-from app.behaving.opening import open_lines
-from app.behaving.voice import PatientSource, ThreadedSource
-from app.speaking import voices
-from characters.speech.voices import VoiceError
+from cubeling.app.behaving.opening import open_lines
+from cubeling.app.behaving.voice import PatientSource, ThreadedSource
+from cubeling.app.speaking import voices
+from cubeling.characters.speech.voices import VoiceError
 from tests.app.behaving.performances import speech_of
 
 WAIT_S = 20.0

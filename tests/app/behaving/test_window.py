@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from app.behaving.live import VoiceOutput, WindowOutput
-from app.behaving.recording import placed_pose
-from app.sound import SAMPLE_RATE
-from app.sound.bank import SoundBank
-from app.sound.mixer import Mixer
-from characters.rendering import create_context
-from characters.rendering.portrait import PortraitRenderer
+from cubeling.app.behaving.live import VoiceOutput, WindowOutput
+from cubeling.app.behaving.recording import placed_pose
+from cubeling.app.sound import SAMPLE_RATE
+from cubeling.app.sound.bank import SoundBank
+from cubeling.app.sound.mixer import Mixer
+from cubeling.characters.rendering import create_context
+from cubeling.characters.rendering.portrait import PortraitRenderer
 from tests.app.behaving.performances import HUMAN, block, player
 
 SIZE = (160, 120)

@@ -7,11 +7,11 @@ import av
 import numpy as np
 import pytest
 
-from app.commands.behave import behave
-from app.errors import AppError
-from app.speaking import voices
-from characters import CharacterError, load_motion
-from characters.speech.voices import Voice, VoiceError
+from cubeling.app.commands.behave import behave
+from cubeling.app.errors import AppError
+from cubeling.app.speaking import voices
+from cubeling.characters import CharacterError, load_motion
+from cubeling.characters.speech.voices import Voice, VoiceError
 from tests.app.behaving.performances import block
 from tests.app.speaking.test_speaker import BUZZ
 

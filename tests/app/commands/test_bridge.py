@@ -12,17 +12,17 @@ from typing import Any
 
 import pytest
 
-import recordings
-from affect import Emotion
-from app.errors import AppError
-from app.pipeline.scenario import EmotionTarget
-from app.running.bridge import Bridge, RecordedPlayer
-from app.running.network import Network
-from app.running.players import PlayerPublisher
-from app.ui.roster import table
-from characters import ActionIntent, CharacterCommand, LocomotionIntent
-from robot.network import Member
-from robot.network.roster import Roster
+from cubeling import recordings
+from cubeling.affect import Emotion
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.scenario import EmotionTarget
+from cubeling.app.running.bridge import Bridge, RecordedPlayer
+from cubeling.app.running.network import Network
+from cubeling.app.running.players import PlayerPublisher
+from cubeling.app.ui.roster import table
+from cubeling.characters import ActionIntent, CharacterCommand, LocomotionIntent
+from cubeling.robot.network import Member
+from cubeling.robot.network.roster import Roster
 from tests.robot.network.mosquitto import Mosquitto, needs_mosquitto
 
 COMPANION = Path(recordings.__path__[0]) / "companion.mcap"
@@ -161,7 +161,7 @@ def test_a_bridge_that_is_killed_is_lost_by_its_last_will(broker):
     def start() -> subprocess.Popen[bytes]:
         words = ["bridge", "--mqtt", broker.url, "--robot", "rex=sim"]
         return subprocess.Popen(
-            [sys.executable, "-c", "from app.cli import main; main()", *words],
+            [sys.executable, "-c", "from cubeling.app.cli import main; main()", *words],
             stdout=subprocess.DEVNULL,
             cwd=Path(__file__).parents[3],
         )

@@ -5,12 +5,12 @@ import itertools
 import numpy as np
 import pytest
 
-from app.commands import calibrate as command
-from app.ui.calibration.coach import REQUEST_SENTENCES, CoachView, words_of
-from app.ui.calibration.session import Advice, CalibrationSession
-from tracking import CubeModel, Frame, Intrinsics
-from tracking.calibration import CubeFinder, ViewCoverage
-from tracking.synthetic import open_synthetic
+from cubeling.app.commands import calibrate as command
+from cubeling.app.ui.calibration.coach import REQUEST_SENTENCES, CoachView, words_of
+from cubeling.app.ui.calibration.session import Advice, CalibrationSession
+from cubeling.tracking import CubeModel, Frame, Intrinsics
+from cubeling.tracking.calibration import CubeFinder, ViewCoverage
+from cubeling.tracking.synthetic import open_synthetic
 
 
 class Kept:

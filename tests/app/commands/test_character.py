@@ -7,12 +7,12 @@ import cv2
 import numpy as np
 import pytest
 
-from app.ui.contact_sheets import ContactSheets, save, trimmed
-from characters import Character
-from characters.formats import load_motion
-from characters.model.stick_figure import stick_figure
-from characters.rendering import create_context
-from characters.rendering.portrait import PAPER_BGR
+from cubeling.app.ui.contact_sheets import ContactSheets, save, trimmed
+from cubeling.characters import Character
+from cubeling.characters.formats import load_motion
+from cubeling.characters.model.stick_figure import stick_figure
+from cubeling.characters.rendering import create_context
+from cubeling.characters.rendering.portrait import PAPER_BGR
 from tools.cast import draw_cast
 
 BVH = """HIERARCHY

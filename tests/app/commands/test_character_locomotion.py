@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from characters import Character
-from characters.locomotion.gaits import WALK_CLIPS
+from cubeling.characters import Character
+from cubeling.characters.locomotion.gaits import WALK_CLIPS
 
 
 def test_one_command_makes_a_character_that_walks(cubeling, tmp_path):

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from app.cli import COMMANDS, load_command
-from app.commands import doctor
-from characters import Character, CharacterError
-from characters.errors import CharacterWarning
+from cubeling.app.cli import COMMANDS, load_command
+from cubeling.app.commands import doctor
+from cubeling.characters import Character, CharacterError
+from cubeling.characters.errors import CharacterWarning
+from cubeling.tracking import TrackingError
 from tests.characters.formats.built_gltf import Builder
-from tracking import TrackingError
 
 COMMANDS_WITH_EXAMPLES = [
     ["demo"],
@@ -45,7 +45,7 @@ def test_cubeling_without_arguments_shows_the_help(cubeling):
 def test_the_help_imports_no_other_room_and_no_large_library():
     program = (
         "import sys; sys.argv = ['cubeling', '--help']\n"
-        "from app.entry import main\n"
+        "from cubeling.app.entry import main\n"
         "try: main()\n"
         "except SystemExit as end: code = end.code\n"
         "large = {'affect', 'tracking', 'characters', 'robot', 'numpy', 'cv2', 'av', 'moderngl'}\n"
@@ -209,7 +209,9 @@ def write_bare_glb(path):
 
 
 def test_an_output_that_cannot_show_a_curve_shows_the_rest():
-    script = "from app.cli import print_what_can_be_encoded as allow; allow(); print('mood ▄▅')"
+    script = (
+        "from cubeling.app.cli import print_what_can_be_encoded as allow; allow(); print('mood ▄▅')"
+    )
     environment = os.environ | {"PYTHONIOENCODING": "cp1252"}
     command = [sys.executable, "-c", script]
     result = subprocess.run(command, env=environment, capture_output=True, check=True)

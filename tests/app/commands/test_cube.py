@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-import app
+from cubeling import app
 
 PAGE = Path(app.__file__).parents[1] / "docs" / "your-own-cube.md"
 MUSEUM = PAGE.read_text("utf-8").partition("```toml\n")[2].partition("```")[0]

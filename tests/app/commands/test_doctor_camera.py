@@ -1,8 +1,8 @@
 """What `cubeling doctor` reports about a camera."""
 
-from app.commands import doctor
-from tracking import Frame
-from tracking.sources.device import DeviceSetting, Health
+from cubeling.app.commands import doctor
+from cubeling.tracking import Frame
+from cubeling.tracking.sources.device import DeviceSetting, Health
 
 
 class EndlessCamera:

@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from app.commands import doctor
-from robot.link.ports import SerialPort
+from cubeling.app.commands import doctor
+from cubeling.robot.link.ports import SerialPort
 
 BUILT_IN = SerialPort("/dev/ttyS0", "n/a", None, None, None)
 ON_USB = SerialPort("/dev/ttyACM0", "Pico", "a Raspberry Pi Pico", 0x2E8A, 5)

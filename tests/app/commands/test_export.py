@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.exporting import CONTEXT_COLUMNS, EXPORT_TABLES, dictionary_rows, writing
-from app.exporting.writing import DICTIONARY_FILE
-from app.session import messages
-from app.session.encoding import MESSAGE_TYPES, decode
-from characters.skeleton import rotations
+from cubeling.app.exporting import CONTEXT_COLUMNS, EXPORT_TABLES, dictionary_rows, writing
+from cubeling.app.exporting.writing import DICTIONARY_FILE
+from cubeling.app.session import messages
+from cubeling.app.session.encoding import MESSAGE_TYPES, decode
+from cubeling.characters.skeleton import rotations
 from tools.export_dictionary import DOCUMENT, updated
 
 

@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from app.commands import gesture
-from app.errors import AppError
-from app.gesture_editor.preview import Performance, Preview
-from characters import Character, Clip, Pose
-from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.gestures.files import load_gesture, save_gesture
-from characters.errors import CharacterError
+from cubeling.app.commands import gesture
+from cubeling.app.errors import AppError
+from cubeling.app.gesture_editor.preview import Performance, Preview
+from cubeling.characters import Character, Clip, Pose
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
+from cubeling.characters.behaviour.gestures.files import load_gesture, save_gesture
+from cubeling.characters.errors import CharacterError
 
 
 @pytest.fixture

@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from characters import Character, Clip
-from characters.synthesis.gestures.library import GestureLibrary
+from cubeling.characters import Character, Clip
+from cubeling.characters.synthesis.gestures.library import GestureLibrary
 
 
 @pytest.fixture(scope="module")

@@ -8,8 +8,8 @@ import pytest
 import typer.main
 from typer.exceptions import TyperException
 
-import app
-from app.cli import app as cli
+from cubeling import app
+from cubeling.app.cli import app as cli
 
 ROOT = Path(app.__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]

@@ -8,12 +8,12 @@ import cv2
 import numpy as np
 import pytest
 
-from characters import Animator, Character, CharacterCommand, Clip, Pose
-from characters.control.controllers.idle import standing_as
-from characters.retargeting.leg_ik import place_ankle
-from characters.retargeting.rig import Rig
-from characters.synthesis.idle.recordings import read_standing
-from characters.synthesis.idle.storage import load_person, save_person
+from cubeling.characters import Animator, Character, CharacterCommand, Clip, Pose
+from cubeling.characters.control.controllers.idle import standing_as
+from cubeling.characters.retargeting.leg_ik import place_ankle
+from cubeling.characters.retargeting.rig import Rig
+from cubeling.characters.synthesis.idle.recordings import read_standing
+from cubeling.characters.synthesis.idle.storage import load_person, save_person
 
 RATE = 25.0
 

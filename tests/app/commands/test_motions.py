@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from app.motion_graphs.page import write_page
-from app.motion_graphs.printed import TABLE_3_2, TABLE_3_3
-from app.motion_graphs.tables import Tables
-from characters.synthesis.graphs.storage import load_graph
+from cubeling.app.motion_graphs.page import write_page
+from cubeling.app.motion_graphs.printed import TABLE_3_2, TABLE_3_3
+from cubeling.app.motion_graphs.tables import Tables
+from cubeling.characters.synthesis.graphs.storage import load_graph
 
 
 @pytest.fixture

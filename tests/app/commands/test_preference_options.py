@@ -4,8 +4,8 @@ from dataclasses import fields
 
 import pytest
 
-from app.commands.session.preference_options import FLAGS
-from app.preferences import Preferences
+from cubeling.app.commands.session.preference_options import FLAGS
+from cubeling.app.preferences import Preferences
 
 
 def test_every_preference_has_an_option():

@@ -9,15 +9,15 @@ import av
 import cv2
 import pytest
 
-from app.commands.session import progress
-from app.commands.session.progress import ProgressLines
-from app.running.opening import open_session
-from app.running.runner import run
-from app.session import SessionOptions, messages, session_info
-from app.session.encoding import MESSAGE_TYPES
-from app.ui.screen import NullScreen
-from app.ui.video_file import VideoFile
-from tracking.sources.base import StoredFrames
+from cubeling.app.commands.session import progress
+from cubeling.app.commands.session.progress import ProgressLines
+from cubeling.app.running.opening import open_session
+from cubeling.app.running.runner import run
+from cubeling.app.session import SessionOptions, messages, session_info
+from cubeling.app.session.encoding import MESSAGE_TYPES
+from cubeling.app.ui.screen import NullScreen
+from cubeling.app.ui.video_file import VideoFile
+from cubeling.tracking.sources.base import StoredFrames
 
 
 @pytest.fixture

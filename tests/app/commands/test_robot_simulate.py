@@ -6,8 +6,8 @@ import sys
 
 import pytest
 
-from robot.simulators import SIMULATORS
-from robot.simulators.faults import OPTIONS
+from cubeling.robot.simulators import SIMULATORS
+from cubeling.robot.simulators.faults import OPTIONS
 
 
 @pytest.mark.parametrize("name", [*SIMULATORS, "sim:cubeling?drop=0.05&stall=1s", "pleo?seed=3"])
@@ -51,7 +51,7 @@ def test_sighup_and_sigterm_end_it_as_ctrl_c_does():
     for number in (signal.SIGHUP, signal.SIGTERM):
         # As in a terminal: what nohup starts begins with SIGHUP ignored, and so do the tests.
         program = f"import signal; signal.signal({number:d}, signal.SIG_DFL)"
-        program += "; from app.cli import main; main()"
+        program += "; from cubeling.app.cli import main; main()"
         command = [sys.executable, "-c", program, "robot", "simulate", "--seconds", "60"]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as child:
             assert child.stdout is not None

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from robot.protocol import messages as m
-from robot.simulators import SIMULATORS
-from robot.simulators.cubeling.dinosaur import CATALOGUE
-from robot.simulators.cubeling.simulator import Simulator
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.simulators import SIMULATORS
+from cubeling.robot.simulators.cubeling.dinosaur import CATALOGUE
+from cubeling.robot.simulators.cubeling.simulator import Simulator
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import av
 import numpy as np
 import pytest
 
-from characters import Character, load_motion
+from cubeling.characters import Character, load_motion
 
 EXAMPLES = Path(__file__).parents[3] / "docs" / "schedules"
 

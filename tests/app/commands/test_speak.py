@@ -6,12 +6,12 @@ import av
 import numpy as np
 import pytest
 
-from app.sound import write_wave
-from app.speaking import voices
-from characters import load_motion
-from characters.control.speech_profile import SpeechProfile
-from characters.speech.voices import VoiceError
-from characters.speech.voices.espeak import installed
+from cubeling.app.sound import write_wave
+from cubeling.app.speaking import voices
+from cubeling.characters import load_motion
+from cubeling.characters.control.speech_profile import SpeechProfile
+from cubeling.characters.speech.voices import VoiceError
+from cubeling.characters.speech.voices.espeak import installed
 
 needs_espeak = pytest.mark.skipif(not installed(), reason="eSpeak NG is not installed")
 

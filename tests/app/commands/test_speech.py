@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from app.commands.speech import app
-from app.errors import AppError
-from app.speech_plot import GestureMark, draw, save_plot
-from characters import CharacterError
-from characters.speech.speech import Phone, Speech, Word
-from characters.speech.textgrid import read_textgrid, textgrid_of, write_textgrid
-from characters.speech.voices.espeak import installed
+from cubeling.app.commands.speech import app
+from cubeling.app.errors import AppError
+from cubeling.app.speech_plot import GestureMark, draw, save_plot
+from cubeling.characters import CharacterError
+from cubeling.characters.speech.speech import Phone, Speech, Word
+from cubeling.characters.speech.textgrid import read_textgrid, textgrid_of, write_textgrid
+from cubeling.characters.speech.voices.espeak import installed
 
 needs_espeak = pytest.mark.skipif(not installed(), reason="eSpeak NG is not installed")
 RATE = 16_000

@@ -6,9 +6,9 @@ from pathlib import Path
 import moderngl
 import pytest
 
-from app.gesture_editor.session import EditorSession
-from characters.errors import CharacterError
-from characters.rendering import create_context
+from cubeling.app.gesture_editor.session import EditorSession
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.rendering import create_context
 
 
 @pytest.fixture(scope="session")

@@ -6,13 +6,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.gesture_editor.editing import edits
-from app.gesture_editor.editing.document import EMPTY, ROWS, GestureDocument, moves
-from app.gesture_editor.editing.state import EditorState, committed, edited, redo, undo
-from app.gesture_editor.editing.timing import duration, nearest_moment, phase_spans, stroke_for
-from characters.behaviour.gestures.checking import check_gesture
-from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.symbolic_gesture import SECTORS_X, SECTORS_Y, HandKey, Place
+from cubeling.app.gesture_editor.editing import edits
+from cubeling.app.gesture_editor.editing.document import EMPTY, ROWS, GestureDocument, moves
+from cubeling.app.gesture_editor.editing.state import EditorState, committed, edited, redo, undo
+from cubeling.app.gesture_editor.editing.timing import (
+    duration,
+    nearest_moment,
+    phase_spans,
+    stroke_for,
+)
+from cubeling.characters.behaviour.gestures.checking import check_gesture
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
+from cubeling.characters.behaviour.symbolic_gesture import SECTORS_X, SECTORS_Y, HandKey, Place
 
 shares = st.floats(-0.5, 1.5)
 seconds = st.floats(-1.0, 20.0)

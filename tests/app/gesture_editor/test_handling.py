@@ -5,9 +5,9 @@ from itertools import combinations
 
 import pytest
 
-from app.gesture_editor.editing.document import GestureDocument
-from app.gesture_editor.editing.state import EditorState, Import, Quit, Save
-from app.gesture_editor.handling import (
+from cubeling.app.gesture_editor.editing.document import GestureDocument
+from cubeling.app.gesture_editor.editing.state import EditorState, Import, Quit, Save
+from cubeling.app.gesture_editor.handling import (
     Dropped,
     KeyPressed,
     Moved,
@@ -16,12 +16,12 @@ from app.gesture_editor.handling import (
     Typed,
     handle,
 )
-from app.gesture_editor.panels.fields import Slider
-from app.gesture_editor.panels.layout import widget_named, widgets_of
-from app.gesture_editor.panels.time_line_parts import Handle, KeyMark, KeyRow, Phases
-from app.gesture_editor.panels.widgets import Button, Label, fitting
-from app.ui.canvas import text_width
-from characters.behaviour.gestures.collection import GestureCollection
+from cubeling.app.gesture_editor.panels.fields import Slider
+from cubeling.app.gesture_editor.panels.layout import widget_named, widgets_of
+from cubeling.app.gesture_editor.panels.time_line_parts import Handle, KeyMark, KeyRow, Phases
+from cubeling.app.gesture_editor.panels.widgets import Button, Label, fitting
+from cubeling.app.ui.canvas import text_width
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
 
 CARDS = ("", "open", "import", "save as", "replace", "unsaved", "contact", "keys")
 SMALLEST_TEXT = 11.0

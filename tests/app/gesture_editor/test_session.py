@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.gesture_editor.handling import Dropped, KeyPressed, Moved, Pressed, Released
-from app.gesture_editor.preview import Performance, Preview
-from app.gesture_editor.session import KEEP_INTERVAL_S, EditorSession
-from app.gesture_editor.tour import Hand, draw_tour
-from characters import Character, Clip, Pose
-from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.gestures.files import load_gesture
-from characters.errors import CharacterError
+from cubeling.app.gesture_editor.handling import Dropped, KeyPressed, Moved, Pressed, Released
+from cubeling.app.gesture_editor.preview import Performance, Preview
+from cubeling.app.gesture_editor.session import KEEP_INTERVAL_S, EditorSession
+from cubeling.app.gesture_editor.tour import Hand, draw_tour
+from cubeling.characters import Character, Clip, Pose
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
+from cubeling.characters.behaviour.gestures.files import load_gesture
+from cubeling.characters.errors import CharacterError
 
 
 def hand_height(preview: Preview, performance: Performance, time: float) -> float:

@@ -6,10 +6,10 @@ from pathlib import Path
 import glfw
 import numpy as np
 
-from app.gesture_editor.panels.layout import widget_named
-from app.gesture_editor.tour import Hand
-from app.gesture_editor.window import EditorWindow
-from characters.behaviour.gestures.files import load_gesture
+from cubeling.app.gesture_editor.panels.layout import widget_named
+from cubeling.app.gesture_editor.tour import Hand
+from cubeling.app.gesture_editor.window import EditorWindow
+from cubeling.characters.behaviour.gestures.files import load_gesture
 
 
 def main(folder: str) -> None:

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import cv2
 import numpy as np
 
-from app.latency.pattern import SIZE_PX as PATTERN_SIZE_PX
-from tracking import Frame, FrameSource, Health, Intrinsics
+from cubeling.app.latency.pattern import SIZE_PX as PATTERN_SIZE_PX
+from cubeling.tracking import Frame, FrameSource, Health, Intrinsics
 
 SIZE = (384, 216)
 

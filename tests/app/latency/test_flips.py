@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from app.errors import AppError
-from app.latency.flips import FlipDetector, picture_age
-from app.latency.session import PATIENCE_S, LatencySession
+from cubeling.app.errors import AppError
+from cubeling.app.latency.flips import FlipDetector, picture_age
+from cubeling.app.latency.session import PATIENCE_S, LatencySession
+from cubeling.tracking import LiveFrames
 from tests.app.latency.simulated import SimulatedCamera, SimulatedClock, SimulatedScreen
-from tracking import LiveFrames
 
 
 def opened(lag=0.0, **camera):

@@ -7,15 +7,15 @@ from functools import partial
 import numpy as np
 import pytest
 
-from app.commands import latency as command
-from app.latency import program, window
-from app.latency.program import ProgramTimes, program_times
-from app.latency.result import LatencyResult, Spread, advice, motion_to_photon
-from app.latency.session import LatencySession
-from app.session import SessionOptions
-from app.ui.screen import NullScreen
+from cubeling.app.commands import latency as command
+from cubeling.app.latency import program, window
+from cubeling.app.latency.program import ProgramTimes, program_times
+from cubeling.app.latency.result import LatencyResult, Spread, advice, motion_to_photon
+from cubeling.app.latency.session import LatencySession
+from cubeling.app.session import SessionOptions
+from cubeling.app.ui.screen import NullScreen
+from cubeling.tracking import Health
 from tests.app.latency.simulated import SimulatedCamera, SimulatedClock, SimulatedScreen
-from tracking import Health
 
 
 def session_of(stamps, seconds):

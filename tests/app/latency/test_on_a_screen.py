@@ -27,7 +27,7 @@ def test_the_camera_sees_the_flips_of_the_window(screen, tmp_path):
     asked = ("--flips", str(FLIPS), "--scenario", "none", "--json", "l.json")
     arguments = ("--source", camera.url, *asked)
     done = subprocess.run(
-        [sys.executable, "-c", "from app.cli import main; main()", "latency", *arguments],
+        [sys.executable, "-c", "from cubeling.app.cli import main; main()", "latency", *arguments],
         env=screen.environment,
         cwd=tmp_path,
         capture_output=True,

@@ -4,14 +4,14 @@ import itertools
 
 import pytest
 
-from app.moods import read_history
-from app.pipeline.playground import Playground
-from app.running.opening import intrinsics_for
-from app.session import Recorder
-from robot.protocol.schema import pack
-from robot.protocol.wire import encode_frame
+from cubeling.app.moods import read_history
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.session import Recorder
+from cubeling.robot.protocol.schema import pack
+from cubeling.robot.protocol.wire import encode_frame
+from cubeling.tracking import open_source
 from tests.app.moods.talking import SAID
-from tracking import open_source
 
 FRAME = 1 / 30
 

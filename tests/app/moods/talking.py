@@ -2,7 +2,7 @@
 
 import xml.etree.ElementTree as ElementTree
 
-from robot.protocol import messages as m
+from cubeling.robot.protocol import messages as m
 
 
 def state(valence, arousal, mood=0):

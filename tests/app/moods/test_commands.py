@@ -9,9 +9,9 @@ import sys
 import numpy as np
 import pytest
 
-from affect import Personality
-from app.errors import AppError
-from app.moods import read_history, read_robot_traces
+from cubeling.affect import Personality
+from cubeling.app.errors import AppError
+from cubeling.app.moods import read_history, read_robot_traces
 from tests.app.moods.talking import words_of
 
 

@@ -7,18 +7,18 @@ import json
 import numpy as np
 import pytest
 
-from affect import Personality
-from app.errors import AppError
-from app.moods import read_history, read_robot_traces, replay_with, robot_traces
-from app.pipeline.playground import Playground
-from app.running.opening import intrinsics_for
-from app.session import START_OVER_EVENT, Recorder
-from characters import LocomotionIntent
-from robot.protocol import messages as m
-from robot.protocol.schema import pack
-from robot.protocol.wire import encode_frame
+from cubeling.affect import Personality
+from cubeling.app.errors import AppError
+from cubeling.app.moods import read_history, read_robot_traces, replay_with, robot_traces
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.session import START_OVER_EVENT, Recorder
+from cubeling.characters import LocomotionIntent
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.schema import pack
+from cubeling.robot.protocol.wire import encode_frame
+from cubeling.tracking import open_source
 from tests.app.moods.talking import SAID, state
-from tracking import open_source
 
 FRAME = 1 / 30
 

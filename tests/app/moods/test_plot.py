@@ -8,10 +8,10 @@ import pypdfium2
 import pytest
 from PIL import Image
 
-from affect import LABEL_SETS, Personality
-from app.moods import read_robot_traces, replay_with
-from app.moods.plot import save_plot
-from app.moods.regions import regions, runs
+from cubeling.affect import LABEL_SETS, Personality
+from cubeling.app.moods import read_robot_traces, replay_with
+from cubeling.app.moods.plot import save_plot
+from cubeling.app.moods.regions import regions, runs
 from tests.app.moods.talking import words_of
 
 THESIS = LABEL_SETS["thesis"]
@@ -76,7 +76,7 @@ def test_the_plot_of_a_long_session_is_a_small_file(history, bundled_session, tm
 
 def test_without_matplotlib_the_command_names_the_extra(cubeling, short_session, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    monkeypatch.delitem(sys.modules, "app.moods.plot", raising=False)
+    monkeypatch.delitem(sys.modules, "cubeling.app.moods.plot", raising=False)
     code, out, told = cubeling("mood", "plot", short_session)
     assert (code, out) == (2, "")
     assert "pip install matplotlib" in told

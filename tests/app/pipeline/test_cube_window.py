@@ -5,24 +5,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.errors import AppError
-from app.pipeline.cube_window import (
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.cube_window import (
     DWELL_S,
     INVITATION_S,
     OPENING_S,
     CubeWindow,
     inside_of,
 )
-from app.pipeline.playground import Playground
-from app.pipeline.scenario import Inputs
-from app.running.opening import intrinsics_for
-from app.session.encoding import encode
-from characters import ActionIntent, Character, CharacterCommand
-from characters.rendering import WALL_SHARE, Stage, View, create_context
-from characters.rendering.projection import project
-from tracking import CubeModel, CubeState
-from tracking.gestures.table import SIDE_NORMALS
-from tracking.synthetic import open_synthetic
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.session.encoding import encode
+from cubeling.characters import ActionIntent, Character, CharacterCommand
+from cubeling.characters.rendering import WALL_SHARE, Stage, View, create_context
+from cubeling.characters.rendering.projection import project
+from cubeling.tracking import CubeModel, CubeState
+from cubeling.tracking.gestures.table import SIDE_NORMALS
+from cubeling.tracking.synthetic import open_synthetic
 
 FRAME_S = 1 / 30
 UP_TO_CAMERA = np.array([[1.0, 0, 0, 0], [0, -0.8, -0.6, 0.03], [0, 0.6, -0.8, 0.6], [0, 0, 0, 1]])

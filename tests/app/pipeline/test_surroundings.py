@@ -5,18 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.errors import AppError
-from app.pipeline.playground import Playground
-from app.pipeline.surroundings import (
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.surroundings import (
     FOCUSING_S,
     REALISM_CHOICES,
     Autofocus,
     Surroundings,
     realism_of,
 )
-from app.running.opening import intrinsics_for
-from tracking import CubeGestures, CubeTracker
-from tracking.synthetic import open_synthetic
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.tracking import CubeGestures, CubeTracker
+from cubeling.tracking.synthetic import open_synthetic
 
 FRAMES = 12
 

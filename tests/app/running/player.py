@@ -2,11 +2,11 @@
 
 from collections import deque
 
-from app.pipeline.scenario import Inputs
-from app.running.opened_session import OpenedSession
-from app.running.summary import Summary
-from app.session.encoding import encode
-from app.ui.screen import NullScreen
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.running.opened_session import OpenedSession
+from cubeling.app.running.summary import Summary
+from cubeling.app.session.encoding import encode
+from cubeling.app.ui.screen import NullScreen
 
 
 class Player(NullScreen):

@@ -2,7 +2,7 @@
 
 import itertools
 
-from tracking import open_source
+from cubeling.tracking import open_source
 
 
 class RecordedCamera:

@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from app.running.opening import open_session
-from app.running.runner import run
-from app.running.summary import Summary
-from app.session import SessionOptions, events, messages, session_info
-from app.ui.cards.overlay import interrupted
-from app.ui.notice import Notice, notice
-from app.ui.screen import NullScreen
+from cubeling.app.running.opening import open_session
+from cubeling.app.running.runner import run
+from cubeling.app.running.summary import Summary
+from cubeling.app.session import SessionOptions, events, messages, session_info
+from cubeling.app.ui.cards.overlay import interrupted
+from cubeling.app.ui.notice import Notice, notice
+from cubeling.app.ui.screen import NullScreen
+from cubeling.tracking import TrackingError
+from cubeling.tracking.sources.base import LiveFrames
+from cubeling.tracking.sources.device import DeviceSetting, Health
 from tests.app.running.recorded_camera import RecordedCamera
-from tracking import TrackingError
-from tracking.sources.base import LiveFrames
-from tracking.sources.device import DeviceSetting, Health
 
 RUNNING = Health(
     "camera 0", "running", 0.0, rate=30.0, settings=(DeviceSetting("focus", True, "30"),)

@@ -11,17 +11,17 @@ import cv2
 import numpy as np
 import pytest
 
-from app.running.opening import open_session
-from app.running.playback import parts
-from app.running.playback.background import BackgroundCall
-from app.running.runner import run
-from app.session import SessionOptions, messages
-from app.ui.playback.requests import Choose, ListChoices, Record
-from robot import SimulatedPort
-from robot.link.ports import SerialPort
+from cubeling.app.running.opening import open_session
+from cubeling.app.running.playback import parts
+from cubeling.app.running.playback.background import BackgroundCall
+from cubeling.app.running.runner import run
+from cubeling.app.session import SessionOptions, messages
+from cubeling.app.ui.playback.requests import Choose, ListChoices, Record
+from cubeling.robot import SimulatedPort
+from cubeling.robot.link.ports import SerialPort
+from cubeling.tracking import TrackingError
 from tests.app.running.player import Player
 from tests.app.running.test_transport import LiveSession
-from tracking import TrackingError
 
 
 @pytest.fixture
@@ -74,7 +74,7 @@ def asked(part, value, at=6):
 
 def test_another_character_goes_on_where_the_first_one_stands(play, tmp_path):
     path = tmp_path / "mine.glb"
-    with resources.as_file(resources.files("characters") / "assets" / "vleo.glb") as asset:
+    with resources.as_file(resources.files("cubeling.characters") / "assets" / "vleo.glb") as asset:
         shutil.copy(asset, path)
     player = play(*asked("character", str(path)))
     assert player.notices == [f"Opening {path} …", f"The character is now {path}"]

@@ -6,16 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.pipeline.other_cube import LOOK_AFTER_S, advice, cube_for
-from app.pipeline.playground import Playground
-from app.pipeline.scenario import Inputs
-from app.running.opening import open_session
-from app.running.runner import run
-from app.scenarios import SCENARIOS
-from app.session import SessionOptions
-from app.ui.screen import NullScreen
-from tracking import CubeModel, Frame, Intrinsics, open_source
-from tracking.cube.model import CUBES_FOLDER
+from cubeling.app.pipeline.other_cube import LOOK_AFTER_S, advice, cube_for
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.running.opening import open_session
+from cubeling.app.running.runner import run
+from cubeling.app.scenarios import SCENARIOS
+from cubeling.app.session import SessionOptions
+from cubeling.app.ui.screen import NullScreen
+from cubeling.tracking import CubeModel, Frame, Intrinsics, open_source
+from cubeling.tracking.cube.model import CUBES_FOLDER
 
 COMPANION = CubeModel.load("companion")
 PLAIN = replace(

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from app.pipeline.playground import Playground
-from app.running.clock import Pace
-from app.running.opening import open_session
-from app.running.runner import run
-from app.session import SessionOptions
-from app.ui.screen import NullScreen
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.running.clock import Pace
+from cubeling.app.running.opening import open_session
+from cubeling.app.running.runner import run
+from cubeling.app.session import SessionOptions
+from cubeling.app.ui.screen import NullScreen
 
 STARTED_OVER = frozenset({round(1 / 30, 9), round(4 / 30, 9)})
 

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.errors import AppError
-from app.running.quality_control import MAX_TRIAL_S, QualityControl, checked_quality
-from characters.rendering import QUALITIES
+from cubeling.app.errors import AppError
+from cubeling.app.running.quality_control import MAX_TRIAL_S, QualityControl, checked_quality
+from cubeling.characters.rendering import QUALITIES
 
 RATE = 30.0
 

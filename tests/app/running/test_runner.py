@@ -5,14 +5,14 @@ import itertools
 
 import pytest
 
-from app.running import opening
-from app.running.clock import Pace, SessionClock
-from app.running.opening import open_session
-from app.running.runner import run
-from app.running.wire_tap import WireTap
-from app.session import SessionOptions, messages, session_info
-from robot import SimulatedPort
-from tracking import TrackingError, open_source
+from cubeling.app.running import opening
+from cubeling.app.running.clock import Pace, SessionClock
+from cubeling.app.running.opening import open_session
+from cubeling.app.running.runner import run
+from cubeling.app.running.wire_tap import WireTap
+from cubeling.app.session import SessionOptions, messages, session_info
+from cubeling.robot import SimulatedPort
+from cubeling.tracking import TrackingError, open_source
 
 
 class FailingSource:

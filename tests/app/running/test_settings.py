@@ -2,12 +2,12 @@
 
 import pytest
 
-from app.pipeline.scenario import Inputs
-from app.running.opening import open_session
-from app.running.runner import run
-from app.session import SessionOptions
-from app.ui.playback.requests import ChangeSetting
-from app.ui.screen import NullScreen
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.running.opening import open_session
+from cubeling.app.running.runner import run
+from cubeling.app.session import SessionOptions
+from cubeling.app.ui.playback.requests import ChangeSetting
+from cubeling.app.ui.screen import NullScreen
 
 
 class Changes(NullScreen):

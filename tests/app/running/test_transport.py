@@ -7,19 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.errors import AppError
-from app.moods.robot_traces import read_robot_traces
-from app.pipeline.playground import Playground
-from app.running import runner
-from app.running.opening import open_session
-from app.running.replay_check import check_session
-from app.running.runner import run
-from app.session import SessionOptions, events, messages, session_info
-from app.ui.playback.requests import MarkMoment, Pause, Record, Seek, SeekTo, StepFrames
-from robot.protocol.timing import FAILSAFE_AFTER as FAILSAFE_S
+from cubeling.app.errors import AppError
+from cubeling.app.moods.robot_traces import read_robot_traces
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.running import runner
+from cubeling.app.running.opening import open_session
+from cubeling.app.running.replay_check import check_session
+from cubeling.app.running.runner import run
+from cubeling.app.session import SessionOptions, events, messages, session_info
+from cubeling.app.ui.playback.requests import MarkMoment, Pause, Record, Seek, SeekTo, StepFrames
+from cubeling.robot.protocol.timing import FAILSAFE_AFTER as FAILSAFE_S
+from cubeling.tracking import Health
 from tests.app.running.player import Player
 from tests.app.running.recorded_camera import RecordedCamera
-from tracking import Health
 
 
 @pytest.fixture

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-import app
-from app.pipeline.registry import added_scenarios
-from app.pipeline.scenario import Inputs
-from app.scenarios import make_scenario, scenario_names
-from app.session import messages, session_info
-from app.session.bundled import bundled
-from app.session.encoding import decode
-from characters import CharacterCommand
+from cubeling import app
+from cubeling.app.pipeline.registry import added_scenarios
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.scenarios import make_scenario, scenario_names
+from cubeling.app.session import messages, session_info
+from cubeling.app.session.bundled import bundled
+from cubeling.app.session.encoding import decode
+from cubeling.characters import CharacterCommand
 
 PAGE = Path(app.__file__).parents[1] / "docs" / "your-own-scenario.md"
 (TOML,) = re.findall(r"```toml\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
@@ -46,8 +46,8 @@ def install(tmp_path_factory, monkeypatch):
         (info / "entry_points.txt").write_text("\n".join(lines))
         monkeypatch.syspath_prepend(site)
         monkeypatch.delitem(sys.modules, module, raising=False)
-        monkeypatch.delitem(sys.modules, "app.commands.session.play", raising=False)
-        monkeypatch.delitem(sys.modules, "app.commands.session.demo", raising=False)
+        monkeypatch.delitem(sys.modules, "cubeling.app.commands.session.play", raising=False)
+        monkeypatch.delitem(sys.modules, "cubeling.app.commands.session.demo", raising=False)
         importlib.invalidate_caches()
         added_scenarios.cache_clear()
 
@@ -55,7 +55,7 @@ def install(tmp_path_factory, monkeypatch):
     added_scenarios.cache_clear()
     for module in [name for name in sys.modules if name.startswith("cubeling_")]:
         del sys.modules[module]
-    for command in ("app.commands.session.play", "app.commands.session.demo"):
+    for command in ("cubeling.app.commands.session.play", "cubeling.app.commands.session.demo"):
         sys.modules.pop(command, None)  # their help lists what was installed
 
 

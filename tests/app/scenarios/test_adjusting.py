@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from affect import Personality
-from app.scenarios import Inputs, ScenarioSettings, make_scenario
+from cubeling.affect import Personality
+from cubeling.app.scenarios import Inputs, ScenarioSettings, make_scenario
 from tests.app.conftest import FRAME
 
 

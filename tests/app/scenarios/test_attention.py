@@ -4,11 +4,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.errors import AppError
-from app.pipeline.attention import LOOK_CHOICES, Attention
-from characters import CharacterCommand
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.attention import LOOK_CHOICES, Attention
+from cubeling.characters import CharacterCommand
+from cubeling.tracking import CubeControls, CubeState
 from tests.characters.commands import command
-from tracking import CubeControls, CubeState
 
 EDGE = 0.06
 TABLE = np.eye(4)

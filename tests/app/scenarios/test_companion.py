@@ -2,9 +2,9 @@
 
 import pytest
 
-from app.pipeline.scenario import Inputs
-from app.scenarios import make_scenario
-from tracking import CubeModel
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.scenarios import make_scenario
+from cubeling.tracking import CubeModel
 
 
 @pytest.fixture

@@ -6,23 +6,23 @@ import moderngl
 import numpy as np
 import pytest
 
-from affect import LABEL_SETS, Emotion, Personality
-from affect.traits import AffectImpulse
-from affect.words import closest_word
-from app.pipeline.playground import Playground
-from app.pipeline.scenario import EmotionTarget, Inputs
-from app.pipeline.step import ReplayInputs
-from app.running.robots import RobotLine
-from app.scenarios import SCENARIOS, make_scenario
-from app.scenarios.mood import MoodController
-from app.session import session_info
-from app.ui.cards.virtual_robot import VirtualRobot
-from characters import Animator, Character, CharacterError
-from characters.rendering import create_context
-from robot import Catalogue, Telemetry
-from robot.drivers.cubeling.host import HostLink
-from robot.simulators.cubeling.simulator import Simulator
-from tracking import CubeState, Frame, Intrinsics
+from cubeling.affect import LABEL_SETS, Emotion, Personality
+from cubeling.affect.traits import AffectImpulse
+from cubeling.affect.words import closest_word
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import EmotionTarget, Inputs
+from cubeling.app.pipeline.step import ReplayInputs
+from cubeling.app.running.robots import RobotLine
+from cubeling.app.scenarios import SCENARIOS, make_scenario
+from cubeling.app.scenarios.mood import MoodController
+from cubeling.app.session import session_info
+from cubeling.app.ui.cards.virtual_robot import VirtualRobot
+from cubeling.characters import Animator, Character, CharacterError
+from cubeling.characters.rendering import create_context
+from cubeling.robot import Catalogue, Telemetry
+from cubeling.robot.drivers.cubeling.host import HostLink
+from cubeling.robot.simulators.cubeling.simulator import Simulator
+from cubeling.tracking import CubeState, Frame, Intrinsics
 
 LAG = 0.15
 """How long after a frame a simulated robot may still tell of the mood before [s]."""

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from app.pipeline.scenario import Inputs
-from app.scenarios import make_scenario
-from app.scenarios.follow import SHAKE_ACTIONS
-from characters import Animator, Character
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.scenarios import make_scenario
+from cubeling.app.scenarios.follow import SHAKE_ACTIONS
+from cubeling.characters import Animator, Character
 
 
 class Play:

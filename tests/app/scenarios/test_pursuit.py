@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from affect import Personality
-from app.pipeline.scenario import Inputs
-from app.scenarios import make_scenario
-from app.scenarios.pursuit import IGNORED_S, Pursuit
-from app.session.bundled import bundled
-from characters import Animator, Character, RootDelta
+from cubeling.affect import Personality
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.scenarios import make_scenario
+from cubeling.app.scenarios.pursuit import IGNORED_S, Pursuit
+from cubeling.app.session.bundled import bundled
+from cubeling.characters import Animator, Character, RootDelta
 from tests.bundled_characters import bundled_character
 from tests.characters.commands import command
 

@@ -7,16 +7,22 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.pipeline.scenario import Inputs, ScenarioSettings
-from app.pipeline.things import GRIP, Body, BodyParts, Thing
-from app.scenarios.reach import HINTS, Reach
-from app.scenarios.reach_behaviour import GESTURES
-from app.scenarios.reach_gifts import AT_HAND_M
-from app.scenarios.reach_intents import LEAVE_S, Ongoing, bundled_gesture, gesture_times, left
-from characters import Animator, Character
-from characters.behaviour.intents import ReachIntent, Times
-from characters.rendering.toys import TOYS, toy
-from tracking import CubeModel
+from cubeling.app.pipeline.scenario import Inputs, ScenarioSettings
+from cubeling.app.pipeline.things import GRIP, Body, BodyParts, Thing
+from cubeling.app.scenarios.reach import HINTS, Reach
+from cubeling.app.scenarios.reach_behaviour import GESTURES
+from cubeling.app.scenarios.reach_gifts import AT_HAND_M
+from cubeling.app.scenarios.reach_intents import (
+    LEAVE_S,
+    Ongoing,
+    bundled_gesture,
+    gesture_times,
+    left,
+)
+from cubeling.characters import Animator, Character
+from cubeling.characters.behaviour.intents import ReachIntent, Times
+from cubeling.characters.rendering.toys import TOYS, toy
+from cubeling.tracking import CubeModel
 
 
 class Play:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.scenarios.reach_catching import (
+from cubeling.app.scenarios.reach_catching import (
     EASIER,
     LOST_S,
     SHADE_S,

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.pipeline.things import GRIP
-from app.scenarios.reach_gift import HOP_M, HOP_S, SETTLE_S
-from app.scenarios.reach_gifts import AT_HAND_M, HOMES, PATIENCE_S, REJOICE_S, Gifts
+from cubeling.app.pipeline.things import GRIP
+from cubeling.app.scenarios.reach_gift import HOP_M, HOP_S, SETTLE_S
+from cubeling.app.scenarios.reach_gifts import AT_HAND_M, HOMES, PATIENCE_S, REJOICE_S, Gifts
 
 FRAME = 1 / 30
 EDGE = 0.06

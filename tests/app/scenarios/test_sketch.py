@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from app.pipeline.scenario import Inputs
-from app.scenarios import make_scenario
-from app.scenarios.sketch import MAX_POINTS
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.scenarios import make_scenario
+from cubeling.app.scenarios.sketch import MAX_POINTS
 
 
 @pytest.fixture

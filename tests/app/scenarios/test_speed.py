@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.scenarios.speed import IDLE_MAX_ANGLE, SPEED_MAPS, SpeedDial, corrected, legacy
+from cubeling.app.scenarios.speed import IDLE_MAX_ANGLE, SPEED_MAPS, SpeedDial, corrected, legacy
 
 DEGREES = [d / 4 for d in range(0, 721)]
 

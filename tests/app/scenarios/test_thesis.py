@@ -5,11 +5,11 @@ import itertools
 import numpy as np
 import pytest
 
-from app.pipeline.playground import Playground
-from app.running.opening import intrinsics_for
-from app.scenarios.speed import SPEED_MAPS
-from tracking import open_source
-from tracking.synthetic import open_synthetic
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.scenarios.speed import SPEED_MAPS
+from cubeling.tracking import open_source
+from cubeling.tracking.synthetic import open_synthetic
 
 SMALL = "width=640&height=360&rate=15&clutter=0&shadow=0&hand=0"
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from app.scenarios import SCENARIOS
-from app.session import messages
-from app.session.bundled import bundled
-from app.session.encoding import decode
-from tracking import CubeControls, CubeState
-from tracking.synthetic import open_synthetic
+from cubeling.app.scenarios import SCENARIOS
+from cubeling.app.session import messages
+from cubeling.app.session.bundled import bundled
+from cubeling.app.session.encoding import decode
+from cubeling.tracking import CubeControls, CubeState
+from cubeling.tracking.synthetic import open_synthetic
 
 
 def recorded(name, topic, kind):

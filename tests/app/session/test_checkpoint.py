@@ -8,15 +8,15 @@ import cv2
 import numpy as np
 import pytest
 
-from app.pipeline import step_renderer
-from app.pipeline.playground import Playground
-from app.pipeline.surroundings import Surroundings
-from app.running.opening import intrinsics_for
-from app.scenarios import SCENARIOS
-from app.session.bundled import bundled
-from app.session.encoding import encode
-from characters.rendering import create_context
-from tracking import StoredFrames, open_source
+from cubeling.app.pipeline import step_renderer
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.surroundings import Surroundings
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.scenarios import SCENARIOS
+from cubeling.app.session.bundled import bundled
+from cubeling.app.session.encoding import encode
+from cubeling.characters.rendering import create_context
+from cubeling.tracking import StoredFrames, open_source
 
 SKIPPED, BEFORE, AFTER = 150, 12, 5
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from app.running.opening import open_session
-from app.session import SessionOptions
-from characters import CharacterError
+from cubeling.app.running.opening import open_session
+from cubeling.app.session import SessionOptions
+from cubeling.characters import CharacterError
 
 
 def test_metadata_keep_the_controller_and_its_motions():

@@ -9,11 +9,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affect import Emotion
-from app.pipeline.scenario import EmotionTarget
-from app.session.encoding import MESSAGE_TYPES, decode, encode, schema, upgraded
-from characters import ActionIntent, CharacterCommand, LocomotionIntent, Pose, PosedCharacter
-from tracking import CubeControls, CubeState
+from cubeling.affect import Emotion
+from cubeling.app.pipeline.scenario import EmotionTarget
+from cubeling.app.session.encoding import MESSAGE_TYPES, decode, encode, schema, upgraded
+from cubeling.characters import (
+    ActionIntent,
+    CharacterCommand,
+    LocomotionIntent,
+    Pose,
+    PosedCharacter,
+)
+from cubeling.tracking import CubeControls, CubeState
 
 NUMBERS = st.floats(-1e3, 1e3)
 

@@ -6,25 +6,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.errors import AppError
-from app.pipeline.playground import Playground
-from app.pipeline.scenario import Inputs
-from app.running.opening import intrinsics_for, open_session
-from app.running.replay_check import check_session
-from app.running.runner import run
-from app.scenarios import SCENARIOS
-from app.session import (
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.running.opening import intrinsics_for, open_session
+from cubeling.app.running.replay_check import check_session
+from cubeling.app.running.runner import run
+from cubeling.app.scenarios import SCENARIOS
+from cubeling.app.session import (
     SessionOptions,
     messages,
     opening_times,
     session_info,
     start_over_times,
 )
-from app.session.bundled import bundled
-from app.session.encoding import MESSAGE_TYPES, decode, encode
-from app.session.replay_inputs import START_STAGES, read_replay_inputs
-from app.ui.screen import NullScreen
-from tracking import open_source
+from cubeling.app.session.bundled import bundled
+from cubeling.app.session.encoding import MESSAGE_TYPES, decode, encode
+from cubeling.app.session.replay_inputs import START_STAGES, read_replay_inputs
+from cubeling.app.ui.screen import NullScreen
+from cubeling.tracking import open_source
 
 MAX_FRAMES = 240
 TWICE_FRAMES = 120

@@ -5,12 +5,12 @@ from functools import cache
 import numpy as np
 import pytest
 
-from app.errors import AppError
-from app.session import Recorder, events, frame_encoder, messages, session_info
-from app.session.frames import CODECS
-from tracking import CubeTracker, Frame, Intrinsics
-from tracking.geometry import se3
-from tracking.synthetic import open_synthetic
+from cubeling.app.errors import AppError
+from cubeling.app.session import Recorder, events, frame_encoder, messages, session_info
+from cubeling.app.session.frames import CODECS
+from cubeling.tracking import CubeTracker, Frame, Intrinsics
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.synthetic import open_synthetic
 
 SIZE = (64, 48)
 
@@ -25,7 +25,7 @@ def frames(count=20, rate=30):
 @pytest.mark.parametrize("codec", CODECS)
 def test_an_encoded_frame_is_what_a_replay_decodes(codec, recorded):
     path, frames_written = recorded(codec)
-    from tracking import open_source
+    from cubeling.tracking import open_source
 
     with open_source(str(path)) as source:
         again = list(source)
@@ -142,7 +142,7 @@ def recorder_steps():
     """Return a function that records so many steps of a real pipeline, without pictures."""
     import dataclasses
 
-    from app.pipeline.playground import Playground
+    from cubeling.app.pipeline.playground import Playground
 
     def write(recorder, count, codec="jpeg"):
         playground = Playground("follow", Intrinsics.guess(SIZE))

@@ -5,9 +5,9 @@ import wave
 import numpy as np
 import pytest
 
-from app.errors import AppError
-from app.sound import SAMPLE_RATE, SoundBank, bank, write_wave
-from app.sound.bank import read_wave
+from cubeling.app.errors import AppError
+from cubeling.app.sound import SAMPLE_RATE, SoundBank, bank, write_wave
+from cubeling.app.sound.bank import read_wave
 
 
 def write(path, numbers, width=2, channels=1, rate=SAMPLE_RATE):

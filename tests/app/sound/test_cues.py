@@ -5,14 +5,14 @@ import dataclasses
 import numpy as np
 import pytest
 
-from affect import Emotion
-from app.pipeline.scenario import EmotionTarget, Outcome
-from app.pipeline.step import Step
-from app.sound import SoundCues
-from characters import Animator, Character, RootDelta
-from characters.rendering import FloorPath
+from cubeling.affect import Emotion
+from cubeling.app.pipeline.scenario import EmotionTarget, Outcome
+from cubeling.app.pipeline.step import Step
+from cubeling.app.sound import SoundCues
+from cubeling.characters import Animator, Character, RootDelta
+from cubeling.characters.rendering import FloorPath
+from cubeling.tracking import CubeState, Frame
 from tests.characters.commands import command
-from tracking import CubeState, Frame
 
 FRAME = 1 / 30
 LIPS_PART_S = 0.12  # after the beginning of "mwah"

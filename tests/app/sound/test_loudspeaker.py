@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from app.sound import Cue, Loudspeaker, Mixer, SoundBank, loudspeaker
+from cubeling.app.sound import Cue, Loudspeaker, Mixer, SoundBank, loudspeaker
 
 
 class PortAudioError(Exception):

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.sound import Cue, Mixer, SoundBank
-from app.sound.mixer import CEILING, FADE_OUT, KNEE, MAX_SOUNDS
+from cubeling.app.sound import Cue, Mixer, SoundBank
+from cubeling.app.sound.mixer import CEILING, FADE_OUT, KNEE, MAX_SOUNDS
 
 RAMP = np.linspace(0.1, 0.5, 1000)
 

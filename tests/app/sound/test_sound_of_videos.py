@@ -8,16 +8,16 @@ import av
 import numpy as np
 import pytest
 
-from app.commands.session import replay
-from app.pipeline.playground import Playground
-from app.running.opening import intrinsics_for, open_sound
-from app.session import Recorder, SessionOptions
-from app.sound import Cue, Mixer, SessionSound, SoundBank, SoundCues
-from app.ui.video_file import VideoFile
-from characters import Animator, Character
-from characters.control.layers import FootLockLayer
+from cubeling.app.commands.session import replay
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.running.opening import intrinsics_for, open_sound
+from cubeling.app.session import Recorder, SessionOptions
+from cubeling.app.sound import Cue, Mixer, SessionSound, SoundBank, SoundCues
+from cubeling.app.ui.video_file import VideoFile
+from cubeling.characters import Animator, Character
+from cubeling.characters.control.layers import FootLockLayer
+from cubeling.tracking import open_source
 from tests.characters.commands import command
-from tracking import open_source
 
 TICK = np.full(480, 0.8) * np.sin(np.arange(480) * 2 * np.pi / 24)
 """10 ms of 2 kHz."""
@@ -166,7 +166,7 @@ def test_only_what_is_shown_is_heard(changes, heard):
 
 def test_a_muted_session_starts_no_loudspeaker_until_it_is_to_be_heard(monkeypatch):
     started: list[Mixer] = []
-    monkeypatch.setattr("app.sound.session_sound.Loudspeaker", started.append)
+    monkeypatch.setattr("cubeling.app.sound.session_sound.Loudspeaker", started.append)
     sound = SessionSound(Mixer(SoundBank()), live=True, muted=True)
     assert (started, sound.problem) == ([], "")
     sound.muted = False

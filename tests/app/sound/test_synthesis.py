@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from app.sound import SAMPLE_RATE, SOUNDS
-from app.sound.bank import VARIANT_COUNT, SoundBank, synthesised
-from app.sound.synthesis import MAX_AMPLITUDE, loudness
+from cubeling.app.sound import SAMPLE_RATE, SOUNDS
+from cubeling.app.sound.bank import VARIANT_COUNT, SoundBank, synthesised
+from cubeling.app.sound.synthesis import MAX_AMPLITUDE, loudness
 
 
 @pytest.fixture(scope="module")

@@ -5,10 +5,10 @@ from importlib import resources
 
 import pytest
 
-from app.errors import AppError
-from app.scenarios import SCENARIOS
-from app.speaking.lines import bundled_lines, read_lines
-from characters.speech.tagged_text import TaggedText
+from cubeling.app.errors import AppError
+from cubeling.app.scenarios import SCENARIOS
+from cubeling.app.speaking.lines import bundled_lines, read_lines
+from cubeling.characters.speech.tagged_text import TaggedText
 
 
 @pytest.mark.parametrize("scenario", SCENARIOS)
@@ -55,7 +55,7 @@ def test_a_single_line_need_not_be_a_list(tmp_path):
 
 
 def test_bundled_lines_are_in_the_package():
-    folder = resources.files("app") / "scenarios" / "lines"
+    folder = resources.files("cubeling.app") / "scenarios" / "lines"
     for file in folder.iterdir():
         tomllib.loads(file.read_text("utf-8"))
         assert file.name.removesuffix(".toml") in SCENARIOS

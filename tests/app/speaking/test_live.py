@@ -6,11 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from app.sound import NoSoundError
-from app.speaking.live import LivePerformer
-from app.speaking.microphone import BLOCK, MAX_BLOCKS, MICROPHONE_HZ, Microphone
-from characters import Character
-from characters.face.visemes.mouth_morphs import MouthMorphs
+from cubeling.app.sound import NoSoundError
+from cubeling.app.speaking.live import LivePerformer
+from cubeling.app.speaking.microphone import BLOCK, MAX_BLOCKS, MICROPHONE_HZ, Microphone
+from cubeling.characters import Character
+from cubeling.characters.face.visemes.mouth_morphs import MouthMorphs
 
 FRAME = 1 / 30
 

@@ -5,16 +5,16 @@ import dataclasses
 import numpy as np
 import pytest
 
-from affect import Emotion
-from app.pipeline.scenario import EmotionTarget, Outcome
-from app.pipeline.step import Step
-from app.speaking.lines import ScenarioLines
-from app.speaking.moments import AGAIN_S, Moments
-from characters import ActionIntent, CharacterCommand, Pose, PosedCharacter
-from characters.control.command import SpeechIntent
-from characters.speech.speech import Utterance
+from cubeling.affect import Emotion
+from cubeling.app.pipeline.scenario import EmotionTarget, Outcome
+from cubeling.app.pipeline.step import Step
+from cubeling.app.speaking.lines import ScenarioLines
+from cubeling.app.speaking.moments import AGAIN_S, Moments
+from cubeling.characters import ActionIntent, CharacterCommand, Pose, PosedCharacter
+from cubeling.characters.control.command import SpeechIntent
+from cubeling.characters.speech.speech import Utterance
+from cubeling.tracking import CubeState, Frame
 from tests.characters.commands import command
-from tracking import CubeState, Frame
 
 LINES = ScenarioLines("en", {"kiss": ("One", "Two"), "shout": ("Hey",), "reached": ("Here",)})
 

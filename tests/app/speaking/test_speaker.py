@@ -6,17 +6,17 @@ from pathlib import Path
 
 import pytest
 
-from app.running.frame_loop import FrameLoop
-from app.running.opening import open_session
-from app.running.replay_check import check_session
-from app.running.runner import run
-from app.running.summary import Summary
-from app.session import SessionOptions, messages, spoken_lines
-from app.session.bundled import bundled
-from app.session.encoding import decode
-from app.speaking import opening, voices
-from characters import Character, CharacterCommand, CharacterError
-from characters.speech.voices import Voice, VoiceError
+from cubeling.app.running.frame_loop import FrameLoop
+from cubeling.app.running.opening import open_session
+from cubeling.app.running.replay_check import check_session
+from cubeling.app.running.runner import run
+from cubeling.app.running.summary import Summary
+from cubeling.app.session import SessionOptions, messages, spoken_lines
+from cubeling.app.session.bundled import bundled
+from cubeling.app.session.encoding import decode
+from cubeling.app.speaking import opening, voices
+from cubeling.characters import Character, CharacterCommand, CharacterError
+from cubeling.characters.speech.voices import Voice, VoiceError
 
 BUZZ = """
 import json, math, struct, sys

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import wilcoxon
 
-from app.study.cmos import ANSWER_SCORES, PUBLISHED_THREE_LEVEL, Votes, ranking
+from cubeling.app.study.cmos import ANSWER_SCORES, PUBLISHED_THREE_LEVEL, Votes, ranking
 
 # 124 answers each. The thesis prints percentages, means and medians; these counts have them.
 THESIS = {

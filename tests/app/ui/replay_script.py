@@ -4,8 +4,8 @@ import sys
 
 import glfw
 
-from app.cli import main
-from app.ui.window import Window
+from cubeling.app.cli import main
+from cubeling.app.ui.window import Window
 
 
 def press_at_the_end(window: Window, status) -> None:

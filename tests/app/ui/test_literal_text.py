@@ -6,11 +6,11 @@ from types import SimpleNamespace
 import pytest
 from rich.console import Console
 
-from app import cli
-from app.running.summary import Summary
-from app.ui import roster
-from robot import LogLine
-from robot.network import Member
+from cubeling.app import cli
+from cubeling.app.running.summary import Summary
+from cubeling.app.ui import roster
+from cubeling.robot import LogLine
+from cubeling.robot.network import Member
 
 WILD = "[red]R\x1b[2J"
 SHOWN = r"[red]R\x1b[2J"

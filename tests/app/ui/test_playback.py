@@ -7,13 +7,13 @@ import cv2
 import numpy as np
 import pytest
 
-from app.output_path import dated_file, short_path
-from app.pipeline.scenario import Inputs
-from app.ui.playback import timeline
-from app.ui.playback.announcements import NOTICE_S
-from app.ui.playback.keys import BINDINGS, key_rows, key_table
-from app.ui.playback.layer import PlaybackLayer
-from app.ui.playback.requests import (
+from cubeling.app.output_path import dated_file, short_path
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.ui.playback import timeline
+from cubeling.app.ui.playback.announcements import NOTICE_S
+from cubeling.app.ui.playback.keys import BINDINGS, key_rows, key_table
+from cubeling.app.ui.playback.layer import PlaybackLayer
+from cubeling.app.ui.playback.requests import (
     Choose,
     ListChoices,
     OpenCube,
@@ -24,7 +24,7 @@ from app.ui.playback.requests import (
     StartOver,
     WindowRequest,
 )
-from app.ui.playback.status import Choice, EndCard, Mark, Position, SessionStatus
+from cubeling.app.ui.playback.status import Choice, EndCard, Mark, Position, SessionStatus
 
 HERE = Path(__file__).parent
 PICTURE = np.full((360, 640, 3), 90, np.uint8)

@@ -9,17 +9,17 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from app.commands.session import demo
-from app.errors import AppError
-from app.pipeline.playground import Playground
-from app.pipeline.step import RobotView
-from app.running.summary import Summary
-from app.ui.canvas import Canvas, rounded_rectangle
-from app.ui.cards.overlay import overlay
-from app.ui.frame_sheet import MAX_FRAMES, FrameSheet
-from app.ui.output_file import ENDING_RATE, ENDING_S
-from app.ui.video_file import VIDEO_FORMATS, VideoFile
-from tracking import LensEstimate
+from cubeling.app.commands.session import demo
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.step import RobotView
+from cubeling.app.running.summary import Summary
+from cubeling.app.ui.canvas import Canvas, rounded_rectangle
+from cubeling.app.ui.cards.overlay import overlay
+from cubeling.app.ui.frame_sheet import MAX_FRAMES, FrameSheet
+from cubeling.app.ui.output_file import ENDING_RATE, ENDING_S
+from cubeling.app.ui.video_file import VIDEO_FORMATS, VideoFile
+from cubeling.tracking import LensEstimate
 
 ROBOT = RobotView("ready", 0.4, "happy")
 

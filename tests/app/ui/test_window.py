@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from app.preferences import Preferences, PreferenceStore
+from cubeling.app.preferences import Preferences, PreferenceStore
 from tests.virtual_screen import VirtualScreen
 
 SCRIPT = Path(__file__).with_name("window_script.py")

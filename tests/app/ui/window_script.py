@@ -6,14 +6,14 @@ import glfw
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pipeline.playground import Playground
-from app.pipeline.step import RobotView, Step
-from app.running.opening import intrinsics_for
-from app.ui.notice import Notice
-from app.ui.playback.requests import Record, Seek
-from app.ui.window import Window
-from app.ui.window.window import mirrored
-from tracking import open_source
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.ui.notice import Notice
+from cubeling.app.ui.playback.requests import Record, Seek
+from cubeling.app.ui.window import Window
+from cubeling.app.ui.window.window import mirrored
+from cubeling.tracking import open_source
 
 
 def pictures_of(window: Window, step: Step, robot: RobotView) -> NDArray[np.uint8]:

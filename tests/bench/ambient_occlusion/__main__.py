@@ -25,9 +25,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters.rendering import create_context, draws_in_software
-from characters.rendering.deferred.ambient_occlusion import ESTIMATORS
-from characters.rendering.programs import ShaderPrograms
+from cubeling.characters.rendering import create_context, draws_in_software
+from cubeling.characters.rendering.deferred.ambient_occlusion import ESTIMATORS
+from cubeling.characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.product import ProductQuality, product_quality
 from tests.bench.ambient_occlusion.quality import (
     SAMPLES,

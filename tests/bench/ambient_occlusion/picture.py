@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from characters.rendering import create_context
-from characters.rendering.deferred.ambient_occlusion import ESTIMATORS
-from characters.rendering.programs import ShaderPrograms
+from cubeling.characters.rendering import create_context
+from cubeling.characters.rendering.deferred.ambient_occlusion import ESTIMATORS
+from cubeling.characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.scenes import load
 from tests.bench.ambient_occlusion.scoring import (
     THESIS,

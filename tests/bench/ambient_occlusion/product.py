@@ -6,11 +6,11 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.character import Character
-from characters.rendering import Effect, Quality, Stage
-from characters.rendering.deferred.ambient_occlusion import AmbientOcclusionSettings
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.resources import CharacterLayer, FrameResources
+from cubeling.characters.model.character import Character
+from cubeling.characters.rendering import Effect, Quality, Stage
+from cubeling.characters.rendering.deferred.ambient_occlusion import AmbientOcclusionSettings
+from cubeling.characters.rendering.passes.render_pass import RenderPass
+from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
 from tests.bench.ambient_occlusion.scenes import floor, posed
 from tests.bench.ambient_occlusion.scoring import Floats, Score, score
 from tests.bench.picture import SIZE, scene

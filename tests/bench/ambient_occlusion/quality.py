@@ -7,12 +7,12 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.deferred.ambient_occlusion import (
+from cubeling.characters.rendering.deferred.ambient_occlusion import (
     ESTIMATORS,
     AmbientOcclusionSettings,
 )
-from characters.rendering.deferred.sample_patterns import PATTERNS
-from characters.rendering.programs import ShaderPrograms
+from cubeling.characters.rendering.deferred.sample_patterns import PATTERNS
+from cubeling.characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.scenes import load
 from tests.bench.ambient_occlusion.scoring import (
     THESIS,

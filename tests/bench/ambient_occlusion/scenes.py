@@ -6,10 +6,10 @@ from functools import partial
 
 import numpy as np
 
-from characters.model.character import Character
-from characters.rendering.geometry.morph_mixer import MorphMixer
-from characters.rendering.geometry.vertices import CharacterVertices
-from characters.skeleton.pose import Pose
+from cubeling.characters.model.character import Character
+from cubeling.characters.rendering.geometry.morph_mixer import MorphMixer
+from cubeling.characters.rendering.geometry.vertices import CharacterVertices
+from cubeling.characters.skeleton.pose import Pose
 from tools.ray_tracing import Triangles
 from tools.ray_tracing.mesh import Array
 

@@ -8,13 +8,13 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.deferred.ambient_occlusion import (
+from cubeling.characters.rendering.deferred.ambient_occlusion import (
     NOTHING_M,
     AmbientOcclusion,
     AmbientOcclusionSettings,
 )
-from characters.rendering.programs import ShaderPrograms
-from characters.skeleton.pose import Array
+from cubeling.characters.rendering.programs import ShaderPrograms
+from cubeling.characters.skeleton.pose import Array
 from tests.bench.ambient_occlusion.scenes import Scene
 from tools.ray_tracing import (
     RayTracer,

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
-from characters.rendering.deferred.ambient_occlusion import (
+from cubeling.characters.rendering.deferred.ambient_occlusion import (
     AmbientOcclusion,
     AmbientOcclusionSettings,
 )
-from characters.rendering.programs import ShaderPrograms
+from cubeling.characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.scoring import GBuffer
 
 ROUNDS = 7

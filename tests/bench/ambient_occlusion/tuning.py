@@ -15,12 +15,12 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters.rendering import create_context
-from characters.rendering.deferred.ambient_occlusion import (
+from cubeling.characters.rendering import create_context
+from cubeling.characters.rendering.deferred.ambient_occlusion import (
     ESTIMATORS,
     Estimator,
 )
-from characters.rendering.programs import ShaderPrograms
+from cubeling.characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.scenes import TUNED, load
 from tests.bench.ambient_occlusion.scoring import THESIS, GBuffer, TracedScene, drawn
 

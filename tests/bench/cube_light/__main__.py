@@ -28,19 +28,19 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
+from cubeling.tracking.appearance.light import LightMeter
+from cubeling.tracking.appearance.light_fit import MeasuredLight
+from cubeling.tracking.cube.model import CubeModel, aruco_dictionary
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.state import CubeState
+from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.bench.cube_light.drawing import CAMERA, Drawing
 from tests.bench.cube_light.photographs import between_deg, real_light
 from tests.bench.cube_light.rooms import KINDS, OWN_ROWS, RATE, Room, plain
 from tests.bench.photographs.dodecahedron import (
     FOLDER,
 )
-from tracking.appearance.light import LightMeter
-from tracking.appearance.light_fit import MeasuredLight
-from tracking.cube.model import CubeModel, aruco_dictionary
-from tracking.geometry import se3
-from tracking.geometry.frame import Frame
-from tracking.geometry.state import CubeState
-from tracking.tracker.tracker import CubeTracker
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

@@ -4,13 +4,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from cubeling.tracking.cube.icons import FOLD_GAP_SHARE, ICON_COLOURS, ICON_SHARE, icon_mask
+from cubeling.tracking.cube.marker import marker_cells
+from cubeling.tracking.cube.model import FACE_AXES, CubeModel, Face
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.synthetic.camera_rays import CameraRays, averaged
 from tests.bench.cube_light.rooms import RATE, Room
-from tracking.cube.icons import FOLD_GAP_SHARE, ICON_COLOURS, ICON_SHARE, icon_mask
-from tracking.cube.marker import marker_cells
-from tracking.cube.model import FACE_AXES, CubeModel, Face
-from tracking.geometry import se3
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.synthetic.camera_rays import CameraRays, averaged
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

@@ -5,6 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from cubeling.tracking.appearance.light import DEFAULT_UP
+from cubeling.tracking.appearance.light_fit import fit_patches
+from cubeling.tracking.appearance.patches import PaperSampler
+from cubeling.tracking.geometry.projection import Projection
 from tests.bench.photographs.dodecahedron import (
     SIDE,
     body_model,
@@ -12,10 +16,6 @@ from tests.bench.photographs.dodecahedron import (
     photograph,
     reference,
 )
-from tracking.appearance.light import DEFAULT_UP
-from tracking.appearance.light_fit import fit_patches
-from tracking.appearance.patches import PaperSampler
-from tracking.geometry.projection import Projection
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

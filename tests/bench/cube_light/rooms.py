@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.geometry import se3
-from tracking.synthetic.source import look_at
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.synthetic.source import look_at
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

@@ -7,6 +7,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from cubeling.tracking.geometry.intrinsics import Intrinsics
 from tests.bench.photographs.dodecahedron import DICTIONARY, PHOTOGRAPHS, marker_poses
 from tests.bench.photographs.marker_corners import (
     Array,
@@ -18,7 +19,6 @@ from tests.bench.photographs.pairs import tracked_marker
 from tests.bench.photographs.scoring import StatedPose, chi_square, share
 from tests.bench.tracking.scoring import MIN_WRONG_ERROR
 from tests.bench.tracking.table import OURS
-from tracking.geometry.intrinsics import Intrinsics
 
 FOLDER = PHOTOGRAPHS / "aruco"
 

@@ -6,6 +6,10 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.state import CubeState
+from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.bench.photographs.dodecahedron import DICTIONARY, body_model, photograph, reference
 from tests.bench.photographs.marker_corners import Array, opencv_corners, opencv_detector
 from tests.bench.photographs.scoring import (
@@ -19,10 +23,6 @@ from tests.bench.photographs.scoring import (
 from tests.bench.photographs.variants import VARIANTS, View
 from tests.bench.tracking.scoring import CHI2_95_PERCENT
 from tests.bench.tracking.table import OURS, REFERENCE
-from tracking.geometry import se3
-from tracking.geometry.frame import Frame
-from tracking.geometry.state import CubeState
-from tracking.tracker.tracker import CubeTracker
 
 FOLLOWED = "followed"
 """Name of the frames 2 to 6 of a photograph that is shown again and again."""

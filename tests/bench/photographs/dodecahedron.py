@@ -12,6 +12,9 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from cubeling.tracking.cube.model import CubeModel, Face
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.intrinsics import Intrinsics
 from tests.bench.photographs.marker_corners import (
     Array,
     Picture,
@@ -20,9 +23,6 @@ from tests.bench.photographs.marker_corners import (
     opencv_corners,
     opencv_detector,
 )
-from tracking.cube.model import CubeModel, Face
-from tracking.geometry import se3
-from tracking.geometry.intrinsics import Intrinsics
 
 PHOTOGRAPHS = Path(__file__).parents[4] / "shared" / "data" / "photographs"
 FOLDER = PHOTOGRAPHS / "dodecahedron"

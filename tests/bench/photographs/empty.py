@@ -6,14 +6,14 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.bench.photographs import dodecahedron
 from tests.bench.photographs.boards import load_lens
 from tests.bench.photographs.marker_corners import Picture, opencv_corners, opencv_detector
 from tests.bench.photographs.scoring import timed
-from tracking.cube.model import CubeModel
-from tracking.geometry.frame import Frame
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.tracker.tracker import CubeTracker
 
 CUBE = "locomotion"
 

@@ -18,15 +18,15 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from cubeling.tracking.appearance.hand.finder import HandFinder
+from cubeling.tracking.appearance.hand.window import WindowFinder
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.arrays import Flags, Floats, Image
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.state import CubeState
+from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.bench.hand_mask import covered
 from tests.bench.photographs.dodecahedron import body_model, camera, paths, photograph
-from tracking.appearance.hand.finder import HandFinder
-from tracking.appearance.hand.window import WindowFinder
-from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Flags, Floats, Image
-from tracking.geometry.frame import Frame
-from tracking.geometry.state import CubeState
-from tracking.tracker.tracker import CubeTracker
 
 OUTLINES = Path(__file__).with_name("hand_outlines.json")
 """Outlines around the hand and around what is not scored, by the number of the photograph [px]."""

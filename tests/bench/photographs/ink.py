@@ -1,16 +1,16 @@
 """How light printed ink is in photographs: `python -m tests.bench.photographs.ink`.
 
 Light of the ink beside that of the paper around it, in every marker that OpenCV finds. It says from
-which share on a picture is hazy (`tracking.appearance.picture_quality.INK_SHARE`).
+which share on a picture is hazy (`cubeling.tracking.appearance.picture_quality.INK_SHARE`).
 """
 
 import cv2
 import numpy as np
 from rich.console import Console
 
+from cubeling.tracking.appearance.colour_space import LINEAR_FROM_SRGB
 from tests.bench.photographs.dodecahedron import DICTIONARY, paths, photograph
 from tests.bench.photographs.marker_corners import Array, Picture, opencv_detector
-from tracking.appearance.colour_space import LINEAR_FROM_SRGB
 
 SIDE_PX = 80
 """Side of a marker as it is looked at."""

@@ -7,6 +7,10 @@ from itertools import combinations
 
 import numpy as np
 
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.bench.photographs.dodecahedron import (
     DICTIONARY,
     MARKERS,
@@ -28,10 +32,6 @@ from tests.bench.photographs.scoring import (
 )
 from tests.bench.tracking.scoring import CHI2_95_PERCENT
 from tests.bench.tracking.table import OURS
-from tracking.geometry import se3
-from tracking.geometry.frame import Frame
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.tracker.tracker import CubeTracker
 
 MIN_PICTURES = 5
 """A pair needs as many pictures for a consensus."""

@@ -8,10 +8,10 @@ from typing import ParamSpec, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from cubeling.tracking.geometry import se3
 from tests.bench.photographs.dodecahedron import medoid
 from tests.bench.photographs.marker_corners import Array
 from tests.bench.tracking.scoring import MAX_RECALL_ERROR, MIN_WRONG_ERROR
-from tracking.geometry import se3
 
 Result = TypeVar("Result")
 Parameters = ParamSpec("Parameters")

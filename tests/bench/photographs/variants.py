@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
+from cubeling.tracking.geometry.intrinsics import Intrinsics
 from tests.bench.photographs.dodecahedron import camera, projected, reference
 from tests.bench.photographs.marker_corners import Array, Picture
-from tracking.geometry.intrinsics import Intrinsics
 
 BLUR_PX = 10.0
 """Length of the motion blur that is added [px]."""

@@ -22,10 +22,10 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
+from cubeling.tracking import CubeModel, CubeState, CubeTracker, Frame, Intrinsics
 from tests.bench.tracking.scoring import CHI2_95_PERCENT, MAX_RECALL_ERROR, MIN_WRONG_ERROR, errors
 from tests.bench.tracking.sequences import NAMES, Sequence, sequence
 from tests.bench.tracking.table import share
-from tracking import CubeModel, CubeState, CubeTracker, Frame, Intrinsics
 
 AT_REST = ("static", "static-one")
 """Sequences whose frames differ only by noise, which would dilute the count."""

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from cubeling.tracking import CubeModel
 from tests.bench.tracking.rivals.environments import ENTRIES, UnavailableError
 from tests.bench.tracking.rivals.worker import Worker
 from tests.bench.tracking.scoring import Score, Truth, score
 from tests.bench.tracking.sequences import Sequence
-from tracking import CubeModel
 
 FRAMES_PER_TURN = 12
 """Frames that a tracker processes before the next tracker's turn, so that other load on the machine

@@ -6,9 +6,9 @@ from typing import Any
 import cv2
 import numpy as np
 
+from cubeling.tracking import CubeModel, CubeState, CubeTracker, Frame, Intrinsics
 from tests.bench.tracking.rivals.serving import Array, Picture, Scene, serve
 from tests.bench.tracking.scoring import PREDICTION_S
-from tracking import CubeModel, CubeState, CubeTracker, Frame, Intrinsics
 
 
 class CubelingEntry:

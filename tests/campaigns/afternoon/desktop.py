@@ -91,7 +91,7 @@ class Program:
         self._words = folder / "printed.txt"
         self._output = self._words.open("w")
         self._process = subprocess.Popen(
-            [sys.executable, "-c", "from app.entry import main; main()", *arguments],
+            [sys.executable, "-c", "from cubeling.app.entry import main; main()", *arguments],
             env=desktop.environment,
             cwd=folder,
             stdin=subprocess.DEVNULL,

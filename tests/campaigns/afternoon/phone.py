@@ -9,7 +9,7 @@ from pathlib import Path
 
 import cv2
 
-from tracking import open_source
+from cubeling.tracking import open_source
 
 
 def jpegs(recording: Path) -> list[bytes]:

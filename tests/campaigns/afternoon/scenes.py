@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from app.session import events
+from cubeling.app.session import events
 from tests.campaigns.afternoon.desktop import AfternoonError, Desktop, Program, wait_for
 from tests.campaigns.afternoon.phone import PhoneServer
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from characters import CharacterError
-from characters.body.constraints import ConstrainedJoints
-from characters.model.constraints import JointConstraint
-from characters.skeleton import rotations
-from characters.skeleton.pose import Pose, Skeleton
+from cubeling.characters import CharacterError
+from cubeling.characters.body.constraints import ConstrainedJoints
+from cubeling.characters.model.constraints import JointConstraint
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Pose, Skeleton
 
 X = (1.0, 0.0, 0.0)
 PARENTS = (-1, 0, 1, 2, 1, 1)

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from characters.body.gaze import Gaze
-from characters.model.look_at import LookAt, RangeMap
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Pose, Skeleton
+from cubeling.characters.body.gaze import Gaze
+from cubeling.characters.model.look_at import LookAt, RangeMap
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Pose, Skeleton
 
 NAMES = ("hips", "spine", "chest", "neck", "head", "LeftEye", "RightEye")
 PLACES = [

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters.body.springs import SETTLING_STEPS, SpringBody
-from characters.model.springs import SpringBone, SpringCollider
-from characters.skeleton import rotations
-from characters.skeleton.pose import Pose, Skeleton
+from cubeling.characters.body.springs import SETTLING_STEPS, SpringBody
+from cubeling.characters.model.springs import SpringBone, SpringCollider
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Pose, Skeleton
 
 BALL = SpringCollider("j0", (0.13, -0.34, 0.02), (0.13, -0.34, 0.02), 0.1)
 BESIDE = SpringCollider("j0", (0.05, -0.31, -0.08), (0.05, -0.31, -0.08), 0.08)

@@ -8,14 +8,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters import Animator, Character, CharacterError, Pose
-from characters.body.capsules import CapsuleBody, segment_distances
-from characters.body.dependent_joints import DependentJoints, fade
-from characters.body.self_collision import SafeRanges, damped
-from characters.control.layers import BODY_LAYERS
-from characters.model.sidecar import BODY_LAYERS as KNOWN_TO_SIDECARS
-from characters.skeleton import rotations
-from characters.synthesis.idle.posture_space import PostureVectors
+from cubeling.characters import Animator, Character, CharacterError, Pose
+from cubeling.characters.body.capsules import CapsuleBody, segment_distances
+from cubeling.characters.body.dependent_joints import DependentJoints, fade
+from cubeling.characters.body.self_collision import SafeRanges, damped
+from cubeling.characters.control.layers import BODY_LAYERS
+from cubeling.characters.model.sidecar import BODY_LAYERS as KNOWN_TO_SIDECARS
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.synthesis.idle.posture_space import PostureVectors
 from tests.bench.upper_body import wide_arms
 from tests.characters.commands import command
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from characters.skeleton import rotations
+from cubeling.characters.skeleton import rotations
 from tests.characters.commands import command
 
 RATE_HZ = 30

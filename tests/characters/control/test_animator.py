@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import (
+from cubeling.characters import (
     ActionIntent,
     Animator,
     Character,
@@ -16,12 +16,12 @@ from characters import (
     CharacterError,
     LocomotionIntent,
 )
-from characters.control.controllers.walk import WalkController
-from characters.control.layers import FOOT_LAYERS
-from characters.locomotion.gaits import Gaits
-from characters.locomotion.steering import ARRIVAL_DISTANCE_M
-from characters.motion.motion import RootDelta
-from characters.skeleton import rotations
+from cubeling.characters.control.controllers.walk import WalkController
+from cubeling.characters.control.layers import FOOT_LAYERS
+from cubeling.characters.locomotion.gaits import Gaits
+from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton import rotations
 from tests.characters.commands import command
 from tests.characters.control.played import RATE_HZ, heading, place, play, velocities
 
@@ -119,7 +119,7 @@ def test_a_walk_straight_on_covers_the_ground_at_the_pace_of_its_speed(walker):
 
 
 def test_planted_feet_do_not_slide(human):
-    from characters.skeleton.feet import foot_joints_by_side
+    from cubeling.characters.skeleton.feet import foot_joints_by_side
 
     left, _ = foot_joints_by_side(human.skeleton)
     animator = Animator(human)

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import Animator, Character, CharacterError
-from characters.control.animator import MAX_TIME_STEP_S
-from characters.motion.motion import RootDelta
+from cubeling.characters import Animator, Character, CharacterError
+from cubeling.characters.control.animator import MAX_TIME_STEP_S
+from cubeling.characters.motion.motion import RootDelta
 from tests.characters.commands import command
 
 DATA = Path(__file__).parents[3].parent / "shared" / "data" / "gltf"

@@ -10,26 +10,26 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from affect import Emotion
-from affect.words import WORD_PLACES
-from characters import (
+from cubeling.affect import Emotion
+from cubeling.affect.words import WORD_PLACES
+from cubeling.characters import (
     ActionIntent,
     Animator,
     CharacterCommand,
     LocomotionIntent,
 )
-from characters.body.posture import (
+from cubeling.characters.body.posture import (
     NEUTRAL_EXPRESSIVITY,
     ExpressivityFilter,
     Posture,
     expressivity_of,
 )
-from characters.control.controllers.in_place import InPlaceController
-from characters.face.affect_display import FACE_RECIPES, AffectDisplay, expression_weights
-from characters.face.blink import BlinkTimer
-from characters.face.expressions import EXPRESSIONS, ExpressionMorphs
-from characters.face.lids import Lids, blink_shares
-from characters.model.character import skin
+from cubeling.characters.control.controllers.in_place import InPlaceController
+from cubeling.characters.face.affect_display import FACE_RECIPES, AffectDisplay, expression_weights
+from cubeling.characters.face.blink import BlinkTimer
+from cubeling.characters.face.expressions import EXPRESSIONS, ExpressionMorphs
+from cubeling.characters.face.lids import Lids, blink_shares
+from cubeling.characters.model.character import skin
 from tests.bundled_characters import bundled_character
 from tests.characters.commands import command
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from characters import Character, Pose
-from characters.control.controllers.feet_in_transition import FeetInTransition
-from characters.skeleton import rotations
-from characters.skeleton.feet import find_feet
+from cubeling.characters import Character, Pose
+from cubeling.characters.control.controllers.feet_in_transition import FeetInTransition
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.feet import find_feet
 from tests.bench.cast import Soles, film
 
 LENGTH_S = 0.25

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from characters import (
+from cubeling.characters import (
     Animator,
     Character,
     CharacterCommand,
@@ -13,10 +13,10 @@ from characters import (
     LocomotionIntent,
     choose_controller,
 )
-from characters.control.command import ActionIntent, PosedCharacter
-from characters.synthesis.graphs.building import analyse
-from characters.synthesis.graphs.storage import save_graph
-from characters.synthesis.library import MotionLibrary
+from cubeling.characters.control.command import ActionIntent, PosedCharacter
+from cubeling.characters.synthesis.graphs.building import analyse
+from cubeling.characters.synthesis.graphs.storage import save_graph
+from cubeling.characters.synthesis.library import MotionLibrary
 
 RATE_HZ = 30
 TARGET = np.array([0.2, 0.25])

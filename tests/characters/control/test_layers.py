@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from affect import Emotion
-from characters import Animator, Character, CharacterCommand, Pose, Skeleton
-from characters.control.layers import DEFAULT_LAYERS, FrameContext
-from characters.skeleton import rotations
+from cubeling.affect import Emotion
+from cubeling.characters import Animator, Character, CharacterCommand, Pose, Skeleton
+from cubeling.characters.control.layers import DEFAULT_LAYERS, FrameContext
+from cubeling.characters.skeleton import rotations
 
 
 class HeadTilt:

@@ -5,18 +5,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import Animator, Character, CharacterCommand, Pose, Skeleton
-from characters.body.eye_range import (
+from cubeling.characters import Animator, Character, CharacterCommand, Pose, Skeleton
+from cubeling.characters.body.eye_range import (
     MAX_EYE_PITCH_RAD,
     MAX_EYE_YAW_RAD,
     STRAINED_SHARE,
     within_range,
 )
-from characters.body.gaze import MAX_HEAD_DOWN_RAD, MAX_HEAD_UP_RAD, MAX_HEAD_YAW_RAD, Gaze
-from characters.face.blink import BlinkTimer, lid_closure
-from characters.face.lids import Lids
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
+from cubeling.characters.body.gaze import MAX_HEAD_DOWN_RAD, MAX_HEAD_UP_RAD, MAX_HEAD_YAW_RAD, Gaze
+from cubeling.characters.face.blink import BlinkTimer, lid_closure
+from cubeling.characters.face.lids import Lids
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
 from tests.characters.layers import AppliedLayers
 
 STEP_S = 1 / 60

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from characters import (
+from cubeling.characters import (
     ActionIntent,
     Animator,
     Character,
@@ -19,10 +19,10 @@ from characters import (
     choose_controller,
     mirror_of,
 )
-from characters.control.controllers.matching import MatchingController
-from characters.control.layers import FOOT_LAYERS
-from characters.synthesis.matching.database import MotionDatabase, Playhead
-from characters.synthesis.matching.matched_motion import MatchedMotion
+from cubeling.characters.control.controllers.matching import MatchingController
+from cubeling.characters.control.layers import FOOT_LAYERS
+from cubeling.characters.synthesis.matching.database import MotionDatabase, Playhead
+from cubeling.characters.synthesis.matching.matched_motion import MatchedMotion
 
 RATE = 60
 LOOPS = ("idle", "Walk", "WalkRightMedium", "WalkRightShort", "Run", "RunRightMedium")

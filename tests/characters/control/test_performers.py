@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from characters import (
+from cubeling.characters import (
     ActionIntent,
     Animator,
     Character,
@@ -13,8 +13,8 @@ from characters import (
     CharacterError,
     LocomotionIntent,
 )
-from characters.control.layers import FOOT_LAYERS
-from characters.skeleton import rotations
+from cubeling.characters.control.layers import FOOT_LAYERS
+from cubeling.characters.skeleton import rotations
 from tests.characters.control.played import RATE_HZ, heading, place, play, velocities
 
 

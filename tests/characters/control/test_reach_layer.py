@@ -8,17 +8,17 @@ from functools import cache
 import numpy as np
 import pytest
 
-from characters import Animator, Character, CharacterCommand, PosedCharacter, Skeleton
-from characters.behaviour.expressivity import GestureExpressivity
-from characters.behaviour.intents import BehaviourIntent, ReachIntent, Times
-from characters.control.controllers import default_height
-from characters.control.layers import FOOT_LAYERS
-from characters.control.layers.gaze import GazeLayer
-from characters.control.layers.posture import PostureLayer
-from characters.control.layers.reach import CLEARANCE, FADE_S, ReachLayer, surface_of
-from characters.control.layers.sitting_up import SittingUpLayer
-from characters.errors import CharacterError
-from characters.skeleton.pose import Array, Pose
+from cubeling.characters import Animator, Character, CharacterCommand, PosedCharacter, Skeleton
+from cubeling.characters.behaviour.expressivity import GestureExpressivity
+from cubeling.characters.behaviour.intents import BehaviourIntent, ReachIntent, Times
+from cubeling.characters.control.controllers import default_height
+from cubeling.characters.control.layers import FOOT_LAYERS
+from cubeling.characters.control.layers.gaze import GazeLayer
+from cubeling.characters.control.layers.posture import PostureLayer
+from cubeling.characters.control.layers.reach import CLEARANCE, FADE_S, ReachLayer, surface_of
+from cubeling.characters.control.layers.sitting_up import SittingUpLayer
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton.pose import Array, Pose
 
 LAYERS = (*FOOT_LAYERS, SittingUpLayer, PostureLayer, ReachLayer, GazeLayer)
 RATE, PERSON_M = 60, 1.7

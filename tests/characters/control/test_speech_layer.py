@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
-from characters.control.command import SpeechIntent
-from characters.control.layers import DEFAULT_LAYERS, SpeechLayer
-from characters.control.speech_profile import SpeechProfile
-from characters.skeleton import rotations
-from characters.speech.speech import Accent, GestureSpan, Phone, Utterance
+from cubeling.characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
+from cubeling.characters.control.command import SpeechIntent
+from cubeling.characters.control.layers import DEFAULT_LAYERS, SpeechLayer
+from cubeling.characters.control.speech_profile import SpeechProfile
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.speech.speech import Accent, GestureSpan, Phone, Utterance
 
 RATE = 30
 SEED = 3

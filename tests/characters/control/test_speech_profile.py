@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters.control.speech_profile import DATABASES, RANGES, SpeechProfile
-from characters.errors import CharacterError
-from characters.face.visemes.sets import viseme_sets
+from cubeling.characters.control.speech_profile import DATABASES, RANGES, SpeechProfile
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.face.visemes.sets import viseme_sets
 
 PROFILES = st.builds(
     SpeechProfile,

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.character import Character
-from characters.model.mesh import Mesh
-from characters.skeleton.pose import Array
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.pose import Array
 from tools.authoring.human import mouth as human_mouth
 from tools.authoring.human import teeth as human_teeth
 from tools.authoring.human.rig import build_human_skeleton

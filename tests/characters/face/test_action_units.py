@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from characters import Character
-from characters.face.action_units import WRINKLE_UNITS, ActionUnits, layer_intensities
-from characters.model.face_maps import LAYER_NAMES, WRINKLE_LAYERS
+from cubeling.characters import Character
+from cubeling.characters.face.action_units import WRINKLE_UNITS, ActionUnits, layer_intensities
+from cubeling.characters.model.face_maps import LAYER_NAMES, WRINKLE_LAYERS
 
 FACE_PARTS = ("AU1", "AU2_L", "AU2_R", "AU4", "au06Left", "au06Right", "AU10_L", "AU10_R",
               "AU12_L", "AU12_R", "AU20_L", "AU20_R")  # fmt: skip

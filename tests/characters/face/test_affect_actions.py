@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from affect import Emotion
-from affect.words import WORD_PLACES
-from characters import ActionIntent, Animator, Character, CharacterCommand
+from cubeling.affect import Emotion
+from cubeling.affect.words import WORD_PLACES
+from cubeling.characters import ActionIntent, Animator, Character, CharacterCommand
 
 
 def face(action, word):

@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters.face.visemes.coarticulation import (
+from cubeling.characters.face.visemes.coarticulation import (
     Coarticulation,
     MouthTrack,
     dominance,
     level_weights,
 )
-from characters.face.visemes.sets import MOUTH_SHAPES, viseme_sets
-from characters.speech.speech import SILENCE, Accent, Phone, Utterance
+from cubeling.characters.face.visemes.sets import MOUTH_SHAPES, viseme_sets
+from cubeling.characters.speech.speech import SILENCE, Accent, Phone, Utterance
 
 PUBLISHED = Coarticulation("sapi", sharpness=1.0, contacts=False)
 

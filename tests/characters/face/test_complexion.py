@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from affect import NEUTRAL, Emotion
-from characters.face.complexion import (
+from cubeling.affect import NEUTRAL, Emotion
+from cubeling.characters.face.complexion import (
     FALL_S,
     HAEMOGLOBIN_DENSITY,
     RISE_S,

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters.errors import CharacterError
-from characters.face.fap import FAP_COUNT, FaceParameters, FapTrack, read_faps, write_faps
-from characters.model.character import Character
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.face.fap import FAP_COUNT, FaceParameters, FapTrack, read_faps, write_faps
+from cubeling.characters.model.character import Character
 
 PARTS = [
     *("jawOpen", "mouthFunnel", "mouthPucker", "mouthSmileLeft", "mouthSmileRight", "tongueOut"),

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from characters.face.visemes.mouth_morphs import MouthMorphs
-from characters.face.visemes.sets import MOUTH_SHAPES
+from cubeling.characters.face.visemes.mouth_morphs import MouthMorphs
+from cubeling.characters.face.visemes.sets import MOUTH_SHAPES
 
 OCULUS = [f"viseme_{shape}" for shape in MOUTH_SHAPES]
 VRCHAT = [f"vrc.v_{shape.lower()}" for shape in MOUTH_SHAPES[:12]] + [

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from affect import Emotion
-from characters.control.animator import Animator
-from characters.control.command import ActionIntent, CharacterCommand, SpeechIntent
-from characters.control.layers.face import FaceLayer
-from characters.face.speech_display import CLOSING_S
-from characters.model.character import Character
-from characters.speech.speech import Accent, Phone, Utterance
+from cubeling.affect import Emotion
+from cubeling.characters.control.animator import Animator
+from cubeling.characters.control.command import ActionIntent, CharacterCommand, SpeechIntent
+from cubeling.characters.control.layers.face import FaceLayer
+from cubeling.characters.face.speech_display import CLOSING_S
+from cubeling.characters.model.character import Character
+from cubeling.characters.speech.speech import Accent, Phone, Utterance
 from tests.characters.face.mouths import MeasuredMouth
 from tests.characters.face.test_coarticulation import spoken
 

@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters.errors import CharacterError
-from characters.face.visemes.ipa import letters_of, parts_of
-from characters.face.visemes.sets import MOUTH_SHAPES, viseme_set, viseme_sets
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.face.visemes.ipa import letters_of, parts_of
+from cubeling.characters.face.visemes.sets import MOUTH_SHAPES, viseme_set, viseme_sets
 
 # What eSpeak NG 1.52 prints for texts with all sounds of each language, by the shape that a person
 # who reads lips would name; where two are as good, both.

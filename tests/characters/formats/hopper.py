@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from characters.formats import Performance
+from cubeling.characters.formats import Performance
 
 ASF = """# made by hand
 :version 1.10

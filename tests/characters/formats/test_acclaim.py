@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import CharacterError
-from characters.formats import load_motion
-from characters.formats.mocap import amc
-from characters.formats.mocap.axes_and_units import CMU_UNIT_M
-from characters.skeleton import rotations
+from cubeling.characters import CharacterError
+from cubeling.characters.formats import load_motion
+from cubeling.characters.formats.mocap import amc
+from cubeling.characters.formats.mocap.axes_and_units import CMU_UNIT_M
+from cubeling.characters.skeleton import rotations
 from tests.characters.formats.hopper import AMC, ASF, hopper, places
 
 DATA = Path(__file__).parents[4] / "shared" / "data"

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import CharacterError
-from characters.formats import load_motion
+from cubeling.characters import CharacterError
+from cubeling.characters.formats import load_motion
 from tests.characters.formats.hopper import AMC, ASF, hopper, places
 from tests.characters.formats.mutated_text import mutated
 

@@ -8,19 +8,25 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import Character, CharacterError, Clip, Pose, load_motion
-from characters.formats.mocap.bap import UNIT_RAD, BapTrack, read_baps, track_of, write_baps
-from characters.formats.mocap.hanim import (
+from cubeling.characters import Character, CharacterError, Clip, Pose, load_motion
+from cubeling.characters.formats.mocap.bap import (
+    UNIT_RAD,
+    BapTrack,
+    read_baps,
+    track_of,
+    write_baps,
+)
+from cubeling.characters.formats.mocap.hanim import (
     BAP_COUNT,
     ROOT,
     hanim_anatomy,
     hanim_skeleton,
     parameters,
 )
-from characters.retargeting.bap import baps_of, save_bap
-from characters.retargeting.retarget import retarget
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array
+from cubeling.characters.retargeting.bap import baps_of, save_bap
+from cubeling.characters.retargeting.retarget import retarget
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array
 
 BODY = ("hips", "head", *(f"{s}{part}" for s in ("left", "right")
         for part in ("UpperArm", "LowerArm", "Hand", "LowerLeg", "Foot")))  # fmt: skip

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import CharacterError
-from characters.formats import Performance, load_motion
-from characters.formats.mocap.axes_and_units import CMU_UNIT_M
-from characters.skeleton import rotations
+from cubeling.characters import CharacterError
+from cubeling.characters.formats import Performance, load_motion
+from cubeling.characters.formats.mocap.axes_and_units import CMU_UNIT_M
+from cubeling.characters.skeleton import rotations
 from tests.characters.formats.mutated_text import mutated
 
 with warnings.catch_warnings():

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from characters import Character, CharacterError, load_motion
-from characters.formats.mocap.bvh_writing import save_bvh
+from cubeling.characters import Character, CharacterError, load_motion
+from cubeling.characters.formats.mocap.bvh_writing import save_bvh
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from characters import Character, CharacterError
-from characters.formats import load_motion
-from characters.model.files import read_file
-from characters.model.sidecar import Sidecar, read_sidecar
+from cubeling.characters import Character, CharacterError
+from cubeling.characters.formats import load_motion
+from cubeling.characters.model.files import read_file
+from cubeling.characters.model.sidecar import Sidecar, read_sidecar
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="devices have no path there")

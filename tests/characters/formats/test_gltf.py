@@ -4,10 +4,10 @@ import json
 import numpy as np
 import pytest
 
-from characters import Character, CharacterError, Pose
-from characters.formats import load_motion
-from characters.model.character import skin
-from characters.skeleton import rotations
+from cubeling.characters import Character, CharacterError, Pose
+from cubeling.characters.formats import load_motion
+from cubeling.characters.model.character import skin
+from cubeling.characters.skeleton import rotations
 from tests.characters.formats.built_gltf import SAMPLES, build_arm, glb
 
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from characters import Character, CharacterError, CharacterWarning
-from characters.formats.gltf.document import DamagedFileError
-from characters.formats.gltf.file import ReadBudget, open_gltf
-from characters.skeleton import rotations
+from cubeling.characters import Character, CharacterError, CharacterWarning
+from cubeling.characters.formats.gltf.document import DamagedFileError
+from cubeling.characters.formats.gltf.file import ReadBudget, open_gltf
+from cubeling.characters.skeleton import rotations
 from tests.characters.formats.built_gltf import build_arm, glb
 
 

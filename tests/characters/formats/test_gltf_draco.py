@@ -4,7 +4,7 @@ import DracoPy
 import numpy as np
 import pytest
 
-from characters import Character, CharacterError
+from cubeling.characters import Character, CharacterError
 from tests.characters.formats.built_gltf import build_arm, glb
 
 POSITIONS = np.array([[0, 0, 0], [10, 0, 0], [0, 0, 600], [10, 0, 600]], float)

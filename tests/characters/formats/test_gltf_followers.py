@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import pytest
 
-from characters import Character, CharacterError
-from characters.model.constraints import JointConstraint
-from characters.model.look_at import LookAt, RangeMap
-from characters.model.springs import SpringBone, SpringCollider
-from characters.retargeting.root import with_root_joint
+from cubeling.characters import Character, CharacterError
+from cubeling.characters.model.constraints import JointConstraint
+from cubeling.characters.model.look_at import LookAt, RangeMap
+from cubeling.characters.model.springs import SpringBone, SpringCollider
+from cubeling.characters.retargeting.root import with_root_joint
 from tests.characters.formats.built_gltf import build_arm, glb
 
 BALL = SpringCollider("upper", (0.0, 0.1, 0.0), (0.0, 0.2, 0.0), 0.05)

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from characters import Character
+from cubeling.characters import Character
 from tests.characters.formats.built_gltf import SAMPLES
 
 DTYPE_OF_COMPONENT = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}

@@ -14,10 +14,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
 
-from characters import Character, CharacterError
-from characters.body.constraints import ConstrainedJoints
-from characters.body.springs import SpringBody
-from characters.skeleton import rotations
+from cubeling.characters import Character, CharacterError
+from cubeling.characters.body.constraints import ConstrainedJoints
+from cubeling.characters.body.springs import SpringBody
+from cubeling.characters.skeleton import rotations
 from tests.characters.formats.built_gltf import build_arm, glb
 
 pytestmark = pytest.mark.filterwarnings("ignore::characters.errors.CharacterWarning")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from characters import Character, CharacterWarning
-from characters.model.mesh import Material
+from cubeling.characters import Character, CharacterWarning
+from cubeling.characters.model.mesh import Material
 from tests.characters.formats.built_gltf import build_arm
 
 RNG = np.random.default_rng(3)

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import Character, CharacterError, Clip, Mesh, Pose, Skeleton
-from characters.model.character import skin
-from characters.model.mesh import Morph
-from characters.skeleton import rotations
+from cubeling.characters import Character, CharacterError, Clip, Mesh, Pose, Skeleton
+from cubeling.characters.model.character import skin
+from cubeling.characters.model.mesh import Morph
+from cubeling.characters.skeleton import rotations
 from tests.characters.formats.built_gltf import build_arm
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from characters import Character, CharacterError
-from characters.model.mesh import ToonShading
+from cubeling.characters import Character, CharacterError
+from cubeling.characters.model.mesh import ToonShading
 from tests.characters.formats.built_gltf import build_arm
 
 BASE = {"index": 0, "extensions": {"KHR_texture_transform": {"scale": [2, 2]}}}

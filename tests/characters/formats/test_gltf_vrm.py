@@ -4,9 +4,9 @@ import struct
 import numpy as np
 import pytest
 
-from characters import Animator, Character, CharacterCommand, CharacterError, RootDelta
-from characters.control.layers.gaze import GazeLayer
-from characters.model.character import skin
+from cubeling.characters import Animator, Character, CharacterCommand, CharacterError, RootDelta
+from cubeling.characters.control.layers.gaze import GazeLayer
+from cubeling.characters.model.character import skin
 from tests.characters.formats.built_gltf import build_arm, glb
 
 BONES = {"hips": "hips", "head": "head", "leftUpperArm": "LeftArm", "rightFoot": "RightFoot"}

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from characters import Animator, Character, CharacterCommand, CharacterError, RootDelta
-from characters.control.layers import ConstraintLayer, layers_of
-from characters.skeleton import rotations
+from cubeling.characters import Animator, Character, CharacterCommand, CharacterError, RootDelta
+from cubeling.characters.control.layers import ConstraintLayer, layers_of
+from cubeling.characters.skeleton import rotations
 from tests.characters.formats.built_gltf import build_arm
 
 

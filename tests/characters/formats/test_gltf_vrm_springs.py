@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from characters import Animator, Character, CharacterCommand, CharacterError, RootDelta
-from characters.control.layers import SpringLayer
-from characters.skeleton import rotations
+from cubeling.characters import Animator, Character, CharacterCommand, CharacterError, RootDelta
+from cubeling.characters.control.layers import SpringLayer
+from cubeling.characters.skeleton import rotations
 from tests.characters.formats.built_gltf import build_arm
 
 HAIR = [

@@ -3,14 +3,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters import Character, Pose, Skeleton
-from characters.ik import two_bones
-from characters.ik.legs import find_legs
-from characters.locomotion.gaits import Gaits
-from characters.motion.blend import mix
-from characters.motion.motion import RootDelta
-from characters.skeleton import rotations
-from characters.skeleton.scalar_quaternions import multiply, rotate, subtract
+from cubeling.characters import Character, Pose, Skeleton
+from cubeling.characters.ik import two_bones
+from cubeling.characters.ik.legs import find_legs
+from cubeling.characters.locomotion.gaits import Gaits
+from cubeling.characters.motion.blend import mix
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.scalar_quaternions import multiply, rotate, subtract
 
 NAMES = (
     "root", "hips",

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from characters import Character, Pose
-from characters.ik.sitting_up import PITCH_RAD, SittingUp
-from characters.model.character import skin
-from characters.skeleton.pose import Array
+from cubeling.characters import Character, Pose
+from cubeling.characters.ik.sitting_up import PITCH_RAD, SittingUp
+from cubeling.characters.model.character import skin
+from cubeling.characters.skeleton.pose import Array
 
 SHARES = np.linspace(0.0, 1.0, 21)
 

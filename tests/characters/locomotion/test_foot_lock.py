@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from characters import Animator, Character, CharacterCommand, LocomotionIntent
-from characters.control.layers import FootLockLayer
-from characters.locomotion.steering import SteeringOutput
+from cubeling.characters import Animator, Character, CharacterCommand, LocomotionIntent
+from cubeling.characters.control.layers import FootLockLayer
+from cubeling.characters.locomotion.steering import SteeringOutput
 from tests.bench.feet import (
     BODY_HEIGHT_M,
     FRAME_RATE,

@@ -6,8 +6,8 @@ import itertools
 import numpy as np
 import pytest
 
-from characters import Animator, Character, Footfalls, Skeleton
-from characters.control.layers import FootLockLayer
+from cubeling.characters import Animator, Character, Footfalls, Skeleton
+from cubeling.characters.control.layers import FootLockLayer
 from tests.characters.commands import command
 
 FRAME = 1 / 30

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters import Character
-from characters.locomotion.gaits import MAX_ANGULAR_RAD, RUN_CLIPS, WALK_CLIPS, Gaits
-from characters.retargeting.locomotion.gait_cycle import ArcPath
-from characters.retargeting.root import moved_to_trajectory
+from cubeling.characters import Character
+from cubeling.characters.locomotion.gaits import MAX_ANGULAR_RAD, RUN_CLIPS, WALK_CLIPS, Gaits
+from cubeling.characters.retargeting.locomotion.gait_cycle import ArcPath
+from cubeling.characters.retargeting.root import moved_to_trajectory
 
 SPEEDS = np.linspace(0.5, 5.0, 91)
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters import Character
-from characters.model.bind_pose import with_bind_pose
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
+from cubeling.characters import Character
+from cubeling.characters.model.bind_pose import with_bind_pose
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
 
 
 def bone_lengths(skeleton):

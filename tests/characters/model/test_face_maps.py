@@ -4,9 +4,9 @@ import cv2
 import numpy as np
 import pytest
 
-from characters import Character, CharacterError
-from characters.model.face_maps import LAYER_NAMES, FaceTable, read_face_maps
-from characters.model.sidecar import read_sidecar
+from cubeling.characters import Character, CharacterError
+from cubeling.characters.model.face_maps import LAYER_NAMES, FaceTable, read_face_maps
+from cubeling.characters.model.sidecar import read_sidecar
 
 
 @pytest.fixture

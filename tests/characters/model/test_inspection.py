@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from characters import Character, Clip, Skeleton
-from characters.model.inspection import inspect
+from cubeling.characters import Character, Clip, Skeleton
+from cubeling.characters.model.inspection import inspect
 
 
 @pytest.fixture(scope="module")

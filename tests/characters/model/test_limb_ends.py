@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from characters import Character, Clip, Pose
-from characters.model.character import skin
-from characters.model.mesh import Mesh
-from characters.retargeting.retarget import retarget
+from cubeling.characters import Character, Clip, Pose
+from cubeling.characters.model.character import skin
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.retargeting.retarget import retarget
 from tests.bundled_characters import bundled_character
 from tests.characters.skeleton.bodies import DOG, PERSON, named_body
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters import Animator, Character, CharacterCommand, CharacterError, RootDelta
-from characters.control.command import LocomotionIntent
-from characters.control.layers import SpringLayer, layers_of
-from characters.model.springs import REFERENCE_HEIGHT_M
+from cubeling.characters import Animator, Character, CharacterCommand, CharacterError, RootDelta
+from cubeling.characters.control.command import LocomotionIntent
+from cubeling.characters.control.layers import SpringLayer, layers_of
+from cubeling.characters.model.springs import REFERENCE_HEIGHT_M
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import (
+from cubeling.characters import (
     Action,
     AdditiveLayer,
     Blend,
@@ -35,9 +35,9 @@ from characters import (
     Window,
     mask_of,
 )
-from characters.motion.blend import TimeScaled
-from characters.motion.phase import PhasedMotion, RetimedMotion, StaticPose, as_cyclic
-from characters.skeleton import rotations
+from cubeling.characters.motion.blend import TimeScaled
+from cubeling.characters.motion.phase import PhasedMotion, RetimedMotion, StaticPose, as_cyclic
+from cubeling.characters.skeleton import rotations
 
 NAMES = ("root", "spine", "LeftArm", "RightArm", "LeftHand", "RightHand")
 REST = Pose(

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import (
+from cubeling.characters import (
     AdditiveLayer,
     BlendSpace2D,
     Clip,
@@ -15,8 +15,8 @@ from characters import (
     StateMachine,
     mask_of,
 )
-from characters.motion.phase import StaticPose
-from characters.skeleton import rotations
+from cubeling.characters.motion.phase import StaticPose
+from cubeling.characters.skeleton import rotations
 
 REST = Pose(np.zeros((3, 3)), np.tile(rotations.IDENTITY, (3, 1)))
 SKELETON = Skeleton(("root", "spine", "arm"), (-1, 0, 1), REST)

@@ -4,10 +4,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from characters import Blend, Character, CharacterError, Mirror, Mirrored, Pose, Skeleton
-from characters.model.mirroring import mirror_of
-from characters.motion.phase import PhasedMotion, phased
-from characters.skeleton import rotations
+from cubeling.characters import Blend, Character, CharacterError, Mirror, Mirrored, Pose, Skeleton
+from cubeling.characters.model.mirroring import mirror_of
+from cubeling.characters.motion.phase import PhasedMotion, phased
+from cubeling.characters.skeleton import rotations
 
 DATA = Path(__file__).parents[4] / "shared" / "data" / "gltf"
 FLIP = np.array([-1.0, 1.0, 1.0])

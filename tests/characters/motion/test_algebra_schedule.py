@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters import (
+from cubeling.characters import (
     Action,
     Adsr,
     CharacterError,
@@ -23,9 +23,9 @@ from characters import (
     Skeleton,
     mask_of,
 )
-from characters.motion.curves import ease
-from characters.motion.phase import StaticPose
-from characters.skeleton import rotations
+from cubeling.characters.motion.curves import ease
+from cubeling.characters.motion.phase import StaticPose
+from cubeling.characters.skeleton import rotations
 
 REST = Pose(np.zeros((3, 3)), np.tile(rotations.IDENTITY, (3, 1)))
 SKELETON = Skeleton(("legs", "torso", "arm"), (-1, 0, 1), REST)

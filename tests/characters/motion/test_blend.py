@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters import (
+from cubeling.characters import (
     BlendSpace1D,
     BlendSpace2D,
     CharacterError,
@@ -13,9 +13,9 @@ from characters import (
     Schedule,
     StateMachine,
 )
-from characters.motion.blend import Blend, TimeScaled, mix, shares
-from characters.motion.phase import Cyclic, PhasedMotion, StaticPose, as_cyclic, phased
-from characters.skeleton import rotations
+from cubeling.characters.motion.blend import Blend, TimeScaled, mix, shares
+from cubeling.characters.motion.phase import Cyclic, PhasedMotion, StaticPose, as_cyclic, phased
+from cubeling.characters.skeleton import rotations
 
 coordinates = st.floats(-2, 2)
 point = st.tuples(coordinates, coordinates)

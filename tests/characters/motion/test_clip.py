@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters import CharacterError, Clip, Motion, Pose
-from characters.motion.motion import RootDelta
-from characters.skeleton import rotations
+from cubeling.characters import CharacterError, Clip, Motion, Pose
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton import rotations
 
 steps = st.builds(RootDelta, st.floats(-2, 2), st.floats(-2, 2), st.floats(-7, 7))
 

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import Character, Clip, Pose
-from characters.formats.loading import load_motion
-from characters.motion.contacts import find_contacts, spans
-from characters.motion.ground import find_ground, joint_trajectories
-from characters.skeleton.feet import find_feet
+from cubeling.characters import Character, Clip, Pose
+from cubeling.characters.formats.loading import load_motion
+from cubeling.characters.motion.contacts import find_contacts, spans
+from cubeling.characters.motion.ground import find_ground, joint_trajectories
+from cubeling.characters.skeleton.feet import find_feet
 from tools.authoring.human.limbs import FOOT
 from tools.authoring.human.motion import GAITS
 from tools.authoring.modelling.gait import GroundArc, foot_motion

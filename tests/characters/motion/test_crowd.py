@@ -3,11 +3,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import Character, CharacterError, Clip, Pose, Skeleton
-from characters.motion.batch.bank import ClipBank
-from characters.motion.batch.crowd import crowd_globals
-from characters.motion.blend import mix
-from characters.skeleton.rotations import about, normalize
+from cubeling.characters import Character, CharacterError, Clip, Pose, Skeleton
+from cubeling.characters.motion.batch.bank import ClipBank
+from cubeling.characters.motion.batch.crowd import crowd_globals
+from cubeling.characters.motion.blend import mix
+from cubeling.characters.skeleton.rotations import about, normalize
 
 
 @pytest.fixture(scope="module")

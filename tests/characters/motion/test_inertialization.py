@@ -3,10 +3,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters import CharacterError, Clip, Motion, Pose, StateMachine
-from characters.motion.inertialization import OffsetDecay
-from characters.motion.motion import RootDelta
-from characters.skeleton import rotations
+from cubeling.characters import CharacterError, Clip, Motion, Pose, StateMachine
+from cubeling.characters.motion.inertialization import OffsetDecay
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.skeleton import rotations
 
 LENGTH_S = 0.25
 STEP_S = 1e-4

@@ -3,7 +3,7 @@ from pathlib import Path
 
 import numpy as np
 
-from characters import Motion
+from cubeling.characters import Motion
 
 PAGE = Path(__file__).parents[3] / "docs" / "motions.md"
 

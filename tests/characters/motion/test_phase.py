@@ -3,9 +3,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters import Character, Clip, Pose
-from characters.motion.phase import PhasedMotion, phased
-from characters.skeleton import rotations
+from cubeling.characters import Character, Clip, Pose
+from cubeling.characters.motion.phase import PhasedMotion, phased
+from cubeling.characters.skeleton import rotations
 
 
 @pytest.mark.parametrize("lead", [0.0, 0.13, 0.5, 0.77])

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from characters import Character, CharacterError, Clip, Pose
-from characters.motion.motion import RootDelta
-from characters.motion.schedule import Schedule
-from characters.motion.schedule_file import ScheduleReader
-from characters.skeleton import rotations
+from cubeling.characters import Character, CharacterError, Clip, Pose
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.motion.schedule import Schedule
+from cubeling.characters.motion.schedule_file import ScheduleReader
+from cubeling.characters.skeleton import rotations
 
 EXAMPLES = Path(__file__).parents[3] / "docs" / "schedules"
 RATE = 25.0

@@ -7,16 +7,22 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import Animator, Character, CharacterCommand, CharacterError, LocomotionIntent
-from characters.control.builtin_tree import built_in
-from characters.control.layers import FOOT_LAYERS
-from characters.model.mirroring import mirror_of
-from characters.model.sidecar import read_sidecar
-from characters.motion.trees.building import Builder
-from characters.motion.trees.conditions import Condition, ConditionError
-from characters.motion.trees.dot import to_dot
-from characters.motion.trees.plan import NODE_KINDS, PARAMETERS
-from characters.motion.trees.reading import read_plan
+from cubeling.characters import (
+    Animator,
+    Character,
+    CharacterCommand,
+    CharacterError,
+    LocomotionIntent,
+)
+from cubeling.characters.control.builtin_tree import built_in
+from cubeling.characters.control.layers import FOOT_LAYERS
+from cubeling.characters.model.mirroring import mirror_of
+from cubeling.characters.model.sidecar import read_sidecar
+from cubeling.characters.motion.trees.building import Builder
+from cubeling.characters.motion.trees.conditions import Condition, ConditionError
+from cubeling.characters.motion.trees.dot import to_dot
+from cubeling.characters.motion.trees.plan import NODE_KINDS, PARAMETERS
+from cubeling.characters.motion.trees.reading import read_plan
 
 HUMAN_TOML = """
 [parameters]

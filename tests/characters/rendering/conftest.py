@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from characters.control.command import PosedCharacter
-from characters.model.mesh import Material, Mesh
-from characters.rendering import Box, SceneCharacter, Stage, View, create_context
-from characters.skeleton.pose import Pose, Skeleton
+from cubeling.characters.control.command import PosedCharacter
+from cubeling.characters.model.mesh import Material, Mesh
+from cubeling.characters.rendering import Box, SceneCharacter, Stage, View, create_context
+from cubeling.characters.skeleton.pose import Pose, Skeleton
 
 Array = NDArray[np.float64]
 SIZE = (320, 180)

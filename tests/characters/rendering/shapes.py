@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.control.command import PosedCharacter
-from characters.model.mesh import Material, Mesh
-from characters.rendering import FloorPath, SceneCharacter
-from characters.skeleton.pose import Pose, Skeleton
+from cubeling.characters.control.command import PosedCharacter
+from cubeling.characters.model.mesh import Material, Mesh
+from cubeling.characters.rendering import FloorPath, SceneCharacter
+from cubeling.characters.skeleton.pose import Pose, Skeleton
 
 LOOP = FloorPath(
     np.stack([0.13 * np.cos(np.arange(8) * 0.7854), 0.08 * np.sin(np.arange(8) * 0.7854)], axis=1),

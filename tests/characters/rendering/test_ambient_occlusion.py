@@ -6,18 +6,18 @@ import moderngl
 import numpy as np
 import pytest
 
-from characters.errors import CharacterError
-from characters.rendering.deferred.ambient_occlusion import (
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.rendering.deferred.ambient_occlusion import (
     ESTIMATORS,
     NOTHING_M,
     AmbientOcclusion,
     AmbientOcclusionSettings,
     Estimator,
 )
-from characters.rendering.deferred.cells import cell_count
-from characters.rendering.deferred.sample_patterns import PATTERNS, sample_pattern
-from characters.rendering.passes.deferred.occlusion import cells_from_texels
-from characters.rendering.programs import ShaderPrograms
+from cubeling.characters.rendering.deferred.cells import cell_count
+from cubeling.characters.rendering.deferred.sample_patterns import PATTERNS, sample_pattern
+from cubeling.characters.rendering.passes.deferred.occlusion import cells_from_texels
+from cubeling.characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.product import product_quality
 from tests.bench.ambient_occlusion.quality import matched_score
 from tests.bench.ambient_occlusion.scenes import load

@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from characters.rendering.passes.resolve import MAX_BLUR_PX, OWN_BLUR_PX, blurred
-from characters.rendering.passes.table_factors import darken
-from characters.rendering.passes.table_image import TableImage
-from characters.rendering.projection import Rectangle, project
+from cubeling.characters.rendering.passes.resolve import MAX_BLUR_PX, OWN_BLUR_PX, blurred
+from cubeling.characters.rendering.passes.table_factors import darken
+from cubeling.characters.rendering.passes.table_image import TableImage
+from cubeling.characters.rendering.projection import Rectangle, project
 
 MATRIX = np.array([[300.0, 0.0, 159.5], [0.0, 300.0, 89.5], [0.0, 0.0, 1.0]])
 HEIGHT_M = 0.3

@@ -6,10 +6,10 @@ import cv2
 import numpy as np
 import pytest
 
-from characters.model.mesh import Material
-from characters.rendering import QUALITIES, Cover, SceneCharacter, Stage
-from characters.rendering.projection import project
-from characters.rendering.scene import RIM_SHARE, WALL_SHARE
+from cubeling.characters.model.mesh import Material
+from cubeling.characters.rendering import QUALITIES, Cover, SceneCharacter, Stage
+from cubeling.characters.rendering.projection import project
+from cubeling.characters.rendering.scene import RIM_SHARE, WALL_SHARE
 
 EDGE = 0.06
 

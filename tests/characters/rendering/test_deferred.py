@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters.model.mesh import Material, ToonShading
-from characters.rendering import QUALITIES, Cover, Stage
-from characters.rendering.deferred.buffers import surface_records
-from characters.rendering.passes.deferred import lighting
+from cubeling.characters.model.mesh import Material, ToonShading
+from cubeling.characters.rendering import QUALITIES, Cover, Stage
+from cubeling.characters.rendering.deferred.buffers import surface_records
+from cubeling.characters.rendering.passes.deferred import lighting
 from tests.characters.rendering.shapes import Still, plate
 from tests.characters.rendering.watch import WatchPass
 

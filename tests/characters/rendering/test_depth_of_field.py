@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from characters.model.mesh import Material
-from characters.rendering import QUALITIES, Effect, Focus, Stage
+from cubeling.characters.model.mesh import Material
+from cubeling.characters.rendering import QUALITIES, Effect, Focus, Stage
 from tests.characters.rendering.shapes import Still, mesh
 
 DEPTH = 0.45

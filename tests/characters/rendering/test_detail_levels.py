@@ -8,20 +8,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from characters import Character
-from characters.model.mesh import Mesh
-from characters.rendering import QUALITIES
-from characters.rendering.geometry.character_cache import PictureFineness
-from characters.rendering.geometry.detail_levels import (
+from cubeling.characters import Character
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.rendering import QUALITIES
+from cubeling.characters.rendering.geometry.character_cache import PictureFineness
+from cubeling.characters.rendering.geometry.detail_levels import (
     DetailLevel,
     chosen_level,
     shape_only,
     with_levels,
 )
-from characters.rendering.geometry.edge_collapse import Tolerance, collapsed_levels
-from characters.rendering.geometry.places import CELL_SHARE, connected, places_of
-from characters.rendering.geometry.vertices import CharacterVertices
-from characters.rendering.toys import TOYS, toy
+from cubeling.characters.rendering.geometry.edge_collapse import Tolerance, collapsed_levels
+from cubeling.characters.rendering.geometry.places import CELL_SHARE, connected, places_of
+from cubeling.characters.rendering.geometry.vertices import CharacterVertices
+from cubeling.characters.rendering.toys import TOYS, toy
 from tests.bench.detail import compared
 
 FINE_AND_COARSE = (Tolerance(0.01), Tolerance(0.05))

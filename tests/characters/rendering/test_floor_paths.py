@@ -7,10 +7,10 @@ import cv2
 import numpy as np
 import pytest
 
-from characters.rendering import FloorPath, Stage
-from characters.rendering.passes import floor_paths
-from characters.rendering.passes.floor_paths import MAX_SIDE_TEXELS
-from characters.rendering.passes.table_image import TableImage
+from cubeling.characters.rendering import FloorPath, Stage
+from cubeling.characters.rendering.passes import floor_paths
+from cubeling.characters.rendering.passes.floor_paths import MAX_SIDE_TEXELS
+from cubeling.characters.rendering.passes.table_image import TableImage
 from tests.characters.rendering.shapes import LOOP
 
 

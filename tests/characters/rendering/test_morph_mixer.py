@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters.errors import CharacterError
-from characters.model.character import skin
-from characters.model.mesh import Material, Morph
-from characters.rendering import SceneCharacter
-from characters.rendering.geometry.morph_mixer import MorphMixer
-from characters.rendering.geometry.skinned_character import SkinnedCharacter
-from characters.rendering.geometry.vertices import CharacterVertices
-from characters.rendering.programs import ShaderPrograms
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.model.character import skin
+from cubeling.characters.model.mesh import Material, Morph
+from cubeling.characters.rendering import SceneCharacter
+from cubeling.characters.rendering.geometry.morph_mixer import MorphMixer
+from cubeling.characters.rendering.geometry.skinned_character import SkinnedCharacter
+from cubeling.characters.rendering.geometry.vertices import CharacterVertices
+from cubeling.characters.rendering.programs import ShaderPrograms
 
 NAMES = ("grin", "absent", "tall")
 

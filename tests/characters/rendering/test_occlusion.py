@@ -6,12 +6,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters.rendering import Box
-from characters.rendering.camera_picture.hand_cover import PictureCover
-from characters.rendering.camera_picture.hidden_table import hidden_table
-from characters.rendering.camera_picture.occlusion import UNIT_CUBE, hidden_by_cube
-from characters.rendering.projection import Rectangle
-from characters.rendering.scene import Cover
+from cubeling.characters.rendering import Box
+from cubeling.characters.rendering.camera_picture.hand_cover import PictureCover
+from cubeling.characters.rendering.camera_picture.hidden_table import hidden_table
+from cubeling.characters.rendering.camera_picture.occlusion import UNIT_CUBE, hidden_by_cube
+from cubeling.characters.rendering.projection import Rectangle
+from cubeling.characters.rendering.scene import Cover
 
 MATRIX = np.array([[300.0, 0, 159.5], [0, 300.0, 89.5], [0, 0, 1]])
 PART = Rectangle(40, 20, 200, 120)

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from characters import Character, CharacterError, Clip, Morph, Pose
-from characters.rendering.portrait import PAPER_BGR, PortraitRenderer
-from characters.rendering.portrait_camera import (
+from cubeling.characters import Character, CharacterError, Clip, Morph, Pose
+from cubeling.characters.rendering.portrait import PAPER_BGR, PortraitRenderer
+from cubeling.characters.rendering.portrait_camera import (
     MARGIN_SHARE,
     MIN_DISTANCE_M,
     CharacterExtent,

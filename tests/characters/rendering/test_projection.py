@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters.model.mesh import Material
-from characters.rendering import SceneCharacter, Stage
-from characters.rendering.projection import (
+from cubeling.characters.model.mesh import Material
+from cubeling.characters.rendering import SceneCharacter, Stage
+from cubeling.characters.rendering.projection import (
     Rectangle,
     bounding_rectangle,
     clip_from_camera,

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters.model.mesh import Material
-from characters.rendering import QUALITIES, Effect, Stage
+from cubeling.characters.model.mesh import Material
+from cubeling.characters.rendering import QUALITIES, Effect, Stage
 from tests.characters.rendering.shapes import Still, ball, plate
 from tests.characters.rendering.watch import WatchPass
 

@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import Character
-from characters.model.mesh import Material
-from characters.rendering.geometry.extreme_vertices import SkinnedPoints
-from characters.rendering.geometry.skinned_character import SkinnedCharacter
-from characters.rendering.geometry.vertices import CasterRun, CharacterVertices
-from characters.rendering.programs import ShaderPrograms
+from cubeling.characters import Character
+from cubeling.characters.model.mesh import Material
+from cubeling.characters.rendering.geometry.extreme_vertices import SkinnedPoints
+from cubeling.characters.rendering.geometry.skinned_character import SkinnedCharacter
+from cubeling.characters.rendering.geometry.vertices import CasterRun, CharacterVertices
+from cubeling.characters.rendering.programs import ShaderPrograms
 
 
 @pytest.fixture

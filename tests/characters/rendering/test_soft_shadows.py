@@ -6,12 +6,12 @@ import cv2
 import numpy as np
 import pytest
 
-from characters.model.character import Character
-from characters.model.mesh import Material
-from characters.rendering import QUALITIES, Effect, MeasuredLight, Quality, Stage
-from characters.rendering.deferred.lamp import LAMP_DISTANCE_M, LAMP_WIDTH_M
-from characters.rendering.passes.deferred import visibility
-from characters.rendering.passes.deferred.soft_shadows import TABLE_SIDE, SoftShadowPass
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.mesh import Material
+from cubeling.characters.rendering import QUALITIES, Effect, MeasuredLight, Quality, Stage
+from cubeling.characters.rendering.deferred.lamp import LAMP_DISTANCE_M, LAMP_WIDTH_M
+from cubeling.characters.rendering.passes.deferred import visibility
+from cubeling.characters.rendering.passes.deferred.soft_shadows import TABLE_SIDE, SoftShadowPass
 from tests.bench.effects import close_up
 from tests.bench.picture import SIZE, scene
 from tests.characters.rendering.shapes import Still, plate

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from characters.rendering import Softness
+from cubeling.characters.rendering import Softness
 
 
 def test_a_character_gets_the_blur_of_the_picture(stage, view, pawn):

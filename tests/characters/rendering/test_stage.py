@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 import pytest
 
-from characters.errors import CharacterError
-from characters.rendering import (
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.rendering import (
     QUALITIES,
     Cover,
     MeasuredLight,
@@ -17,8 +17,8 @@ from characters.rendering import (
     Stage,
     View,
 )
-from characters.rendering.passes.hand_occlusion import HAND_DEPTH_M
-from characters.rendering.passes.render_pass import RenderPass
+from cubeling.characters.rendering.passes.hand_occlusion import HAND_DEPTH_M
+from cubeling.characters.rendering.passes.render_pass import RenderPass
 from tests.characters.rendering.shapes import LOOP
 
 GOLDEN = Path(__file__).parent / "golden"

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters import Character, Pose, Skeleton
-from characters.model.character import skin
-from characters.model.stick_figure import LEFT_RGB, RIGHT_RGB, stick_figure
+from cubeling.characters import Character, Pose, Skeleton
+from cubeling.characters.model.character import skin
+from cubeling.characters.model.stick_figure import LEFT_RGB, RIGHT_RGB, stick_figure
 
 
 @pytest.fixture(scope="module")

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters.model.mesh import Material, Mesh, ToonShading
-from characters.rendering import SceneCharacter
-from characters.rendering.camera_picture.light import TO_LIGHT
-from characters.rendering.geometry.surfaces import surface_features
-from characters.rendering.geometry.vertices import CharacterVertices
+from cubeling.characters.model.mesh import Material, Mesh, ToonShading
+from cubeling.characters.rendering import SceneCharacter
+from cubeling.characters.rendering.camera_picture.light import TO_LIGHT
+from cubeling.characters.rendering.geometry.surfaces import surface_features
+from cubeling.characters.rendering.geometry.vertices import CharacterVertices
 
 RED = Material(base_color=(0.6, 0.1, 0.08, 1.0), roughness=0.5)
 

@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.rendering.camera_picture.light import (
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.rendering.camera_picture.light import (
     LINEAR_FROM_SRGB,
     MIN_RISE,
     PICTURES_PER_LOOK,
     LightEstimator,
     paper_color,
 )
-from characters.rendering.camera_picture.undistortion import Undistorter
-from characters.rendering.context import create_context
-from characters.rendering.scene import Cover, MeasuredLight
+from cubeling.characters.rendering.camera_picture.undistortion import Undistorter
+from cubeling.characters.rendering.context import create_context
+from cubeling.characters.rendering.scene import Cover, MeasuredLight
 
 SIZE = (320, 180)
 BENT = np.array([0.12, -0.2, 0.001, -0.002, 0.05])
@@ -235,17 +235,17 @@ def test_the_paper_of_a_cube_is_measured_between_its_markers(view, cube, distort
 
 
 def test_a_missing_library_is_named_with_the_command_that_installs_it(monkeypatch):
-    from characters.errors import CharacterError
+    from cubeling.characters.errors import CharacterError
 
     def fails(*_, **__):
         raise RuntimeError("libEGL.so not loaded")
 
     monkeypatch.setattr("moderngl.create_context", fails)
     monkeypatch.setattr("platform.system", lambda: "Linux")
-    monkeypatch.setattr("characters.rendering.context.find_library", lambda name: None)
+    monkeypatch.setattr("cubeling.characters.rendering.context.find_library", lambda name: None)
     with pytest.raises(CharacterError, match=r"libEGL is missing.*apt install libegl1"):
         create_context()
-    monkeypatch.setattr("characters.rendering.context.find_library", lambda name: name)
+    monkeypatch.setattr("cubeling.characters.rendering.context.find_library", lambda name: name)
     with pytest.raises(CharacterError, match="libgl1-mesa-dri"):
         create_context()
     with pytest.raises(CharacterError, match="graphics driver"):

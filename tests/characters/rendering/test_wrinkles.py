@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from characters import Character
-from characters.control.command import PosedCharacter
-from characters.model.face_maps import LAYER_NAMES, WRINKLE_LAYERS
-from characters.model.mesh import FaceMaps, ToonShading
-from characters.rendering import FULL, Quality, SceneCharacter
-from characters.rendering.geometry.face_texture import WrinkleMixer
+from cubeling.characters import Character
+from cubeling.characters.control.command import PosedCharacter
+from cubeling.characters.model.face_maps import LAYER_NAMES, WRINKLE_LAYERS
+from cubeling.characters.model.mesh import FaceMaps, ToonShading
+from cubeling.characters.rendering import FULL, Quality, SceneCharacter
+from cubeling.characters.rendering.geometry.face_texture import WrinkleMixer
 from tests.characters.rendering.wrinkle_reference import agreement
 
 LAYERS = len(LAYER_NAMES)

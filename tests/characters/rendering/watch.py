@@ -6,9 +6,9 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.deferred.buffers import LightBuffer
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.resources import CharacterLayer, FrameResources
+from cubeling.characters.rendering.deferred.buffers import LightBuffer
+from cubeling.characters.rendering.passes.render_pass import RenderPass
+from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
 
 Texels = NDArray[np.float64]
 

@@ -8,9 +8,9 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.mesh import FaceMaps
-from characters.rendering.geometry.face_texture import SMOOTHING_TEXELS, WrinkleMixer
-from characters.rendering.programs import SHADER_FOLDER, set_uniforms
+from cubeling.characters.model.mesh import FaceMaps
+from cubeling.characters.rendering.geometry.face_texture import SMOOTHING_TEXELS, WrinkleMixer
+from cubeling.characters.rendering.programs import SHADER_FOLDER, set_uniforms
 
 Array = NDArray[np.float64]
 

@@ -7,15 +7,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters import Character, CharacterError, Pose
-from characters.locomotion.gaits import Gaits
-from characters.retargeting import GaitReport, Recording, make_locomotion
-from characters.retargeting.locomotion.grading import refuse_other_motion
-from characters.retargeting.locomotion.recorded_gait import extract_gait
-from characters.retargeting.measures import bone_change, facing_error, knee_bends, sole_dip
-from characters.retargeting.rig import Rig
-from characters.retargeting.root import moved_to_trajectory
-from characters.skeleton import rotations
+from cubeling.characters import Character, CharacterError, Pose
+from cubeling.characters.locomotion.gaits import Gaits
+from cubeling.characters.retargeting import GaitReport, Recording, make_locomotion
+from cubeling.characters.retargeting.locomotion.grading import refuse_other_motion
+from cubeling.characters.retargeting.locomotion.recorded_gait import extract_gait
+from cubeling.characters.retargeting.measures import bone_change, facing_error, knee_bends, sole_dip
+from cubeling.characters.retargeting.rig import Rig
+from cubeling.characters.retargeting.root import moved_to_trajectory
+from cubeling.characters.skeleton import rotations
 from tests.characters.retargeting.test_retarget_locomotion import exported
 
 GOOD = GaitReport("walk", "walk", 1.0, 1.4, 0.0, 0.01, 0.0, 0.0, 0.0, 0.0, 0.0, 0.92)

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from characters import Character, Pose
-from characters.retargeting.leg_ik import place_ankle
-from characters.retargeting.rig import Rig
-from characters.skeleton import rotations
+from cubeling.characters import Character, Pose
+from cubeling.characters.retargeting.leg_ik import place_ankle
+from cubeling.characters.retargeting.rig import Rig
+from cubeling.characters.skeleton import rotations
 
 FRAMES = 120
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters import Character, Clip, Pose
-from characters.retargeting.retarget import retarget
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
+from cubeling.characters import Character, Clip, Pose
+from cubeling.characters.retargeting.retarget import retarget
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
 from tests.characters.skeleton.bodies import PERSON, named_body
 from tests.characters.skeleton.test_fingers import FINGERS, HAND, HANDS, PARTS
 from tests.characters.skeleton.test_naming import PEOPLE

@@ -4,14 +4,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from characters import Character, CharacterError, Pose, Skeleton
-from characters.formats import load_motion
-from characters.retargeting import retarget
-from characters.retargeting.footskate import find_foot_contacts
-from characters.retargeting.leg_ik import place_ankle
-from characters.retargeting.rig import Rig
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
+from cubeling.characters import Character, CharacterError, Pose, Skeleton
+from cubeling.characters.formats import load_motion
+from cubeling.characters.retargeting import retarget
+from cubeling.characters.retargeting.footskate import find_foot_contacts
+from cubeling.characters.retargeting.leg_ik import place_ankle
+from cubeling.characters.retargeting.rig import Rig
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
 
 SHARED = Path(__file__).parents[4] / "shared" / "data"
 LIMBS = [

@@ -9,16 +9,23 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import Animator, Character, CharacterCommand, CharacterError, LocomotionIntent, Pose
-from characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS
-from characters.retargeting import Recording, load_recording, make_locomotion
-from characters.retargeting.locomotion.gait_cycle import ArcPath
-from characters.retargeting.measures import facing_error
-from characters.retargeting.rig import Rig
-from characters.retargeting.root import clip_with_root, with_root_joint
-from characters.retargeting.transfer import turns_from_rest
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
+from cubeling.characters import (
+    Animator,
+    Character,
+    CharacterCommand,
+    CharacterError,
+    LocomotionIntent,
+    Pose,
+)
+from cubeling.characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS
+from cubeling.characters.retargeting import Recording, load_recording, make_locomotion
+from cubeling.characters.retargeting.locomotion.gait_cycle import ArcPath
+from cubeling.characters.retargeting.measures import facing_error
+from cubeling.characters.retargeting.rig import Rig
+from cubeling.characters.retargeting.root import clip_with_root, with_root_joint
+from cubeling.characters.retargeting.transfer import turns_from_rest
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
 
 SHARED = Path(__file__).parents[4] / "shared" / "data"
 

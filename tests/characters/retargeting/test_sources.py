@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters import Character, CharacterError, Pose
-from characters.formats import is_motion_only
-from characters.formats.mocap.bvh_writing import save_bvh
-from characters.retargeting import Recording, load_recording, make_locomotion
-from characters.retargeting.standing_rest import uprightness
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Skeleton
+from cubeling.characters import Character, CharacterError, Pose
+from cubeling.characters.formats import is_motion_only
+from cubeling.characters.formats.mocap.bvh_writing import save_bvh
+from cubeling.characters.retargeting import Recording, load_recording, make_locomotion
+from cubeling.characters.retargeting.standing_rest import uprightness
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Skeleton
 from tests.characters.retargeting.test_retarget_locomotion import exported
 
 

@@ -5,21 +5,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters import Character, Mesh, Pose
-from characters.retargeting import retarget
-from characters.retargeting.footskate import (
+from cubeling.characters import Character, Mesh, Pose
+from cubeling.characters.retargeting import retarget
+from cubeling.characters.retargeting.footskate import (
     FootContacts,
     ball_positions,
     find_foot_contacts,
     hold_feet_in_contact,
 )
-from characters.retargeting.ground_motion import GroundMotion
-from characters.retargeting.heel_rise import Heels
-from characters.retargeting.hips_shift import HeldLegs, with_listing_hips
-from characters.retargeting.measures import knee_quantiles, sole_dip
-from characters.retargeting.rig import Rig
-from characters.retargeting.transfer import turns_from_rest
-from characters.skeleton import rotations
+from cubeling.characters.retargeting.ground_motion import GroundMotion
+from cubeling.characters.retargeting.heel_rise import Heels
+from cubeling.characters.retargeting.hips_shift import HeldLegs, with_listing_hips
+from cubeling.characters.retargeting.measures import knee_quantiles, sole_dip
+from cubeling.characters.retargeting.rig import Rig
+from cubeling.characters.retargeting.transfer import turns_from_rest
+from cubeling.characters.skeleton import rotations
 
 MAX_KNEES_BEYOND = np.radians(8.0)
 MAX_DIP_M = 0.005

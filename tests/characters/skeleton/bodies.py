@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from characters import Pose, Skeleton
-from characters.skeleton import rotations
+from cubeling.characters import Pose, Skeleton
+from cubeling.characters.skeleton import rotations
 
 # Parents and rest places, left side only. A part that begins with a capital has two sides.
 PERSON = {

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import Character, CharacterError, Pose, Skeleton
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import BODY_PARTS, Anatomy
-from characters.skeleton.body_parts.joint_names import read_name
+from cubeling.characters import Character, CharacterError, Pose, Skeleton
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import BODY_PARTS, Anatomy
+from cubeling.characters.skeleton.body_parts.joint_names import read_name
 from tests.characters.skeleton.bodies import DOG, PERSON, named_body, skeleton_of
 from tests.characters.skeleton.test_naming import ANIMALS, PEOPLE
 

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from characters import Pose, Skeleton
-from characters.skeleton import rotations
-from characters.skeleton.feet import find_feet, foot_joints_by_side
+from cubeling.characters import Pose, Skeleton
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.feet import find_feet, foot_joints_by_side
 from tests.characters.skeleton.bodies import DOG, PERSON, named_body
 from tests.characters.skeleton.test_naming import ANIMALS, PEOPLE
 

@@ -1,6 +1,6 @@
 import pytest
 
-from characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.anatomy import Anatomy
 from tests.characters.skeleton.bodies import PERSON, named_body
 from tests.characters.skeleton.test_naming import PEOPLE
 

@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters import Character
-from characters.errors import CharacterError
-from characters.skeleton import rotations
-from characters.skeleton.joint_limits import EDGE_RAD, JointLimits
-from characters.skeleton.natural_limits import natural_limits
+from cubeling.characters import Character
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.joint_limits import EDGE_RAD, JointLimits
+from cubeling.characters.skeleton.natural_limits import natural_limits
 
 BUNDLED = ("human", "robot", "vleo")
 

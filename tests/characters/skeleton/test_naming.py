@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.anatomy import Anatomy
 from tests.characters.skeleton.bodies import DOG, PERSON, named_body
 
 # Words for left and right, then the names in the order of PERSON, then helper joints.

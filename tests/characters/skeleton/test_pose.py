@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters import CharacterError, Pose, Skeleton
-from characters.skeleton import rotations
+from cubeling.characters import CharacterError, Pose, Skeleton
+from cubeling.characters.skeleton import rotations
 
 
 def random_tree(seed, joints, batch=()):

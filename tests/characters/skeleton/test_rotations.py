@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.spatial.transform import Rotation
 
-from characters.skeleton import rotations
+from cubeling.characters.skeleton import rotations
 
 numbers = st.floats(-1, 1)
 quaternions = (

@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 import pytest
 
-from characters.speech.speech import Samples
-from characters.speech.voices import Voice, espeak
-from characters.speech.voices.espeak import installed
+from cubeling.characters.speech.speech import Samples
+from cubeling.characters.speech.voices import Voice, espeak
+from cubeling.characters.speech.voices.espeak import installed
 
 
 @pytest.fixture(scope="session")

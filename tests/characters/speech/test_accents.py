@@ -5,12 +5,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters.speech.accents import AccentSettings, accents_of, detect_accents
-from characters.speech.contours import Prosody, measure_prosody
-from characters.speech.prosody import utterance_of
-from characters.speech.speech import Phone, Speech
-from characters.speech.strength import AccentMeasures, ev, ev2, matthews, measure_accents, psi
-from characters.speech.tagged_text import TaggedText
+from cubeling.characters.speech.accents import AccentSettings, accents_of, detect_accents
+from cubeling.characters.speech.contours import Prosody, measure_prosody
+from cubeling.characters.speech.prosody import utterance_of
+from cubeling.characters.speech.speech import Phone, Speech
+from cubeling.characters.speech.strength import (
+    AccentMeasures,
+    ev,
+    ev2,
+    matthews,
+    measure_accents,
+    psi,
+)
+from cubeling.characters.speech.tagged_text import TaggedText
 
 SYLLABLES = (0.3, 0.52, 0.75, 1.0, 1.22, 1.5, 1.75)
 ACCENTED = (0.52, 1.0, 1.75)

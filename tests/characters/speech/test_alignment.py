@@ -9,14 +9,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters.errors import CharacterError
-from characters.speech.alignment import align, align_with_sphinx
-from characters.speech.alignment.warping import warp
-from characters.speech.audio import resampled
-from characters.speech.closures import with_closures
-from characters.speech.speech import SILENCE, Phone, Speech, Word
-from characters.speech.voices import Manner
-from characters.speech.words import with_every_word
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.speech.alignment import align, align_with_sphinx
+from cubeling.characters.speech.alignment.warping import warp
+from cubeling.characters.speech.audio import resampled
+from cubeling.characters.speech.closures import with_closures
+from cubeling.characters.speech.speech import SILENCE, Phone, Speech, Word
+from cubeling.characters.speech.voices import Manner
+from cubeling.characters.speech.words import with_every_word
 
 TEXT = "He turned sharply, and faced Gregson across the table."
 
@@ -146,8 +146,8 @@ def test_the_banded_path_of_a_long_sequence_is_that_of_the_whole(monkeypatch):
     at = np.interp(np.linspace(0, 1, 3000), [0, 0.4, 1], [0, 0.5, 1]) * 2999
     features = template[at.astype(int)]
     whole = warp(features, template)
-    monkeypatch.setattr("characters.speech.alignment.warping.MAX_CELLS", 1_000_000)
-    monkeypatch.setattr("characters.speech.alignment.warping.BAND", 200)
+    monkeypatch.setattr("cubeling.characters.speech.alignment.warping.MAX_CELLS", 1_000_000)
+    monkeypatch.setattr("cubeling.characters.speech.alignment.warping.BAND", 200)
     banded = warp(features, template)
     assert np.mean(np.abs(banded - whole) <= 2) > 0.99
 

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters.errors import CharacterError
-from characters.speech.audio import read_speech, resampled
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.speech.audio import read_speech, resampled
 
 
 def tone(rate, seconds=0.5, frequency=440.0):

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters.speech.mouth import MouthTracker, phones_from_sound
+from cubeling.characters.speech.mouth import MouthTracker, phones_from_sound
 
 FORMANTS = {"a": (750, 1200, 2500), "i": (280, 2300, 2900), "u": (330, 750, 2300)}
 BLOCK_S = 0.01

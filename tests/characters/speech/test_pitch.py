@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters.speech.contours import measure_prosody
-from characters.speech.pitch import PitchSettings, track_pitch
+from cubeling.characters.speech.contours import measure_prosody
+from cubeling.characters.speech.pitch import PitchSettings, track_pitch
 
 
 def harmonics(pitch, rate):

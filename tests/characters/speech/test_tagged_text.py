@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters.errors import CharacterError
-from characters.speech.speech import Word
-from characters.speech.tagged_text import MIN_SPAN_S, TaggedSpan, TaggedText
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.speech.speech import Word
+from cubeling.characters.speech.tagged_text import MIN_SPAN_S, TaggedSpan, TaggedText
 
 
 def begin(key: str, name: str) -> str:

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters.errors import CharacterError
-from characters.speech.phones import fill_pauses
-from characters.speech.speech import Phone, Speech, Word
-from characters.speech.textgrid import (
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.speech.phones import fill_pauses
+from cubeling.characters.speech.speech import Phone, Speech, Word
+from cubeling.characters.speech.textgrid import (
     Interval,
     TextGrid,
     Tier,

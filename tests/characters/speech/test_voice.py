@@ -6,9 +6,9 @@ import sys
 import numpy as np
 import pytest
 
-from characters.speech.speech import SILENCE
-from characters.speech.voices import Manner, Voice, VoiceError, espeak
-from characters.speech.voices.espeak import installed
+from cubeling.characters.speech.speech import SILENCE
+from cubeling.characters.speech.voices import Manner, Voice, VoiceError, espeak
+from cubeling.characters.speech.voices.espeak import installed
 
 needs_espeak = pytest.mark.skipif(not installed(), reason="eSpeak NG is not installed")
 

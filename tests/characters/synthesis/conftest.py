@@ -2,10 +2,10 @@
 
 import pytest
 
-from characters import Character, Clip, Pose
-from characters.synthesis.graphs.building import analyse
-from characters.synthesis.graphs.storage import StoredGraph
-from characters.synthesis.library import MotionLibrary
+from cubeling.characters import Character, Clip, Pose
+from cubeling.characters.synthesis.graphs.building import analyse
+from cubeling.characters.synthesis.graphs.storage import StoredGraph
+from cubeling.characters.synthesis.library import MotionLibrary
 
 
 @pytest.fixture(scope="session")

@@ -6,18 +6,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from affect import Emotion
-from characters import Character
-from characters.synthesis.idle.bridges import (
+from cubeling.affect import Emotion
+from cubeling.characters import Character
+from cubeling.characters.synthesis.idle.bridges import (
     EASED_S,
     NEAR_RAD,
     bridge,
     nearest_balance,
     shortest_way,
 )
-from characters.synthesis.idle.database import BalanceShift, IdleDatabase, RestingPosture
-from characters.synthesis.idle.idle_motion import IdleMotion
-from characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
+from cubeling.characters.synthesis.idle.database import BalanceShift, IdleDatabase, RestingPosture
+from cubeling.characters.synthesis.idle.idle_motion import IdleMotion
+from cubeling.characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
 
 RATE = 25.0
 BALANCES = "left", "both", "right"

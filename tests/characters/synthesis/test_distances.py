@@ -3,15 +3,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters import CharacterError, Pose, RootDelta
-from characters.skeleton import rotations
-from characters.synthesis.body import default_body_plan
-from characters.synthesis.distances import DISTANCES, JointAngles, PointClouds, matrix
-from characters.synthesis.distances.angles import transition_probabilities
-from characters.synthesis.distances.points import windows
-from characters.synthesis.graphs.parts import part_distance, threshold_shares
-from characters.synthesis.joint_weights import fit_weights, nonnegative_weights
-from characters.synthesis.library import MotionLibrary
+from cubeling.characters import CharacterError, Pose, RootDelta
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.synthesis.body import default_body_plan
+from cubeling.characters.synthesis.distances import DISTANCES, JointAngles, PointClouds, matrix
+from cubeling.characters.synthesis.distances.angles import transition_probabilities
+from cubeling.characters.synthesis.distances.points import windows
+from cubeling.characters.synthesis.graphs.parts import part_distance, threshold_shares
+from cubeling.characters.synthesis.joint_weights import fit_weights, nonnegative_weights
+from cubeling.characters.synthesis.library import MotionLibrary
 
 
 @pytest.mark.parametrize("name", DISTANCES)

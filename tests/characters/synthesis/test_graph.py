@@ -8,17 +8,17 @@ from hypothesis import strategies as st
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
-from characters import CharacterError
-from characters.synthesis.distances import matrix, thesis_distance
-from characters.synthesis.graphs.building import standard_graph
-from characters.synthesis.graphs.candidates import Candidates, find_candidates
-from characters.synthesis.graphs.components import largest_component, strong_components
-from characters.synthesis.graphs.edges import Edges
-from characters.synthesis.graphs.graph import EdgeCosts, build_graph
-from characters.synthesis.graphs.search import HopCosts, cost_to_go
-from characters.synthesis.graphs.storage import WHOLE_BODY, StoredGraph
-from characters.synthesis.library import MotionLibrary
-from characters.synthesis.transitions.playback import path_clip
+from cubeling.characters import CharacterError
+from cubeling.characters.synthesis.distances import matrix, thesis_distance
+from cubeling.characters.synthesis.graphs.building import standard_graph
+from cubeling.characters.synthesis.graphs.candidates import Candidates, find_candidates
+from cubeling.characters.synthesis.graphs.components import largest_component, strong_components
+from cubeling.characters.synthesis.graphs.edges import Edges
+from cubeling.characters.synthesis.graphs.graph import EdgeCosts, build_graph
+from cubeling.characters.synthesis.graphs.search import HopCosts, cost_to_go
+from cubeling.characters.synthesis.graphs.storage import WHOLE_BODY, StoredGraph
+from cubeling.characters.synthesis.library import MotionLibrary
+from cubeling.characters.synthesis.transitions.playback import path_clip
 
 
 @st.composite

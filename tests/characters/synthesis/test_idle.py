@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affect import NEUTRAL, Emotion
-from affect.regions import NEUTRAL_RADIUS, region_of
-from characters import (
+from cubeling.affect import NEUTRAL, Emotion
+from cubeling.affect.regions import NEUTRAL_RADIUS, region_of
+from cubeling.characters import (
     Character,
     CharacterError,
     Clip,
@@ -21,14 +21,14 @@ from characters import (
     RootOffset,
     mask_of,
 )
-from characters.control.controllers.recordings import read_motions
-from characters.skeleton import rotations
-from characters.synthesis.idle.database import IdleDatabase
-from characters.synthesis.idle.fitting import fit, nearest_clip
-from characters.synthesis.idle.idle_motion import REACTION_S, IdleMotion
-from characters.synthesis.idle.layering import Varied
-from characters.synthesis.idle.posture_space import PostureVectors
-from characters.synthesis.idle.recordings import (
+from cubeling.characters.control.controllers.recordings import read_motions
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.synthesis.idle.database import IdleDatabase
+from cubeling.characters.synthesis.idle.fitting import fit, nearest_clip
+from cubeling.characters.synthesis.idle.idle_motion import REACTION_S, IdleMotion
+from cubeling.characters.synthesis.idle.layering import Varied
+from cubeling.characters.synthesis.idle.posture_space import PostureVectors
+from cubeling.characters.synthesis.idle.recordings import (
     Rest,
     StandingRecording,
     find_rests,

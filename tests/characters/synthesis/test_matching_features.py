@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
-from characters.skeleton.pose import Pose, Skeleton
-from characters.synthesis.matching.features import (
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Pose, Skeleton
+from cubeling.characters.synthesis.matching.features import (
     HORIZONS_S,
     FeatureJoints,
     FeatureSpace,

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters.motion.motion import RootDelta
-from characters.synthesis.matching.prediction import MAX_TURN_RATE, Impulse, Wish, predict
+from cubeling.characters.motion.motion import RootDelta
+from cubeling.characters.synthesis.matching.prediction import MAX_TURN_RATE, Impulse, Wish, predict
 
 HEIGHT_M = 1.7
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters.synthesis.matching.nearest import NearestRow
+from cubeling.characters.synthesis.matching.nearest import NearestRow
 
 
 @settings(max_examples=25, deadline=None)

@@ -4,28 +4,28 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from characters import CharacterError
-from characters.retargeting import load_recording
-from characters.synthesis.body import default_body_plan, read_body_plan
-from characters.synthesis.graphs.building import part_graphs, standard_graph
-from characters.synthesis.graphs.graph import EdgeCosts
-from characters.synthesis.graphs.parts import PartGraphs
-from characters.synthesis.graphs.search import HopCosts
-from characters.synthesis.graphs.storage import StoredGraph
-from characters.synthesis.library import MotionLibrary
-from characters.synthesis.transitions.comparison import Comparison, common_requests
-from characters.synthesis.transitions.evaluation import together
-from characters.synthesis.transitions.progressive import (
+from cubeling.characters import CharacterError
+from cubeling.characters.retargeting import load_recording
+from cubeling.characters.synthesis.body import default_body_plan, read_body_plan
+from cubeling.characters.synthesis.graphs.building import part_graphs, standard_graph
+from cubeling.characters.synthesis.graphs.graph import EdgeCosts
+from cubeling.characters.synthesis.graphs.parts import PartGraphs
+from cubeling.characters.synthesis.graphs.search import HopCosts
+from cubeling.characters.synthesis.graphs.storage import StoredGraph
+from cubeling.characters.synthesis.library import MotionLibrary
+from cubeling.characters.synthesis.transitions.comparison import Comparison, common_requests
+from cubeling.characters.synthesis.transitions.evaluation import together
+from cubeling.characters.synthesis.transitions.progressive import (
     SearchSettings,
     TransitionPlanner,
     cheapest_plan,
 )
-from characters.synthesis.transitions.stitching import (
+from cubeling.characters.synthesis.transitions.stitching import (
     LowPass,
     played_cost,
     stitch,
 )
-from characters.synthesis.transitions.transition import PartStreams, Transition
+from cubeling.characters.synthesis.transitions.transition import PartStreams, Transition
 
 CMU = Path(__file__).parents[4] / "shared" / "data" / "cmu-mocap"
 

@@ -3,9 +3,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters import Character
-from characters.skeleton import rotations
-from characters.synthesis.idle.posture_space import (
+from cubeling.characters import Character
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.synthesis.idle.posture_space import (
     PostureSpace,
     PostureVectors,
     Region,

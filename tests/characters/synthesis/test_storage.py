@@ -4,9 +4,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from characters import CharacterError
-from characters.synthesis.graphs.building import part_graphs, standard_graph
-from characters.synthesis.graphs.storage import StoredGraph, load_graph, save_graph
+from cubeling.characters import CharacterError
+from cubeling.characters.synthesis.graphs.building import part_graphs, standard_graph
+from cubeling.characters.synthesis.graphs.storage import StoredGraph, load_graph, save_graph
 
 
 @pytest.fixture

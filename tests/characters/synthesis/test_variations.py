@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from characters.synthesis.idle.posture_space import PostureSpace
-from characters.synthesis.idle.stretches import Stretches, StretchStream
-from characters.synthesis.idle.variations import Variations, VariationStream, extrema
+from cubeling.characters.synthesis.idle.posture_space import PostureSpace
+from cubeling.characters.synthesis.idle.stretches import Stretches, StretchStream
+from cubeling.characters.synthesis.idle.variations import Variations, VariationStream, extrema
 
 RATE = 25.0
 

@@ -13,9 +13,15 @@ from pathlib import Path
 
 import pytest
 
-import robot
-from robot.conformance import PortChannel, SimulatedChannel, all_checks, run_checks, select_checks
-from robot.link.transport import opener
+from cubeling import robot
+from cubeling.robot.conformance import (
+    PortChannel,
+    SimulatedChannel,
+    all_checks,
+    run_checks,
+    select_checks,
+)
+from cubeling.robot.link.transport import opener
 from tools.protocol_reference import HEADER_FILE
 
 HERE = Path(__file__).parent

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import typer
 
-from app.commands.robot.conform import conform
-from robot import SimulatedPort
+from cubeling.app.commands.robot.conform import conform
+from cubeling.robot import SimulatedPort
 from tests.robot.conformance.mutants.commands import AcknowledgesOnce
 from tests.robot.conformance.mutants.sessions import SaysGoneToEverything
 

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import pytest
 
-from app import cli
-from robot import SimulatedPort, Simulator
-from robot.conformance import all_checks
-from robot.simulators import SIMULATORS
+from cubeling.app import cli
+from cubeling.robot import SimulatedPort, Simulator
+from cubeling.robot.conformance import all_checks
+from cubeling.robot.simulators import SIMULATORS
 
 FAST = ("wrong bit", "frames in one", "hello answered", "repeat acknowledged", "beat answered")
 """Checks that take little real time, by names."""

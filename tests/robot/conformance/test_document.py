@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from robot.conformance import all_checks
+from cubeling.robot.conformance import all_checks
 from tools.conformance_reference import DOCUMENT, checks_table, updated
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 import serial
 
-from robot.conformance import (
+from cubeling.robot.conformance import (
     PortChannel,
     SimulatedChannel,
     all_checks,
@@ -14,17 +14,17 @@ from robot.conformance import (
     run_checks,
     select_checks,
 )
-from robot.conformance.checks.log import LOG
-from robot.conformance.checks.moving import MOVING
-from robot.conformance.probe import Probe
-from robot.conformance.suite import MAX_DURATION_S
-from robot.errors import RobotError
-from robot.protocol import messages as m
-from robot.protocol import timing
-from robot.protocol.schema import unpack
-from robot.protocol.wire import decode_frame
-from robot.simulators.cubeling import body
-from robot.simulators.cubeling.simulator import Simulator
+from cubeling.robot.conformance.checks.log import LOG
+from cubeling.robot.conformance.checks.moving import MOVING
+from cubeling.robot.conformance.probe import Probe
+from cubeling.robot.conformance.suite import MAX_DURATION_S
+from cubeling.robot.errors import RobotError
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
+from cubeling.robot.protocol.schema import unpack
+from cubeling.robot.protocol.wire import decode_frame
+from cubeling.robot.simulators.cubeling import body
+from cubeling.robot.simulators.cubeling.simulator import Simulator
 from tests.robot.conformance.mutants.base import Mutant
 
 

@@ -4,10 +4,10 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from robot.conformance import all_checks, run_checks
-from robot.conformance.suite import MAX_DURATION_S
-from robot.protocol.timing import BAUD
-from robot.simulators.cubeling.simulator import Simulator
+from cubeling.robot.conformance import all_checks, run_checks
+from cubeling.robot.conformance.suite import MAX_DURATION_S
+from cubeling.robot.protocol.timing import BAUD
+from cubeling.robot.simulators.cubeling.simulator import Simulator
 
 STEP_S = 0.001
 

@@ -11,7 +11,7 @@ import tests.robot.conformance.mutants.moving
 import tests.robot.conformance.mutants.playing
 import tests.robot.conformance.mutants.reporting
 import tests.robot.conformance.mutants.sessions  # noqa: F401 # these enter themselves
-from robot.conformance import SimulatedChannel, all_checks, run_checks, select_checks
+from cubeling.robot.conformance import SimulatedChannel, all_checks, run_checks, select_checks
 from tests.robot.conformance.mutants.base import MUTANTS, Mutant
 
 PAIRS = [(check, mutant) for check, mutants in MUTANTS.items() for mutant in mutants]

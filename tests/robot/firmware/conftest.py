@@ -8,17 +8,17 @@ from typing import Any
 
 import pytest
 
-from robot.firmware.dino import servos
-from robot.firmware.dino.board import RobotBoard
-from robot.firmware.dino.joints import ServoJoints
-from robot.firmware.dino.log import LogQueue
-from robot.firmware.dino.messages import SEVERITY_INFO
-from robot.firmware.dino.pty_board import PtyBoard
-from robot.firmware.dino.robot import Firmware, run
-from robot.firmware.dino.table import ServoTable
-from robot.protocol.schema import pack, unpack
-from robot.protocol.timing import VERSION
-from robot.protocol.wire import FrameReader, encode_frame
+from cubeling.robot.firmware.dino import servos
+from cubeling.robot.firmware.dino.board import RobotBoard
+from cubeling.robot.firmware.dino.joints import ServoJoints
+from cubeling.robot.firmware.dino.log import LogQueue
+from cubeling.robot.firmware.dino.messages import SEVERITY_INFO
+from cubeling.robot.firmware.dino.pty_board import PtyBoard
+from cubeling.robot.firmware.dino.robot import Firmware, run
+from cubeling.robot.firmware.dino.table import ServoTable
+from cubeling.robot.protocol.schema import pack, unpack
+from cubeling.robot.protocol.timing import VERSION
+from cubeling.robot.protocol.wire import FrameReader, encode_frame
 
 
 @dataclass(frozen=True)

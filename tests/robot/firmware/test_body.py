@@ -10,14 +10,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from affect.hysteresis import Label, next_label
-from robot.firmware.dino import body, motions, servos, sounds
-from robot.firmware.dino.joints import POWER_ON_EVERY_MS, RETRY_EVERY_MS
-from robot.firmware.dino.log import LogQueue
-from robot.firmware.dino.robot import run, run_until_exit
-from robot.firmware.dino.table import ServoTable
-from robot.protocol import messages as m
-from robot.simulators.cubeling import dinosaur
+from cubeling.affect.hysteresis import Label, next_label
+from cubeling.robot.firmware.dino import body, motions, servos, sounds
+from cubeling.robot.firmware.dino.joints import POWER_ON_EVERY_MS, RETRY_EVERY_MS
+from cubeling.robot.firmware.dino.log import LogQueue
+from cubeling.robot.firmware.dino.robot import run, run_until_exit
+from cubeling.robot.firmware.dino.table import ServoTable
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.simulators.cubeling import dinosaur
 from tests.robot.firmware.conftest import Dino, FailingBoard, Pulse, VirtualBoard
 from tools import firmware_tables as generate
 from tools import wiring

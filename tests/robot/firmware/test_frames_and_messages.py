@@ -8,14 +8,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import robot.protocol
-from robot.firmware.dino import codec, frames, messages
-from robot.protocol import messages as m
-from robot.protocol.fields import MessageError
-from robot.protocol.schema import pack, spec_of, unpack
-from robot.protocol.wire import MAX_BODY, MAX_FRAME, FrameReader, encode_frame
+import cubeling.robot.protocol
+from cubeling.robot.firmware.dino import codec, frames, messages
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.fields import MessageError
+from cubeling.robot.protocol.schema import pack, spec_of, unpack
+from cubeling.robot.protocol.wire import MAX_BODY, MAX_FRAME, FrameReader, encode_frame
 
-VECTORS = json.loads((Path(robot.protocol.__file__).parent / "vectors.json").read_text("utf-8"))
+VECTORS = json.loads(
+    (Path(cubeling.robot.protocol.__file__).parent / "vectors.json").read_text("utf-8")
+)
 BODIES = st.binary(min_size=1, max_size=MAX_BODY)
 
 

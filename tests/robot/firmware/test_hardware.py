@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 
 import pytest
 
-from robot.firmware.dino import servos
-from robot.firmware.dino.table import ServoTable
+from cubeling.robot.firmware.dino import servos
+from cubeling.robot.firmware.dino.table import ServoTable
 
 
 class Pwm:
@@ -167,10 +167,10 @@ class MicroPython:
             lambda one, other: (one - other + 2**29) % 2**30 - 2**29, raising=False,
         )  # fmt: skip
         for name in ("hardware", "pca9685"):
-            monkeypatch.delitem(sys.modules, f"robot.firmware.dino.{name}", raising=False)
-        self.hardware = importlib.import_module("robot.firmware.dino.hardware")
+            monkeypatch.delitem(sys.modules, f"cubeling.robot.firmware.dino.{name}", raising=False)
+        self.hardware = importlib.import_module("cubeling.robot.firmware.dino.hardware")
         for name in ("hardware", "pca9685"):
-            monkeypatch.delitem(sys.modules, f"robot.firmware.dino.{name}", raising=False)
+            monkeypatch.delitem(sys.modules, f"cubeling.robot.firmware.dino.{name}", raising=False)
 
     def board(self, **changes: object) -> Any:
         # Not sooner: pytest replaces both between a fixture and its test.

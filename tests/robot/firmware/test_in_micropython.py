@@ -15,12 +15,12 @@ from pathlib import Path
 
 import pytest
 
-import robot.firmware
-import robot.protocol
-from affect import Emotion
-from robot.conformance import SimulatedChannel, all_checks, run_checks
+import cubeling.robot.firmware
+import cubeling.robot.protocol
+from cubeling.affect import Emotion
+from cubeling.robot.conformance import SimulatedChannel, all_checks, run_checks
 
-FOLDER = Path(robot.firmware.__file__).parent
+FOLDER = Path(cubeling.robot.firmware.__file__).parent
 FILES = [FOLDER / "main.py", *sorted((FOLDER / "dino").glob("*.py"))]
 FOR_A_BOARD = [path for path in FILES if path.name != "pty_board.py"]
 PACKAGE = "@micropython/micropython-webassembly-pyscript"
@@ -131,7 +131,7 @@ def test_the_program_is_small_enough_for_a_board():
 
 
 def test_micropython_reads_and_writes_every_vector(tmp_path):
-    folder = Path(robot.protocol.__file__).parent
+    folder = Path(cubeling.robot.protocol.__file__).parent
     vectors = json.loads((folder / "vectors.json").read_text("utf-8"))
     frames = [entry["frame"].replace(" ", "") for entry in vectors["frames"]]
     script = tmp_path / "vectors.py"

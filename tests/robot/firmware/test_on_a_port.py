@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-import robot
-import robot.firmware
+import cubeling.robot.firmware
+from cubeling import robot
 
-HERE = Path(robot.firmware.__file__).parent
+HERE = Path(cubeling.robot.firmware.__file__).parent
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no pseudo-terminals")
 
 
@@ -46,11 +46,11 @@ def start(*command: str, folder: Path) -> subprocess.Popen[str]:
 @pytest.mark.parametrize(
     ("command", "folder"),
     [
-        (("-m", "robot.firmware"), HERE.parents[1]),
+        (("-m", "cubeling.robot.firmware"), HERE.parents[1]),
         # As it stands on a board: main.py beside the folder, and nothing of ours in reach.
         (("-I", "-S", "-c", "import sys; sys.path.insert(0, '.'); import main"), HERE),
     ],
-    ids=["python -m robot.firmware", "main.py alone"],
+    ids=["python -m cubeling.robot.firmware", "main.py alone"],
 )
 def test_it_runs_on_a_pseudo_terminal(command, folder):
     with start(sys.executable, *command, folder=folder) as process:

@@ -6,14 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.firmware.dino import log as firmware_log
-from robot.firmware.dino import servos
-from robot.firmware.dino.robot import run
-from robot.firmware.dino.table import ServoTable
-from robot.protocol import messages as m
-from robot.protocol.schema import pack, unpack
-from robot.protocol.wire import FrameReader, encode_frame
-from robot.simulators.cubeling import log as simulated_log
+from cubeling.robot.firmware.dino import log as firmware_log
+from cubeling.robot.firmware.dino import servos
+from cubeling.robot.firmware.dino.robot import run
+from cubeling.robot.firmware.dino.table import ServoTable
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.schema import pack, unpack
+from cubeling.robot.protocol.wire import FrameReader, encode_frame
+from cubeling.robot.simulators.cubeling import log as simulated_log
 from tests.robot.firmware.conftest import Dino, FailingBoard
 
 LEVEL = (0.0,) * m.JOINTS_MAX

@@ -6,13 +6,13 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from affect import Emotion
-from robot.conformance import SimulatedChannel, all_checks, run_checks
-from robot.firmware.dino import servos
-from robot.protocol import messages as m
-from robot.protocol.schema import pack, unpack
-from robot.protocol.wire import FrameReader, encode_frame
-from robot.simulators.cubeling.simulator import Simulator
+from cubeling.affect import Emotion
+from cubeling.robot.conformance import SimulatedChannel, all_checks, run_checks
+from cubeling.robot.firmware.dino import servos
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.schema import pack, unpack
+from cubeling.robot.protocol.wire import FrameReader, encode_frame
+from cubeling.robot.simulators.cubeling.simulator import Simulator
 from tests.robot.firmware.conftest import Dino
 
 

@@ -6,11 +6,11 @@ from types import SimpleNamespace
 
 import pytest
 
-import robot.firmware
-from robot.firmware.dino import motions, servos
-from robot.firmware.dino.table import ServoTable
+import cubeling.robot.firmware
+from cubeling.robot.firmware.dino import motions, servos
+from cubeling.robot.firmware.dino.table import ServoTable
 
-LAYOUTS = sorted((Path(robot.firmware.__file__).parent / "layouts").glob("*.py"))
+LAYOUTS = sorted((Path(cubeling.robot.firmware.__file__).parent / "layouts").glob("*.py"))
 JOINTS = {sway[0] for motion in motions.MOTIONS for sway in motion[3]}
 
 

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot.drivers import DRIVERS
-from robot.network.messages import MESSAGE_TYPES
-from robot.simulators import SIMULATORS
+from cubeling.robot.drivers import DRIVERS
+from cubeling.robot.network.messages import MESSAGE_TYPES
+from cubeling.robot.simulators import SIMULATORS
 from tests.campaigns.decoders import MAX_GROWTH_BYTES, MAX_HELD_BYTES, TARGETS
 from tests.campaigns.soak import weight
 

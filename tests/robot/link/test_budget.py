@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import robot
-from robot.link.exchange import (
+from cubeling import robot
+from cubeling.robot.link.exchange import (
     FLOOD_PAUSE_S,
     MAX_BURST_BYTES,
     MAX_BYTES_PER_S,
@@ -65,7 +65,7 @@ class BabblingPort:
 
 def test_a_port_that_babbles_is_read_at_a_bounded_rate(monkeypatch):
     port = BabblingPort()
-    monkeypatch.setattr("robot.link.connection.opener", lambda *_: lambda: port)
+    monkeypatch.setattr("cubeling.robot.link.connection.opener", lambda *_: lambda: port)
     with pytest.raises(robot.RobotError, match="nobody"):
         robot.connect("/dev/babble", answer_within=0.3)
     # After the burst: two reads every 20 ms. Without a limit there are 50 times as many.

@@ -11,14 +11,14 @@ from typing import Literal
 
 import pytest
 
-import robot
-from affect import Emotion
-from robot.conformance import SimulatedChannel, run_checks
-from robot.errors import RobotError
-from robot.protocol.timing import ACTIONS_MAX, FAILSAFE_PROMISE
-from robot.protocol.wire import FrameReader
-from robot.simulators.cubeling.simulator import Simulator
-from robot.simulators.port import SimulatedPort
+from cubeling import robot
+from cubeling.affect import Emotion
+from cubeling.robot.conformance import SimulatedChannel, run_checks
+from cubeling.robot.errors import RobotError
+from cubeling.robot.protocol.timing import ACTIONS_MAX, FAILSAFE_PROMISE
+from cubeling.robot.protocol.wire import FrameReader
+from cubeling.robot.simulators.cubeling.simulator import Simulator
+from cubeling.robot.simulators.port import SimulatedPort
 
 HAPPY = Emotion(0.8, 0.5)
 

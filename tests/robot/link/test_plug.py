@@ -6,11 +6,11 @@ from types import SimpleNamespace
 
 import pytest
 
-import robot
-from affect import Emotion
-from robot.link.transport import UsbIdentity, find_port, usb_identity
-from robot.simulators.cubeling.simulator import Simulator
-from robot.simulators.port import SimulatedPort
+from cubeling import robot
+from cubeling.affect import Emotion
+from cubeling.robot.link.transport import UsbIdentity, find_port, usb_identity
+from cubeling.robot.simulators.cubeling.simulator import Simulator
+from cubeling.robot.simulators.port import SimulatedPort
 
 HAPPY = Emotion(0.8, 0.5)
 
@@ -26,7 +26,7 @@ def usb(monkeypatch):
             for name, (vid, pid, serial, location) in devices.items()
         ]
 
-    monkeypatch.setattr("robot.link.transport.list_ports.comports", comports)
+    monkeypatch.setattr("cubeling.robot.link.transport.list_ports.comports", comports)
     return devices
 
 

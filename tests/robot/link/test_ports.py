@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from robot.link import ports
+from cubeling.robot.link import ports
 
 
 def test_a_pleo_is_recognised_and_usb_comes_first(monkeypatch):

@@ -3,10 +3,10 @@
 import re
 from pathlib import Path
 
-import robot
-from robot.contract import port
-from robot.link import connection, exchange, transport
-from robot.protocol import timing
+from cubeling import robot
+from cubeling.robot.contract import port
+from cubeling.robot.link import connection, exchange, transport
+from cubeling.robot.protocol import timing
 
 README = Path(robot.__file__).with_name("README.md").read_text("utf-8")
 ROW = re.compile(r"^\| .* \| (\d+) ms \| `([A-Z_]+)` \|$", re.MULTILINE)

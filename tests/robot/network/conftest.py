@@ -8,12 +8,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from affect import Emotion
-from robot.contract.catalogue import Catalogue
-from robot.contract.telemetry import LinkState, Telemetry
-from robot.errors import RobotError
-from robot.network import BusClient, Member, MemoryBroker, MemoryBus, Pattern, Player, RobotNode
-from robot.network.bus import Handler
+from cubeling.affect import Emotion
+from cubeling.robot.contract.catalogue import Catalogue
+from cubeling.robot.contract.telemetry import LinkState, Telemetry
+from cubeling.robot.errors import RobotError
+from cubeling.robot.network import (
+    BusClient,
+    Member,
+    MemoryBroker,
+    MemoryBus,
+    Pattern,
+    Player,
+    RobotNode,
+)
+from cubeling.robot.network.bus import Handler
 from tests.robot.network.mosquitto import Mosquitto
 
 NAMES = tuple(f"{player}{number}" for player in "abc" for number in range(1, 100))

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from robot.errors import RobotError
-from robot.network import Address, Credentials
+from cubeling.robot.errors import RobotError
+from cubeling.robot.network import Address, Credentials
 
 
 def test_a_url_has_host_port_user_and_password():

@@ -2,13 +2,13 @@
 
 import pytest
 
-from affect import Emotion
-from robot.errors import RobotError
-from robot.network import Member, Pattern, RobotNode
-from robot.network.arbiter import HOLD_S, MAX_PLAYERS
-from robot.network.endpoint import LOST_AFTER_S
-from robot.network.followers import MAX_ROBOTS
-from robot.network.messages import (
+from cubeling.affect import Emotion
+from cubeling.robot.errors import RobotError
+from cubeling.robot.network import Member, Pattern, RobotNode
+from cubeling.robot.network.arbiter import HOLD_S, MAX_PLAYERS
+from cubeling.robot.network.endpoint import LOST_AFTER_S
+from cubeling.robot.network.followers import MAX_ROBOTS
+from cubeling.robot.network.messages import (
     ActionMessage,
     EmotionMessage,
     StateMessage,

@@ -4,12 +4,12 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from affect import Emotion
-from robot.network import Member, Player
-from robot.network.endpoint import LOST_AFTER_S
-from robot.network.followers import Followers
-from robot.network.messages import AckMessage, ActionMessage, StatusMessage, decode, encode
-from robot.network.player import EMOTION_EVERY_S, MAX_AGE_S, MAX_PENDING_ACTIONS
+from cubeling.affect import Emotion
+from cubeling.robot.network import Member, Player
+from cubeling.robot.network.endpoint import LOST_AFTER_S
+from cubeling.robot.network.followers import Followers
+from cubeling.robot.network.messages import AckMessage, ActionMessage, StatusMessage, decode, encode
+from cubeling.robot.network.player import EMOTION_EVERY_S, MAX_AGE_S, MAX_PENDING_ACTIONS
 from tests.robot.network.conftest import DeliveryFaults, NetworkWorld
 
 STEPS = st.lists(

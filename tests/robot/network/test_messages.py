@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.network import messages as m
-from robot.network.messages import MalformedError, decode, encode
-from robot.network.topics import Member, is_name, member_of, topic_matches
+from cubeling.robot.network import messages as m
+from cubeling.robot.network.messages import MalformedError, decode, encode
+from cubeling.robot.network.topics import Member, is_name, member_of, topic_matches
 from tools.network_reference import DOCUMENT, updated
 
 MESSAGE_TYPES = list(dict.fromkeys(m.MESSAGE_TYPES.values()))

@@ -11,9 +11,9 @@ from typing import Any
 
 import pytest
 
-import robot
-from affect import Emotion
-from robot.network import (
+from cubeling import robot
+from cubeling.affect import Emotion
+from cubeling.robot.network import (
     Address,
     BusClient,
     Member,
@@ -24,10 +24,10 @@ from robot.network import (
     RobotNode,
     Roster,
 )
-from robot.network.mqtt.bus import MAX_QUEUED, MAX_RETRY_DELAY_S
-from robot.protocol import messages as m
-from robot.simulators import SIMULATORS
-from robot.simulators.cubeling.simulator import Simulator
+from cubeling.robot.network.mqtt.bus import MAX_QUEUED, MAX_RETRY_DELAY_S
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.simulators import SIMULATORS
+from cubeling.robot.simulators.cubeling.simulator import Simulator
 from tests.robot.network.mosquitto import needs_mosquitto
 
 pytestmark = needs_mosquitto
@@ -233,7 +233,7 @@ def test_a_hanging_broker_fills_no_memory_and_delays_no_publisher(mosquitto):
 
 
 def test_a_port_without_an_mqtt_broker_is_given_up_in_bounded_time(monkeypatch, soon):
-    monkeypatch.setattr("robot.network.mqtt.bus.KEEPALIVE_S", 1)
+    monkeypatch.setattr("cubeling.robot.network.mqtt.bus.KEEPALIVE_S", 1)
     with socket.create_server(("127.0.0.1", 0)) as mute:
         bus = MqttBus(Address.of(f"mqtt://127.0.0.1:{mute.getsockname()[1]}"), "ann")
         bus.open()

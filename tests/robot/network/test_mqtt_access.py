@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 from paho.mqtt.client import Client, MQTTMessageInfo
 
-import robot
-from robot.errors import RobotError
-from robot.network import (
+from cubeling import robot
+from cubeling.robot.errors import RobotError
+from cubeling.robot.network import (
     Address,
     Credentials,
     Message,

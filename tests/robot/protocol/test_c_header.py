@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robot.protocol.fields import MessageError
-from robot.protocol.schema import MESSAGES, pack, unpack
-from robot.protocol.wire import FrameReader, encode_frame
+from cubeling.robot.protocol.fields import MessageError
+from cubeling.robot.protocol.schema import MESSAGES, pack, unpack
+from cubeling.robot.protocol.wire import FrameReader, encode_frame
 from tools.protocol_reference import HEADER_FILE, VECTORS_FILE
 from tools.protocol_vectors import VECTORS
 

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.protocol import timing
-from robot.protocol.clock import RobotClock
+from cubeling.robot.protocol import timing
+from cubeling.robot.protocol.clock import RobotClock
 
 WRAP = 2**32
 """Where the robot's milliseconds begin anew."""

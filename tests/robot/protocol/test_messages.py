@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.protocol import messages as m
-from robot.protocol import wire
-from robot.protocol.fields import FieldSpec, MessageError
-from robot.protocol.schema import HEADER, MESSAGES, MessageSpec, Sender, pack, unpack
-from robot.protocol.timing import VERSION
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import wire
+from cubeling.robot.protocol.fields import FieldSpec, MessageError
+from cubeling.robot.protocol.schema import HEADER, MESSAGES, MessageSpec, Sender, pack, unpack
+from cubeling.robot.protocol.timing import VERSION
 
 specs = st.sampled_from(sorted(MESSAGES.values(), key=lambda spec: spec.number))
 

@@ -5,10 +5,10 @@ import re
 
 import pytest
 
-from robot.protocol import wire
-from robot.protocol.fields import MessageError
-from robot.protocol.schema import MESSAGES, unpack
-from robot.protocol.wire import FrameReader
+from cubeling.robot.protocol import wire
+from cubeling.robot.protocol.fields import MessageError
+from cubeling.robot.protocol.schema import MESSAGES, unpack
+from cubeling.robot.protocol.wire import FrameReader
 from tools.protocol_reference import DOCUMENT, VECTORS_FILE, generated_files, updated
 from tools.protocol_vectors import VECTORS
 

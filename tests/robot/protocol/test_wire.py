@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.protocol import wire
-from robot.protocol.wire import FrameReader
+from cubeling.robot.protocol import wire
+from cubeling.robot.protocol.wire import FrameReader
 
 bodies = st.binary(min_size=1, max_size=wire.MAX_BODY)
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.simulators.channel import MAX_IN_FLIGHT_BYTES, SPLIT_GAP_S, FaultyChannel
-from robot.simulators.faults import Faults
+from cubeling.robot.simulators.channel import MAX_IN_FLIGHT_BYTES, SPLIT_GAP_S, FaultyChannel
+from cubeling.robot.simulators.faults import Faults
 
 FRAME = b"\0frame 12\0"
 

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from robot.errors import RobotError
-from robot.simulators.cubeling.simulator import Simulator
-from robot.simulators.faults import OPTIONS, Faults, Outage, faults_of
-from robot.simulators.faulty import FaultyRobot
-from robot.simulators.memory import simulator_of
+from cubeling.robot.errors import RobotError
+from cubeling.robot.simulators.cubeling.simulator import Simulator
+from cubeling.robot.simulators.faults import OPTIONS, Faults, Outage, faults_of
+from cubeling.robot.simulators.faulty import FaultyRobot
+from cubeling.robot.simulators.memory import simulator_of
 
 
 def test_every_option_is_read_in_its_unit():

@@ -14,11 +14,11 @@ from hypothesis.stateful import (
     run_state_machine_as_test,
 )
 
-from affect import Emotion
-from robot.drivers import DRIVERS
-from robot.protocol import messages as m
-from robot.protocol import timing
-from robot.simulators.cubeling.simulator import Simulator
+from cubeling.affect import Emotion
+from cubeling.robot.drivers import DRIVERS
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
+from cubeling.robot.simulators.cubeling.simulator import Simulator
 
 HARM = {
     "drops": {"drop": 0.2},

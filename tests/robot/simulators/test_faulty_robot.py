@@ -3,17 +3,17 @@
 import pytest
 import serial
 
-import robot
-from affect import Emotion
-from robot.drivers.cubeling.host import HostLink
-from robot.errors import RobotError
-from robot.protocol import timing
-from robot.simulators import SIMULATORS
-from robot.simulators.cubeling.simulator import Simulator
-from robot.simulators.faults import Faults, Outage
-from robot.simulators.faulty import MAX_INBOX_BYTES, FaultyRobot
-from robot.simulators.memory import open_simulated, simulator_of
-from robot.simulators.port import SimulatedPort
+from cubeling import robot
+from cubeling.affect import Emotion
+from cubeling.robot.drivers.cubeling.host import HostLink
+from cubeling.robot.errors import RobotError
+from cubeling.robot.protocol import timing
+from cubeling.robot.simulators import SIMULATORS
+from cubeling.robot.simulators.cubeling.simulator import Simulator
+from cubeling.robot.simulators.faults import Faults, Outage
+from cubeling.robot.simulators.faulty import MAX_INBOX_BYTES, FaultyRobot
+from cubeling.robot.simulators.memory import open_simulated, simulator_of
+from cubeling.robot.simulators.port import SimulatedPort
 
 HAPPY = Emotion(0.8, 0.5)
 FRAME = b"\0frame 12\0"

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.drivers.pleo.joints import JOINTS
-from robot.simulators.pleo.simulator import MAX_UNREAD_BYTES, PleoSimulator
+from cubeling.robot.drivers.pleo.joints import JOINTS
+from cubeling.robot.simulators.pleo.simulator import MAX_UNREAD_BYTES, PleoSimulator
 
 
 class Terminal:

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affect import Emotion
-from robot.protocol import messages as m
-from robot.simulators.cubeling import dinosaur
-from robot.simulators.cubeling.body import MAX_EMOTION_SPEED, STEP_S, Battery, DinosaurBody
+from cubeling.affect import Emotion
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.simulators.cubeling import dinosaur
+from cubeling.robot.simulators.cubeling.body import MAX_EMOTION_SPEED, STEP_S, Battery, DinosaurBody
 
 MOODS = {"happy": Emotion(0.9, 0.9), "neutral": Emotion(0, 0), "angry": Emotion(-0.9, 0.9)}
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from affect import Emotion
-from robot import RobotError, SteppedRobot
+from cubeling.affect import Emotion
+from cubeling.robot import RobotError, SteppedRobot
 
 FAULTS = "sim:cubeling?drop=0.05&flip=0.001&dup=0.02&delay=20ms&stall=1s&unplug=30s&seed=7"
 

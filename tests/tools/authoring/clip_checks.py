@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from characters.model.character import Character
-from characters.motion.blend import mix
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
+from cubeling.characters.model.character import Character
+from cubeling.characters.motion.blend import mix
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
 
 
 def moving(character: Character, name: str, joint: str) -> float:

@@ -5,11 +5,11 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from affect import NEUTRAL, Emotion
-from affect.regions import SECTOR_WORDS
-from affect.words import WORD_PLACES
-from characters import Character, Pose
-from characters.model.standing import recordings_beside
+from cubeling.affect import NEUTRAL, Emotion
+from cubeling.affect.regions import SECTOR_WORDS
+from cubeling.affect.words import WORD_PLACES
+from cubeling.characters import Character, Pose
+from cubeling.characters.model.standing import recordings_beside
 from tools.authoring.__main__ import ASSETS
 from tools.authoring.modelling.standing import MOODS
 from tools.authoring.people import STANDING, recording_of

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cubeling.tracking.appearance.colour_space import LINEAR_FROM_SRGB, lab
 from tests.bench.hand_scenes import SKINS
-from tracking.appearance.colour_space import LINEAR_FROM_SRGB, lab
 
 
 def cielab(image: np.ndarray) -> np.ndarray:

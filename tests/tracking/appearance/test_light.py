@@ -7,18 +7,18 @@ import cv2
 import numpy as np
 import pytest
 
+from cubeling.tracking.appearance.light import LightMeter
+from cubeling.tracking.appearance.light_fit import MeasuredLight, fit_light, fit_patches
+from cubeling.tracking.appearance.patches import PAPER_ALBEDO, PaperSampler, white_points
+from cubeling.tracking.cube.faces import FacePlanes, face_frame
+from cubeling.tracking.cube.marker import cell_size
+from cubeling.tracking.cube.model import FACE_AXES, CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array, Image
+from cubeling.tracking.geometry.state import CubeState
+from cubeling.tracking.synthetic.camera_rays import CameraRays
+from cubeling.tracking.synthetic.paper_cube import PaperCube
 from tests.tracking.drawn import WIDE, held
-from tracking.appearance.light import LightMeter
-from tracking.appearance.light_fit import MeasuredLight, fit_light, fit_patches
-from tracking.appearance.patches import PAPER_ALBEDO, PaperSampler, white_points
-from tracking.cube.faces import FacePlanes, face_frame
-from tracking.cube.marker import cell_size
-from tracking.cube.model import FACE_AXES, CubeModel
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array, Image
-from tracking.geometry.state import CubeState
-from tracking.synthetic.camera_rays import CameraRays
-from tracking.synthetic.paper_cube import PaperCube
 
 CUBE = CubeModel.load("locomotion")
 TO_LIGHT = np.array([-0.5, -0.7, -0.6]) / np.linalg.norm([-0.5, -0.7, -0.6])

@@ -6,10 +6,10 @@ import cv2
 import numpy as np
 import pytest
 
+from cubeling.tracking import CubeModel, CubeState
+from cubeling.tracking.appearance.picture_quality import INK_SHARE, QualityMeter
 from tests.tracking import drawn
 from tests.tracking.drawn import WIDE, digitised, grey_values, held, photograph, scene, window
-from tracking import CubeModel, CubeState
-from tracking.appearance.picture_quality import INK_SHARE, QualityMeter
 
 CUBE = CubeModel.load("locomotion")
 POSE = held(0.35, 0.5, 0.1, at=(0.01, 0.0, 0.3))

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from cubeling.tracking.geometry import se3
 from tests.bench.photographs import comparison, dodecahedron, hands, targets, variants
 from tests.bench.photographs.boards import tilt_between
 from tests.bench.photographs.body import BodyScore
@@ -24,7 +25,6 @@ from tests.bench.photographs.scoring import (
 )
 from tests.bench.tracking.scoring import CHI2_95_PERCENT
 from tests.bench.tracking.table import OURS
-from tracking.geometry import se3
 
 needs_photographs = pytest.mark.skipif(
     not dodecahedron.paths(), reason="the photographs are not on this machine"

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from cubeling.tracking import CubeModel
 from tests.bench.tracking.cameras import LENS, WEBCAM_LENS
 from tests.bench.tracking.hand import Finger
 from tests.bench.tracking.light import Light
@@ -16,7 +17,6 @@ from tests.bench.tracking.paths import matrices
 from tests.bench.tracking.plans import SEQUENCE_PLANS
 from tests.bench.tracking.renderer import WHITE_LEVEL, Scene, expose
 from tests.bench.tracking.sequences import NAMES, Sequence, sequence
-from tracking import CubeModel
 
 SMALL = LensModel(
     np.array([[1500.0, 0, 203.0], [0, 1490.0, 195.0], [0, 0, 1]]),

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from cubeling.tracking import CubeModel, Intrinsics
 from tests.bench.tracking.rivals.environments import ENTRIES, Entry, UnavailableError
 from tests.bench.tracking.rivals.worker import Worker
 from tests.tracking.drawn import held, photograph, scene
-from tracking import CubeModel, Intrinsics
 
 MATRIX = np.array([[900.0, 0, 641.5], [0, 902.0, 357.0], [0, 0, 1]])
 POSE = held(at=(0.02, -0.01, 0.45))

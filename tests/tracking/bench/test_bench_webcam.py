@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from cubeling.tracking import CubeModel, Intrinsics
 from tests.bench.tracking.cameras import WEBCAM_LENS
 from tests.bench.tracking.comparison import job_of
 from tests.bench.tracking.light import UP, Light
@@ -16,7 +17,6 @@ from tests.bench.tracking.plans import SEQUENCE_PLANS
 from tests.bench.tracking.renderer import Scene, expose
 from tests.bench.tracking.sequences import NAMES, sequence
 from tests.bench.tracking.worn_paper import patched, worn
-from tracking import CubeModel, Intrinsics
 
 EVEN = Light(np.array([0.0, 0.0, -1.0]), power=0.0, sky=0.0, bounce=0.95)
 

@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.tracking.calibration.waved import aligned, corner_views, folded_corners
-from tracking import CubeModel, Intrinsics, TrackingError
-from tracking.calibration import (
+from cubeling.tracking import CubeModel, Intrinsics, TrackingError
+from cubeling.tracking.calibration import (
     CubeFinder,
     ViewCoverage,
     ViewSample,
@@ -16,8 +15,9 @@ from tracking.calibration import (
     check,
     measured_cube,
 )
-from tracking.calibration.solver import fit_poses
-from tracking.geometry import se3
+from cubeling.tracking.calibration.solver import fit_poses
+from cubeling.tracking.geometry import se3
+from tests.tracking.calibration.waved import aligned, corner_views, folded_corners
 
 SIZE = (1280, 720)
 TRUE = np.array([900.0, 901.5, 646.3, 355.9, -0.11, 0.055, 0.0006, -0.0004, -0.012])

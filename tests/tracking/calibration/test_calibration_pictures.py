@@ -7,9 +7,8 @@ import numpy as np
 import pypdfium2
 import pytest
 
-from tests.tracking.calibration.waved import aligned
-from tracking import CubeModel, Frame, Intrinsics, TrackingError, calibrate_camera
-from tracking.calibration import (
+from cubeling.tracking import CubeModel, Frame, Intrinsics, TrackingError, calibrate_camera
+from cubeling.tracking.calibration import (
     Board,
     BoardFinder,
     CubeFinder,
@@ -18,11 +17,12 @@ from tracking.calibration import (
     measured_cube,
     write_board,
 )
-from tracking.calibration.model import CalibrationTarget
-from tracking.calibration.solver import fit_poses
-from tracking.calibration.view import view_of_corners
-from tracking.geometry import se3
-from tracking.synthetic import open_synthetic
+from cubeling.tracking.calibration.model import CalibrationTarget
+from cubeling.tracking.calibration.solver import fit_poses
+from cubeling.tracking.calibration.view import view_of_corners
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.synthetic import open_synthetic
+from tests.tracking.calibration.waved import aligned
 
 PHOTOGRAPHS = Path(__file__).parents[4] / "shared" / "data" / "photographs"
 needs_photographs = pytest.mark.skipif(not PHOTOGRAPHS.is_dir(), reason="no photographs here")

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from tracking.calibration import camera_vector
-from tracking.calibration.view import View, view_of_corners
-from tracking.geometry import se3
+from cubeling.tracking.calibration import camera_vector
+from cubeling.tracking.calibration.view import View, view_of_corners
+from cubeling.tracking.geometry import se3
 
 
 def folded_corners(cube, random, millimetres=1.0, degrees=1.0):

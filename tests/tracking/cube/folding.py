@@ -9,7 +9,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.cube.printing.unfolding import HINGES, SIDE_DIRECTIONS, Tab, Unfolding
+from cubeling.tracking.cube.printing.unfolding import HINGES, SIDE_DIRECTIONS, Tab, Unfolding
 
 Array = NDArray[np.float64]
 

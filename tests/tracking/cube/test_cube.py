@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracking import CubeModel, TrackingError
-from tracking.cube.file import write_cube
-from tracking.cube.marker import marker_cells
-from tracking.cube.model import FACE_AXES, bundled, face_corners
-from tracking.geometry import se3
+from cubeling.tracking import CubeModel, TrackingError
+from cubeling.tracking.cube.file import write_cube
+from cubeling.tracking.cube.marker import marker_cells
+from cubeling.tracking.cube.model import FACE_AXES, bundled, face_corners
+from cubeling.tracking.geometry import se3
 
 GOOD = """
 dictionary = "DICT_4X4_50"

@@ -6,10 +6,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from tracking.cube.faces import FacePlanes, face_frame, plane_normal
-from tracking.cube.model import FACE_AXES, CubeModel, Face, bundled, face_corners
-from tracking.geometry import se3
-from tracking.synthetic.folding import fold_cube
+from cubeling.tracking.cube.faces import FacePlanes, face_frame, plane_normal
+from cubeling.tracking.cube.model import FACE_AXES, CubeModel, Face, bundled, face_corners
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.synthetic.folding import fold_cube
 
 Array = NDArray[np.float64]
 

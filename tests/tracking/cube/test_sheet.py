@@ -7,13 +7,13 @@ import numpy as np
 import pypdfium2
 import pytest
 
+from cubeling.tracking import CubeModel, TrackingError, icon_mask, icon_paths, write_sheet
+from cubeling.tracking.cube.icons import ICON_COLOURS, icons, signed_area
+from cubeling.tracking.cube.marker import marker_cells, marker_loops
+from cubeling.tracking.cube.model import aruco_dictionary, bundled
+from cubeling.tracking.cube.printing.layout import PAPER_SIZES_MM, SheetLayout, largest_edge_mm
+from cubeling.tracking.cube.printing.unfolding import Unfolding
 from tests.tracking.cube.folding import cube_from_face
-from tracking import CubeModel, TrackingError, icon_mask, icon_paths, write_sheet
-from tracking.cube.icons import ICON_COLOURS, icons, signed_area
-from tracking.cube.marker import marker_cells, marker_loops
-from tracking.cube.model import aruco_dictionary, bundled
-from tracking.cube.printing.layout import PAPER_SIZES_MM, SheetLayout, largest_edge_mm
-from tracking.cube.printing.unfolding import Unfolding
 
 DPI = 254
 PIXELS_PER_MM = DPI / 25.4

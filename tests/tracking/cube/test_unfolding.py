@@ -7,9 +7,9 @@ import cv2
 import numpy as np
 import pytest
 
+from cubeling.tracking.cube.model import FACE_AXES, CubeModel, bundled, face_corners
+from cubeling.tracking.cube.printing.unfolding import Unfolding
 from tests.tracking.cube.folding import cube_from_face, cube_from_tab
-from tracking.cube.model import FACE_AXES, CubeModel, bundled, face_corners
-from tracking.cube.printing.unfolding import Unfolding
 
 EDGE = 0.06
 

@@ -5,15 +5,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from cubeling.tracking.cube.faces import FacePlanes
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.detection.marker_check import CellReader, CellReading
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.image_region import Patch
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.edge_search import MIN_READ_AGREEMENT
+from cubeling.tracking.synthetic import open_synthetic
 from tests.tracking.drawn import CAMERA, held, photograph, scene
-from tracking.cube.faces import FacePlanes
-from tracking.cube.model import CubeModel
-from tracking.detection.marker_check import CellReader, CellReading
-from tracking.geometry import se3
-from tracking.geometry.image_region import Patch
-from tracking.geometry.projection import Projection
-from tracking.refinement.edge_search import MIN_READ_AGREEMENT
-from tracking.synthetic import open_synthetic
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]

@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tracking.cube.faces import FacePlanes
-from tracking.cube.model import CubeModel, aruco_dictionary
-from tracking.detection.markers import Observation
-from tracking.detection.partly_hidden_markers import PartlyHiddenMarkerDetector
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.projection import Projection
-from tracking.synthetic import open_synthetic
+from cubeling.tracking.cube.faces import FacePlanes
+from cubeling.tracking.cube.model import CubeModel, aruco_dictionary
+from cubeling.tracking.detection.markers import Observation
+from cubeling.tracking.detection.partly_hidden_markers import PartlyHiddenMarkerDetector
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.synthetic import open_synthetic
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from cubeling.tracking import CubeModel, CubeRecognizer, bundled_cubes
 from tests.tracking.drawn import held, photograph, scene
-from tracking import CubeModel, CubeRecognizer, bundled_cubes
 
 CUBES = tuple(CubeModel.load(name) for name in bundled_cubes())
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tracking.geometry.image_region import Patch
+from cubeling.tracking.geometry.image_region import Patch
 
 
 def test_grey_values_between_pixels_are_linear() -> None:

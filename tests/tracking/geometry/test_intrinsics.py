@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from tracking import Intrinsics, TrackingError
+from cubeling.tracking import Intrinsics, TrackingError
 
 ROS_FILE = """
 image_width: 640

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from tracking.geometry import se3
-from tracking.gestures.turning import TurnCounter, wrap_angle
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.gestures.turning import TurnCounter, wrap_angle
 
 Array = NDArray[np.float64]
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tracking.cube.model import CubeModel
-from tracking.geometry import se3
-from tracking.geometry.state import CubeControls, CubeState
-from tracking.gestures.detectors import DETECTORS
-from tracking.gestures.gestures import CubeGestures
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.state import CubeControls, CubeState
+from cubeling.tracking.gestures.detectors import DETECTORS
+from cubeling.tracking.gestures.gestures import CubeGestures
 
 Array = NDArray[np.float64]
 

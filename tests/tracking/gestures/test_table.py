@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tracking.cube.model import CubeModel
-from tracking.geometry import se3
-from tracking.geometry.state import CubeControls, CubeState
-from tracking.gestures.gestures import CubeGestures
-from tracking.gestures.table import rest_of
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.state import CubeControls, CubeState
+from cubeling.tracking.gestures.gestures import CubeGestures
+from cubeling.tracking.gestures.table import rest_of
 
 Array = NDArray[np.float64]
 

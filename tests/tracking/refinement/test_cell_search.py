@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from cubeling.tracking.cube.faces import FacePlanes
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.cell_search import CellMatch, CellSearch
 from tests.tracking.drawn import held
 from tests.tracking.refinement.seen_softly import CAMERA, Cover, corners_off, drawn, patch
-from tracking.cube.faces import FacePlanes
-from tracking.cube.model import CubeModel
-from tracking.geometry import se3
-from tracking.geometry.projection import Projection
-from tracking.refinement.cell_search import CellMatch, CellSearch
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]

@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tracking.cube.edges import EdgeModel
-from tracking.cube.marker import marker_cells
-from tracking.cube.model import CubeModel
-from tracking.geometry import se3
-from tracking.geometry.image_region import Patch
-from tracking.geometry.projection import Projection
-from tracking.refinement.edges import edge_refinement
-from tracking.refinement.edges.edge_fit import fit_edges
-from tracking.refinement.edges.edge_refinement import EdgeRefiner
-from tracking.refinement.edges.profiles import EdgeProfiles, measure_profiles
-from tracking.synthetic import open_synthetic
+from cubeling.tracking.cube.edges import EdgeModel
+from cubeling.tracking.cube.marker import marker_cells
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.image_region import Patch
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.edges import edge_refinement
+from cubeling.tracking.refinement.edges.edge_fit import fit_edges
+from cubeling.tracking.refinement.edges.edge_refinement import EdgeRefiner
+from cubeling.tracking.refinement.edges.profiles import EdgeProfiles, measure_profiles
+from cubeling.tracking.synthetic import open_synthetic
 
 Array = NDArray[np.float64]
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tracking.refinement.camera_model import (
+from cubeling.tracking.refinement.camera_model import (
     EXPOSURE_SAMPLES,
     FIRST_EXPOSURE_S,
     MAX_EXPOSURE_S,

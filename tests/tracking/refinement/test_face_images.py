@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tracking.cube.model import CubeModel
-from tracking.refinement.photometry.face_images import FaceTextures
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.refinement.photometry.face_images import FaceTextures
 
 Array = NDArray[np.float64]
 Image = NDArray[np.float32]

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.lens_estimate import LensEstimate, LensEstimator
+from cubeling.tracking.refinement.systematic_error import CLAIMED_K1, MEASURED_K1, SystematicError
+from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.tracking.drawn import CAMERA, held, photograph, scene
-from tracking.cube.model import CubeModel
-from tracking.geometry.frame import Frame
-from tracking.geometry.projection import Projection
-from tracking.refinement.lens_estimate import LensEstimate, LensEstimator
-from tracking.refinement.systematic_error import CLAIMED_K1, MEASURED_K1, SystematicError
-from tracking.tracker.tracker import CubeTracker
 
 CUBE = CubeModel.load("locomotion")
 K1 = 0.13

@@ -7,19 +7,19 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.image_region import Patch
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.blur_search import MIN_CORRELATION, BlurSearch
+from cubeling.tracking.refinement.camera_model import MIN_BLUR_PX, CameraModelEstimator, ToneCurve
+from cubeling.tracking.refinement.cell_search import CellSearch
+from cubeling.tracking.refinement.edge_search import EdgeSearch
+from cubeling.tracking.refinement.photometry.motion_blur_alignment import MotionBlurAligner
+from cubeling.tracking.refinement.photometry.photometric_fit import Alignment
+from cubeling.tracking.tracker.local_search import LocalTracker
+from cubeling.tracking.tracker.prediction import Track, TrackedPose
 from tests.tracking.drawn import CAMERA, held, off, photograph, scene
-from tracking.cube.model import CubeModel
-from tracking.geometry import se3
-from tracking.geometry.image_region import Patch
-from tracking.geometry.projection import Projection
-from tracking.refinement.blur_search import MIN_CORRELATION, BlurSearch
-from tracking.refinement.camera_model import MIN_BLUR_PX, CameraModelEstimator, ToneCurve
-from tracking.refinement.cell_search import CellSearch
-from tracking.refinement.edge_search import EdgeSearch
-from tracking.refinement.photometry.motion_blur_alignment import MotionBlurAligner
-from tracking.refinement.photometry.photometric_fit import Alignment
-from tracking.tracker.local_search import LocalTracker
-from tracking.tracker.prediction import Track, TrackedPose
 
 Array = NDArray[np.float64]
 

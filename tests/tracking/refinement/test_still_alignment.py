@@ -9,15 +9,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from cubeling.tracking.cube.faces import FacePlanes, face_frame
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.image_region import Patch
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.evidence import Evidence
+from cubeling.tracking.refinement.photometry.still_alignment import StillAligner, StillAlignment
 from tests.tracking.drawn import held
 from tests.tracking.refinement.seen_softly import CAMERA, corners_off, drawn, patch
-from tracking.cube.faces import FacePlanes, face_frame
-from tracking.cube.model import CubeModel
-from tracking.geometry import se3
-from tracking.geometry.image_region import Patch
-from tracking.geometry.projection import Projection
-from tracking.refinement.evidence import Evidence
-from tracking.refinement.photometry.still_alignment import StillAligner, StillAlignment
 
 Array = NDArray[np.float64]
 

@@ -10,12 +10,11 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from tests.tracking.drawn import CAMERA, held
-from tracking.cube.model import CubeModel
-from tracking.geometry import se3
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.projection import Projection
-from tracking.refinement.systematic_error import (
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.systematic_error import (
     CLAIMED_FOCAL,
     COMMON_SHIFT_PX,
     CORNER_ERROR_M,
@@ -23,6 +22,7 @@ from tracking.refinement.systematic_error import (
     MEASURED_FOCAL,
     SystematicError,
 )
+from tests.tracking.drawn import CAMERA, held
 
 Array = NDArray[np.float64]
 Faces = tuple[str, ...]

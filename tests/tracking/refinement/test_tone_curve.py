@@ -6,25 +6,25 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tests.bench.tracking.sequences import sequence
-from tracking.cube.model import CubeModel
-from tracking.geometry import se3
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.projection import Projection
-from tracking.refinement.blur_search import BlurSearch
-from tracking.refinement.camera_model import (
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.blur_search import BlurSearch
+from cubeling.tracking.refinement.camera_model import (
     EXPONENT_SAMPLES,
     FIRST_EXPONENT,
     MIN_EXPONENT_STEP,
     CameraModelEstimator,
     ToneCurve,
 )
-from tracking.refinement.cell_search import CellSearch
-from tracking.refinement.edge_search import EdgeSearch
-from tracking.refinement.photometry.photometric_fit import PhotometricSamples, fit_tones
-from tracking.synthetic import open_synthetic
-from tracking.tracker.local_search import LocalTracker
-from tracking.tracker.prediction import Track, TrackedPose
+from cubeling.tracking.refinement.cell_search import CellSearch
+from cubeling.tracking.refinement.edge_search import EdgeSearch
+from cubeling.tracking.refinement.photometry.photometric_fit import PhotometricSamples, fit_tones
+from cubeling.tracking.synthetic import open_synthetic
+from cubeling.tracking.tracker.local_search import LocalTracker
+from cubeling.tracking.tracker.prediction import Track, TrackedPose
+from tests.bench.tracking.sequences import sequence
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from tracking import TrackingError
+from cubeling.tracking import TrackingError
 
 SIZE = (64, 48)
 

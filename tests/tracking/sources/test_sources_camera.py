@@ -8,9 +8,9 @@ import cv2
 import numpy as np
 import pytest
 
+from cubeling.tracking import open_source
+from cubeling.tracking.sources.camera import MJPG, CameraSource
 from tests.tracking.sources.live import SIZE, fails, fast_clock, jpeg, picture
-from tracking import open_source
-from tracking.sources.camera import MJPG, CameraSource
 
 TEST_TIMEOUT_S = 10.0
 """Real time after which a test that waits for another thread has failed."""

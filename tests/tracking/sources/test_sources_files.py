@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 from mcap.writer import CompressionType
 from mcap_protobuf.writer import Writer
 
-from tracking import FrameSource, Intrinsics, TrackingError, open_source
-from tracking.sources import SCHEME_MODULES, decoding
-from tracking.sources.base import StoredFrames, Timeline, nanoseconds_of, seconds_of
+from cubeling.tracking import FrameSource, Intrinsics, TrackingError, open_source
+from cubeling.tracking.sources import SCHEME_MODULES, decoding
+from cubeling.tracking.sources.base import StoredFrames, Timeline, nanoseconds_of, seconds_of
 
 SIZE = (160, 120)
 STEP_NS = 33_333_333

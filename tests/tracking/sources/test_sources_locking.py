@@ -4,10 +4,10 @@ import cv2
 import numpy as np
 import pytest
 
-from tracking import TrackingError, open_source
-from tracking.sources.camera import CameraOptions, CameraSource, CaptureDevice
-from tracking.sources.camera_controls import MAX_SETTLING_IMAGES
-from tracking.sources.device import DeviceSetting
+from cubeling.tracking import TrackingError, open_source
+from cubeling.tracking.sources.camera import CameraOptions, CameraSource, CaptureDevice
+from cubeling.tracking.sources.camera_controls import MAX_SETTLING_IMAGES
+from cubeling.tracking.sources.device import DeviceSetting
 
 SIZE = (64, 48)
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracking.sources.multipart import MAX_PART_BYTES, MultipartError, MultipartParser
+from cubeling.tracking.sources.multipart import MAX_PART_BYTES, MultipartError, MultipartParser
 
 bodies = st.lists(
     st.binary(max_size=60)

@@ -6,9 +6,9 @@ from typing import ClassVar
 
 import pytest
 
+from cubeling.tracking import TrackingError, open_source
+from cubeling.tracking.sources.http import HttpSource
 from tests.tracking.sources.live import SIZE, fails, fast_clock, jpeg
-from tracking import TrackingError, open_source
-from tracking.sources.http import HttpSource
 
 TEST_TIMEOUT_S = 10.0
 """Real time after which a test that waits for another thread has failed."""

@@ -6,12 +6,12 @@ import threading
 import numpy as np
 import pytest
 
-from tracking import Frame, TrackingError
-from tracking.sources.base import LiveFrames
-from tracking.sources.capture import MAX_ABANDONED_THREADS, STUCK_TIMEOUT_S
-from tracking.sources.capture_timing import DISTRUST_IMAGES, ExposureClock, QueueGauge
-from tracking.sources.live import LiveSource
-from tracking.sources.video_device import persistent_path
+from cubeling.tracking import Frame, TrackingError
+from cubeling.tracking.sources.base import LiveFrames
+from cubeling.tracking.sources.capture import MAX_ABANDONED_THREADS, STUCK_TIMEOUT_S
+from cubeling.tracking.sources.capture_timing import DISTRUST_IMAGES, ExposureClock, QueueGauge
+from cubeling.tracking.sources.live import LiveSource
+from cubeling.tracking.sources.video_device import persistent_path
 
 TEST_TIMEOUT_S = 10.0
 """Real time after which a test that waits for another thread has failed."""

@@ -5,14 +5,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tracking import CubeModel, TrackingError
-from tracking.geometry.projection import Projection
-from tracking.sources import open_source
-from tracking.sources.base import FrameSource
-from tracking.synthetic import SCRIPTS, SyntheticOptions, SyntheticSource, open_synthetic
-from tracking.synthetic.camera_rays import CameraRays
-from tracking.synthetic.paper_cube import PaperCube
-from tracking.synthetic.source import webcam
+from cubeling.tracking import CubeModel, TrackingError
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.sources import open_source
+from cubeling.tracking.sources.base import FrameSource
+from cubeling.tracking.synthetic import SCRIPTS, SyntheticOptions, SyntheticSource, open_synthetic
+from cubeling.tracking.synthetic.camera_rays import CameraRays
+from cubeling.tracking.synthetic.paper_cube import PaperCube
+from cubeling.tracking.synthetic.source import webcam
 
 Array = NDArray[np.float64]
 

@@ -5,21 +5,21 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from cubeling.tracking.cube.faces import FacePlanes
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.detection.markers import MarkerDetector, markers_of
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.blur_search import BlurSearch
+from cubeling.tracking.refinement.camera_model import CameraModelEstimator
+from cubeling.tracking.refinement.candidate import Candidate
+from cubeling.tracking.refinement.cell_search import CellSearch
+from cubeling.tracking.refinement.edge_search import EdgeSearch
+from cubeling.tracking.synthetic import open_synthetic
+from cubeling.tracking.tracker.global_search import FrameMarkers, GlobalDetector, Pass
+from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.tracking.drawn import WIDE, held, off, photograph, scene
-from tracking.cube.faces import FacePlanes
-from tracking.cube.model import CubeModel
-from tracking.detection.markers import MarkerDetector, markers_of
-from tracking.geometry.frame import Frame
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.projection import Projection
-from tracking.refinement.blur_search import BlurSearch
-from tracking.refinement.camera_model import CameraModelEstimator
-from tracking.refinement.candidate import Candidate
-from tracking.refinement.cell_search import CellSearch
-from tracking.refinement.edge_search import EdgeSearch
-from tracking.synthetic import open_synthetic
-from tracking.tracker.global_search import FrameMarkers, GlobalDetector, Pass
-from tracking.tracker.tracker import CubeTracker
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]

@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from cubeling.tracking.cube.marker import marker_cells
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.detection.markers import Marker, MarkerDetector, Observation, markers_of
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.camera_model import ToneCurve
+from cubeling.tracking.refinement.candidate import Candidate
+from cubeling.tracking.refinement.cell_search import CellMatch, CellSearch
+from cubeling.tracking.refinement.edge_search import EdgeSearch
+from cubeling.tracking.tracker.marker_poses import MarkerPoses
 from tests.tracking.drawn import CAMERA, held, off, photograph, scene
-from tracking.cube.marker import marker_cells
-from tracking.cube.model import CubeModel
-from tracking.detection.markers import Marker, MarkerDetector, Observation, markers_of
-from tracking.geometry.projection import Projection
-from tracking.refinement.camera_model import ToneCurve
-from tracking.refinement.candidate import Candidate
-from tracking.refinement.cell_search import CellMatch, CellSearch
-from tracking.refinement.edge_search import EdgeSearch
-from tracking.tracker.marker_poses import MarkerPoses
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]

@@ -7,18 +7,18 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tests.tracking.drawn import CAMERA, held, off, photograph, scene
-from tracking.cube.model import CubeModel
-from tracking.geometry import se3
-from tracking.geometry.frame import Frame
-from tracking.tracker.prediction import (
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.tracker.prediction import (
     MAX_ACCELERATION_SHARE,
     MAX_PREDICTION_S,
     Prediction,
     Track,
     TrackedPose,
 )
-from tracking.tracker.tracker import CubeTracker
+from cubeling.tracking.tracker.tracker import CubeTracker
+from tests.tracking.drawn import CAMERA, held, off, photograph, scene
 
 Array = NDArray[np.float64]
 

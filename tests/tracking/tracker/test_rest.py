@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracking.geometry import se3
-from tracking.tracker.rest import MAX_FRAME_GAP_S, MAX_REST_FRAMES, Rest
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.tracker.rest import MAX_FRAME_GAP_S, MAX_REST_FRAMES, Rest
 
 DEVIATIONS = np.array([4e-5, 3e-5, 2e-4, 1e-3, 1e-3, 2e-4])
 NOISE = np.diag(DEVIATIONS**2)

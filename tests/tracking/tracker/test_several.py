@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.tracker.several import CubesTracker
+from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.tracking.drawn import CAMERA, held, off, photograph, scene
-from tracking.cube.model import CubeModel
-from tracking.errors import TrackingError
-from tracking.geometry import se3
-from tracking.geometry.frame import Frame
-from tracking.tracker.several import CubesTracker
-from tracking.tracker.tracker import CubeTracker
 
 Array = NDArray[np.float64]
 

@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from cubeling.tracking.cube.model import CubeModel, aruco_dictionary
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.state import CubeState
+from cubeling.tracking.gestures.gestures import CubeGestures
+from cubeling.tracking.gestures.table import SIDE_NORMALS
+from cubeling.tracking.synthetic import open_synthetic
+from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.tracking.drawn import CAMERA, held, off, photograph, scene
-from tracking.cube.model import CubeModel, aruco_dictionary
-from tracking.errors import TrackingError
-from tracking.geometry import se3
-from tracking.geometry.frame import Frame
-from tracking.geometry.state import CubeState
-from tracking.gestures.gestures import CubeGestures
-from tracking.gestures.table import SIDE_NORMALS
-from tracking.synthetic import open_synthetic
-from tracking.tracker.tracker import CubeTracker
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]

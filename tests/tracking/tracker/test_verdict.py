@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.refinement.candidate import Candidate
+from cubeling.tracking.refinement.evidence import Evidence
+from cubeling.tracking.tracker.prediction import Track, TrackedPose
+from cubeling.tracking.tracker.verdict import Past, is_unambiguous, is_uncertain, judge_detected
 from tests.tracking.drawn import held
-from tracking.geometry import se3
-from tracking.refinement.candidate import Candidate
-from tracking.refinement.evidence import Evidence
-from tracking.tracker.prediction import Track, TrackedPose
-from tracking.tracker.verdict import Past, is_unambiguous, is_uncertain, judge_detected
 
 HERE, THERE = held(), held(at=(0.3, 0.0, 0.5))
 SURE = np.eye(6) * 1e-8

@@ -4,11 +4,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from characters.model.character import Character
-from characters.skeleton import rotations
-from characters.skeleton.pose import Pose, Skeleton
-from characters.synthesis.gestures.learning import stroke_strength
-from characters.synthesis.gestures.library import (
+from cubeling.characters.model.character import Character
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Pose, Skeleton
+from cubeling.characters.synthesis.gestures.learning import stroke_strength
+from cubeling.characters.synthesis.gestures.library import (
     GestureLibrary,
     GesturePhrase,
     GestureRecording,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.synthesis.gestures.library import Hand
+from cubeling.characters.synthesis.gestures.library import Hand
 from tools.authoring.gestures.beats import BEATS, Beat
 from tools.authoring.modelling.curves import keys, spring_follow
 from tools.authoring.modelling.shapes import Array

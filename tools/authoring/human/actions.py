@@ -7,9 +7,9 @@ from functools import partial
 
 import numpy as np
 
-from characters.motion.clip import Clip
-from characters.skeleton.pose import Skeleton
-from characters.smoothing import smoothstep
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton.pose import Skeleton
+from cubeling.characters.smoothing import smoothstep
 from tools.authoring.human.acting import FRAME_RATE_HZ, ActingCurves, clip_from_acting
 from tools.authoring.human.idle import idle_weight
 from tools.authoring.human.limbs import HandTarget

@@ -3,9 +3,9 @@
 Toy proportions, three and a half heads high, keep head, hands and shoes legible at small size.
 """
 
-from characters.model.character import Character
-from characters.model.mesh import Material, Mesh
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.mesh import Material, Mesh
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.human.actions import actions
 from tools.authoring.human.eyes import eyeballs
 from tools.authoring.human.face import EXPRESSIONS

@@ -6,8 +6,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.mesh import Mesh
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.human.face import EXPRESSIONS, NEUTRAL, HumanExpression, skin_displacement
 from tools.authoring.human.rig import JOINT_POSITIONS
 from tools.authoring.human.skull import EYE_WHITE, MAROON, SKIN, complexion, face_normals, on_face

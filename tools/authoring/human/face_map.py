@@ -14,8 +14,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.face_maps import BLOOD_NAME, LAYER_NAMES, SUFFIX
-from characters.model.mesh import Mesh
+from cubeling.characters.model.face_maps import BLOOD_NAME, LAYER_NAMES, SUFFIX
+from cubeling.characters.model.mesh import Mesh
 from tools.authoring.human.skull import on_face
 from tools.authoring.modelling.curves import smoothstep
 from tools.authoring.modelling.shapes import Array

@@ -1,7 +1,7 @@
 """The bundled explorer's hair: a cap with a fringe, tufts at the back, and a cowlick."""
 
-from characters.model.mesh import Mesh
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.sculpt import BodyPart
 from tools.authoring.modelling.shapes import (
     Difference,

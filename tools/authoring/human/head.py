@@ -5,8 +5,8 @@ from functools import partial
 
 import numpy as np
 
-from characters.model.mesh import Mesh
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.human.eyes import eyelids
 from tools.authoring.human.face import (
     EXPRESSIONS,

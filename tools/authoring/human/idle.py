@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from characters.motion.clip import Clip
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.human.acting import ActingCurves, clip_from_acting
 from tools.authoring.human.limbs import HandTarget
 from tools.authoring.modelling.shapes import Array

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from characters.skeleton import rotations
+from cubeling.characters.skeleton import rotations
 from tools.authoring.human.rig import FINGERS, along_forearm
 from tools.authoring.modelling.gait import FootDimensions
 from tools.authoring.modelling.ik import aim_rotation

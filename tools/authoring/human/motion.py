@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.human.acting import FRAME_RATE_HZ, GAZE_PITCH_DEG, pose_with_face
 from tools.authoring.human.limbs import (
     FOOT,

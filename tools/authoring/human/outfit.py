@@ -7,8 +7,8 @@ from functools import cache
 
 import numpy as np
 
-from characters.model.mesh import Mesh
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.human.hands import hand
 from tools.authoring.human.rig import JOINT_POSITIONS
 from tools.authoring.human.shoes import CREAM, shoe_parts

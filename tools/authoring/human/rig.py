@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.rig import build_skeleton
 from tools.authoring.modelling.shapes import Array, Vector
 

@@ -7,7 +7,7 @@ form (`spring_follow`), so loops stay loops. Hair and strings are spring bones i
 
 import numpy as np
 
-from characters.skeleton import rotations
+from cubeling.characters.skeleton import rotations
 from tools.authoring.human.limbs import rotation_deg
 from tools.authoring.modelling.curves import soft_limited, spring_follow
 from tools.authoring.modelling.rig import PosedRig

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from affect.words import WORD_PLACES
-from characters.motion.clip import Clip
-from characters.skeleton.pose import Skeleton
+from cubeling.affect.words import WORD_PLACES
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.human.acting import FRAME_RATE_HZ, ActingCurves, clip_from_acting
 from tools.authoring.human.idle import STRAP_GRIP_M
 from tools.authoring.human.limbs import HandTarget

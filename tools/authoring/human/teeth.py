@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from characters.model.mesh import Mesh
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.human.face import EXPRESSIONS, NEUTRAL, HumanExpression
 from tools.authoring.human.mouth import lip_lines
 from tools.authoring.human.skull import on_face

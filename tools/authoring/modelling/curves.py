@@ -6,7 +6,7 @@ All curves are sampled at ``frames`` even steps of a phase in 0…1.
 import numpy as np
 from numpy.typing import NDArray
 
-from characters import smoothing
+from cubeling.characters import smoothing
 
 Array = NDArray[np.float64]
 

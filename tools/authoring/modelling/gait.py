@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.skeleton import rotations
+from cubeling.characters.skeleton import rotations
 from tools.authoring.modelling.curves import smoothstep
 from tools.authoring.modelling.shapes import Array
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from characters.skeleton import rotations
+from cubeling.characters.skeleton import rotations
 from tools.authoring.modelling.shapes import Array
 
 

@@ -7,8 +7,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.mesh import Material, Mesh, Morph
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.mesh import Material, Mesh, Morph
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.shapes import Array, mirrored_name
 
 Expression = TypeVar("Expression")

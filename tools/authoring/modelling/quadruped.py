@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
-from characters.skeleton.pose import Pose, Skeleton
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Pose, Skeleton
 from tools.authoring.modelling.curves import smoothstep, spring_follow
 from tools.authoring.modelling.ik import aim_rotation, hinge_position
 from tools.authoring.modelling.shapes import Array

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from affect.words import WORD_PLACES
+from cubeling.affect.words import WORD_PLACES
 from tools.authoring.modelling.curves import spring_follow
 from tools.authoring.modelling.quadruped import DEGREE, FRAME_RATE_HZ, AnimationTracks
 from tools.authoring.modelling.shapes import Array

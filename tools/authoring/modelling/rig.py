@@ -9,9 +9,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from characters.skeleton import rotations
-from characters.skeleton.pose import Pose, Skeleton
-from characters.skeleton.skeleton_part import SkeletonPart
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Pose, Skeleton
+from cubeling.characters.skeleton.skeleton_part import SkeletonPart
 from tools.authoring.modelling.ik import aim_rotation, hinge_position
 from tools.authoring.modelling.shapes import Array, Vector, mirrored_name
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.mesh import Material, Mesh
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.mesh import Material, Mesh
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.curves import smoothstep
 from tools.authoring.modelling.meshes import bound_mesh, join
 from tools.authoring.modelling.shapes import Array, Shape, Solid, Vector

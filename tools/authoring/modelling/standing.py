@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from affect.regions import SECTOR_WORDS
+from cubeling.affect.regions import SECTOR_WORDS
 from tools.authoring.modelling.curves import keys, loop_phases
 from tools.authoring.modelling.shapes import Array
 

@@ -4,8 +4,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from characters.model.mesh import Mesh
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.lathe import circle_profile, frame_toward, lathe
 from tools.authoring.modelling.rig import rest_positions
 from tools.authoring.modelling.sculpt import BodyPart, sculpt

@@ -1,9 +1,9 @@
 """The virtual robot: a small four-legged machine with lamps in the colour of its mood."""
 
-from characters.model.character import Character
-from characters.model.mesh import Material, Mesh
-from characters.motion.clip import Clip
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.mesh import Material, Mesh
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.meshes import join
 from tools.authoring.modelling.quadruped import loop_clip
 from tools.authoring.modelling.shapes import Vector, linear_rgb

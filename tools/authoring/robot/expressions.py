@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from characters.model.character import skin
-from characters.model.mesh import Mesh, Morph
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.character import skin
+from cubeling.characters.model.mesh import Mesh, Morph
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.quadruped import AnimationTracks, solve_poses
 from tools.authoring.robot.rig import set_lids, set_mouth
 

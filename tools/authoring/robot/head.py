@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.model.mesh import Mesh
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.lathe import circle_profile, frame_toward, lathe
 from tools.authoring.modelling.meshes import bound_mesh
 from tools.authoring.modelling.rig import rest_positions

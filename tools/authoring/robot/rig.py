@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from characters.model.mesh import Mesh
-from characters.skeleton import rotations
-from characters.skeleton.pose import Pose, Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Pose, Skeleton
 from tools.authoring.modelling.quadruped import AnimationTracks
 from tools.authoring.modelling.rig import build_skeleton
 from tools.authoring.modelling.shapes import Array, Vector

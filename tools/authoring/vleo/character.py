@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.character import Character
-from characters.model.mesh import Material, Mesh, Morph
-from characters.motion.clip import Clip
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.character import Character
+from cubeling.characters.model.mesh import Material, Mesh, Morph
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.meshes import join
 from tools.authoring.vleo.clips import clip
 from tools.authoring.vleo.effects import effects

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.curves import Array, loop_phases, smoothstep, soft_limited
 from tools.authoring.modelling.quadruped import AnimationTracks, loop_clip, solve_poses, swing_tail
 from tools.authoring.vleo.expressions import EXPRESSIONS, JAW_HINGE_M

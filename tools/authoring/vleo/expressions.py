@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.skeleton import rotations
+from cubeling.characters.skeleton import rotations
 from tools.authoring.modelling.expressions import all_morphs
 from tools.authoring.modelling.shapes import Array
 

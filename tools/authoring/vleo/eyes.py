@@ -4,8 +4,8 @@ from functools import partial
 
 import numpy as np
 
-from characters.model.mesh import Mesh
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.curves import smoothstep
 from tools.authoring.modelling.lathe import circle_profile, frame_toward, lathe, loft
 from tools.authoring.modelling.meshes import blend_normals, morphed

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from characters.model.mesh import Mesh
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.meshes import morph_between
 from tools.authoring.vleo.expressions import (
     EXPRESSIONS,

@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from characters.motion.clip import Clip
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.curves import Array, delayed, keys, spring_follow
 from tools.authoring.modelling.quadruped import DEGREE, FRAME_RATE_HZ, AnimationTracks
 from tools.authoring.vleo.clips import clip, tail

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from characters.model.mesh import Mesh
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.lathe import circle_profile, frame_toward, lathe
 from tools.authoring.vleo.body import CLAW, LASH, ORANGE, PINK, SPOT, spine_line
 from tools.authoring.vleo.pieces import attached, patches

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from characters.model.mesh import Mesh
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.lathe import loft
 from tools.authoring.modelling.meshes import blend_normals, morphed
 from tools.authoring.modelling.shapes import Array, linear_rgb

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.model.mesh import Mesh
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.lathe import frame_toward
 from tools.authoring.modelling.meshes import bound_mesh, strongest_joints
 from tools.authoring.modelling.shapes import Array, Vector

@@ -5,7 +5,7 @@ The three intensities have the same accents, so that they blend at equal phase.
 
 import numpy as np
 
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.curves import Array, delayed, keys, wave
 from tools.authoring.modelling.quadruped import DEGREE, FRAME_RATE_HZ, AnimationTracks
 from tools.authoring.vleo.clips import EffectFlight, animate_effects, tail

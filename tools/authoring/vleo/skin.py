@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.curves import smoothstep
 from tools.authoring.modelling.sculpt import skin_weights
 from tools.authoring.modelling.shapes import Array, Ellipsoid, Vector

@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.model.character import Character
-from characters.skeleton import rotations
-from characters.skeleton.pose import Pose
-from characters.synthesis.gestures.analysis import find_apex, hand_paths
-from characters.synthesis.gestures.learning import stroke_strength
-from characters.synthesis.gestures.library import (
+from cubeling.characters.model.character import Character
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Pose
+from cubeling.characters.synthesis.gestures.analysis import find_apex, hand_paths
+from cubeling.characters.synthesis.gestures.learning import stroke_strength
+from cubeling.characters.synthesis.gestures.library import (
     GestureLibrary,
     GesturePhrase,
     GestureRecording,

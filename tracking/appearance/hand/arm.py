@@ -3,12 +3,12 @@
 import cv2
 import numpy as np
 
-from tracking.appearance.hand.background import GRID_PX, MIDDLES, Box
-from tracking.appearance.hand.components import holding
-from tracking.appearance.hand.mask import HandMask
-from tracking.appearance.hand.structuring_elements import SQUARE_3
-from tracking.appearance.hand.window import Window
-from tracking.geometry.arrays import Flags, Image
+from cubeling.tracking.appearance.hand.background import GRID_PX, MIDDLES, Box
+from cubeling.tracking.appearance.hand.components import holding
+from cubeling.tracking.appearance.hand.mask import HandMask
+from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_3
+from cubeling.tracking.appearance.hand.window import Window
+from cubeling.tracking.geometry.arrays import Flags, Image
 
 ARM_EDGES, ARM_UP_EDGES = 12.0, 3.0
 """How far beyond the window the arm is looked for, and how far upwards [apparent edges of the

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from tracking.appearance.hand.camera_change import camera_change
-from tracking.appearance.hand.components import at_border
-from tracking.appearance.hand.shading import (
+from cubeling.tracking.appearance.hand.camera_change import camera_change
+from cubeling.tracking.appearance.hand.components import at_border
+from cubeling.tracking.appearance.hand.shading import (
     DETAIL_LIMIT,
     EDGE_DETAIL,
     EVEN_LIGHT_PX,
@@ -21,8 +21,8 @@ from tracking.appearance.hand.shading import (
     roughness,
     texture,
 )
-from tracking.appearance.hand.structuring_elements import SQUARE_3
-from tracking.geometry.arrays import Flags, Floats, Image
+from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_3
+from cubeling.tracking.geometry.arrays import Flags, Floats, Image
 
 SPARSE = np.s_[::5, ::5]
 """Pixels by which noise, exposure and white balance are estimated."""

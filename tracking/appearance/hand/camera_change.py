@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tracking.geometry.arrays import Floats
-from tracking.geometry.robust_statistics import quantile
+from cubeling.tracking.geometry.arrays import Floats
+from cubeling.tracking.geometry.robust_statistics import quantile
 
 GAIN_TOLERANCE, STEP_TOLERANCE = 0.02, 0.004
 """Change of L + 16 as a share, and of chroma as a share of L + 16, that noise alone makes."""

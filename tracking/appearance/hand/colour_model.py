@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.geometry.arrays import Flags, Floats
-from tracking.geometry.robust_statistics import quantile
+from cubeling.tracking.geometry.arrays import Flags, Floats
+from cubeling.tracking.geometry.robust_statistics import quantile
 
 LAB_BINS = (32, 32, 8)
 """Bins along chroma a and b and along lightness."""

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.geometry.arrays import Flags, Image
+from cubeling.tracking.geometry.arrays import Flags, Image
 
 
 def holding(flags: Image, seeds: Flags | tuple[slice, slice]) -> Image:

@@ -3,9 +3,9 @@
 import cv2
 import numpy as np
 
-from tracking.appearance.hand.structuring_elements import SQUARE_3, SQUARE_5
-from tracking.appearance.hand.window import Window
-from tracking.geometry.arrays import Floats, Image
+from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_3, SQUARE_5
+from cubeling.tracking.appearance.hand.window import Window
+from cubeling.tracking.geometry.arrays import Floats, Image
 
 ODDS_RANGE = 2.0
 """Logarithm of odds, positive or negative, beyond which nothing is surer: where the edge is depends

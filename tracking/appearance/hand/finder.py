@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from tracking.appearance.colour_space import LAB_FROM_ROOTS, lab
-from tracking.appearance.hand.arm import arm_samples, with_arm
-from tracking.appearance.hand.background import Background, Box, Place
-from tracking.appearance.hand.colour_model import (
+from cubeling.tracking.appearance.colour_space import LAB_FROM_ROOTS, lab
+from cubeling.tracking.appearance.hand.arm import arm_samples, with_arm
+from cubeling.tracking.appearance.hand.background import Background, Box, Place
+from cubeling.tracking.appearance.hand.colour_model import (
     MAX_ODDS,
     MIN_DIFFERENCE,
     MIN_SHOWN_PX,
@@ -16,21 +16,27 @@ from tracking.appearance.hand.colour_model import (
     Colours,
     colours,
 )
-from tracking.appearance.hand.components import holding
-from tracking.appearance.hand.edge import soft_cover
-from tracking.appearance.hand.last_hand import LastHand
-from tracking.appearance.hand.mask import HandMask
-from tracking.appearance.hand.odds import hand_odds
-from tracking.appearance.hand.on_cube.cube_part import CubeCheck, CubePart
-from tracking.appearance.hand.on_cube.face_pattern import FacePattern
-from tracking.appearance.hand.shape import connected
-from tracking.appearance.hand.structuring_elements import SQUARE_3, SQUARE_5
-from tracking.appearance.hand.window import Stillness, Window, WindowFinder, sampled, shrunk
-from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Array, Flags, Floats, Image
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.projection import Projection
-from tracking.geometry.state import CubeState
+from cubeling.tracking.appearance.hand.components import holding
+from cubeling.tracking.appearance.hand.edge import soft_cover
+from cubeling.tracking.appearance.hand.last_hand import LastHand
+from cubeling.tracking.appearance.hand.mask import HandMask
+from cubeling.tracking.appearance.hand.odds import hand_odds
+from cubeling.tracking.appearance.hand.on_cube.cube_part import CubeCheck, CubePart
+from cubeling.tracking.appearance.hand.on_cube.face_pattern import FacePattern
+from cubeling.tracking.appearance.hand.shape import connected
+from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_3, SQUARE_5
+from cubeling.tracking.appearance.hand.window import (
+    Stillness,
+    Window,
+    WindowFinder,
+    sampled,
+    shrunk,
+)
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.arrays import Array, Flags, Floats, Image
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.geometry.state import CubeState
 
 SURE_ODDS = 1.2
 """What all speaks for a hand where its colours are learned, as logarithm of odds."""

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from tracking.appearance.hand.mask import HandMask
-from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Array
-from tracking.geometry.projection import MIN_DEPTH, Projection
+from cubeling.tracking.appearance.hand.mask import HandMask
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.projection import MIN_DEPTH, Projection
 
 MIN_AGREEMENT, CARRIED_LOOKS = 0.9, 8
 """A hand is carried when it has moved with the cube from look to look so many times in turn: it was

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.arrays import Array
 
 EDGE_SLOPE = 255 / 90
 """How steeply the share of a pixel rises where half of it is covered, relative to what is

@@ -3,13 +3,13 @@
 import cv2
 import numpy as np
 
-from tracking.appearance.hand.background import SHADED, UNKNOWN, Place
-from tracking.appearance.hand.edge import ODDS_RANGE
-from tracking.appearance.hand.on_cube.cube_part import CubePart
-from tracking.appearance.hand.shape import filled
-from tracking.appearance.hand.structuring_elements import SQUARE_3
-from tracking.appearance.hand.window import Window
-from tracking.geometry.arrays import Floats
+from cubeling.tracking.appearance.hand.background import SHADED, UNKNOWN, Place
+from cubeling.tracking.appearance.hand.edge import ODDS_RANGE
+from cubeling.tracking.appearance.hand.on_cube.cube_part import CubePart
+from cubeling.tracking.appearance.hand.shape import filled
+from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_3
+from cubeling.tracking.appearance.hand.window import Window
+from cubeling.tracking.geometry.arrays import Floats
 
 SLANTED_EVIDENCE = -1.0
 """What a face speaks for a hand that the camera sees at so small an angle that its print tells

@@ -3,9 +3,9 @@
 import cv2
 import numpy as np
 
-from tracking.appearance.hand.structuring_elements import SQUARE_9
-from tracking.geometry.arrays import Flags, Floats
-from tracking.geometry.robust_statistics import quantile
+from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_9
+from cubeling.tracking.geometry.arrays import Flags, Floats
+from cubeling.tracking.geometry.robust_statistics import quantile
 
 MIN_GAIN, MAX_GAIN = 0.45, 2.0
 """Least and most light on the background relative to the light before, as L + 16 of CIELab: a

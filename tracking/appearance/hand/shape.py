@@ -3,12 +3,12 @@
 import cv2
 import numpy as np
 
-from tracking.appearance.hand.background import UNKNOWN, Place
-from tracking.appearance.hand.components import at_border
-from tracking.appearance.hand.on_cube.cube_part import CubePart
-from tracking.appearance.hand.structuring_elements import SQUARE_3, SQUARE_5
-from tracking.appearance.hand.window import Window
-from tracking.geometry.arrays import Flags, Floats, Image
+from cubeling.tracking.appearance.hand.background import UNKNOWN, Place
+from cubeling.tracking.appearance.hand.components import at_border
+from cubeling.tracking.appearance.hand.on_cube.cube_part import CubePart
+from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_3, SQUARE_5
+from cubeling.tracking.appearance.hand.window import Window
+from cubeling.tracking.geometry.arrays import Flags, Floats, Image
 
 CLOSED_EDGES = 0.25
 """Width of gaps of the hand over the cube that are filled: about a cell of a marker [edges]."""

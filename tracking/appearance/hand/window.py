@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from tracking.appearance.hand.background import GRID_PX, Box
-from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Array, Image
-from tracking.geometry.projection import MIN_DEPTH, Projection
+from cubeling.tracking.appearance.hand.background import GRID_PX, Box
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.arrays import Array, Image
+from cubeling.tracking.geometry.projection import MIN_DEPTH, Projection
 
 REACH_EDGES = 2.0
 """How far from the cube's bounds the hand is looked for [apparent edges of the cube]."""

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tracking.cube.model import FACE_AXES, CubeModel, Face
-from tracking.cube.printing.unfolding import TAB_DEPTH, Unfolding
-from tracking.errors import TrackingError
-from tracking.geometry.arrays import Array
+from cubeling.tracking.cube.model import FACE_AXES, CubeModel, Face
+from cubeling.tracking.cube.printing.unfolding import TAB_DEPTH, Unfolding
+from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry.arrays import Array
 
 PAPER_SIZES_MM = {"a4": (297.0, 210.0), "letter": (279.4, 215.9), "a3": (420.0, 297.0)}
 """Width and height in landscape [mm]."""

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from tracking.cube.icons import ICON_COLOURS, icon_paths
-from tracking.cube.model import FACE_AXES
-from tracking.cube.printing.layout import PageArea, SheetLayout
-from tracking.cube.printing.pdf_page import Colour, PdfPage
-from tracking.geometry.arrays import Array
+from cubeling.tracking.cube.icons import ICON_COLOURS, icon_paths
+from cubeling.tracking.cube.model import FACE_AXES
+from cubeling.tracking.cube.printing.layout import PageArea, SheetLayout
+from cubeling.tracking.cube.printing.pdf_page import Colour, PdfPage
+from cubeling.tracking.geometry.arrays import Array
 
 LINE_COLOUR: Colour = (52, 58, 78)
 TEXT_COLOUR: Colour = (96, 102, 118)

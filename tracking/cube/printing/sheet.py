@@ -4,14 +4,14 @@ from pathlib import Path
 
 import numpy as np
 
-from tracking.cube.icons import FOLD_GAP_SHARE, ICON_COLOURS, ICON_SHARE, icon_paths
-from tracking.cube.marker import marker_loops
-from tracking.cube.model import CubeModel, Face
-from tracking.cube.printing.layout import SheetLayout
-from tracking.cube.printing.notes import draw_notes
-from tracking.cube.printing.pdf_page import PdfPage
-from tracking.cube.printing.unfolding import Tab
-from tracking.files import write_whole
+from cubeling.tracking.cube.icons import FOLD_GAP_SHARE, ICON_COLOURS, ICON_SHARE, icon_paths
+from cubeling.tracking.cube.marker import marker_loops
+from cubeling.tracking.cube.model import CubeModel, Face
+from cubeling.tracking.cube.printing.layout import SheetLayout
+from cubeling.tracking.cube.printing.notes import draw_notes
+from cubeling.tracking.cube.printing.pdf_page import PdfPage
+from cubeling.tracking.cube.printing.unfolding import Tab
+from cubeling.tracking.files import write_whole
 
 CUT_COLOUR = (70, 76, 90)
 FOLD_COLOUR = (150, 156, 168)

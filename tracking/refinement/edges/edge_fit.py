@@ -5,11 +5,15 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from tracking.geometry.arrays import Array, Flags, Indices, run_starts
-from tracking.geometry.image_region import Patch
-from tracking.geometry.robust_statistics import quantile, tukey_weight
-from tracking.refinement.edges.profiles import EdgeMeasurements, EdgeProfiles, measure_profiles
-from tracking.refinement.systematic_error import CLAIMED_K1
+from cubeling.tracking.geometry.arrays import Array, Flags, Indices, run_starts
+from cubeling.tracking.geometry.image_region import Patch
+from cubeling.tracking.geometry.robust_statistics import quantile, tukey_weight
+from cubeling.tracking.refinement.edges.profiles import (
+    EdgeMeasurements,
+    EdgeProfiles,
+    measure_profiles,
+)
+from cubeling.tracking.refinement.systematic_error import CLAIMED_K1
 
 BLOOM_PX, BLOOM_PER_BLUR = 0.3, 0.15
 """How far white grows over black, one standard deviation: gamma, ink and overexposure; and more for

@@ -10,22 +10,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.cube.edges import EdgeModel
-from tracking.cube.faces import FacePlanes
-from tracking.cube.model import CubeModel
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array, Indices, run_starts
-from tracking.geometry.image_region import Patch
-from tracking.geometry.projection import Projection
-from tracking.geometry.robust_statistics import quantile
-from tracking.refinement.edges.edge_fit import (
+from cubeling.tracking.cube.edges import EdgeModel
+from cubeling.tracking.cube.faces import FacePlanes
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array, Indices, run_starts
+from cubeling.tracking.geometry.image_region import Patch
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.geometry.robust_statistics import quantile
+from cubeling.tracking.refinement.edges.edge_fit import (
     MIN_EDGE_POINTS,
     EdgeFit,
     FittedEdges,
     covariance,
     fit_edges,
 )
-from tracking.refinement.edges.profiles import EdgeMeasurements, EdgeProfiles, place_profiles
+from cubeling.tracking.refinement.edges.profiles import (
+    EdgeMeasurements,
+    EdgeProfiles,
+    place_profiles,
+)
 
 MIN_FACING_COSINE = 0.15
 """Cosine of the viewing angle below which the edges of a face are too foreshortened to help."""

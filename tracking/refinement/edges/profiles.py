@@ -6,11 +6,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from tracking.cube.edges import EdgeModel
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array, Floats, Indices, run_starts
-from tracking.geometry.image_region import Patch
-from tracking.geometry.projection import MIN_DEPTH, Projection
+from cubeling.tracking.cube.edges import EdgeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array, Floats, Indices, run_starts
+from cubeling.tracking.geometry.image_region import Patch
+from cubeling.tracking.geometry.projection import MIN_DEPTH, Projection
 
 MIN_CELL_PX = 2.5
 """Smallest cell across an edge: below, the two edges of a cell blur into one."""

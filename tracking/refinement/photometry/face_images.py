@@ -3,10 +3,10 @@
 import cv2
 import numpy as np
 
-from tracking.cube.marker import black_texels, marker_cells
-from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Array, Floats, Indices
-from tracking.refinement.photometry.texels import frequencies
+from cubeling.tracking.cube.marker import black_texels, marker_cells
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.arrays import Array, Floats, Indices
+from cubeling.tracking.refinement.photometry.texels import frequencies
 
 
 class FaceTextures:

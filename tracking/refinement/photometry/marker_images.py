@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from tracking.cube.marker import marker_cells
-from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Array, Floats, Indices
-from tracking.refinement.photometry.texels import frequencies
+from cubeling.tracking.cube.marker import marker_cells
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.arrays import Array, Floats, Indices
+from cubeling.tracking.refinement.photometry.texels import frequencies
 
 TEXELS_PER_CELL = 8
 """Texels along a cell."""

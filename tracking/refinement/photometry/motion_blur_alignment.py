@@ -11,21 +11,25 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from tracking.cube.faces import FacePlanes, face_frame
-from tracking.cube.marker import cell_size
-from tracking.cube.model import CubeModel
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array, Flags, Floats, Indices
-from tracking.geometry.image_region import Patch
-from tracking.geometry.projection import MIN_DEPTH, Projection
-from tracking.refinement.photometry.face_images import FaceTextures
-from tracking.refinement.photometry.photometric_fit import (
+from cubeling.tracking.cube.faces import FacePlanes, face_frame
+from cubeling.tracking.cube.marker import cell_size
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array, Flags, Floats, Indices
+from cubeling.tracking.geometry.image_region import Patch
+from cubeling.tracking.geometry.projection import MIN_DEPTH, Projection
+from cubeling.tracking.refinement.photometry.face_images import FaceTextures
+from cubeling.tracking.refinement.photometry.photometric_fit import (
     Alignment,
     PhotometricFit,
     PhotometricSamples,
     fit_tones,
 )
-from tracking.refinement.photometry.texels import SampleGrid, texel_slides, texels_to_pixels
+from cubeling.tracking.refinement.photometry.texels import (
+    SampleGrid,
+    texel_slides,
+    texels_to_pixels,
+)
 
 TEXELS_PER_CELL = 8
 """Texels of a face texture along a cell of its marker."""

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.geometry.arrays import Array, Flags, Indices, run_starts
-from tracking.geometry.robust_statistics import quantile
+from cubeling.tracking.geometry.arrays import Array, Flags, Indices, run_starts
+from cubeling.tracking.geometry.robust_statistics import quantile
 
 MAX_RESIDUAL_SIGMAS, MIN_CUT_SHARE = 2.0, 0.25
 """Residuals beyond this many standard deviations lose their weight (fingers, glare, shadows), but

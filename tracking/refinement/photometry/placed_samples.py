@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.cube.faces import FacePlanes, face_frame
-from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Array, Indices
-from tracking.geometry.image_region import Patch
-from tracking.geometry.projection import MIN_DEPTH, Projection, radial_bend
-from tracking.refinement.photometry.marker_images import TEXELS_PER_CELL
-from tracking.refinement.photometry.texels import (
+from cubeling.tracking.cube.faces import FacePlanes, face_frame
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.arrays import Array, Indices
+from cubeling.tracking.geometry.image_region import Patch
+from cubeling.tracking.geometry.projection import MIN_DEPTH, Projection, radial_bend
+from cubeling.tracking.refinement.photometry.marker_images import TEXELS_PER_CELL
+from cubeling.tracking.refinement.photometry.texels import (
     SampleGrid,
     bend_slides,
     texel_slides,

@@ -12,24 +12,24 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from tracking.cube.model import CubeModel
-from tracking.geometry import se3
-from tracking.geometry.arrays import Array, Floats, Indices
-from tracking.geometry.image_region import Patch
-from tracking.geometry.projection import Projection
-from tracking.refinement.evidence import Evidence
-from tracking.refinement.photometry.marker_images import TEXELS_PER_CELL, MarkerTextures
-from tracking.refinement.photometry.photometric_fit import (
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry import se3
+from cubeling.tracking.geometry.arrays import Array, Floats, Indices
+from cubeling.tracking.geometry.image_region import Patch
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.refinement.evidence import Evidence
+from cubeling.tracking.refinement.photometry.marker_images import TEXELS_PER_CELL, MarkerTextures
+from cubeling.tracking.refinement.photometry.photometric_fit import (
     PhotometricFit,
     PhotometricSamples,
     fit_tones,
 )
-from tracking.refinement.photometry.placed_samples import (
+from cubeling.tracking.refinement.photometry.placed_samples import (
     BLOCKS_PER_SIDE,
     PlacedSamples,
     SamplePlacer,
 )
-from tracking.refinement.systematic_error import CLAIMED_K1
+from cubeling.tracking.refinement.systematic_error import CLAIMED_K1
 
 EXPECTED_BLUR_PX = 0.7
 """Blur of a focused lens, one standard deviation."""

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from tracking.geometry.arrays import Array, Indices
-from tracking.geometry.projection import Projection
+from cubeling.tracking.geometry.arrays import Array, Indices
+from cubeling.tracking.geometry.projection import Projection
 
 
 class SampleGrid:

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 from imgui_bundle import imgui, implot
 
-from app.preferences import PreferenceStore
-from app.ui.palette import INK, QUIET
-from app.ui.panels import PANELS
-from app.ui.panels.content import Widget
-from app.ui.panels.drawing.places import (
+from cubeling.app.preferences import PreferenceStore
+from cubeling.app.ui.palette import INK, QUIET
+from cubeling.app.ui.panels import PANELS
+from cubeling.app.ui.panels.content import Widget
+from cubeling.app.ui.panels.drawing.places import (
     Rect,
     Size,
     corner_of,
@@ -19,10 +19,10 @@ from app.ui.panels.drawing.places import (
     place_at,
     place_of,
 )
-from app.ui.panels.drawing.style import TITLE_SIZE, load_fonts, packed, use_card_style
-from app.ui.panels.drawing.widgets import draw_widgets
-from app.ui.panels.monitor import SessionMonitor
-from app.ui.playback.requests import SessionRequest
+from cubeling.app.ui.panels.drawing.style import TITLE_SIZE, load_fonts, packed, use_card_style
+from cubeling.app.ui.panels.drawing.widgets import draw_widgets
+from cubeling.app.ui.panels.monitor import SessionMonitor
+from cubeling.app.ui.playback.requests import SessionRequest
 
 TOP, GAP = 84.0, 12.0
 """Height of the window's top that is left to the hint, and gap between panels [design units]."""

@@ -13,12 +13,12 @@ from imgui_bundle import imgui  # isort: skip
 import glfw
 import moderngl
 
-from app.preferences import PreferenceStore
-from app.ui.canvas import PICTURE_HEIGHT
-from app.ui.panels.drawing.board import PanelBoard
-from app.ui.panels.drawing.places import Rect
-from app.ui.panels.monitor import SessionMonitor
-from app.ui.playback.requests import SessionRequest
+from cubeling.app.preferences import PreferenceStore
+from cubeling.app.ui.canvas import PICTURE_HEIGHT
+from cubeling.app.ui.panels.drawing.board import PanelBoard
+from cubeling.app.ui.panels.drawing.places import Rect
+from cubeling.app.ui.panels.monitor import SessionMonitor
+from cubeling.app.ui.playback.requests import SessionRequest
 
 VERTEX_SHADER = """
 #version 330

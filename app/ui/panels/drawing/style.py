@@ -7,7 +7,7 @@ import imgui_bundle
 from imgui_bundle import ImVec2, imgui, implot
 from PIL import ImageFont
 
-from app.ui.palette import ACTION_COLORS, INK, PAPER, QUIET, RULE, Color, between
+from cubeling.app.ui.palette import ACTION_COLORS, INK, PAPER, QUIET, RULE, Color, between
 
 FONT_SIZE, TITLE_SIZE = 15.0, 19.0
 """Height of the text and of titles [design units]."""

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from imgui_bundle import ImVec4, imgui, implot
 
-from app.ui.palette import ANGRY, HAPPY, INK, NEUTRAL, QUIET, RULE, Color
-from app.ui.panels.content import (
+from cubeling.app.ui.palette import ANGRY, HAPPY, INK, NEUTRAL, QUIET, RULE, Color
+from cubeling.app.ui.panels.content import (
     Choice,
     Fact,
     Log,
@@ -21,8 +21,8 @@ from app.ui.panels.content import (
     Tone,
     Widget,
 )
-from app.ui.panels.drawing.style import FONT_SIZE, packed, rgba
-from app.ui.playback.requests import SessionRequest
+from cubeling.app.ui.panels.drawing.style import FONT_SIZE, packed, rgba
+from cubeling.app.ui.playback.requests import SessionRequest
 
 TONE_COLORS: dict[Tone, Color] = {"good": HAPPY, "warning": NEUTRAL, "bad": ANGRY}
 """Colours of the dot before a value."""

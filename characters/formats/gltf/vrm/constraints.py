@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from characters.formats.gltf.document import DamagedFileError, Json, error_context, label
-from characters.formats.gltf.file import GltfFile
-from characters.formats.gltf.nodes import NodeTree
-from characters.model.constraints import ConstraintKind, JointConstraint, constraint_levels
-from characters.model.springs import Point
+from cubeling.characters.formats.gltf.document import DamagedFileError, Json, error_context, label
+from cubeling.characters.formats.gltf.file import GltfFile
+from cubeling.characters.formats.gltf.nodes import NodeTree
+from cubeling.characters.model.constraints import ConstraintKind, JointConstraint, constraint_levels
+from cubeling.characters.model.springs import Point
 
 _AXES: dict[str, Point] = {
     "X": (1.0, 0.0, 0.0),

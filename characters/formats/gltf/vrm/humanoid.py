@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.formats.gltf.document import DamagedFileError, Json, error_context, label
-from characters.formats.gltf.file import GltfFile
-from characters.model.mesh import Mesh, Morph
+from cubeling.characters.formats.gltf.document import DamagedFileError, Json, error_context, label
+from cubeling.characters.formats.gltf.file import GltfFile
+from cubeling.characters.model.mesh import Mesh, Morph
 
 Bind = tuple[int, int, float]
 """Node with a mesh, index of a morph target of the mesh, and its weight."""

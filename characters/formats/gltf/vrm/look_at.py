@@ -2,10 +2,10 @@
 
 import math
 
-from characters.formats.gltf.document import Json, error_context
-from characters.formats.gltf.file import GltfFile
-from characters.model.look_at import LookAt, RangeMap
-from characters.model.springs import Point
+from cubeling.characters.formats.gltf.document import Json, error_context
+from cubeling.characters.formats.gltf.file import GltfFile
+from cubeling.characters.model.look_at import LookAt, RangeMap
+from cubeling.characters.model.springs import Point
 
 _DEFAULT_GREATEST_DEG = 90.0
 _DEFAULT_TURN_DEG = 10.0

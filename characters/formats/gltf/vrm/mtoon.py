@@ -4,9 +4,9 @@ Its shade colour is read, with its texture and where it begins; outlines, rim li
 textures are not.
 """
 
-from characters.formats.gltf.document import Json
-from characters.formats.gltf.file import GltfFile
-from characters.model.mesh import ToonShading
+from cubeling.characters.formats.gltf.document import Json
+from cubeling.characters.formats.gltf.file import GltfFile
+from cubeling.characters.model.mesh import ToonShading
 
 EXTENSION = "VRMC_materials_mtoon"
 

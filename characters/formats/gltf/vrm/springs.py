@@ -6,10 +6,16 @@ from itertools import pairwise
 
 import numpy as np
 
-from characters.formats.gltf.document import Json, error_context
-from characters.formats.gltf.file import GltfFile
-from characters.formats.gltf.nodes import NodeTree
-from characters.model.springs import LEAF_LENGTH_M, Point, SpringBone, SpringCollider, tail_of
+from cubeling.characters.formats.gltf.document import Json, error_context
+from cubeling.characters.formats.gltf.file import GltfFile
+from cubeling.characters.formats.gltf.nodes import NodeTree
+from cubeling.characters.model.springs import (
+    LEAF_LENGTH_M,
+    Point,
+    SpringBone,
+    SpringCollider,
+    tail_of,
+)
 
 _DEFAULT_DRAG = 0.5
 _LEAST_LENGTH_M = 1e-5  # of a bone; a shorter one has no direction

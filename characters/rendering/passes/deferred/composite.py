@@ -2,10 +2,10 @@
 
 import moderngl
 
-from characters.rendering.deferred.buffers import buffer_triangle
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.programs import ShaderPrograms
-from characters.rendering.resources import CharacterLayer, FrameResources
+from cubeling.characters.rendering.deferred.buffers import buffer_triangle
+from cubeling.characters.rendering.passes.render_pass import RenderPass
+from cubeling.characters.rendering.programs import ShaderPrograms
+from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
 
 
 class DeferredCompositePass(RenderPass):

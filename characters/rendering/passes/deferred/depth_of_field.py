@@ -2,12 +2,12 @@
 
 import moderngl
 
-from characters.rendering.deferred.buffers import BUFFER_UNITS, buffer_triangle
-from characters.rendering.passes.deferred.composite import DeferredCompositePass
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.resources import CharacterLayer, FrameResources
-from characters.rendering.scene import Focus
+from cubeling.characters.rendering.deferred.buffers import BUFFER_UNITS, buffer_triangle
+from cubeling.characters.rendering.passes.deferred.composite import DeferredCompositePass
+from cubeling.characters.rendering.passes.render_pass import RenderPass
+from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
+from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
+from cubeling.characters.rendering.scene import Focus
 
 MIN_RADIUS_TEXELS = 1.0
 """A smaller circle of confusion is not seen: texels are half as large as pixels."""

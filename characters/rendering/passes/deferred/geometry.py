@@ -1,8 +1,8 @@
 """What is seen of the characters in each texel of their layer, for the passes that light it."""
 
-from characters.rendering.geometry.surfaces import GEOMETRY
-from characters.rendering.passes.characters import CharacterPass
-from characters.rendering.resources import CharacterLayer, FrameResources
+from cubeling.characters.rendering.geometry.surfaces import GEOMETRY
+from cubeling.characters.rendering.passes.characters import CharacterPass
+from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
 
 
 class DeferredGeometryPass(CharacterPass):

@@ -3,17 +3,17 @@
 import moderngl
 import numpy as np
 
-from characters.rendering.deferred.buffers import (
+from cubeling.characters.rendering.deferred.buffers import (
     BUFFER_UNITS,
     MAX_SURFACES,
     buffer_triangle,
     surface_records,
 )
-from characters.rendering.passes.deferred.occlusion import DeferredOcclusionPass
-from characters.rendering.passes.deferred.visibility import DeferredVisibilityPass
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.resources import CharacterLayer, FrameResources
+from cubeling.characters.rendering.passes.deferred.occlusion import DeferredOcclusionPass
+from cubeling.characters.rendering.passes.deferred.visibility import DeferredVisibilityPass
+from cubeling.characters.rendering.passes.render_pass import RenderPass
+from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
+from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
 
 
 class DeferredLightingPass(RenderPass):

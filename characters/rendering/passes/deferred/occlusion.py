@@ -6,19 +6,19 @@ from dataclasses import replace
 import moderngl
 import numpy as np
 
-from characters.rendering.deferred.ambient_occlusion import AmbientOcclusion
-from characters.rendering.deferred.buffers import (
+from cubeling.characters.rendering.deferred.ambient_occlusion import AmbientOcclusion
+from cubeling.characters.rendering.deferred.buffers import (
     BUFFER_UNITS,
     DepthLayerBuffer,
     GrowingBuffer,
     buffer_triangle,
 )
-from characters.rendering.deferred.cells import cell_count, cell_uniforms
-from characters.rendering.geometry.surfaces import BEHIND
-from characters.rendering.passes.characters import CharacterPass
-from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.resources import CharacterLayer, FrameResources
-from characters.skeleton.pose import Array
+from cubeling.characters.rendering.deferred.cells import cell_count, cell_uniforms
+from cubeling.characters.rendering.geometry.surfaces import BEHIND
+from cubeling.characters.rendering.passes.characters import CharacterPass
+from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
+from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
+from cubeling.characters.skeleton.pose import Array
 
 KNOWN_UNIT = 5
 """Texture unit of what is in front, after those of materials (see `TEXTURE_UNITS`)."""

@@ -3,10 +3,10 @@
 import moderngl
 import numpy as np
 
-from characters.rendering.deferred.buffers import buffer_triangle
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.resources import CharacterLayer, FrameResources
+from cubeling.characters.rendering.deferred.buffers import buffer_triangle
+from cubeling.characters.rendering.passes.render_pass import RenderPass
+from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
+from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
 
 LEVEL_RADII_M = (0.0023, 0.0053, 0.0103)
 """Radii of the levels in human skin [m]. A Wendland function of a radius of 3.8 standard deviations

@@ -5,15 +5,15 @@ from collections.abc import Sequence
 import moderngl
 import numpy as np
 
-from characters.rendering.camera_picture.light import Light
-from characters.rendering.deferred.blocker_map import TABLE_RANGE_TEXELS, BlockerMap
-from characters.rendering.deferred.lamp import Lamp
-from characters.rendering.passes.shadows import ShadowPass, key_share, sky_extent
-from characters.rendering.passes.table_image import TableImage
-from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.resources import FrameResources
-from characters.rendering.target import read_bytes
-from characters.skeleton.pose import Array
+from cubeling.characters.rendering.camera_picture.light import Light
+from cubeling.characters.rendering.deferred.blocker_map import TABLE_RANGE_TEXELS, BlockerMap
+from cubeling.characters.rendering.deferred.lamp import Lamp
+from cubeling.characters.rendering.passes.shadows import ShadowPass, key_share, sky_extent
+from cubeling.characters.rendering.passes.table_image import TableImage
+from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
+from cubeling.characters.rendering.resources import FrameResources
+from cubeling.characters.rendering.target import read_bytes
+from cubeling.characters.skeleton.pose import Array
 
 TABLE_SIDE = 192
 """Texels along each side of the square of the table whose light is found."""

@@ -3,17 +3,17 @@
 import moderngl
 import numpy as np
 
-from characters.rendering.deferred.blocker_map import CHARACTER_RANGE_TEXELS, BlockerMap
-from characters.rendering.deferred.buffers import (
+from cubeling.characters.rendering.deferred.blocker_map import CHARACTER_RANGE_TEXELS, BlockerMap
+from cubeling.characters.rendering.deferred.buffers import (
     BUFFER_UNITS,
     GrowingBuffer,
     PixelBuffer,
     buffer_triangle,
 )
-from characters.rendering.deferred.cells import cell_count, cell_uniforms
-from characters.rendering.passes.render_pass import RenderPass
-from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.resources import CharacterLayer, FrameResources
+from cubeling.characters.rendering.deferred.cells import cell_count, cell_uniforms
+from cubeling.characters.rendering.passes.render_pass import RenderPass
+from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
+from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
 
 DEPTH_TOLERANCE_M = 0.01
 """Difference in depth at which a cell's value does not count for another [m]."""

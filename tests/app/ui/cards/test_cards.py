@@ -9,13 +9,13 @@ import numpy as np
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from app.pipeline.step import RobotView
-from app.ui.canvas import Card
-from app.ui.cards.layout import CARD_MARGIN, CardLayout
-from app.ui.cards.overlay import CARD_HEIGHT, overlay, virtual_robot_side
-from characters import ActionIntent, LocomotionIntent
-from characters.control.command import SpeechIntent
-from characters.speech.speech import Utterance
+from cubeling.app.pipeline.step import RobotView
+from cubeling.app.ui.canvas import Card
+from cubeling.app.ui.cards.layout import CARD_MARGIN, CardLayout
+from cubeling.app.ui.cards.overlay import CARD_HEIGHT, overlay, virtual_robot_side
+from cubeling.characters import ActionIntent, LocomotionIntent
+from cubeling.characters.control.command import SpeechIntent
+from cubeling.characters.speech.speech import Utterance
 
 
 def test_what_was_drawn_before_leaves_nothing_on_the_cards(a_step):

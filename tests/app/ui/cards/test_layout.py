@@ -4,12 +4,12 @@ import itertools
 
 import numpy as np
 
-from app.pipeline.playground import Playground
-from app.running.opening import intrinsics_for
-from app.session.bundled import bundled
-from app.session.replay_inputs import read_replay_inputs
-from app.ui.cards.layout import MIN_STAY_S, CardLayout, Corner, card_box
-from tracking import open_source
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.session.bundled import bundled
+from cubeling.app.session.replay_inputs import read_replay_inputs
+from cubeling.app.ui.cards.layout import MIN_STAY_S, CardLayout, Corner, card_box
+from cubeling.tracking import open_source
 
 CARDS: dict[Corner, tuple[float, float]] = {
     "bottom right": (196.0, 298.0),

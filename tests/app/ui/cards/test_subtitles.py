@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from app.ui.canvas import text_mask, text_width
-from app.ui.cards.subtitles import MAX_LETTERS, SIZE, parts, subtitle, wrapped
-from characters.control.command import SpeechIntent
-from characters.speech.speech import Utterance, Word
+from cubeling.app.ui.canvas import text_mask, text_width
+from cubeling.app.ui.cards.subtitles import MAX_LETTERS, SIZE, parts, subtitle, wrapped
+from cubeling.characters.control.command import SpeechIntent
+from cubeling.characters.speech.speech import Utterance, Word
 
 TEXT = (
     "This is the first sentence of a long speech, which nobody could read at one time. "

@@ -8,16 +8,16 @@ import moderngl
 import numpy as np
 import pytest
 
-from affect import Emotion
-from app.pipeline.scenario import EmotionTarget
-from app.pipeline.step import RobotView
-from app.running.robots import RobotLine
-from app.ui.cards.overlay import overlay, virtual_robot_side
-from app.ui.cards.virtual_robot import VirtualRobot, backdrop, intensity
-from app.ui.display import is_software_renderer
-from app.ui.palette import ANGRY, HAPPY
-from characters import CharacterError
-from characters.rendering import create_context
+from cubeling.affect import Emotion
+from cubeling.app.pipeline.scenario import EmotionTarget
+from cubeling.app.pipeline.step import RobotView
+from cubeling.app.running.robots import RobotLine
+from cubeling.app.ui.cards.overlay import overlay, virtual_robot_side
+from cubeling.app.ui.cards.virtual_robot import VirtualRobot, backdrop, intensity
+from cubeling.app.ui.display import is_software_renderer
+from cubeling.app.ui.palette import ANGRY, HAPPY
+from cubeling.characters import CharacterError
+from cubeling.characters.rendering import create_context
 
 SIDE = 96
 

@@ -11,19 +11,19 @@ import cv2
 import glfw
 import numpy as np
 
-from app.pipeline.frame_times import FrameTimes
-from app.pipeline.playground import Playground
-from app.pipeline.step import RobotView
-from app.preferences import PreferenceStore
-from app.running.opening import intrinsics_for
-from app.session import SessionOptions
-from app.ui.panels import PANELS, SessionMonitor
-from app.ui.panels.drawing.layer import PanelLayer
-from app.ui.panels.drawing.places import Rect
-from app.ui.playback.requests import ChangeSetting, SessionRequest
-from characters.rendering import create_context
-from robot import Telemetry
-from tracking import open_source
+from cubeling.app.pipeline.frame_times import FrameTimes
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.step import RobotView
+from cubeling.app.preferences import PreferenceStore
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.session import SessionOptions
+from cubeling.app.ui.panels import PANELS, SessionMonitor
+from cubeling.app.ui.panels.drawing.layer import PanelLayer
+from cubeling.app.ui.panels.drawing.places import Rect
+from cubeling.app.ui.playback.requests import ChangeSetting, SessionRequest
+from cubeling.characters.rendering import create_context
+from cubeling.robot import Telemetry
+from cubeling.tracking import open_source
 
 SIZE = (1280, 720)
 NO_WINDOW = 77

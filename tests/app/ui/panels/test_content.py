@@ -8,19 +8,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from affect import Emotion
-from app.pipeline.frame_times import FrameTimes
-from app.pipeline.scenario import EmotionTarget, Outcome
-from app.pipeline.step import RobotView, Step
-from app.scenarios import find_scenario, scenario_names
-from app.session import SessionOptions
-from app.ui.panels import PANELS, SessionMonitor
-from app.ui.panels.content import Choice, Fact, Note, Plot, ShareBar, Slider
-from app.ui.panels.tracking import REFUSALS, stated_error
-from characters import CharacterCommand
-from characters.rendering import QUALITIES
-from robot import LinkCounts, Telemetry
-from tracking import CubeState, Frame, Intrinsics, LensEstimate
+from cubeling.affect import Emotion
+from cubeling.app.pipeline.frame_times import FrameTimes
+from cubeling.app.pipeline.scenario import EmotionTarget, Outcome
+from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.scenarios import find_scenario, scenario_names
+from cubeling.app.session import SessionOptions
+from cubeling.app.ui.panels import PANELS, SessionMonitor
+from cubeling.app.ui.panels.content import Choice, Fact, Note, Plot, ShareBar, Slider
+from cubeling.app.ui.panels.tracking import REFUSALS, stated_error
+from cubeling.characters import CharacterCommand
+from cubeling.characters.rendering import QUALITIES
+from cubeling.robot import LinkCounts, Telemetry
+from cubeling.tracking import CubeState, Frame, Intrinsics, LensEstimate
 
 NO_LENS = LensEstimate()
 OPTIONS = SessionOptions(scenario="companion", source="camera:0")

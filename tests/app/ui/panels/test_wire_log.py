@@ -5,12 +5,12 @@ import dataclasses
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.ui.panels.wire_log import MAX_CHUNKS, MAX_MESSAGES, RATE_SPAN_S, WireLog
-from app.ui.panels.wire_words import WORDS, FrameDecoder
-from robot import Catalogue, JointLimits
-from robot.protocol import messages as m
-from robot.protocol.schema import MESSAGES, pack
-from robot.protocol.wire import encode_frame
+from cubeling.app.ui.panels.wire_log import MAX_CHUNKS, MAX_MESSAGES, RATE_SPAN_S, WireLog
+from cubeling.app.ui.panels.wire_words import WORDS, FrameDecoder
+from cubeling.robot import Catalogue, JointLimits
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.schema import MESSAGES, pack
+from cubeling.robot.protocol.wire import encode_frame
 
 JOINTS = tuple(JointLimits(name, -1.0, 1.0, 1.0) for name in ("neck", "tail"))
 CATALOGUE = Catalogue(

@@ -2,7 +2,7 @@
 
 from itertools import pairwise
 
-from characters.behaviour.bml import (
+from cubeling.characters.behaviour.bml import (
     BMLA,
     FACE_SYNCS,
     GESTURE_SYNCS,

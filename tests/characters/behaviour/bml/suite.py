@@ -9,7 +9,7 @@ from typing import TypeVar
 
 import pytest
 
-from characters.behaviour.bml import (
+from cubeling.characters.behaviour.bml import (
     BML,
     BMLA,
     BlockProgress,

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from characters.behaviour.bml import FACE_SYNCS, GESTURE_SYNCS, HOLD_SYNCS, SHIFT_SYNCS
+from cubeling.characters.behaviour.bml import FACE_SYNCS, GESTURE_SYNCS, HOLD_SYNCS, SHIFT_SYNCS
 from tests.characters.behaviour.bml.suite import Session, Until, block
 
 CASES = Path(__file__).parents[5] / "shared" / "data" / "bml" / "bml-1"

@@ -3,7 +3,7 @@
 import math
 from xml.etree import ElementTree
 
-from characters.behaviour.bml import (
+from cubeling.characters.behaviour.bml import (
     BML,
     BlockProgress,
     BmlWarning,

@@ -4,10 +4,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters.behaviour.bml import BML, Mark, SyncReference, parse
-from characters.behaviour.bml.parser import MAX_BEHAVIOURS, reference
-from characters.behaviour.bml.xml_elements import MAX_BYTES, MAX_DEPTH, MAX_ELEMENTS
-from characters.errors import CharacterError
+from cubeling.characters.behaviour.bml import BML, Mark, SyncReference, parse
+from cubeling.characters.behaviour.bml.parser import MAX_BEHAVIOURS, reference
+from cubeling.characters.behaviour.bml.xml_elements import MAX_BYTES, MAX_DEPTH, MAX_ELEMENTS
+from cubeling.characters.errors import CharacterError
 from tests.characters.behaviour.bml.suite import block
 
 

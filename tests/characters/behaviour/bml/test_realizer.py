@@ -2,7 +2,7 @@
 
 import pytest
 
-from characters.behaviour.bml import (
+from cubeling.characters.behaviour.bml import (
     FACE_SYNCS,
     GESTURE_SYNCS,
     HOLD_SYNCS,

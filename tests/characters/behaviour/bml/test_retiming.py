@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from characters.behaviour.bml import Prediction, Scheduled
+from cubeling.characters.behaviour.bml import Prediction, Scheduled
 from tests.characters.behaviour.bml.suite import FRAME, Session, Until, block
 
 TALK = (

@@ -2,7 +2,7 @@
 
 import pytest
 
-from characters.behaviour.bml import BmlWarning, Prediction, Realizer
+from cubeling.characters.behaviour.bml import BmlWarning, Prediction, Realizer
 from tests.characters.behaviour.bml.estimates import Estimates
 from tests.characters.behaviour.bml.suite import block
 

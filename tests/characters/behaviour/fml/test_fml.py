@@ -2,10 +2,10 @@
 
 import pytest
 
-from characters.behaviour.bml import SYNCS, SyncReference
-from characters.behaviour.fml import Lexicon, behaviours_of
-from characters.behaviour.gestures.collection import GestureCollection
-from characters.errors import CharacterError
+from cubeling.characters.behaviour.bml import SYNCS, SyncReference
+from cubeling.characters.behaviour.fml import Lexicon, behaviours_of
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
+from cubeling.characters.errors import CharacterError
 from tests.characters.behaviour.bml.suite import Session
 
 SPEECH = "<speech id='s'><text>Hello. <sync id='a'/>Look at the <sync id='b'/>cube.</text></speech>"

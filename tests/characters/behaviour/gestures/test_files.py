@@ -4,11 +4,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import CharacterError
-from characters.behaviour.expressivity import GestureExpressivity
-from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.gestures.files import load_gesture, save_gesture
-from characters.behaviour.symbolic_gesture import (
+from cubeling.characters import CharacterError
+from cubeling.characters.behaviour.expressivity import GestureExpressivity
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
+from cubeling.characters.behaviour.gestures.files import load_gesture, save_gesture
+from cubeling.characters.behaviour.symbolic_gesture import (
     SECTORS_X,
     SECTORS_Y,
     SECTORS_Z,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from characters.behaviour.gestures.gathering import PartKeys, gather
+from cubeling.characters.behaviour.gestures.gathering import PartKeys, gather
 
 
 def _keys(**parts):

@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters import ActionIntent, Animator, Character, CharacterCommand
-from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.gestures.planning import Performer
-from characters.behaviour.gestures.timing import natural_times, phase_at
-from characters.behaviour.intents import BehaviourIntent, GestureIntent, ReachIntent, Times
-from characters.behaviour.symbolic_gesture import HandKey, Place, SymbolicGesture
-from characters.control.layers.gestures import GestureLayer
-from characters.control.layers.sitting_up import SittingUpLayer
+from cubeling.characters import ActionIntent, Animator, Character, CharacterCommand
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
+from cubeling.characters.behaviour.gestures.planning import Performer
+from cubeling.characters.behaviour.gestures.timing import natural_times, phase_at
+from cubeling.characters.behaviour.intents import BehaviourIntent, GestureIntent, ReachIntent, Times
+from cubeling.characters.behaviour.symbolic_gesture import HandKey, Place, SymbolicGesture
+from cubeling.characters.control.layers.gestures import GestureLayer
+from cubeling.characters.control.layers.sitting_up import SittingUpLayer
 
 RATE = 30.0
 MAX_STEP_DEG = 25.0

@@ -8,13 +8,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import Character, CharacterWarning
-from characters.behaviour.expressivity import GestureExpressivity
-from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.gestures.planning import GesturePlanning, Performer
-from characters.behaviour.gestures.timing import apex_share
-from characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
-from characters.skeleton import rotations
+from cubeling.characters import Character, CharacterWarning
+from cubeling.characters.behaviour.expressivity import GestureExpressivity
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
+from cubeling.characters.behaviour.gestures.planning import GesturePlanning, Performer
+from cubeling.characters.behaviour.gestures.timing import apex_share
+from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
+from cubeling.characters.skeleton import rotations
 
 NAMES = ("human", "vleo", "robot")
 LOW, HIGH = Place("XC", "YLowerC", "ZMiddle"), Place("XP", "YUpperC", "ZMiddle")

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters import Character, CharacterError, Clip, Pose
-from characters.behaviour.gestures.planning import Performer
-from characters.behaviour.gestures.recording import gesture_from_recording, polyline
-from characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
+from cubeling.characters import Character, CharacterError, Clip, Pose
+from cubeling.characters.behaviour.gestures.planning import Performer
+from cubeling.characters.behaviour.gestures.recording import gesture_from_recording, polyline
+from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
 
 KEYS = (
     HandKey(0.0, Place("XP", "YUpperP", "ZMiddle"), "flat", "forward", "up"),

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters.behaviour.gestures.space import REFERENCE_ARM_M, GestureSpace
-from characters.behaviour.symbolic_gesture import SECTORS_X, SECTORS_Y, SECTORS_Z, Place
-from characters.skeleton import rotations
+from cubeling.characters.behaviour.gestures.space import REFERENCE_ARM_M, GestureSpace
+from cubeling.characters.behaviour.symbolic_gesture import SECTORS_X, SECTORS_Y, SECTORS_Z, Place
+from cubeling.characters.skeleton import rotations
 
 CHEST = np.array([0.02, 1.1, 0.1])
 

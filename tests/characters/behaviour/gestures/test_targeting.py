@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from characters.behaviour.gestures.targeting import PathFormula, ramped
-from characters.behaviour.symbolic_gesture import HandKey
+from cubeling.characters.behaviour.gestures.targeting import PathFormula, ramped
+from cubeling.characters.behaviour.symbolic_gesture import HandKey
 
 TIMES = np.linspace(0.0, 1.0, 41)
 

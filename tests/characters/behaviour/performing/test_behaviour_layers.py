@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from characters import Animator, Character, CharacterCommand, RootDelta
-from characters.behaviour.intents import (
+from cubeling.characters import Animator, Character, CharacterCommand, RootDelta
+from cubeling.characters.behaviour.intents import (
     BehaviourIntent,
     FaceIntent,
     GazeIntent,
@@ -15,13 +15,13 @@ from characters.behaviour.intents import (
     StrokeTimes,
     Times,
 )
-from characters.behaviour.performing.face_names import ACTION_UNITS, LEXEMES, FaceNames
-from characters.behaviour.performing.stances import STANCES, StanceJoints
-from characters.control.layers.behaviour import FaceShiftLayer, StanceLayer
-from characters.control.layers.foot_lock import FootLockLayer
-from characters.control.layers.gaze import GazeLayer
-from characters.ik.legs import find_legs, find_paws
-from characters.skeleton import rotations
+from cubeling.characters.behaviour.performing.face_names import ACTION_UNITS, LEXEMES, FaceNames
+from cubeling.characters.behaviour.performing.stances import STANCES, StanceJoints
+from cubeling.characters.control.layers.behaviour import FaceShiftLayer, StanceLayer
+from cubeling.characters.control.layers.foot_lock import FootLockLayer
+from cubeling.characters.control.layers.gaze import GazeLayer
+from cubeling.characters.ik.legs import find_legs, find_paws
+from cubeling.characters.skeleton import rotations
 
 HUMAN, VLEO = Character.load("human"), Character.load("vleo")
 RATE = 30.0

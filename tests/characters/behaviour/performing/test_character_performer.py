@@ -5,16 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from characters import Character
-from characters.behaviour.bml import BmlWarning, Realizer, parse
-from characters.behaviour.expressivity import GestureExpressivity
-from characters.behaviour.gestures.collection import GestureCollection
-from characters.behaviour.performing.character_performer import CharacterPerformer
-from characters.behaviour.performing.performed import CUBELING, Performing
-from characters.behaviour.performing.speech_kind import estimated, retime_speeches
-from characters.behaviour.performing.surroundings import Surroundings
-from characters.behaviour.symbolic_gesture import HandKey, SymbolicGesture
-from characters.speech.speech import Utterance, Word
+from cubeling.characters import Character
+from cubeling.characters.behaviour.bml import BmlWarning, Realizer, parse
+from cubeling.characters.behaviour.expressivity import GestureExpressivity
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
+from cubeling.characters.behaviour.performing.character_performer import CharacterPerformer
+from cubeling.characters.behaviour.performing.performed import CUBELING, Performing
+from cubeling.characters.behaviour.performing.speech_kind import estimated, retime_speeches
+from cubeling.characters.behaviour.performing.surroundings import Surroundings
+from cubeling.characters.behaviour.symbolic_gesture import HandKey, SymbolicGesture
+from cubeling.characters.speech.speech import Utterance, Word
 
 WAVE = SymbolicGesture(
     "WAVE", right=(HandKey(0.0), HandKey(1.0)), one_handed=True, preparation=0.4, stroke=0.8,

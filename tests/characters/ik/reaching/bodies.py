@@ -5,11 +5,11 @@ from functools import cache
 
 import numpy as np
 
-from characters import Character, Pose
-from characters.ik.reaching import UpperBody
-from characters.skeleton import rotations
-from characters.skeleton.anatomy import Anatomy
-from characters.skeleton.pose import Array, Skeleton
+from cubeling.characters import Character, Pose
+from cubeling.characters.ik.reaching import UpperBody
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array, Skeleton
 
 PERSON_M = 1.7
 """Height to which lengths are scaled [m]."""

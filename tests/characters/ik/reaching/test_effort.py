@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from characters.ik.reaching import UpperBody, reach_effort
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.ik.reaching import UpperBody, reach_effort
+from cubeling.characters.skeleton.pose import Skeleton
 from tests.characters.ik.reaching.bodies import bundled, stick
 
 

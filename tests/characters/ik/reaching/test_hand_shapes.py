@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from characters import Pose
-from characters.errors import CharacterError
-from characters.ik.reaching import HAND_SHAPES
-from characters.skeleton.pose import Array
+from cubeling.characters import Pose
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.ik.reaching import HAND_SHAPES
+from cubeling.characters.skeleton.pose import Array
 from tests.characters.ik.reaching.bodies import Body, bundled
 
 LONG = ("Index", "Middle", "Little")

@@ -8,12 +8,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters import Pose
-from characters.ik.reaching import HandTarget, ReachKind, ReachStyle
-from characters.ik.reaching.arms import MAX_ELBOW_BEND_RAD
-from characters.ik.reaching.torso import EASY_EXTENSION, FOUR_LEGS, MAX_LEAN_RAD, MAX_TURN_RAD
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array
+from cubeling.characters import Pose
+from cubeling.characters.ik.reaching import HandTarget, ReachKind, ReachStyle
+from cubeling.characters.ik.reaching.arms import MAX_ELBOW_BEND_RAD
+from cubeling.characters.ik.reaching.torso import (
+    EASY_EXTENSION,
+    FOUR_LEGS,
+    MAX_LEAN_RAD,
+    MAX_TURN_RAD,
+)
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array
 from tests.characters.ik.reaching.bodies import BUNDLED, PERSON_M, Body, bundled, stick
 
 SIDES = ("left", "right")

@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters.ik.solvers import columns
-from characters.ik.solvers.chains import Chains
-from characters.ik.solvers.limiting import propagated
-from characters.ik.solvers.measures import arc
-from characters.ik.solvers.positional import PositionalSolver
-from characters.ik.solvers.springs import MassSprings
-from characters.ik.solvers.task import Limiting, Task
-from characters.skeleton import rotations
-from characters.skeleton.joint_limits import JointLimits
-from characters.skeleton.pose import Array
+from cubeling.characters.ik.solvers import columns
+from cubeling.characters.ik.solvers.chains import Chains
+from cubeling.characters.ik.solvers.limiting import propagated
+from cubeling.characters.ik.solvers.measures import arc
+from cubeling.characters.ik.solvers.positional import PositionalSolver
+from cubeling.characters.ik.solvers.springs import MassSprings
+from cubeling.characters.ik.solvers.task import Limiting, Task
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.joint_limits import JointLimits
+from cubeling.characters.skeleton.pose import Array
 
 COUNT = 200
 

@@ -4,13 +4,13 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters.ik.solvers import columns
-from characters.ik.solvers.chains import Chains
-from characters.ik.solvers.measures import Problem, arc, target_path, twist
-from characters.ik.solvers.orientation import horn
-from characters.ik.solvers.solving import solve
-from characters.skeleton import rotations
-from characters.skeleton.joint_limits import to_euler
+from cubeling.characters.ik.solvers import columns
+from cubeling.characters.ik.solvers.chains import Chains
+from cubeling.characters.ik.solvers.measures import Problem, arc, target_path, twist
+from cubeling.characters.ik.solvers.orientation import horn
+from cubeling.characters.ik.solvers.solving import solve
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.joint_limits import to_euler
 
 
 @settings(max_examples=30, deadline=None)

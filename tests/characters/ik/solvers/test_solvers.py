@@ -5,15 +5,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters.errors import CharacterError
-from characters.ik.solvers.chains import Chains
-from characters.ik.solvers.measures import Problem, arc, joint_change, violations, zig_zag
-from characters.ik.solvers.single import SingleChain
-from characters.ik.solvers.solving import SOLVERS, solve
-from characters.ik.solvers.springs import MassSprings, verlet
-from characters.skeleton import rotations
-from characters.skeleton.joint_limits import JointLimits
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.ik.solvers.chains import Chains
+from cubeling.characters.ik.solvers.measures import Problem, arc, joint_change, violations, zig_zag
+from cubeling.characters.ik.solvers.single import SingleChain
+from cubeling.characters.ik.solvers.solving import SOLVERS, solve
+from cubeling.characters.ik.solvers.springs import MassSprings, verlet
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.joint_limits import JointLimits
+from cubeling.characters.skeleton.pose import Array
 
 COUNT = 50
 

@@ -5,10 +5,10 @@ import time
 import numpy as np
 import pytest
 
-from characters.errors import CharacterError
-from characters.ik.solvers.trees import Target, Tree, solve_tree
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.ik.solvers.trees import Target, Tree, solve_tree
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array
 
 LEFT, RIGHT, FORK = 6, 9, 3
 

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from characters import Character, Clip, Pose
-from characters.skeleton import rotations
-from characters.synthesis.gestures.library import GestureLibrary
+from cubeling.characters import Character, Clip, Pose
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.synthesis.gestures.library import GestureLibrary
 
 RATE = 60.0
 
@@ -20,7 +20,9 @@ def human() -> Character:
 
 @pytest.fixture(scope="session")
 def library() -> GestureLibrary:
-    return GestureLibrary.load(Path(str(resources.files("characters") / "assets/human.gestures")))
+    return GestureLibrary.load(
+        Path(str(resources.files("cubeling.characters") / "assets/human.gestures"))
+    )
 
 
 @pytest.fixture(scope="session")

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters.skeleton import rotations
-from characters.synthesis.gestures.analysis import (
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.synthesis.gestures.analysis import (
     bimanual_strength,
     features,
     find_apex,
@@ -17,7 +17,7 @@ from characters.synthesis.gestures.analysis import (
     kinetic_energies,
     masses,
 )
-from characters.synthesis.gestures.learning import analyse
+from cubeling.characters.synthesis.gestures.learning import analyse
 
 RATE = 120.0
 

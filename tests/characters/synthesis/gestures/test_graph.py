@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from characters.synthesis.gestures.graph import THRESHOLDS, GestureGraph, sweep
-from characters.synthesis.gestures.nodes import BLEND_S, LONGEST_TO_REST_S
+from cubeling.characters.synthesis.gestures.graph import THRESHOLDS, GestureGraph, sweep
+from cubeling.characters.synthesis.gestures.nodes import BLEND_S, LONGEST_TO_REST_S
 
 
 def test_a_higher_threshold_connects_more_until_all_are_connected(library):

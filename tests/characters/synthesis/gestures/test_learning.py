@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from characters import Clip
-from characters.control.controllers.recordings import read_motions
-from characters.errors import CharacterError
-from characters.synthesis.gestures.learning import RATE_HZ, analyse, learned
-from characters.synthesis.gestures.segmentation import (
+from cubeling.characters import Clip
+from cubeling.characters.control.controllers.recordings import read_motions
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.synthesis.gestures.learning import RATE_HZ, analyse, learned
+from cubeling.characters.synthesis.gestures.segmentation import (
     HOLD,
     PREPARATION,
     REST,

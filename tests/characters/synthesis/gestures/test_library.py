@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters import Character
-from characters.errors import CharacterError
-from characters.speech.speech import Accent
-from characters.synthesis.archive import skeleton_identity
-from characters.synthesis.gestures.library import STEP_RAD, GestureLibrary, gesture_joints
-from characters.synthesis.gestures.planning import GesturePlanner
+from cubeling.characters import Character
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.speech.speech import Accent
+from cubeling.characters.synthesis.archive import skeleton_identity
+from cubeling.characters.synthesis.gestures.library import STEP_RAD, GestureLibrary, gesture_joints
+from cubeling.characters.synthesis.gestures.planning import GesturePlanner
 from tools.authoring.speakers import GESTURES
 
 

@@ -8,16 +8,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters.speech.speech import Accent
-from characters.synthesis.gestures.alignment import (
+from cubeling.characters.speech.speech import Accent
+from cubeling.characters.synthesis.gestures.alignment import (
     PHRASE_WARPS,
     STROKE_WARPS,
     WHOLE_WARPS,
     Timings,
     warp_cost,
 )
-from characters.synthesis.gestures.graph import GestureGraph
-from characters.synthesis.gestures.planning import GesturePlanner, GestureSettings
+from cubeling.characters.synthesis.gestures.graph import GestureGraph
+from cubeling.characters.synthesis.gestures.planning import GesturePlanner, GestureSettings
 
 BODYSPEECH = GestureSettings(accent_floor=0.0)
 THESIS = replace(BODYSPEECH, model="thesis")

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters import Motion
-from characters.skeleton import rotations
-from characters.synthesis.gestures.graph import GestureGraph
-from characters.synthesis.gestures.planning import GesturePlanner, GestureSettings
+from cubeling.characters import Motion
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.synthesis.gestures.graph import GestureGraph
+from cubeling.characters.synthesis.gestures.planning import GesturePlanner, GestureSettings
 from tests.characters.synthesis.gestures.test_planning import BODYSPEECH, LETTER, accents
 
 FRAME_S = 1 / 60

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from characters.errors import CharacterError
-from characters.synthesis.gestures.rules import IntensityRule, SynchronyRule, paired
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.synthesis.gestures.rules import IntensityRule, SynchronyRule, paired
 
 
 @pytest.mark.parametrize(

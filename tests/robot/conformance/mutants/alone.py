@@ -4,10 +4,10 @@ from dataclasses import replace
 from math import sin
 from typing import Any
 
-from affect import Emotion
-from robot.protocol import messages as m
-from robot.protocol.schema import pack, unpack
-from robot.protocol.wire import encode_frame
+from cubeling.affect import Emotion
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.schema import pack, unpack
+from cubeling.robot.protocol.wire import encode_frame
 from tests.robot.conformance.mutants.base import Mutant, breaks
 from tests.robot.conformance.mutants.heartbeat import Stating, Timed
 from tests.robot.conformance.mutants.sessions import Greeter

@@ -4,11 +4,11 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
-from robot.protocol import messages as m
-from robot.protocol.fields import MessageError
-from robot.protocol.schema import pack, unpack
-from robot.protocol.wire import MAX_BODY, MAX_FRAME, FrameError, decode_frame, encode_frame
-from robot.simulators.cubeling.simulator import Simulator
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.fields import MessageError
+from cubeling.robot.protocol.schema import pack, unpack
+from cubeling.robot.protocol.wire import MAX_BODY, MAX_FRAME, FrameError, decode_frame, encode_frame
+from cubeling.robot.simulators.cubeling.simulator import Simulator
 
 MUTANTS: dict[str, list[type["Mutant"]]] = {}
 """The robots that fail each check, by the check's name."""

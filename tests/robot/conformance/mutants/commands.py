@@ -4,9 +4,9 @@ from dataclasses import replace
 from math import sin
 from typing import Any
 
-from affect import Emotion
-from robot.protocol import messages as m
-from robot.protocol.schema import unpack
+from cubeling.affect import Emotion
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.schema import unpack
 from tests.robot.conformance.mutants.base import Mutant, breaks
 
 

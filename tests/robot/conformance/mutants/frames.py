@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from robot.protocol import messages as m
-from robot.protocol.schema import MESSAGES, pack
-from robot.protocol.wire import FrameError, cobs_decode, crc16, decode_frame, encode_frame
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.schema import MESSAGES, pack
+from cubeling.robot.protocol.wire import FrameError, cobs_decode, crc16, decode_frame, encode_frame
 from tests.robot.conformance.mutants.base import Mutant, breaks
 
 

@@ -3,9 +3,9 @@
 from dataclasses import replace
 from typing import Any
 
-from affect import Emotion
-from robot.protocol import messages as m
-from robot.protocol.schema import MESSAGES
+from cubeling.affect import Emotion
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.schema import MESSAGES
 from tests.robot.conformance.mutants.base import Mutant, breaks
 from tests.robot.conformance.mutants.sessions import Greeter
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
-from robot.protocol import messages as m
+from cubeling.robot.protocol import messages as m
 from tests.robot.conformance.mutants.base import Mutant, breaks
 from tests.robot.conformance.mutants.commands import Commanded
 from tests.robot.conformance.mutants.playing import ACTIONS

@@ -3,8 +3,8 @@
 from dataclasses import replace
 from typing import Any
 
-from affect import Emotion
-from robot.protocol import messages as m
+from cubeling.affect import Emotion
+from cubeling.robot.protocol import messages as m
 from tests.robot.conformance.mutants.base import Mutant, breaks
 from tests.robot.conformance.mutants.commands import Commanded
 from tests.robot.conformance.mutants.heartbeat import Stating

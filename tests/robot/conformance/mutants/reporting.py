@@ -3,9 +3,9 @@
 from dataclasses import replace
 from typing import Any
 
-from robot.protocol import messages as m
-from robot.protocol.schema import pack
-from robot.protocol.wire import encode_frame
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.schema import pack
+from cubeling.robot.protocol.wire import encode_frame
 from tests.robot.conformance.mutants.base import Mutant, breaks
 from tests.robot.conformance.mutants.heartbeat import Stating
 

@@ -3,8 +3,8 @@
 from dataclasses import replace
 from typing import Any
 
-from robot.protocol import messages as m
-from robot.protocol.schema import MESSAGES, pack, unpack
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol.schema import MESSAGES, pack, unpack
 from tests.robot.conformance.mutants.base import Mutant, breaks
 
 

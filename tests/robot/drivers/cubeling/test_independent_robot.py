@@ -8,9 +8,9 @@ import struct
 
 import pytest
 
-from affect import Emotion
-from robot.conformance import SimulatedChannel, all_checks, run_checks
-from robot.protocol.messages import ITEM_MOTION
+from cubeling.affect import Emotion
+from cubeling.robot.conformance import SimulatedChannel, all_checks, run_checks
+from cubeling.robot.protocol.messages import ITEM_MOTION
 
 
 def crc(data: bytes) -> int:

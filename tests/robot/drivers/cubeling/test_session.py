@@ -4,13 +4,13 @@ from typing import Any
 
 import pytest
 
-from affect import Emotion
-from robot.protocol import messages as m
-from robot.protocol import timing
-from robot.protocol.schema import pack, unpack
-from robot.protocol.wire import FrameReader, encode_frame
-from robot.simulators.cubeling.dinosaur import CATALOGUE
-from robot.simulators.cubeling.simulator import Simulator
+from cubeling.affect import Emotion
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
+from cubeling.robot.protocol.schema import pack, unpack
+from cubeling.robot.protocol.wire import FrameReader, encode_frame
+from cubeling.robot.simulators.cubeling.dinosaur import CATALOGUE
+from cubeling.robot.simulators.cubeling.simulator import Simulator
 
 HAPPY = Emotion(0.8, 0.5)
 ANGRY = Emotion(-0.9, 0.6)

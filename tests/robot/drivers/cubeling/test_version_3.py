@@ -5,15 +5,15 @@ from itertools import pairwise
 
 import pytest
 
-from affect import Emotion
-from robot.contract.moves import joint_move
-from robot.contract.telemetry import MAX_LOG_LINES
-from robot.protocol import messages as m
-from robot.protocol import timing
-from robot.protocol.schema import pack
-from robot.protocol.wire import encode_frame
-from robot.simulators.cubeling.dinosaur import CATALOGUE
-from robot.simulators.cubeling.simulator import Simulator
+from cubeling.affect import Emotion
+from cubeling.robot.contract.moves import joint_move
+from cubeling.robot.contract.telemetry import MAX_LOG_LINES
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import timing
+from cubeling.robot.protocol.schema import pack
+from cubeling.robot.protocol.wire import encode_frame
+from cubeling.robot.simulators.cubeling.dinosaur import CATALOGUE
+from cubeling.robot.simulators.cubeling.simulator import Simulator
 
 TORSO = [joint.name for joint in CATALOGUE.joints].index("torso")
 

@@ -1,7 +1,7 @@
 """Boards that are hard to hear, and a host whose board is known already."""
 
-from robot.drivers.opencat.host import OpenCatHost
-from robot.simulators.opencat.simulator import OpenCatSimulator
+from cubeling.robot.drivers.opencat.host import OpenCatHost
+from cubeling.robot.simulators.opencat.simulator import OpenCatSimulator
 
 
 class HeldBackBoard(OpenCatSimulator):

@@ -6,11 +6,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from affect import Emotion
-from robot.drivers.opencat.host import OpenCatHost
-from robot.drivers.opencat.settings import OpenCatSettings, load_settings
-from robot.simulators.opencat.quirks import BoardQuirks
-from robot.simulators.opencat.simulator import OpenCatSimulator
+from cubeling.affect import Emotion
+from cubeling.robot.drivers.opencat.host import OpenCatHost
+from cubeling.robot.drivers.opencat.settings import OpenCatSettings, load_settings
+from cubeling.robot.simulators.opencat.quirks import BoardQuirks
+from cubeling.robot.simulators.opencat.simulator import OpenCatSimulator
 
 QUIET = BoardQuirks(slow=0.0, mangled=0.0, brown_outs=0.0, restless=0.0, battery_lasts=1e9)
 """A board without quirks."""

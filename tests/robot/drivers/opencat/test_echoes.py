@@ -1,8 +1,8 @@
 """Which echo confirms which command, and which emotion is acknowledged by it."""
 
-from affect import Emotion
-from robot.drivers.opencat.echo import QUESTION_TIMEOUT_S
-from robot.drivers.opencat.host import OpenCatHost
+from cubeling.affect import Emotion
+from cubeling.robot.drivers.opencat.echo import QUESTION_TIMEOUT_S
+from cubeling.robot.drivers.opencat.host import OpenCatHost
 from tests.robot.drivers.opencat.boards import HeldBackBoard, introduced_host
 
 HAPPY = Emotion(0.7, 0.6, "happy")

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from robot.drivers.opencat.settings import parse_settings
-from robot.simulators.opencat.simulator import OpenCatSimulator, nybble
+from cubeling.robot.drivers.opencat.settings import parse_settings
+from cubeling.robot.simulators.opencat.simulator import OpenCatSimulator, nybble
 
 
 def test_nothing_is_sent_while_the_board_starts_and_then_its_model_is_known(desk):

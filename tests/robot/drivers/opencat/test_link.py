@@ -6,12 +6,12 @@ from itertools import pairwise
 
 import pytest
 
-from robot.drivers.opencat.echo import MAX_QUESTION_TRIES, QUESTION_TIMEOUT_S
-from robot.drivers.opencat.host import REST_INTERVAL_S
-from robot.drivers.opencat.settings import load_settings, parse_settings
-from robot.protocol import messages as m
-from robot.simulators.opencat.quirks import BoardQuirks
-from robot.simulators.opencat.simulator import OpenCatSimulator
+from cubeling.robot.drivers.opencat.echo import MAX_QUESTION_TRIES, QUESTION_TIMEOUT_S
+from cubeling.robot.drivers.opencat.host import REST_INTERVAL_S
+from cubeling.robot.drivers.opencat.settings import load_settings, parse_settings
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.simulators.opencat.quirks import BoardQuirks
+from cubeling.robot.simulators.opencat.simulator import OpenCatSimulator
 from tests.robot.drivers.opencat.boards import HeldBackBoard, UnheardBoard, introduced_host
 
 

@@ -10,17 +10,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import robot
-from affect import Emotion
-from robot.drivers import DRIVERS
-from robot.drivers.opencat import tokens
-from robot.drivers.opencat.host import OpenCatHost
-from robot.drivers.opencat.settings import load_settings
-from robot.errors import RobotError
-from robot.link.transport import SpacedPort
-from robot.protocol import messages as m
-from robot.simulators.opencat.quirks import BoardQuirks
-from robot.simulators.opencat.simulator import OpenCatSimulator, nybble
+from cubeling import robot
+from cubeling.affect import Emotion
+from cubeling.robot.drivers import DRIVERS
+from cubeling.robot.drivers.opencat import tokens
+from cubeling.robot.drivers.opencat.host import OpenCatHost
+from cubeling.robot.drivers.opencat.settings import load_settings
+from cubeling.robot.errors import RobotError
+from cubeling.robot.link.transport import SpacedPort
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.simulators.opencat.quirks import BoardQuirks
+from cubeling.robot.simulators.opencat.simulator import OpenCatSimulator, nybble
 
 QUIRKY = BoardQuirks(slow=0.1, mangled=0.03, brown_outs=0.05, restless=8.0, battery_lasts=900.0)
 BOARDS = {
@@ -271,7 +271,7 @@ def test_settings_choose_the_baud_rate(tmp_path, monkeypatch):
         asked.append(baud)
         raise RobotError("no port")
 
-    monkeypatch.setattr("robot.link.connection.opener", no_port)
+    monkeypatch.setattr("cubeling.robot.link.connection.opener", no_port)
     for settings_file in (None, path):
         with pytest.raises(RobotError, match="no port"):
             robot.connect("/dev/nothing", "opencat", settings=settings_file)

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.drivers.opencat import tokens
-from robot.drivers.opencat.host import OpenCatHost
-from robot.drivers.opencat.settings import load_settings, parse_settings
-from robot.errors import RobotError
+from cubeling.robot.drivers.opencat import tokens
+from cubeling.robot.drivers.opencat.host import OpenCatHost
+from cubeling.robot.drivers.opencat.settings import load_settings, parse_settings
+from cubeling.robot.errors import RobotError
 
 ALLOWED = b"kibd?j"
 

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from affect import Emotion
-from robot.drivers.pleo.driver import PleoDriver
-from robot.drivers.pleo.settings import load_settings
-from robot.simulators.pleo.simulator import PleoSimulator
+from cubeling.affect import Emotion
+from cubeling.robot.drivers.pleo.driver import PleoDriver
+from cubeling.robot.drivers.pleo.settings import load_settings
+from cubeling.robot.simulators.pleo.simulator import PleoSimulator
 
 STEP_S = 0.005
 """The link's thread turns this often [s]."""

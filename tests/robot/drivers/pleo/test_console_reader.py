@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.drivers.pleo.console_reader import MAX_LINE_CHARS, ConsoleReader
-from robot.drivers.pleo.timing import PROMPT_SETTLE_S, STRAY_SETTLE_S
+from cubeling.robot.drivers.pleo.console_reader import MAX_LINE_CHARS, ConsoleReader
+from cubeling.robot.drivers.pleo.timing import PROMPT_SETTLE_S, STRAY_SETTLE_S
 
 POWER = (
     "STATS POWER\r\nPower statistics\r\n> 20 % it may walk\r\nmu: sensor 3 = 1\r\n"

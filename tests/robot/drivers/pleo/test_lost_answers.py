@@ -2,8 +2,8 @@
 
 import pytest
 
-from robot.drivers.pleo import timing
-from robot.protocol import messages as m
+from cubeling.robot.drivers.pleo import timing
+from cubeling.robot.protocol import messages as m
 
 OK = "\r\n> "
 

@@ -1,4 +1,4 @@
-"""Pleo by `robot.connect`: without a port, and over a real pseudo-terminal."""
+"""Pleo by `cubeling.robot.connect`: without a port, and over a real pseudo-terminal."""
 
 import re
 import sys
@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-import robot
-from robot.drivers import DRIVERS
-from robot.drivers.pleo import timing
-from robot.errors import RobotError
-from robot.simulators.pleo.simulator import PleoSimulator
+from cubeling import robot
+from cubeling.robot.drivers import DRIVERS
+from cubeling.robot.drivers.pleo import timing
+from cubeling.robot.errors import RobotError
+from cubeling.robot.simulators.pleo.simulator import PleoSimulator
 
 
 def fast() -> float:
@@ -69,7 +69,7 @@ def test_the_document_states_the_times_that_are_used():
 def test_the_settings_in_the_document_are_right(tmp_path):
     (example,) = re.findall(r"```toml\n(.*?)```", DOCUMENT.read_text(), re.DOTALL)
     (tmp_path / "example.toml").write_text(example)
-    from robot.drivers.pleo.settings import load_settings
+    from cubeling.robot.drivers.pleo.settings import load_settings
 
     mine = load_settings(tmp_path / "example.toml")
     assert mine.moods["angry"].joints == {8: -10, 10: 45}

@@ -2,12 +2,12 @@
 
 import pytest
 
-import robot.drivers.pleo
-from robot.contract.driver import MAX_QUEUED_ACTIONS
-from robot.drivers.pleo import commands
-from robot.drivers.pleo.commands import Command
-from robot.drivers.pleo.settings import BUNDLED_SETTINGS
-from robot.protocol import messages as m
+from cubeling import robot
+from cubeling.robot.contract.driver import MAX_QUEUED_ACTIONS
+from cubeling.robot.drivers.pleo import commands
+from cubeling.robot.drivers.pleo.commands import Command
+from cubeling.robot.drivers.pleo.settings import BUNDLED_SETTINGS
+from cubeling.robot.protocol import messages as m
 
 OK = "\r\n> "
 

@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affect import Emotion
-from robot.drivers.pleo import timing
-from robot.drivers.pleo.driver import PleoDriver
-from robot.drivers.pleo.settings import load_settings
-from robot.protocol import messages as m
-from robot.simulators.memory import simulator_of
+from cubeling.affect import Emotion
+from cubeling.robot.drivers.pleo import timing
+from cubeling.robot.drivers.pleo.driver import PleoDriver
+from cubeling.robot.drivers.pleo.settings import load_settings
+from cubeling.robot.protocol import messages as m
+from cubeling.robot.simulators.memory import simulator_of
 
 MOODS = ("neutral", "happy", "angry")
 

@@ -6,9 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.drivers.pleo.joints import JOINTS
-from robot.drivers.pleo.settings import BUNDLED_SETTINGS, MotionFile, PleoSettings, load_settings
-from robot.errors import RobotError
+from cubeling.robot.drivers.pleo.joints import JOINTS
+from cubeling.robot.drivers.pleo.settings import (
+    BUNDLED_SETTINGS,
+    MotionFile,
+    PleoSettings,
+    load_settings,
+)
+from cubeling.robot.errors import RobotError
 
 NEUTRAL = '[moods.neutral]\nmotion = "n.umf"\nlength_s = 2\n'
 

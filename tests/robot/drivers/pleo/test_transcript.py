@@ -1,6 +1,6 @@
 """The very bytes of a start and of a mood change, and what the link says of itself meanwhile."""
 
-from affect import Emotion
+from cubeling.affect import Emotion
 
 HAPPY = Emotion(0.8, 0.5, "happy")
 

@@ -8,16 +8,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from affect import Emotion
-from robot.drivers.reachy import motions
-from robot.drivers.reachy.driver import (
+from cubeling.affect import Emotion
+from cubeling.robot.drivers.reachy import motions
+from cubeling.robot.drivers.reachy.driver import (
     LOST_AFTER_S,
     MAX_LINE_BYTES,
     TARGET_INTERVAL_S,
     TARGET_TIMEOUT_S,
     ReachyDriver,
 )
-from robot.protocol import messages as m
+from cubeling.robot.protocol import messages as m
 
 HAPPY = Emotion(0.8, 0.6, "happy")
 MOODS = tuple(motion.name for motion in motions.MOODS)

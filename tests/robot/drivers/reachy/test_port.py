@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 import serial
 
-import robot
-from affect import Emotion
-from robot.drivers import DRIVERS
-from robot.drivers.reachy.port import ReachyPort, open_reachy
-from robot.drivers.reachy.sdk import head_angles, head_pose
-from robot.errors import RobotError
+from cubeling import robot
+from cubeling.affect import Emotion
+from cubeling.robot.drivers import DRIVERS
+from cubeling.robot.drivers.reachy.port import ReachyPort, open_reachy
+from cubeling.robot.drivers.reachy.sdk import head_angles, head_pose
+from cubeling.robot.errors import RobotError
 
 HAPPY = Emotion(0.8, 0.6, "happy")
 INSTALLED = importlib.util.find_spec("reachy_mini") is not None

@@ -7,14 +7,14 @@ import cv2
 import numpy as np
 import pytest
 
-from affect.regions import SECTOR_WORDS
-from characters.face.affect_display import FACE_RECIPES
-from characters.face.expressions import EXPRESSIONS as VRM_EXPRESSIONS
-from characters.model.character import Character, skin
-from characters.model.mesh import Mesh
-from characters.motion.clip import Clip
-from characters.skeleton import rotations
-from characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.affect.regions import SECTOR_WORDS
+from cubeling.characters.face.affect_display import FACE_RECIPES
+from cubeling.characters.face.expressions import EXPRESSIONS as VRM_EXPRESSIONS
+from cubeling.characters.model.character import Character, skin
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 from tests.bench.cast import Soles, film, sampled
 from tests.tools.authoring.clip_checks import check_same_clips
 from tools.authoring.__main__ import ASSETS

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from characters.model.character import skin
-from characters.model.mesh import Mesh
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.character import skin
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.lathe import loft
 from tools.authoring.modelling.meshes import join, mirrored_mesh, morphed
 from tools.authoring.modelling.rig import build_skeleton

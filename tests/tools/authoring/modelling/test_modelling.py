@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters.model.mesh import Mesh
-from characters.skeleton import rotations
-from characters.skeleton.pose import Skeleton
+from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.gait import FootDimensions, Footfalls, GroundArc, foot_motion
 from tools.authoring.modelling.ik import hinge_position
 from tools.authoring.modelling.lathe import lathe

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from characters.model.character import Character, skin
-from characters.skeleton import rotations
+from cubeling.characters.model.character import Character, skin
+from cubeling.characters.skeleton import rotations
 from tests.tools.authoring.clip_checks import (
     blend_slide,
     check_ends_meet,

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from characters.model.character import Character, skin
-from characters.skeleton import rotations
-from characters.skeleton.pose import Pose
+from cubeling.characters.model.character import Character, skin
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.pose import Pose
 from tests.tools.authoring.clip_checks import (
     blend_slide,
     check_ends_meet,

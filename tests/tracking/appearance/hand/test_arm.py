@@ -7,14 +7,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cubeling.tracking.appearance.hand.arm import (
+    ARM_UP_EDGES,
+    MAX_WIDTH_EDGES,
+    arm_samples,
+    with_arm,
+)
+from cubeling.tracking.appearance.hand.background import GRID_PX
+from cubeling.tracking.appearance.hand.finder import HandFinder
+from cubeling.tracking.appearance.hand.mask import HandMask
+from cubeling.tracking.appearance.hand.window import Window
 from tests.bench.hand_mask import covered, overlap
 from tests.bench.hand_scenes import SKINS, HandScene, HandView
 from tests.tracking.appearance.hand.test_finder import CUBE, state_at
-from tracking.appearance.hand.arm import ARM_UP_EDGES, MAX_WIDTH_EDGES, arm_samples, with_arm
-from tracking.appearance.hand.background import GRID_PX
-from tracking.appearance.hand.finder import HandFinder
-from tracking.appearance.hand.mask import HandMask
-from tracking.appearance.hand.window import Window
 
 SCALE, EDGE = 3, 30.0
 """Pixels of the image for each of the window, and the cube's edge [px of the window]."""

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracking.appearance.hand.background import GRID_PX, MARGIN_PX, MIDDLES, Background
-from tracking.appearance.hand.window import Window
+from cubeling.tracking.appearance.hand.background import GRID_PX, MARGIN_PX, MIDDLES, Background
+from cubeling.tracking.appearance.hand.window import Window
 
 HEIGHT, WIDTH = 120, 150
 BOX = np.s_[9 : 9 + HEIGHT, 21 : 21 + WIDTH]

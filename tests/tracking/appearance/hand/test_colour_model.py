@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracking.appearance.hand.colour_model import LAB_BINS, ColourModel, colours
+from cubeling.tracking.appearance.hand.colour_model import LAB_BINS, ColourModel, colours
 
 PIXELS = (20, 30)
 EVERYWHERE = np.ones(PIXELS, bool)

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from cubeling.tracking.appearance.hand.edge import ODDS_RANGE, soft_cover
+from cubeling.tracking.appearance.hand.mask import HandMask
+from cubeling.tracking.appearance.hand.window import Window
 from tests.bench.hand_mask import covered
-from tracking.appearance.hand.edge import ODDS_RANGE, soft_cover
-from tracking.appearance.hand.mask import HandMask
-from tracking.appearance.hand.window import Window
 
 SIDE, SCALE, EDGE = 40, 3, 20.3
 """Side of the window and pixels of the image per pixel of it [px]; where the hand ends [px of the

@@ -7,20 +7,20 @@ import cv2
 import numpy as np
 import pytest
 
-from app.running.opening import intrinsics_for
-from app.session.bundled import bundled
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.session.bundled import bundled
+from cubeling.tracking.appearance.hand.finder import MANY_FRAMES, HandFinder
+from cubeling.tracking.appearance.hand.mask import HandMask
+from cubeling.tracking.appearance.hand.window import STILL_FRAMES, Stillness, WindowFinder
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.geometry.state import CubeState
+from cubeling.tracking.sources import open_source
+from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.bench.hand_mask import covered, overlap
 from tests.bench.hand_scenes import GLOVES, SKINS, HandScene, HandView
 from tests.tracking.drawn import WIDE, held, photograph, scene
-from tracking.appearance.hand.finder import MANY_FRAMES, HandFinder
-from tracking.appearance.hand.mask import HandMask
-from tracking.appearance.hand.window import STILL_FRAMES, Stillness, WindowFinder
-from tracking.cube.model import CubeModel
-from tracking.geometry.intrinsics import Intrinsics
-from tracking.geometry.projection import Projection
-from tracking.geometry.state import CubeState
-from tracking.sources import open_source
-from tracking.tracker.tracker import CubeTracker
 
 CUBE = CubeModel.load("locomotion")
 

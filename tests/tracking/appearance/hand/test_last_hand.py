@@ -8,15 +8,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cubeling.tracking.appearance.hand.finder import HandFinder
+from cubeling.tracking.appearance.hand.last_hand import (
+    CARRIED_LOOKS,
+    MAX_STEP_EDGES,
+    UNSEEN_S,
+    LastHand,
+)
+from cubeling.tracking.appearance.hand.mask import HandMask
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.bench.hand_mask import covered, missed_share, overlap
 from tests.bench.hand_scenes import SKINS, HandScene, HandView
 from tests.tracking.drawn import WIDE, held
-from tracking.appearance.hand.finder import HandFinder
-from tracking.appearance.hand.last_hand import CARRIED_LOOKS, MAX_STEP_EDGES, UNSEEN_S, LastHand
-from tracking.appearance.hand.mask import HandMask
-from tracking.cube.model import CubeModel
-from tracking.geometry.projection import Projection
-from tracking.tracker.tracker import CubeTracker
 
 CUBE = CubeModel.load("locomotion")
 

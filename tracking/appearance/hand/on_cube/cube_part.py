@@ -6,13 +6,13 @@ from functools import cached_property
 import cv2
 import numpy as np
 
-from tracking.appearance.hand.colour_model import MIN_SHOWN_PX
-from tracking.appearance.hand.on_cube.face_check import FaceCheck
-from tracking.appearance.hand.on_cube.face_pattern import FacePattern
-from tracking.appearance.hand.structuring_elements import SQUARE_3
-from tracking.appearance.hand.window import Window
-from tracking.cube.model import CubeModel
-from tracking.geometry.arrays import Array, Flags, Floats, Image
+from cubeling.tracking.appearance.hand.colour_model import MIN_SHOWN_PX
+from cubeling.tracking.appearance.hand.on_cube.face_check import FaceCheck
+from cubeling.tracking.appearance.hand.on_cube.face_pattern import FacePattern
+from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_3
+from cubeling.tracking.appearance.hand.window import Window
+from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.geometry.arrays import Array, Flags, Floats, Image
 
 DOUBTFUL_ODDS = 1.6
 """What the colour of print must speak for a hand, as logarithm of odds, so that it may be one: a

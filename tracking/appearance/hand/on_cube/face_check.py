@@ -3,10 +3,10 @@
 import cv2
 import numpy as np
 
-from tracking.appearance.hand.on_cube.face_pattern import SeenPattern
-from tracking.appearance.hand.structuring_elements import SQUARE_2, SQUARE_3
-from tracking.geometry.arrays import Flags, Floats, Image
-from tracking.geometry.robust_statistics import quantile
+from cubeling.tracking.appearance.hand.on_cube.face_pattern import SeenPattern
+from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_2, SQUARE_3
+from cubeling.tracking.geometry.arrays import Flags, Floats, Image
+from cubeling.tracking.geometry.robust_statistics import quantile
 
 MIN_SHADE, MAX_SHADE = 0.62, 1.15
 """L + 16 of a part of a face relative to that of most of it: less is no shadow."""

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from tracking.cube.faces import FacePlanes
-from tracking.cube.icons import FOLD_GAP_SHARE, ICON_SHARE, icon_mask, icons
-from tracking.cube.marker import black_texels, marker_cells
-from tracking.cube.model import CubeModel, Face
-from tracking.geometry.arrays import Array, Flags, Image
-from tracking.geometry.projection import Projection
+from cubeling.tracking.cube.faces import FacePlanes
+from cubeling.tracking.cube.icons import FOLD_GAP_SHARE, ICON_SHARE, icon_mask, icons
+from cubeling.tracking.cube.marker import black_texels, marker_cells
+from cubeling.tracking.cube.model import CubeModel, Face
+from cubeling.tracking.geometry.arrays import Array, Flags, Image
+from cubeling.tracking.geometry.projection import Projection
 
 FACE_TEXELS = 96
 """Texels along the edge of a face's print."""

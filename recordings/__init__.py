@@ -1,0 +1,1 @@
+"""The bundled sessions: data only, packaged so that `cubeling demo` finds them when installed."""
