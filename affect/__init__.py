@@ -7,10 +7,6 @@ from here.
 'neutral'
 """
 
-from cubeling.affect.dynamics import Feelings
-from cubeling.affect.emotion import NEUTRAL, Emotion
-from cubeling.affect.errors import AffectError
-from cubeling.affect.labels import LABEL_SETS
-from cubeling.affect.personality import Personality
+from cubeling.faces import face
 
-__all__ = ["LABEL_SETS", "NEUTRAL", "AffectError", "Emotion", "Feelings", "Personality"]
+__getattr__, __dir__, __all__ = face(__name__)

@@ -17,15 +17,16 @@ from cubeling.app.moods.colors import CURVE_STYLES, GRID_COLOR, SECONDARY_COLOR,
 from cubeling.app.moods.plot import write_figure
 from cubeling.app.moods.plot_layout import MATPLOTLIB_STYLE, printable
 from cubeling.characters import Character
-from cubeling.characters.model.standing import idle_clips
-from cubeling.characters.model.stick_figure import stick_figure
-from cubeling.characters.rendering import create_context
-from cubeling.characters.rendering.portrait import PAPER_BGR, PortraitRenderer
-from cubeling.characters.skeleton.pose import Skeleton
-from cubeling.characters.synthesis.archive import skeleton_identity
-from cubeling.characters.synthesis.idle.database import IdleDatabase, RestingPosture
-from cubeling.characters.synthesis.idle.recordings import BALANCES
-from cubeling.characters.synthesis.idle.stretches import StretchStream
+from cubeling.characters.model import idle_clips, stick_figure
+from cubeling.characters.motion import (
+    BALANCES,
+    IdleDatabase,
+    RestingPosture,
+    Skeleton,
+    StretchStream,
+    skeleton_identity,
+)
+from cubeling.characters.rendering import PAPER_BGR, PortraitRenderer, create_context
 
 SIZE_IN = (13.0, 9.2)
 """Width and height of the plot [in]."""

@@ -17,10 +17,17 @@ from matplotlib.patches import Rectangle
 from cubeling.app.moods.colors import BORDER_COLOR, GRID_COLOR, SECONDARY_COLOR, TEXT_COLOR
 from cubeling.app.moods.plot import write_figure
 from cubeling.app.moods.plot_layout import MATPLOTLIB_STYLE, printable
-from cubeling.characters.speech.accents import AccentSettings, accents_of
-from cubeling.characters.speech.contours import Prosody, measure_prosody
-from cubeling.characters.speech.phones import SoundClass, sound_class
-from cubeling.characters.speech.speech import SILENCE, Accent, Speech
+from cubeling.characters.speech import (
+    SILENCE,
+    Accent,
+    AccentSettings,
+    Prosody,
+    SoundClass,
+    Speech,
+    accents_of,
+    measure_prosody,
+    sound_class,
+)
 
 INCHES_PER_S, WIDTHS_IN = 2.2, (11.0, 60.0)
 """Width of a second, and smallest and largest width of the plot [in]."""

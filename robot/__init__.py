@@ -7,43 +7,6 @@
 'happy'
 """
 
-from cubeling.affect import Emotion
-from cubeling.robot import drivers as drivers  # registers the protocols
-from cubeling.robot.contract.catalogue import Catalogue, JointLimits
-from cubeling.robot.contract.telemetry import (
-    ClockEstimate,
-    LinkCounts,
-    LinkState,
-    LogLine,
-    Telemetry,
-)
-from cubeling.robot.errors import RobotError
-from cubeling.robot.link.connection import connect
-from cubeling.robot.link.linked_robot import Robot
-from cubeling.robot.link.ports import SerialPort, serial_ports
-from cubeling.robot.link.transport import SCHEMES
-from cubeling.robot.simulators.cubeling.simulator import Simulator
-from cubeling.robot.simulators.memory import open_simulated
-from cubeling.robot.simulators.port import SimulatedPort
-from cubeling.robot.simulators.stepped import SteppedRobot
+from cubeling.faces import face
 
-SCHEMES["sim"] = open_simulated
-
-__all__ = [
-    "Catalogue",
-    "ClockEstimate",
-    "Emotion",
-    "JointLimits",
-    "LinkCounts",
-    "LinkState",
-    "LogLine",
-    "Robot",
-    "RobotError",
-    "SerialPort",
-    "SimulatedPort",
-    "Simulator",
-    "SteppedRobot",
-    "Telemetry",
-    "connect",
-    "serial_ports",
-]
+__getattr__, __dir__, __all__ = face(__name__)

@@ -8,8 +8,7 @@ from pathlib import Path
 
 from cubeling.affect.hysteresis import ANGRY_BELOW, HAPPY_ABOVE
 from cubeling.robot.contract.motions import JointSine, SineMotion
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 from cubeling.robot.protocol.fields import FieldSpec
 from cubeling.robot.protocol.schema import HEADER, MESSAGES, MessageSpec, spec_of
 from cubeling.robot.protocol.wire import MAX_BODY, MAX_FRAME

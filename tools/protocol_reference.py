@@ -5,8 +5,7 @@
 
 from pathlib import Path
 
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 from cubeling.robot.protocol.fields import FieldSpec
 from cubeling.robot.protocol.schema import HEADER, MESSAGES, MessageSpec
 from cubeling.robot.protocol.wire import MAX_BODY, MAX_FRAME

@@ -20,9 +20,9 @@ from cubeling.app.sound.session_sound import SPEECH_GAIN, at_sample_rate
 from cubeling.app.sound.synthesis import SAMPLE_RATE
 from cubeling.app.speaking.performance import AZIMUTH_RAD, ELEVATION_RAD, View
 from cubeling.characters import Character
-from cubeling.characters.behaviour.bml import feedback_xml
-from cubeling.characters.face.complexion import blood_of
-from cubeling.characters.rendering.portrait import PortraitRenderer
+from cubeling.characters.behaviour import feedback_xml
+from cubeling.characters.rendering import PortraitRenderer
+from cubeling.characters.speech import blood_of
 
 
 class Output(Protocol):

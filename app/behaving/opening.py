@@ -13,8 +13,8 @@ from cubeling.app.behaving.voice import (
 )
 from cubeling.app.speaking.voices import open_voice
 from cubeling.characters import CharacterError
-from cubeling.characters.model.files import read_text
-from cubeling.characters.speech.voices import VoiceError
+from cubeling.characters.model import read_text
+from cubeling.characters.speech import VoiceError
 
 MAX_BYTES = 1 << 20
 """Size of a document that is read."""

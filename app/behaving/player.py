@@ -21,17 +21,27 @@ from cubeling.characters import (
     LocomotionIntent,
     PosedCharacter,
     RootDelta,
+    SpeechIntent,
 )
-from cubeling.characters.behaviour.bml import Block, BmlWarning, Feedback, Realizer, parse
-from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
-from cubeling.characters.behaviour.fml import behaviours_of
-from cubeling.characters.behaviour.gestures.collection import GestureCollection
-from cubeling.characters.behaviour.performing.character_performer import CharacterPerformer
-from cubeling.characters.behaviour.performing.performed import Performed, Performing, Saying
-from cubeling.characters.behaviour.performing.speech_kind import retime_speeches
-from cubeling.characters.behaviour.performing.surroundings import Surroundings, numbers_of
-from cubeling.characters.control.command import SpeechIntent
-from cubeling.characters.speech.speech import Utterance
+from cubeling.characters.behaviour import (
+    NEUTRAL,
+    Block,
+    BmlWarning,
+    CharacterPerformer,
+    Feedback,
+    GestureCollection,
+    GestureExpressivity,
+    Performed,
+    Performing,
+    Realizer,
+    Saying,
+    Surroundings,
+    behaviours_of,
+    numbers_of,
+    parse,
+    retime_speeches,
+)
+from cubeling.characters.speech import Utterance
 
 VIEWER = np.array([0.1, 0.16, 0.7])
 """The place called "viewer", in the table frame [m]."""

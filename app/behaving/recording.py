@@ -13,9 +13,8 @@ from cubeling.app.sound import SAMPLE_RATE
 from cubeling.app.sound.mixer import FADE_OUT, limited
 from cubeling.app.sound.session_sound import SPEECH_GAIN, at_sample_rate
 from cubeling.characters import Clip, Pose, PosedCharacter
-from cubeling.characters.behaviour.bml import Feedback
-from cubeling.characters.motion.baking import stacked
-from cubeling.characters.skeleton import rotations
+from cubeling.characters.behaviour import Feedback
+from cubeling.characters.motion import rotations, stacked
 
 SETTLE_S = 2.0
 """Time before the first frame [s], which is not shown: eyes find the viewer."""

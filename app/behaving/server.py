@@ -8,7 +8,7 @@ import threading
 
 from cubeling.app.behaving.splitting import DocumentSplitter, StreamBroken
 from cubeling.app.errors import AppError
-from cubeling.characters.behaviour.bml import BmlWarning, feedback_xml
+from cubeling.characters.behaviour import BmlWarning, feedback_xml
 
 MAX_CLIENTS = 16
 """Connections at one time; more are closed at once."""

@@ -15,10 +15,8 @@ from cubeling.app.speaking.performance import (
     sound_blocks,
 )
 from cubeling.app.ui.video_file import VideoFile
-from cubeling.characters import Character
-from cubeling.characters.control.command import SpeechIntent
-from cubeling.characters.rendering import create_context
-from cubeling.characters.rendering.portrait import PortraitRenderer
+from cubeling.characters import Character, SpeechIntent
+from cubeling.characters.rendering import PortraitRenderer, create_context
 
 
 def write_video(

@@ -7,12 +7,7 @@ from typing import Protocol
 
 from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.characters import CharacterError
-from cubeling.characters.control.speech_profile import DEFAULT_PROFILE
-from cubeling.characters.speech.prosody import utterance_of
-from cubeling.characters.speech.saying import say
-from cubeling.characters.speech.speech import Speech
-from cubeling.characters.speech.tagged_text import TaggedText
-from cubeling.characters.speech.voices import Voice
+from cubeling.characters.speech import DEFAULT_PROFILE, Speech, TaggedText, Voice, say, utterance_of
 
 MAX_REMEMBERED = 256
 """Lines that are remembered, so that a text that is said again is there at once."""

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters import Animator, Character, CharacterCommand, LocomotionIntent, RootDelta
-from cubeling.characters.behaviour.performing.performed import Manner
-from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M
+from cubeling.characters.behaviour import Manner
+from cubeling.characters.motion import ARRIVAL_DISTANCE_M
 
 SPEEDS: dict[Manner, float] = {"walk": 2.0, "run": 4.0}
 """AvatAR's Speed of each manner."""

@@ -25,12 +25,15 @@ from cubeling.app.speaking.performance import View
 from cubeling.app.ui.display import has_display
 from cubeling.app.ui.video_file import VIDEO_FORMATS
 from cubeling.characters import Character
-from cubeling.characters.behaviour.bml import BlockProgress, BmlWarning, Feedback, feedback_xml
-from cubeling.characters.behaviour.expressivity import GestureExpressivity
-from cubeling.characters.face.complexion import blood_of
-from cubeling.characters.formats.mocap.bvh_writing import save_bvh
-from cubeling.characters.retargeting.bap import save_bap
-from cubeling.characters.retargeting.root import with_root_joint
+from cubeling.characters.behaviour import (
+    BlockProgress,
+    BmlWarning,
+    Feedback,
+    GestureExpressivity,
+    feedback_xml,
+)
+from cubeling.characters.model import save_bap, save_bvh, with_root_joint
+from cubeling.characters.speech import blood_of
 
 OUTPUT_SUFFIXES = (".bvh", ".bap", *VIDEO_FORMATS)
 

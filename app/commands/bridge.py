@@ -17,11 +17,7 @@ from cubeling.app.running.bridge import Bridge
 from cubeling.app.running.network import DEFAULT_SITE, Network
 from cubeling.app.ui.literal_text import literal_text
 from cubeling.app.ui.roster import line, table
-from cubeling.robot.network import Credentials, Member
-from cubeling.robot.network.arbiter import HOLD_S
-from cubeling.robot.network.messages import StatusMessage
-from cubeling.robot.network.player import MAX_AGE_S
-from cubeling.robot.network.topics import ANY
+from cubeling.robot.network import ANY_NAME, HOLD_S, MAX_AGE_S, Credentials, Member, StatusMessage
 
 STEP_EVERY_S = 0.02
 """Time between two steps of the recorded players [s]."""
@@ -98,7 +94,7 @@ def bridge(
             network,
             robots,
             sessions,
-            follow=follow or (ANY,),
+            follow=follow or (ANY_NAME,),
             hold=hold,
             max_age=max_age,
             on_message=printer.message,

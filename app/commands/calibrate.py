@@ -19,19 +19,25 @@ from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.ui.calibration.coach_lines import COVERAGE_SUFFIXES, CoachLines, write_coverage
 from cubeling.app.ui.calibration.session import CalibrationSession, Coach
 from cubeling.app.ui.display import has_display
-from cubeling.tracking import CubeModel, FrameSource, Intrinsics, bundled_cubes, open_source
+from cubeling.tracking import (
+    CubeModel,
+    FrameSource,
+    Intrinsics,
+    bundled_cubes,
+    face_corners,
+    open_source,
+    write_cube,
+)
 from cubeling.tracking.calibration import (
     Board,
     BoardFinder,
     Calibration,
     CubeFinder,
     TargetFinder,
-    check,
+    check_camera,
     measured_cube,
     write_board,
 )
-from cubeling.tracking.cube.file import write_cube
-from cubeling.tracking.cube.model import face_corners
 
 CAMERA_FILE = Path("camera.yaml")
 
@@ -168,7 +174,7 @@ def _report_check(
 ) -> int:
     """Compare a saved camera with the views, print the result, and return the exit code."""
     session.check_seen()
-    verdict = check(session.collector.views, saved, session.finder.target(size))
+    verdict = check_camera(session.collector.views, saved, session.finder.target(size))
     color, word = ("red", "DEGRADED") if verdict.degraded else ("green", "OK")
     x, y = verdict.centre_change
     console.print(

@@ -22,7 +22,7 @@ from cubeling.app.sound.loudspeaker import load_portaudio, open_stream
 from cubeling.app.ui.display import has_display, is_software_renderer
 from cubeling.characters import Character, CharacterError
 from cubeling.characters.rendering import create_context
-from cubeling.characters.speech.voices.espeak import installed, remedy
+from cubeling.characters.speech import espeak_installed, espeak_remedy
 from cubeling.robot import serial_ports
 from cubeling.tracking import FrameSource, LiveFrames, TrackingError, open_source
 
@@ -187,9 +187,9 @@ def _sound() -> Finding:
 
 
 def _voice() -> Finding:
-    if installed():
+    if espeak_installed():
         return Finding("voice", "good", "eSpeak NG: characters speak")
-    return Finding("voice", "missing", "no eSpeak NG: characters are silent", remedy())
+    return Finding("voice", "missing", "no eSpeak NG: characters are silent", espeak_remedy())
 
 
 def _ports() -> Finding:

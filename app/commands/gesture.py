@@ -18,8 +18,13 @@ from cubeling.app.gesture_editor.editing.store import GestureStore
 from cubeling.app.gesture_editor.editing.timing import duration, phase_spans
 from cubeling.app.ui.display import has_display
 from cubeling.characters import Character
-from cubeling.characters.behaviour.gestures.files import SUFFIX, save_gesture
-from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, SymbolicGesture
+from cubeling.characters.behaviour import (
+    GESTURE_SUFFIX,
+    BodyKey,
+    HandKey,
+    SymbolicGesture,
+    save_gesture,
+)
 
 SHEET_SUFFIXES = (".png", ".jpg")
 
@@ -134,9 +139,9 @@ def import_gesture(
 
     Example: [cyan]cubeling gesture import greeting.bvh --from 1.2 --to 2.4 -o GREET[/]
     """
-    file = output is not None and output.endswith(SUFFIX)
+    file = output is not None and output.endswith(GESTURE_SUFFIX)
     if file:
-        chosen_output(Path(str(output)), "", "gesture", (SUFFIX,), overwrite)
+        chosen_output(Path(str(output)), "", "gesture", (GESTURE_SUFFIX,), overwrite)
     gesture = imported(recording, start, end)
     if output is not None:
         gesture = replace(gesture, name=gesture_name(Path(output).stem if file else output))

@@ -16,14 +16,15 @@ from rich.table import Table
 
 from cubeling.app.commands.output import OverwriteOption, chosen_output
 from cubeling.app.counted import counted
-from cubeling.characters import Character
-from cubeling.characters.control.controllers.recordings import read_motions
-from cubeling.characters.model.stick_figure import stick_figure
-from cubeling.characters.retargeting.root import with_root_joint
-from cubeling.characters.synthesis.archive import skeleton_identity
-from cubeling.characters.synthesis.gestures.graph import GestureGraph, sweep
-from cubeling.characters.synthesis.gestures.learning import learned
-from cubeling.characters.synthesis.gestures.library import GestureLibrary
+from cubeling.characters import Character, read_motions
+from cubeling.characters.model import stick_figure, with_root_joint
+from cubeling.characters.motion import (
+    GestureGraph,
+    GestureLibrary,
+    learn_gestures,
+    skeleton_identity,
+    sweep,
+)
 
 SHEET_SUFFIXES = (".png", ".jpg")
 
@@ -71,7 +72,7 @@ def learn(
     console = Console()
     with console.status("reading"):
         clips = read_motions(recordings, body)
-        library = learned(clips, body.skeleton, body.anatomy)
+        library = learn_gestures(clips, body.skeleton, body.anatomy)
     counts = Counter(library.recordings[each.recording].name for each in library.phrases)
     rows = _table("Recordings", "recording", "length", "phrases")
     for clip in clips:
@@ -140,8 +141,7 @@ def describe(console: Console, library: GestureLibrary) -> None:
 def draw(path: Path, library: GestureLibrary) -> None:
     """Draw where each stroke of a library starts, and its apex."""
     from cubeling.app.ui.contact_sheets import frame_sheet, save
-    from cubeling.characters.rendering import create_context
-    from cubeling.characters.rendering.portrait import PortraitRenderer, side_by_side
+    from cubeling.characters.rendering import PortraitRenderer, create_context, side_by_side
 
     body = _body(library)
     centre = np.array([0.0, UPPER_BODY[0] * body.height, 0.0])

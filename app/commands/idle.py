@@ -10,9 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cubeling.affect import Emotion
-from cubeling.affect.regions import Region, region_of
-from cubeling.affect.words import WORD_PLACES
+from cubeling.affect import WORD_PLACES, Emotion, Region, region_of
 from cubeling.app.commands.output import (
     PLOT_SUFFIXES,
     OverwriteOption,
@@ -21,15 +19,19 @@ from cubeling.app.commands.output import (
     needs_matplotlib,
 )
 from cubeling.app.counted import counted
-from cubeling.characters import Character
-from cubeling.characters.control.controllers.recordings import read_motions
-from cubeling.characters.retargeting.root import with_root_joint
-from cubeling.characters.synthesis.idle.alignment import Alignment
-from cubeling.characters.synthesis.idle.database import IdleDatabase
-from cubeling.characters.synthesis.idle.posture_space import PostureVectors
-from cubeling.characters.synthesis.idle.recordings import BALANCES, read_standing
-from cubeling.characters.synthesis.idle.storage import Person, load_person, save_person
-from cubeling.characters.synthesis.idle.variations import COMPONENTS
+from cubeling.characters import Character, read_motions
+from cubeling.characters.model import with_root_joint
+from cubeling.characters.motion import (
+    BALANCES,
+    COMPONENTS,
+    Alignment,
+    IdleDatabase,
+    Person,
+    PostureVectors,
+    load_person,
+    read_standing,
+    save_person,
+)
 
 app = typer.Typer(
     help="Learn how a person stands, from recordings, and let a character stand so.",

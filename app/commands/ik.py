@@ -11,18 +11,20 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from cubeling.characters.ik.solvers.measures import (
+from cubeling.characters.motion import (
     REACH_M,
+    SOLVERS,
+    TOLERANCE,
     Problem,
-    arc,
+    SingleChain,
+    arc_targets,
     joint_change,
+    solve,
     target_path,
     twist,
     violations,
     zig_zag,
 )
-from cubeling.characters.ik.solvers.single import SingleChain
-from cubeling.characters.ik.solvers.solving import SOLVERS, TOLERANCE, solve
 
 app = typer.Typer(
     help="Measure the solvers of inverse kinematics.",
@@ -187,7 +189,7 @@ def zig_zag_near_base(problem: Problem, method: str, *, alone: bool) -> float:
     directions = random.normal(size=(200, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     targets = directions * random.uniform(0.05, _NEAR_BASE, (200, 1)) * REACH_M
-    start = arc(problem.chains.joints, 200)
+    start = arc_targets(problem.chains.joints, 200)
     found = solve(problem.free, targets, start, method=method, alone=alone)
     return float(zig_zag(found.positions)[found.solved].mean()) if found.solved.any() else np.nan
 
@@ -198,7 +200,7 @@ def twist_along_paths(problem: Problem, method: str, random: np.random.Generator
     99 % of the twists are smaller; without limits.
     """
     twists = []
-    start = arc(problem.chains.joints, _PATH_FRAMES)
+    start = arc_targets(problem.chains.joints, _PATH_FRAMES)
     for _ in range(_PATHS):
         path = target_path(_PATH_FRAMES, _STEP_M, random)
         found = solve(problem.free, path, start, method=method, alone=True)
@@ -213,7 +215,7 @@ def twist_while_following(problem: Problem, method: str, random: np.random.Gener
     limits leave no other way.
     """
     paths = np.stack([target_path(_PATH_FRAMES, _STEP_M, random) for _ in range(_FOLLOWED)], 1)
-    start = arc(problem.chains.joints, _FOLLOWED)
+    start = arc_targets(problem.chains.joints, _FOLLOWED)
     postures = [start]
     for places in paths:
         found = solve(problem.chains, places, postures[-1], method=method)

@@ -7,9 +7,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from cubeling.affect import LABEL_SETS, Personality
-from cubeling.affect.labels import LabelSet
-from cubeling.affect.personality_file import bundled, bundled_text
+from cubeling.affect import LABEL_SETS, LabelSet, Personality, bundled, bundled_text
 from cubeling.app.commands.output import (
     PLOT_SUFFIXES,
     OverwriteOption,

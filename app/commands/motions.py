@@ -22,18 +22,21 @@ from cubeling.app.errors import AppError
 from cubeling.app.motion_graphs.recordings import clip_names, gather
 from cubeling.app.motion_graphs.tables import make_tables
 from cubeling.characters import Character
-from cubeling.characters.retargeting.root import with_root_joint
-from cubeling.characters.synthesis.graphs.building import (
+from cubeling.characters.model import with_root_joint
+from cubeling.characters.motion import (
     DEFAULT_PROFILE,
+    DEFAULT_RATE_HZ,
+    MotionGraph,
+    MotionLibrary,
+    PartGraphs,
+    StoredGraph,
     analyse,
     check_choices,
+    load_graph,
     part_graphs,
+    save_graph,
     standard_graph,
 )
-from cubeling.characters.synthesis.graphs.graph import MotionGraph
-from cubeling.characters.synthesis.graphs.parts import PartGraphs
-from cubeling.characters.synthesis.graphs.storage import StoredGraph, load_graph, save_graph
-from cubeling.characters.synthesis.library import DEFAULT_RATE_HZ, MotionLibrary
 
 app = typer.Typer(
     help="Make motion graphs of your own recordings: where one clip can follow another.",

@@ -14,22 +14,24 @@ from cubeling.app.commands.output import OverwriteOption, chosen_output
 from cubeling.app.counted import counted
 from cubeling.app.errors import AppError
 from cubeling.app.ui.video_file import VIDEO_FORMATS, VideoFile
-from cubeling.characters import Character, CharacterError, Clip
-from cubeling.characters.control.controllers.idle import standing_as
-from cubeling.characters.control.controllers.recordings import read_motions
-from cubeling.characters.control.layers.upper_body import dependent_joints_of, safe_ranges_of
-from cubeling.characters.formats.mocap.bvh_writing import save_bvh
-from cubeling.characters.model.bind_pose import with_bind_pose
-from cubeling.characters.model.files import read_file
-from cubeling.characters.motion.baking import bake
-from cubeling.characters.motion.motion import Motion
-from cubeling.characters.motion.schedule import Schedule
-from cubeling.characters.motion.schedule_file import ScheduleReader
-from cubeling.characters.rendering import create_context
-from cubeling.characters.rendering.portrait import PortraitRenderer
-from cubeling.characters.retargeting import load_recording
-from cubeling.characters.retargeting.root import with_root_joint
-from cubeling.characters.synthesis.archive import skeleton_identity
+from cubeling.characters import (
+    Character,
+    CharacterError,
+    Clip,
+    dependent_joints_of,
+    read_motions,
+    safe_ranges_of,
+    standing_as,
+)
+from cubeling.characters.model import (
+    load_recording,
+    read_file,
+    save_bvh,
+    with_bind_pose,
+    with_root_joint,
+)
+from cubeling.characters.motion import Motion, Schedule, ScheduleReader, bake, skeleton_identity
+from cubeling.characters.rendering import PortraitRenderer, create_context
 
 MAX_BYTES = 10_000_000
 """Larger schedules are not written by hand."""

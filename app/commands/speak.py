@@ -23,23 +23,23 @@ from cubeling.app.speaking.performance import Direction, View, performed, write_
 from cubeling.app.speaking.voices import open_voice
 from cubeling.app.ui.display import has_display
 from cubeling.app.ui.video_file import VIDEO_FORMATS
-from cubeling.characters import Character
-from cubeling.characters.control.layers.speech import known_gestures
-from cubeling.characters.control.speech_profile import DATABASES, DEFAULT_PROFILE, SpeechProfile
-from cubeling.characters.face.complexion import blood_of
-from cubeling.characters.face.visemes.sets import viseme_sets
-from cubeling.characters.formats.mocap.bvh_writing import save_bvh
-from cubeling.characters.model.files import read_text
-from cubeling.characters.model.speaking import gestures_for
-from cubeling.characters.retargeting.root import with_root_joint
-from cubeling.characters.speech.alignment import align
-from cubeling.characters.speech.audio import read_speech
-from cubeling.characters.speech.mouth import phones_from_sound
-from cubeling.characters.speech.prosody import utterance_of
-from cubeling.characters.speech.saying import say
-from cubeling.characters.speech.speech import Speech
-from cubeling.characters.speech.tagged_text import TaggedText
-from cubeling.characters.speech.voices.feeling import manner_of
+from cubeling.characters import Character, known_gestures
+from cubeling.characters.model import gestures_for, read_text, save_bvh, with_root_joint
+from cubeling.characters.speech import (
+    DATABASES,
+    DEFAULT_PROFILE,
+    Speech,
+    SpeechProfile,
+    TaggedText,
+    align,
+    blood_of,
+    manner_of,
+    phones_from_sound,
+    read_speech,
+    say,
+    utterance_of,
+    viseme_sets,
+)
 
 MAX_TEXT_BYTES = 100_000
 """Larger files are no speeches."""

@@ -21,26 +21,25 @@ from cubeling.app.commands.output import (
 from cubeling.app.counted import counted
 from cubeling.app.errors import AppError
 from cubeling.characters import Character, CharacterError
-from cubeling.characters.control.speech_profile import DEFAULT_PROFILE
-from cubeling.characters.model.files import read_text
-from cubeling.characters.speech.accents import (
+from cubeling.characters.model import read_text
+from cubeling.characters.motion import PlannedGesture
+from cubeling.characters.speech import (
+    DEFAULT_PROFILE,
+    Accent,
     AccentSettings,
+    Speech,
     accents_of,
-    syllable_nuclei,
-)
-from cubeling.characters.speech.alignment import align as align_by_warping
-from cubeling.characters.speech.alignment import align_with_sphinx
-from cubeling.characters.speech.audio import read_speech
-from cubeling.characters.speech.contours import measure_prosody
-from cubeling.characters.speech.speech import Accent, Speech
-from cubeling.characters.speech.textgrid import (
+    align as align_by_warping,
+    align_with_sphinx,
+    espeak,
+    measure_prosody,
+    read_speech,
     read_textgrid,
+    syllable_nuclei,
     textgrid_of,
     with_textgrid,
     write_textgrid,
 )
-from cubeling.characters.speech.voices import espeak
-from cubeling.characters.synthesis.gestures.plan import PlannedGesture
 
 MAX_PLOT_S = 120.0
 """Longest speech that is plotted [s]."""

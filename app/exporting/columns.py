@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from cubeling.app.exporting.column import Column, Table, field, vector
 from cubeling.characters import CharacterCommand, PosedCharacter
-from cubeling.characters.skeleton import rotations
+from cubeling.characters.motion import rotations
 from cubeling.tracking import CubeState
 
 

@@ -10,17 +10,31 @@ from numpy.typing import NDArray
 from cubeling.app.gesture_editor.editing.document import GestureDocument, moves
 from cubeling.app.gesture_editor.editing.timing import duration
 from cubeling.app.gesture_editor.panels.space_overlay import ShownSpace
-from cubeling.characters import Animator, Character, CharacterCommand, PosedCharacter
-from cubeling.characters.behaviour.gestures.planning import Performer
-from cubeling.characters.behaviour.gestures.timing import natural_times
-from cubeling.characters.behaviour.intents import BehaviourIntent, GestureIntent, Hand
-from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
-from cubeling.characters.control.controllers.in_place import InPlaceController
-from cubeling.characters.control.layers import LayerFactory, layers_of
-from cubeling.characters.control.layers.gestures import GestureLayer
-from cubeling.characters.rendering.portrait_camera import CharacterExtent, PortraitCamera
-from cubeling.characters.rendering.scene import SceneCharacter, View
-from cubeling.characters.rendering.stage import Stage
+from cubeling.characters import (
+    Animator,
+    Character,
+    CharacterCommand,
+    GestureLayer,
+    InPlaceController,
+    LayerFactory,
+    PosedCharacter,
+    layers_of,
+)
+from cubeling.characters.behaviour import (
+    BehaviourIntent,
+    GestureIntent,
+    Hand,
+    Performer,
+    SymbolicGesture,
+    natural_times,
+)
+from cubeling.characters.rendering import (
+    CharacterExtent,
+    PortraitCamera,
+    SceneCharacter,
+    Stage,
+    View,
+)
 
 Picture = NDArray[np.uint8]
 

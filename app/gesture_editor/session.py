@@ -33,9 +33,8 @@ from cubeling.app.gesture_editor.editing.store import GestureStore
 from cubeling.app.gesture_editor.handling import Event, handle, left_field
 from cubeling.app.gesture_editor.panels.layout import Picture, WindowDrawing, preview_size
 from cubeling.app.gesture_editor.preview import Performance, Preview
-from cubeling.characters import Character
-from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
-from cubeling.characters.errors import CharacterError
+from cubeling.characters import Character, CharacterError
+from cubeling.characters.behaviour import SymbolicGesture
 
 KEEP_INTERVAL_S = 2.0
 """Time between two copies of changes that are not saved [s]."""

@@ -7,7 +7,7 @@ from pathlib import Path
 from cubeling.app.gesture_editor.editing.timing import phase_at, phase_spans, time_of
 from cubeling.app.gesture_editor.preview import Performance, Preview
 from cubeling.app.ui.contact_sheets import frame_sheet, save
-from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
+from cubeling.characters.behaviour import SymbolicGesture
 from cubeling.characters.rendering import create_context
 
 CELL_PX = 300, 320

@@ -6,8 +6,7 @@ from numpy.typing import NDArray
 
 from cubeling.app.ui.canvas import Canvas
 from cubeling.app.ui.palette import HAPPY, INK, RULE, bgr
-from cubeling.tracking.cube.marker import marker_cells
-from cubeling.tracking.detection.markers import MarkerDetector
+from cubeling.tracking import MarkerDetector, marker_cells
 
 Picture = NDArray[np.uint8]
 Array = NDArray[np.float64]

@@ -1,6 +1,6 @@
 """Colours of the mood plot: those of the screen, pale enough to write on."""
 
-from cubeling.affect.labels import LabelSet
+from cubeling.affect import LabelSet
 from cubeling.app.ui.palette import ACTION_COLORS, ROBOT_COLOR, Color, between, bgr, mood_color
 
 WHITE = bgr("#ffffff")

@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from cubeling.affect.labels import LabelSet
+from cubeling.affect import LabelSet
 from cubeling.app.errors import AppError
 from cubeling.app.moods.colors import CURVE_STYLES, OBSERVED_COLOR, SECONDARY_COLOR, TEXT_COLOR
 from cubeling.app.moods.history import EmotionTrack, MoodHistory

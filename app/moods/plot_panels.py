@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from cubeling.affect.labels import LabelSet
+from cubeling.affect import LabelSet
 from cubeling.app.moods.colors import (
     BORDER_COLOR,
     CURVE_STYLES,

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.affect.hysteresis import ANGRY_BELOW, HAPPY_ABOVE
-from cubeling.affect.labels import LabelSet
+from cubeling.affect import ANGRY_BELOW, HAPPY_ABOVE, LabelSet
 
 Array = NDArray[np.float64]
 

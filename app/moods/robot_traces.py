@@ -10,12 +10,15 @@ from numpy.typing import NDArray
 
 from cubeling.app.errors import AppError
 from cubeling.app.session import messages
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
-from cubeling.robot.protocol.clock import RobotClock
-from cubeling.robot.protocol.fields import MessageError
-from cubeling.robot.protocol.schema import Sender, unpack
-from cubeling.robot.protocol.wire import FrameReader
+from cubeling.robot import (
+    FrameReader,
+    MessageError,
+    RobotClock,
+    Sender,
+    messages as m,
+    timing,
+    unpack,
+)
 
 Array = NDArray[np.float64]
 

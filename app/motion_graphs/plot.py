@@ -15,10 +15,15 @@ from cubeling.app.counted import counted
 from cubeling.app.moods.colors import BORDER_COLOR, CURVE_STYLES, SECONDARY_COLOR, TEXT_COLOR
 from cubeling.app.moods.plot import write_figure
 from cubeling.app.moods.plot_layout import MATPLOTLIB_STYLE, printable
-from cubeling.characters.synthesis.distances import DISTANCES, matrix
-from cubeling.characters.synthesis.graphs.building import connectivity_curves, standard_graph
-from cubeling.characters.synthesis.graphs.graph import MotionGraph
-from cubeling.characters.synthesis.graphs.storage import WHOLE_BODY, StoredGraph
+from cubeling.characters.motion import (
+    DISTANCES,
+    WHOLE_BODY,
+    MotionGraph,
+    StoredGraph,
+    connectivity_curves,
+    distance_matrix,
+    standard_graph,
+)
 
 SIZE_IN = (13.0, 6.4)
 """Width and height of the plot [in]."""
@@ -50,7 +55,7 @@ def save_plot(path: Path, stored: StoredGraph, title: str) -> None:
 def _draw_distances(figure: Figure, axes: Axes, stored: StoredGraph, graph: MotionGraph) -> None:
     """Draw the distances of all frames, and the jumps of the graph."""
     library = stored.library
-    distances = np.sqrt(matrix(DISTANCES[stored.distance](library)))
+    distances = np.sqrt(distance_matrix(DISTANCES[stored.distance](library)))
     stride = -(-len(library) // MAX_CELLS)
     count = len(library)
     image = axes.imshow(

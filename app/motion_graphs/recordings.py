@@ -6,8 +6,8 @@ from pathlib import Path
 
 from cubeling.app.errors import AppError
 from cubeling.characters import Character, Clip
-from cubeling.characters.retargeting import Recording, load_recording, retarget
-from cubeling.characters.synthesis.library import DEFAULT_RATE_HZ
+from cubeling.characters.model import Recording, load_recording, retarget
+from cubeling.characters.motion import DEFAULT_RATE_HZ
 
 
 def clip_names(given: Sequence[str]) -> list[str]:

@@ -7,22 +7,21 @@ import numpy as np
 
 from cubeling.app.counted import counted
 from cubeling.app.motion_graphs.printed import CRITICAL, TABLE_3_2, TABLE_3_3, TABLE_3_4
-from cubeling.characters.errors import CharacterError
-from cubeling.characters.skeleton.pose import Array
-from cubeling.characters.synthesis.graphs.graph import EdgeCosts, MotionGraph
-from cubeling.characters.synthesis.graphs.parts import PartGraphs
-from cubeling.characters.synthesis.library import MotionLibrary
-from cubeling.characters.synthesis.transitions.comparison import (
-    Comparison,
-    SplitComparison,
-    common_requests,
-)
-from cubeling.characters.synthesis.transitions.evaluation import (
+from cubeling.characters import CharacterError
+from cubeling.characters.motion import (
     Answers,
+    Array,
+    Comparison,
+    EdgeCosts,
+    MotionGraph,
+    MotionLibrary,
+    PartGraphs,
     Requests,
+    SplitComparison,
     Summary,
-    requests,
-    together,
+    common_requests,
+    graph_requests,
+    merge_answers,
 )
 
 SPLIT_PROFILES = ("SP2", "SP3a", "SP3b", "SP4a", "SP4b", "SP5")
@@ -103,9 +102,9 @@ def _answers(
     """Return the answers of the standard graph, or of part graphs, at a threshold."""
     if split is None:
         graph = whole.standard(threshold)
-        return whole.answers(graph, requests(whole.library, graph.kept, stride))
+        return whole.answers(graph, graph_requests(whole.library, graph.kept, stride))
     graphs = split.graphs(threshold)
-    return split.answers(graphs, requests(whole.library, graphs.kept, stride))
+    return split.answers(graphs, graph_requests(whole.library, graphs.kept, stride))
 
 
 def _table_3_2(tables: Tables, whole: Comparison, split: SplitComparison, stride: int) -> None:
@@ -119,7 +118,7 @@ def _table_3_2(tables: Tables, whole: Comparison, split: SplitComparison, stride
                 answers = _answers(whole, parts, threshold, stride)
             except CharacterError:  # nothing is joined yet
                 answers = {}
-            both = together(answers)
+            both = merge_answers(answers)
             ours = (both.duration, both.response) if both.outcomes else ("–", "–")
             for column, value, own in zip(("TBF", "response"), values, ours, strict=True):
                 tables.add("3.2", row, f"{method} {column}", value, own)
@@ -168,9 +167,9 @@ def _rank(
     split: SplitComparison, graphs: PartGraphs, way: tuple[int, int], stride: int
 ) -> tuple[float, float]:
     """Return what makes a profile worse: less connectivity, then a longer duration."""
-    asked = requests(graphs.library, graphs.kept, stride)
+    asked = graph_requests(graphs.library, graphs.kept, stride)
     own: Requests = {way: asked[way]} if way in asked else {}
-    both = together(split.answers(graphs, own))
+    both = merge_answers(split.answers(graphs, own))
     duration = both.duration if both.outcomes else np.inf
     return -round(graphs.connectivity, 2), duration
 
@@ -190,8 +189,8 @@ def _curves(
             shares.append(0.0)
             continue
         shares.append(graph.connectivity)
-        asked = requests(whole.library, graph.kept, stride)
-        both = together(
+        asked = graph_requests(whole.library, graph.kept, stride)
+        both = merge_answers(
             whole.answers(graph, asked)
             if isinstance(graph, MotionGraph)
             else split.answers(graph, asked)  # type: ignore[union-attr]

@@ -11,8 +11,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.resident import Resident
 from cubeling.characters import Character, CharacterCommand, PosedCharacter
 from cubeling.characters.rendering import Box
-from cubeling.tracking import CubeControls, CubeModel, CubeState
-from cubeling.tracking.gestures.table import SIDE_NORMALS
+from cubeling.tracking import SIDE_NORMALS, CubeControls, CubeModel, CubeState
 
 Array = NDArray[np.float64]
 

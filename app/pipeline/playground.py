@@ -29,11 +29,18 @@ from cubeling.app.pipeline.step_renderer import StepRenderer
 from cubeling.app.pipeline.subjects import subjects
 from cubeling.app.pipeline.surroundings import REALISM_CHOICES
 from cubeling.app.pipeline.things import Body, BodyParts
-from cubeling.characters import Animator, Character, CharacterCommand, PosedCharacter, RootDelta
-from cubeling.characters.control.command import SpeechIntent
-from cubeling.characters.control.controllers import ControllerFactory, first_suitable
-from cubeling.characters.face.complexion import Complexion
+from cubeling.characters import (
+    Animator,
+    Character,
+    CharacterCommand,
+    ControllerFactory,
+    PosedCharacter,
+    RootDelta,
+    SpeechIntent,
+    first_suitable,
+)
 from cubeling.characters.rendering import Quality
+from cubeling.characters.speech import Complexion
 from cubeling.tracking import (
     CubeControls,
     CubeGestures,

@@ -7,13 +7,21 @@ from cubeling.affect import Personality
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import Scenario, ScenarioSettings
 from cubeling.app.pipeline.scenario_errors import scenario_errors
+from cubeling.registry import Registry
 from cubeling.tracking import CubeModel
 
 ENTRY_POINT_GROUP = "cubeling.scenarios"
 """The group in which a package names its scenarios, one entry point each."""
 
-SCENARIOS: dict[str, type[Scenario]] = {}
-"""The bundled scenarios by name; `cubeling.app.scenarios` registers them."""
+SCENARIOS = Registry[type[Scenario]](
+    {
+        "follow": "cubeling.app.scenarios.follow:Follow",
+        "sketch": "cubeling.app.scenarios.sketch:Sketch",
+        "companion": "cubeling.app.scenarios.companion:Companion",
+        "reach": "cubeling.app.scenarios.reach:Reach",
+    }
+)
+"""The bundled scenarios by name; a new one is registered here."""
 
 
 @cache

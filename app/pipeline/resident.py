@@ -14,10 +14,9 @@ from cubeling.characters import (
     PosedCharacter,
     RootDelta,
 )
+from cubeling.characters.motion import smoothstep
 from cubeling.characters.rendering import WALL_SHARE
-from cubeling.characters.smoothing import smoothstep
-from cubeling.tracking.geometry import se3
-from cubeling.tracking.gestures.table import SIDE_NORMALS
+from cubeling.tracking import SIDE_NORMALS, se3
 
 Array = NDArray[np.float64]
 

@@ -2,8 +2,7 @@
 
 from dataclasses import dataclass
 
-from cubeling.characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
-from cubeling.characters.speech.speech import Samples, Utterance
+from cubeling.characters.speech import DEFAULT_PROFILE, Samples, SpeechProfile, Utterance
 
 
 @dataclass(frozen=True, eq=False)

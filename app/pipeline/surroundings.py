@@ -11,10 +11,7 @@ import numpy as np
 from cubeling.app.errors import AppError
 from cubeling.characters.rendering import Box, Cover, Focus, MeasuredLight, Softness, View
 from cubeling.tracking import CubeControls, CubeModel, CubeState, Frame, Intrinsics
-from cubeling.tracking.appearance.hand.finder import HandFinder
-from cubeling.tracking.appearance.hand.mask import EDGE_SLOPE, HandMask
-from cubeling.tracking.appearance.light import LightMeter
-from cubeling.tracking.appearance.picture_quality import QualityMeter
+from cubeling.tracking.appearance import EDGE_SLOPE, HandFinder, HandMask, LightMeter, QualityMeter
 
 REALISM_CHOICES = {
     "hand": "the hand that holds the cube hides what is behind it",

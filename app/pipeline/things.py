@@ -9,10 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters import Character, PosedCharacter
-from cubeling.characters.ik.reaching import reach_effort
-from cubeling.characters.ik.reaching.hands import find_hand
-from cubeling.characters.rendering import SceneCharacter
-from cubeling.characters.rendering.toys import GRIP_M, toy
+from cubeling.characters.motion import find_hand, reach_effort
+from cubeling.characters.rendering import GRIP_M, SceneCharacter, toy
 
 Point = NDArray[np.float64]
 

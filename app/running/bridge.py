@@ -12,14 +12,18 @@ from cubeling.app.running.players import PlayerPublisher
 from cubeling.app.session import messages, session_info
 from cubeling.app.session.encoding import decode
 from cubeling.characters import CharacterCommand
-from cubeling.robot import connect
-from cubeling.robot.contract.closeable import Closeable
-from cubeling.robot.network import BusClient, Pattern, RobotNode, Roster
-from cubeling.robot.network.arbiter import HOLD_S
-from cubeling.robot.network.messages import MAX_ENTRIES
-from cubeling.robot.network.player import MAX_AGE_S
-from cubeling.robot.network.roster import OnMessage
-from cubeling.robot.network.topics import ANY
+from cubeling.robot import Closeable, connect
+from cubeling.robot.network import (
+    ANY_NAME,
+    HOLD_S,
+    MAX_AGE_S,
+    MAX_ENTRIES,
+    BusClient,
+    OnMessage,
+    Pattern,
+    RobotNode,
+    Roster,
+)
 
 PUBLISHED_TOPICS: dict[str, type[Any]] = {
     "/character/command": CharacterCommand,
@@ -79,7 +83,7 @@ class Bridge(Closeable):
         robots: dict[str, str],
         sessions: dict[str, Path],
         *,
-        follow: Iterable[str] = (ANY,),
+        follow: Iterable[str] = (ANY_NAME,),
         hold: float = HOLD_S,
         max_age: float = MAX_AGE_S,
         on_message: OnMessage | None = None,

@@ -4,7 +4,7 @@ import time
 from contextlib import ExitStack
 from typing import TypeVar
 
-from cubeling.robot.contract.closeable import Closeable
+from cubeling.robot import Closeable
 from cubeling.robot.network import (
     Address,
     Bus,
@@ -14,9 +14,9 @@ from cubeling.robot.network import (
     Member,
     MemoryBroker,
     MqttBus,
+    Role,
     check_name,
 )
-from cubeling.robot.network.topics import Role
 
 E = TypeVar("E", bound=Endpoint)
 

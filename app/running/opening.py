@@ -32,9 +32,7 @@ from cubeling.app.ui.playback.status import EndCard
 from cubeling.app.ui.playback.timeline import STRIP_HEIGHT
 from cubeling.app.ui.screen import NullScreen, Screen
 from cubeling.app.ui.video_file import has_sound
-from cubeling.characters import Character, choose_controller
-from cubeling.characters.control.controllers.actions import clips_of_actions
-from cubeling.characters.control.controllers.idle import standing_as
+from cubeling.characters import Character, choose_controller, clips_of_actions, standing_as
 from cubeling.characters.rendering import create_context
 from cubeling.tracking import (
     CubeModel,

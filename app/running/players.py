@@ -7,8 +7,7 @@ from contextlib import suppress
 from cubeling.app.pipeline.scenario import EmotionTarget
 from cubeling.app.running.network import Network
 from cubeling.characters import CharacterCommand
-from cubeling.robot.network import BusClient, Player
-from cubeling.robot.network.player import MAX_AGE_S
+from cubeling.robot.network import MAX_AGE_S, BusClient, Player
 
 UNPUBLISHED_ACTIONS = frozenset({"idle", "move"})
 """Actions of a character that robots do not repeat."""

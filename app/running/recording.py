@@ -16,7 +16,7 @@ from cubeling.app.session import (
     SessionOptions,
     frame_encoder,
 )
-from cubeling.robot.contract.closeable import Closeable
+from cubeling.robot import Closeable
 from cubeling.tracking import Frame, FrameSource
 
 

@@ -6,13 +6,19 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Self
 
-from cubeling.affect import NEUTRAL
-from cubeling.affect.words import closest_word
+from cubeling.affect import NEUTRAL, closest_word
 from cubeling.app.pipeline.scenario import EmotionTarget
 from cubeling.app.pipeline.step import RobotView
-from cubeling.robot import LogLine, Robot, RobotError, SimulatedPort, SteppedRobot, connect
-from cubeling.robot.contract.closeable import Closeable
-from cubeling.robot.link.exchange import Direction
+from cubeling.robot import (
+    Closeable,
+    Direction,
+    LogLine,
+    Robot,
+    RobotError,
+    SimulatedPort,
+    SteppedRobot,
+    connect,
+)
 
 OnBytes = Callable[[Direction, bytes, float], None]
 """Called with a direction, bytes and the time of the robot's clock [s] for all on the wire."""

@@ -4,7 +4,7 @@ import threading
 
 from cubeling.app.session import Recorder
 from cubeling.app.ui.panels.wire_log import WireLog
-from cubeling.robot.link.exchange import Direction
+from cubeling.robot import Direction
 
 
 class WireTap:

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from cubeling.app.pipeline.things import GRIP, Body, Side
 from cubeling.app.scenarios.reach_intents import Ongoing, bundled_gesture, gesture_times
 from cubeling.app.scenarios.reach_places import Point, in_front, look_about
-from cubeling.characters.behaviour.expressivity import GestureExpressivity
-from cubeling.characters.behaviour.intents import (
+from cubeling.characters.behaviour import (
     BehaviourIntent,
     GazeIntent,
+    GestureExpressivity,
     GestureIntent,
     HeadIntent,
     ReachIntent,

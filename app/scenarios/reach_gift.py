@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.app.pipeline.things import GRIP, Side, Thing
-from cubeling.characters.smoothing import smoothstep
+from cubeling.characters.motion import smoothstep
 
 Point = NDArray[np.float64]
 

@@ -4,16 +4,16 @@ from dataclasses import replace
 from functools import cache
 from typing import Any, Generic, TypeVar
 
-from cubeling.characters.behaviour.gestures.collection import GestureCollection
-from cubeling.characters.behaviour.intents import (
+from cubeling.characters.behaviour import (
     GazeIntent,
+    GestureCollection,
     GestureIntent,
     HeadIntent,
     ReachIntent,
     StrokeTimes,
+    SymbolicGesture,
     Times,
 )
-from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
 
 Intent = TypeVar("Intent", ReachIntent, GestureIntent, HeadIntent, GazeIntent)
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.app.pipeline.things import Body
-from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M
+from cubeling.characters.motion import ARRIVAL_DISTANCE_M
 
 Point = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from cubeling.app.pipeline.scenario import EmotionTarget
 from cubeling.characters import CharacterCommand, Pose, PosedCharacter
-from cubeling.characters.speech.speech import Samples
+from cubeling.characters.speech import Samples
 from cubeling.tracking import CubeControls, CubeState
 
 T = TypeVar("T")

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Self
 
 from cubeling.app.pipeline.surroundings import REALISM_CHOICES
-from cubeling.characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
+from cubeling.characters.speech import DEFAULT_PROFILE, SpeechProfile
 
 
 @dataclass(frozen=True, kw_only=True)

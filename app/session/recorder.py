@@ -29,9 +29,8 @@ from cubeling.app.session.encoding import (
     encode_sound,
     schema,
 )
-from cubeling.robot.contract.closeable import Closeable
-from cubeling.tracking import Frame, Intrinsics
-from cubeling.tracking.sources.base import nanoseconds_of
+from cubeling.robot import Closeable
+from cubeling.tracking import Frame, Intrinsics, nanoseconds_of
 
 CHUNK_BYTES = 128 * 1024
 """Size at which a chunk is written to the disk [B]: well under a second of any session."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cubeling.affect.words import closest_word
+from cubeling.affect import closest_word
 from cubeling.app.pipeline.step import Step
 from cubeling.app.sound.sounds import MOOD_SOUNDS
 from cubeling.characters import Character, Footfalls, PosedCharacter

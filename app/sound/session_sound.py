@@ -9,7 +9,7 @@ from cubeling.app.sound.loudspeaker import Loudspeaker
 from cubeling.app.sound.mixer import Mixer
 from cubeling.app.sound.synthesis import SAMPLE_RATE, Array
 from cubeling.characters import Character
-from cubeling.characters.speech.audio import resampled
+from cubeling.characters.speech import resampled
 
 SPEECH_GAIN = 0.9
 """Amplitude of speech beside the other sounds."""

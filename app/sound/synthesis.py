@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.characters.smoothing import smoothstep
+from cubeling.characters.motion import smoothstep
 
 SAMPLE_RATE = 48_000
 """Samples a second."""

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from cubeling.app.errors import AppError
-from cubeling.characters.model.files import read_text
+from cubeling.characters.model import read_text
 
 MAX_BYTES = 1_000_000
 """Larger files are not written by hand."""

@@ -14,16 +14,27 @@ from cubeling.app.speaking.performance import (
     View,
     framed,
 )
-from cubeling.characters import Animator, Character, CharacterCommand, PosedCharacter, RootDelta
-from cubeling.characters.control.command import SpeechIntent
-from cubeling.characters.control.layers import layers_of
-from cubeling.characters.control.layers.live_mouth import LiveMouthLayer
-from cubeling.characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
-from cubeling.characters.face.complexion import blood_of
-from cubeling.characters.rendering.portrait import PortraitRenderer
-from cubeling.characters.speech.mouth import MouthTracker
-from cubeling.characters.speech.onsets import OnsetDetector
-from cubeling.characters.speech.speech import Accent, Samples, Utterance
+from cubeling.characters import (
+    Animator,
+    Character,
+    CharacterCommand,
+    LiveMouthLayer,
+    PosedCharacter,
+    RootDelta,
+    SpeechIntent,
+    layers_of,
+)
+from cubeling.characters.rendering import PortraitRenderer
+from cubeling.characters.speech import (
+    DEFAULT_PROFILE,
+    Accent,
+    MouthTracker,
+    OnsetDetector,
+    Samples,
+    SpeechProfile,
+    Utterance,
+    blood_of,
+)
 
 PREPARED_S = 0.4
 """So much of the preparation of a beat is left out [s]: hands cannot foresee a stressed syllable,

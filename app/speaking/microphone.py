@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from cubeling.app.sound.loudspeaker import NoSoundError, load_portaudio
-from cubeling.characters.speech.speech import Samples
+from cubeling.characters.speech import Samples
 
 MICROPHONE_HZ = 16_000
 """Sample rate [Hz]."""

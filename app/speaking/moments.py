@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from cubeling.app.pipeline.step import Step
 from cubeling.app.speaking.lines import ScenarioLines
-from cubeling.characters.speech.voices import Manner
+from cubeling.characters.speech import Manner
 
 SETTLED_S = 0.35
 """An action or gait that lasts so long is spoken of [s]: the cube passes others on its way."""

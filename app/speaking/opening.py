@@ -8,7 +8,7 @@ from cubeling.app.speaking.lines import bundled_languages, bundled_lines, langua
 from cubeling.app.speaking.speaker import SILENT, LiveSpeaker, RecordedSpeaker, Speaker
 from cubeling.app.speaking.voices import open_voice
 from cubeling.characters import Character
-from cubeling.characters.speech.voices import VoiceError
+from cubeling.characters.speech import VoiceError
 
 DEFAULT_LANGUAGE = "en"
 """Language of what is said unless the user chooses one."""

@@ -15,12 +15,22 @@ from cubeling.app.sound.session_sound import at_sample_rate
 from cubeling.app.ui.canvas import PICTURE_HEIGHT
 from cubeling.app.ui.cards.subtitles import draw_subtitle, subtitle, subtitle_place
 from cubeling.app.ui.video_file import VideoFile
-from cubeling.characters import Animator, Character, CharacterCommand, Clip, Pose, RootDelta
-from cubeling.characters.control.command import SpeechIntent
-from cubeling.characters.motion.baking import stacked
-from cubeling.characters.rendering import create_context
-from cubeling.characters.rendering.portrait import PortraitRenderer
-from cubeling.characters.rendering.portrait_camera import CharacterExtent, joints_below
+from cubeling.characters import (
+    Animator,
+    Character,
+    CharacterCommand,
+    Clip,
+    Pose,
+    RootDelta,
+    SpeechIntent,
+)
+from cubeling.characters.motion import stacked
+from cubeling.characters.rendering import (
+    CharacterExtent,
+    PortraitRenderer,
+    create_context,
+    joints_below,
+)
 
 LEAD_S, TAIL_S = 0.6, 1.2
 """Time before and after the speech [s]: hands get ready, and come to rest."""

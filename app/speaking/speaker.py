@@ -10,12 +10,15 @@ from cubeling.app.pipeline.step import Step
 from cubeling.app.speaking.lines import ScenarioLines
 from cubeling.app.speaking.moments import LineRequest, Moments
 from cubeling.characters import CharacterError
-from cubeling.characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
-from cubeling.characters.speech.prosody import utterance_of
-from cubeling.characters.speech.saying import say
-from cubeling.characters.speech.tagged_text import TaggedText
-from cubeling.characters.speech.voices import Voice
-from cubeling.characters.synthesis.gestures.library import GestureLibrary
+from cubeling.characters.motion import GestureLibrary
+from cubeling.characters.speech import (
+    DEFAULT_PROFILE,
+    SpeechProfile,
+    TaggedText,
+    Voice,
+    say,
+    utterance_of,
+)
 
 MAX_FAILURES = 3
 """A voice that has failed so often in a row is not asked again."""

@@ -3,7 +3,7 @@
 import shlex
 
 from cubeling.app.errors import AppError
-from cubeling.characters.speech.voices import Voice, espeak
+from cubeling.characters.speech import Voice, espeak
 
 VOICE_VARIABLE = "CUBELING_VOICE"
 """Environment variable of the option `--voice`."""

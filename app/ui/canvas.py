@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from cubeling.app.ui.palette import PAPER, Color
-from cubeling.tracking.cube.icons import icon_mask
+from cubeling.tracking import icon_mask
 
 PICTURE_HEIGHT = 720.0
 """Height of a picture in design units, in which lengths are given."""

@@ -16,7 +16,7 @@ from cubeling.app.output_path import whole_file
 from cubeling.app.ui.canvas import Canvas, text_width
 from cubeling.app.ui.palette import INK, QUIET
 from cubeling.characters import Character, Clip, Pose
-from cubeling.characters.rendering.portrait import PAPER_BGR, PortraitRenderer, side_by_side
+from cubeling.characters.rendering import PAPER_BGR, PortraitRenderer, side_by_side
 
 Image = NDArray[np.uint8]
 

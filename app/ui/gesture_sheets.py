@@ -12,14 +12,16 @@ from cubeling.app.ui.canvas import Canvas
 from cubeling.app.ui.contact_sheets import frame_sheet, save, stacked
 from cubeling.app.ui.palette import INK
 from cubeling.characters import Character
-from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
-from cubeling.characters.behaviour.gestures.collection import GestureCollection
-from cubeling.characters.behaviour.gestures.motion import GestureMotion
-from cubeling.characters.behaviour.gestures.planning import Performer
-from cubeling.characters.behaviour.gestures.timing import apex_share
-from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
-from cubeling.characters.rendering import create_context
-from cubeling.characters.rendering.portrait import PAPER_BGR, PortraitRenderer, side_by_side
+from cubeling.characters.behaviour import (
+    NEUTRAL,
+    GestureCollection,
+    GestureExpressivity,
+    GestureMotion,
+    Performer,
+    SymbolicGesture,
+    apex_share,
+)
+from cubeling.characters.rendering import PAPER_BGR, PortraitRenderer, create_context, side_by_side
 
 Image = NDArray[np.uint8]
 

@@ -6,11 +6,13 @@ from rich.table import Table
 from rich.text import Text
 
 from cubeling.app.ui.literal_text import literal_text
-from cubeling.robot.network import Member, Roster, RosterEntry
-from cubeling.robot.network.messages import (
+from cubeling.robot.network import (
     AckMessage,
     ActionMessage,
     EmotionMessage,
+    Member,
+    Roster,
+    RosterEntry,
     StateMessage,
     StatusMessage,
 )

@@ -1,1 +1,5 @@
 """Behaviour: symbolic gestures, reaching, and the blocks of the Behavior Markup Language."""
+
+from cubeling.faces import face
+
+__getattr__, __dir__, __all__ = face(__name__)

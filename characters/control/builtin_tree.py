@@ -19,7 +19,7 @@ from cubeling.characters.motion.trees.plan import (
 )
 
 
-def built_in(character: Character) -> Plan:
+def built_in_trees(character: Character) -> Plan:
     """Return the plan that corresponds to the built-in controller of a character.
 
     The controllers also steer, plant feet and hop; played from a file, this plan does less.

@@ -8,6 +8,7 @@ from cubeling.characters.errors import CharacterError
 from cubeling.characters.model.character import CHARACTER_READERS, conversion_advice
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.skeleton.pose import Skeleton
+from cubeling.registry import Registry
 
 
 @dataclass(frozen=True)
@@ -47,11 +48,25 @@ class MotionOptions:
     """The vertical axis ("y", "z", "-y", …), for formats that do not state it."""
 
 
-MOTION_READERS: dict[str, Callable[[Path, MotionOptions], Performance]] = {}
-"""Readers of one motion, by the suffix of the file; `characters.formats` registers its own."""
+_FORMATS = "cubeling.characters.formats"
 
+MOTION_READERS = Registry[Callable[[Path, MotionOptions], Performance]](
+    {
+        ".glb": f"{_FORMATS}.gltf.reading:load_motion",
+        ".gltf": f"{_FORMATS}.gltf.reading:load_motion",
+        ".vrm": f"{_FORMATS}.gltf.reading:load_motion",
+        ".vrma": f"{_FORMATS}.gltf.reading:load_motion",
+        ".bvh": f"{_FORMATS}.mocap.bvh:load_motion",
+        ".amc": f"{_FORMATS}.mocap.amc:load_motion",
+        ".asf": f"{_FORMATS}.mocap.asf:refuse_motion",
+        ".bap": f"{_FORMATS}.mocap.bap:load_motion",
+    }
+)
+"""Readers of one motion, by the suffix of the file; a new format is registered here."""
 
-MESH_FINDERS: dict[str, Callable[[Path], bool]] = {}
+MESH_FINDERS = Registry[Callable[[Path], bool]](
+    dict.fromkeys((".glb", ".gltf"), f"{_FORMATS}.gltf.file:has_mesh")
+)
 """What finds out whether a file has a mesh, by the suffix of files that need not have one."""
 
 

@@ -27,11 +27,18 @@ from cubeling.characters.motion.trees.plan import Plan
 from cubeling.characters.skeleton.anatomy import BODY_PARTS, Anatomy
 from cubeling.characters.skeleton.pose import Array, Skeleton
 from cubeling.characters.synthesis.gestures.library import GestureLibrary
+from cubeling.registry import Registry
 
-CHARACTER_READERS: "dict[str, Callable[[Path], Character]]" = {}
-"""Readers of a character by the suffix of the file; `characters.formats` registers its own."""
+CHARACTER_READERS: "Registry[Callable[[Path], Character]]" = Registry(
+    dict.fromkeys(
+        (".glb", ".gltf", ".vrm"), "cubeling.characters.formats.gltf.reading:load_character"
+    )
+)
+"""Readers of a character by the suffix of the file."""
 
-CHARACTER_WRITERS: "dict[str, Callable[[Character, Path], None]]" = {}
+CHARACTER_WRITERS: "Registry[Callable[[Character, Path], None]]" = Registry(
+    {".glb": "cubeling.characters.formats.gltf.writing:save"}
+)
 """Writers of a character by the suffix of the file."""
 
 

@@ -8,8 +8,7 @@ from cubeling.robot.conformance.channel import Channel
 from cubeling.robot.conformance.errors import CheckFailed, NoAnswerError
 from cubeling.robot.conformance.exchange import REPLY_WITHIN_S, FrameExchange
 from cubeling.robot.conformance.received import ReceivedFrame, describe_frames, format_bytes
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 from cubeling.robot.protocol.schema import spec_of
 
 EFFECT_WITHIN_S = 0.250

@@ -4,8 +4,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 from cubeling.robot.protocol.fields import MessageError
 from cubeling.robot.protocol.schema import MESSAGES, spec_of, unpack
 from cubeling.robot.protocol.wire import MAX_FRAME, FrameError, decode_frame

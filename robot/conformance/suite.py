@@ -24,8 +24,7 @@ from cubeling.robot.conformance.checks.stopping import STOPPING
 from cubeling.robot.conformance.errors import CheckFailed, NoAnswerError, NotApplicableError
 from cubeling.robot.conformance.probe import Probe
 from cubeling.robot.errors import RobotError
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 
 GROUPS: tuple[CheckGroup, ...] = (
     FRAMES, BODIES, SESSIONS, OTHER_SESSIONS, CATALOGUE, COMMANDS, MOODS, PLAYING, STOPPING,

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Protocol
 
 from cubeling.affect import Emotion
+from cubeling.registry import Registry
 from cubeling.robot.contract.catalogue import Catalogue
 from cubeling.robot.contract.moves import JointMover
 from cubeling.robot.contract.port import Clock, Opener
@@ -89,5 +90,13 @@ class DriverKind:
     line."""
 
 
-DRIVERS: dict[str, DriverKind] = {}
-"""The protocols by name; `cubeling.robot.drivers` registers those of this program."""
+DRIVERS = Registry[DriverKind](
+    {
+        "cubeling": "cubeling.robot.drivers.cubeling.host:CUBELING",
+        "opencat": "cubeling.robot.drivers.opencat.host:OPENCAT",
+        "nybble": "cubeling.robot.drivers.opencat.host:OPENCAT",  # "sim:nybble" needs no protocol
+        "pleo": "cubeling.robot.drivers.pleo.driver:PLEO",
+        "reachy": "cubeling.robot.drivers.reachy.driver:REACHY",
+    }
+)
+"""The protocols by name; a new one is registered here."""

@@ -13,12 +13,15 @@ from typing import Any, NamedTuple, cast
 import serial
 from serial.tools import list_ports
 
+from cubeling.registry import Registry
 from cubeling.robot.contract.port import READ_TIMEOUT_S, Clock, Opener, Port
 from cubeling.robot.errors import RobotError
 from cubeling.robot.protocol import timing
 
-SCHEMES: dict[str, Callable[[str, Clock], Opener]] = {}
-"""Openers of the URL schemes that pySerial does not know; `robot` registers "sim"."""
+SCHEMES = Registry[Callable[[str, Clock], Opener]](
+    {"sim": "cubeling.robot.simulators.memory:open_simulated"}
+)
+"""Openers of the URL schemes that pySerial does not know."""
 
 WRITE_TIMEOUT_S = 0.2
 """Longest wait in one write [s]; the line fills up when a robot no longer reads."""

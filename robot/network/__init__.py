@@ -11,33 +11,6 @@
 >>> client.close()
 """
 
-from cubeling.robot.network.bus import Bus, BusState, Message
-from cubeling.robot.network.client import BusClient
-from cubeling.robot.network.endpoint import Endpoint
-from cubeling.robot.network.memory import MemoryBroker, MemoryBus
-from cubeling.robot.network.mqtt.access import Address, Credentials
-from cubeling.robot.network.mqtt.bus import MqttBus
-from cubeling.robot.network.node import RobotNode
-from cubeling.robot.network.player import Player
-from cubeling.robot.network.roster import Roster, RosterEntry
-from cubeling.robot.network.topics import Member, Pattern, check_name
+from cubeling.faces import face
 
-__all__ = [
-    "Address",
-    "Bus",
-    "BusClient",
-    "BusState",
-    "Credentials",
-    "Endpoint",
-    "Member",
-    "MemoryBroker",
-    "MemoryBus",
-    "Message",
-    "MqttBus",
-    "Pattern",
-    "Player",
-    "RobotNode",
-    "Roster",
-    "RosterEntry",
-    "check_name",
-]
+__getattr__, __dir__, __all__ = face(__name__)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cubeling.robot.network.endpoint import LOST_AFTER_S, Endpoint
-from cubeling.robot.network.topics import ANY, ROOT, Member
+from cubeling.robot.network.topics import ANY_NAME, ROOT, Member
 
 MAX_MEMBERS = 256
 """Most members in the roster."""
@@ -44,8 +44,8 @@ class Roster(Endpoint):
         Called with every valid message, except those of an earlier epoch of its sender.
     """
 
-    def __init__(self, site: str = ANY, on_message: OnMessage | None = None) -> None:
-        place = "+" if site == ANY else site
+    def __init__(self, site: str = ANY_NAME, on_message: OnMessage | None = None) -> None:
+        place = "+" if site == ANY_NAME else site
         self.topic_filters = (f"{ROOT}/{place}/+/+/+",)
         self.members: dict[Member, RosterEntry] = {}
         """The known members."""

@@ -17,7 +17,7 @@ ROOT = "cubeling/1"
 MAX_NAME_BYTES = 32
 """Longest name of a site, a player or a robot [bytes of UTF-8]."""
 
-ANY = "*"
+ANY_NAME = "*"
 """In a pattern: every site, or every member of a site."""
 
 Role = Literal["player", "robot"]
@@ -83,13 +83,13 @@ class Pattern:
         place, slash, name = text.rpartition("/")
         found = cls(place if slash else site, name)
         for part in (found.site, found.name):
-            if part != ANY:
+            if part != ANY_NAME:
                 check_name(part, "name to follow")
         return found
 
     def matches(self, member: Member) -> bool:
         """Whether it includes a member."""
-        return self.site in (ANY, member.site) and self.name in (ANY, member.name)
+        return self.site in (ANY_NAME, member.site) and self.name in (ANY_NAME, member.name)
 
     def filter(self, role: Role, kind: str) -> str:
         """Return the topic filter for a kind of messages.
@@ -97,7 +97,7 @@ class Pattern:
         >>> Pattern("hall", "*").filter("player", "status")
         'cubeling/1/hall/player/+/status'
         """
-        site, name = ("+" if part == ANY else part for part in (self.site, self.name))
+        site, name = ("+" if part == ANY_NAME else part for part in (self.site, self.name))
         return f"{ROOT}/{site}/{role}/{name}/{kind}"
 
     def __str__(self) -> str:

@@ -3,9 +3,7 @@
 from collections.abc import Callable
 from typing import Protocol
 
-from cubeling.robot.simulators.cubeling.simulator import Simulator
-from cubeling.robot.simulators.opencat.simulator import OpenCatSimulator, nybble
-from cubeling.robot.simulators.pleo.simulator import PleoSimulator
+from cubeling.registry import Registry
 
 
 class Simulated(Protocol):
@@ -30,10 +28,12 @@ class Simulated(Protocol):
         """Return the mood that it shows, from −1, angry, to 1, happy, and its word."""
 
 
-SIMULATORS: dict[str, Callable[[int], Simulated]] = {
-    "cubeling": Simulator,
-    "opencat": OpenCatSimulator,
-    "nybble": nybble,
-    "pleo": PleoSimulator,
-}
+SIMULATORS = Registry[Callable[[int], Simulated]](
+    {
+        "cubeling": "cubeling.robot.simulators.cubeling.simulator:Simulator",
+        "opencat": "cubeling.robot.simulators.opencat.simulator:OpenCatSimulator",
+        "nybble": "cubeling.robot.simulators.opencat.simulator:nybble",
+        "pleo": "cubeling.robot.simulators.pleo.simulator:PleoSimulator",
+    }
+)
 """The simulated robots by name; each is made from a seed."""

@@ -5,8 +5,7 @@ import itertools
 import math
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.affect import LABEL_SETS, Emotion, Feelings, Personality
 from cubeling.affect.dynamics import MAX_TIME_STEP_S

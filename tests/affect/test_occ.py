@@ -4,8 +4,7 @@ import math
 from collections import Counter
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.affect.errors import AffectError
 from cubeling.affect.occ import OCC_FACES, face_intensities, shown_emotion

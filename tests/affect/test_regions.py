@@ -3,8 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.affect import NEUTRAL, AffectError, Emotion
 from cubeling.affect.regions import SECTOR_WORDS, Box, Sector, on_disc, region_of

@@ -6,8 +6,7 @@ import time
 from pathlib import Path
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.affect.errors import AffectError
 from cubeling.affect.settings import MAX_ENTRIES, MAX_FILE_BYTES, TomlTable, parse, read

@@ -1,8 +1,7 @@
 """What a player left is there the next time, and nothing else is ever touched."""
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.app.errors import AppError
 from cubeling.app.preferences import FILE_COMMENT, Preferences, PreferenceStore

@@ -36,7 +36,7 @@ from cubeling.app.commands.ik import (
 )
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.ik.solvers.chains import Chains
-from cubeling.characters.ik.solvers.measures import Problem, arc, joint_change, violations
+from cubeling.characters.ik.solvers.measures import Problem, arc_targets, joint_change, violations
 from cubeling.characters.ik.solvers.single import SingleChain
 from cubeling.characters.ik.solvers.solving import SOLVERS, TOLERANCE, solve
 from cubeling.characters.retargeting.recording import load_recording
@@ -144,7 +144,7 @@ def campaign(solves: int, console: Console) -> bool:
         joints = 4 + block % 7
         problem = Problem.random(joints, BLOCK, np.random.default_rng(block))
         begin = problem.chains.random(BLOCK, np.random.default_rng([block, 1]))
-        begin = begin if block % 2 else arc(joints, BLOCK)
+        begin = begin if block % 2 else arc_targets(joints, BLOCK)
         found = solve(problem.chains, problem.targets, begin, seed=block)
         solved += int(found.solved.sum())
         bad += int((~np.isfinite(found.rotations)).sum() + (~np.isfinite(found.positions)).sum())

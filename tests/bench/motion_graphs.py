@@ -39,7 +39,7 @@ from cubeling.characters.synthesis.transitions.comparison import (
     bootstrap_interval,
     common_requests,
 )
-from cubeling.characters.synthesis.transitions.evaluation import requests, together
+from cubeling.characters.synthesis.transitions.evaluation import graph_requests, merge_answers
 from cubeling.characters.synthesis.transitions.progressive import SearchSettings, TransitionPlanner
 
 CMU = Path(__file__).parents[3] / "shared" / "data" / "cmu-mocap"
@@ -93,23 +93,23 @@ def evaluate(names: tuple[str, ...]) -> Choice:
     shared, free = split.graphs(split.threshold), split.free()
     asked = common_requests(standard, shared, STRIDE)
     own_pairs, part_pairs = whole.answers(standard, asked), split.answers(shared, asked)
-    own, symmetric = together(own_pairs), together(part_pairs)
-    forward = together(split.answers(shared, asked, SearchSettings(symmetric=False)))
+    own, symmetric = merge_answers(own_pairs), merge_answers(part_pairs)
+    forward = merge_answers(split.answers(shared, asked, SearchSettings(symmetric=False)))
     free_asked = common_requests(standard, free, STRIDE)
-    freely = together(split.answers(free, free_asked))
-    free_own = together(whole.answers(standard, free_asked))
+    freely = merge_answers(split.answers(free, free_asked))
+    free_own = merge_answers(whole.answers(standard, free_asked))
     graphs = [whole.split(profile) for profile in SPLIT_PROFILES]
     profiles = [each.graphs(each.threshold) for each in graphs]
     kept = standard.kept & np.logical_and.reduce([each.kept for each in profiles])
-    best_asked = requests(whole.library, kept, 2 * STRIDE)
-    best_own = together(whole.answers(standard, best_asked))
-    best = together(whole.part_answers(profiles, best_asked, SearchSettings(choices=CHOICES)))
+    best_asked = graph_requests(whole.library, kept, 2 * STRIDE)
+    best_own = merge_answers(whole.answers(standard, best_asked))
+    best = merge_answers(whole.part_answers(profiles, best_asked, SearchSettings(choices=CHOICES)))
     own_tbf, part_tbf = [own.duration], [symmetric.duration]
     for factor in (1.25, 1.6):
         higher, later = whole.standard(critical * factor), split.graphs(split.threshold * factor)
         again = common_requests(higher, later, STRIDE)
-        own_tbf.append(together(whole.answers(higher, again)).duration)
-        part_tbf.append(together(split.answers(later, again)).duration)
+        own_tbf.append(merge_answers(whole.answers(higher, again)).duration)
+        part_tbf.append(merge_answers(split.answers(later, again)).duration)
     gains = {
         pair: own_pairs[pair].duration - part_pairs[pair].duration
         for pair in own_pairs

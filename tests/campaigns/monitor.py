@@ -4,8 +4,7 @@ from collections import Counter
 from typing import Any, Protocol
 
 from cubeling.affect import Emotion
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 from cubeling.robot.simulators.faulty import FaultyRobot
 
 BIN_WIDTH_S = 0.0005

@@ -3,8 +3,7 @@
 import pytest
 
 from cubeling.robot.drivers.cubeling.scheduler import CommandScheduler
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing, wire
+from cubeling.robot.protocol import messages as m, timing, wire
 from cubeling.robot.simulators.cubeling.device import DeviceLink
 from tests.campaigns.fault_mixes import FAULT_MIXES, FaultMix
 from tests.campaigns.monitor import emotion_of

@@ -7,8 +7,7 @@ import numpy as np
 
 from cubeling.robot.contract.port import READ_TIMEOUT_S
 from cubeling.robot.link.exchange import REOPEN_INTERVAL_S
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 from cubeling.robot.protocol.wire import MAX_FRAME
 from cubeling.robot.simulators.channel import MAX_IN_FLIGHT_BYTES
 from cubeling.robot.simulators.faulty import MAX_INBOX_BYTES, FaultyRobot

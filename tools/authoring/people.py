@@ -14,10 +14,8 @@ from tools.authoring.modelling.quadruped import AnimationTracks, loop_clip
 from tools.authoring.modelling.quadruped_standing import standing_tracks
 from tools.authoring.modelling.shapes import Array
 from tools.authoring.modelling.standing import MOODS
-from tools.authoring.robot import motion as robot_motion
-from tools.authoring.robot import rig as robot
-from tools.authoring.vleo import clips as vleo_clips
-from tools.authoring.vleo import rig as vleo
+from tools.authoring.robot import motion as robot_motion, rig as robot
+from tools.authoring.vleo import clips as vleo_clips, rig as vleo
 
 KEPT_RATE_HZ = 15.0
 """Frames a second that are kept [Hz]."""

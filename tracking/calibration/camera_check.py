@@ -52,7 +52,9 @@ class CameraCheck:
         return abs(self.focal_change) > tolerance or self.residual > max_residual
 
 
-def check(views: Sequence[View], saved: Intrinsics, target: CalibrationTarget) -> CameraCheck:
+def check_camera(
+    views: Sequence[View], saved: Intrinsics, target: CalibrationTarget
+) -> CameraCheck:
     """Compare a saved camera with views taken now.
 
     The saved distortion is removed from the views first, so that any distortion model can be

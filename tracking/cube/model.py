@@ -105,7 +105,7 @@ class CubeModel:
         if path.suffix != ".toml":
             path = CUBES_FOLDER / f"{name_or_path}.toml"
             if not path.is_file():
-                known = ", ".join(bundled())
+                known = ", ".join(bundled_cubes())
                 raise TrackingError(
                     f"no cube is called '{name_or_path}': choose {known}, or give a .toml file"
                 )
@@ -197,7 +197,7 @@ FACE_KEYS = ("name", "marker_id", "roll_deg", "role", "icon", "corners_mm")
 CUBES_FOLDER = Path(__file__).parents[1] / "cubes"
 
 
-def bundled() -> tuple[str, ...]:
+def bundled_cubes() -> tuple[str, ...]:
     """Names of the bundled cubes."""
     return tuple(sorted(path.stem for path in CUBES_FOLDER.glob("*.toml")))
 

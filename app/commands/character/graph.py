@@ -11,10 +11,8 @@ from rich.tree import Tree
 from cubeling.app.commands.output import OverwriteOption
 from cubeling.app.errors import AppError
 from cubeling.app.output_path import check_output, whole_file
-from cubeling.characters import Animator, Character
-from cubeling.characters.control.builtin_tree import built_in
-from cubeling.characters.motion.trees.dot import to_dot
-from cubeling.characters.motion.trees.plan import Node, Plan, Transition
+from cubeling.characters import Animator, Character, built_in_trees
+from cubeling.characters.motion import Node, Plan, Transition, to_dot
 
 
 def graph(
@@ -39,7 +37,7 @@ def graph(
     if output is not None:
         check_output(output, "graph", (".dot",), overwrite=overwrite)
     loaded = Character.load(character)
-    plan = loaded.plan or built_in(loaded)
+    plan = loaded.plan or built_in_trees(loaded)
     if loaded.plan is not None:
         Animator(loaded)  # refuses plans that cannot be played
     Console().print(outline(plan, loaded.name))

@@ -19,9 +19,15 @@ from cubeling.app.counted import counted
 from cubeling.app.errors import AppError
 from cubeling.app.ui.contact_sheets import CLIP_COLUMNS, TURNTABLE_COLUMNS, ContactSheets, save
 from cubeling.characters import Character, CharacterWarning, Skeleton, load_motion
-from cubeling.characters.formats import Performance, is_motion_only
-from cubeling.characters.model.inspection import ClipStats, FootContactStats, Inspection, inspect
-from cubeling.characters.model.stick_figure import stick_figure
+from cubeling.characters.model import (
+    ClipStats,
+    FootContactStats,
+    Inspection,
+    Performance,
+    inspect,
+    is_motion_only,
+    stick_figure,
+)
 from cubeling.characters.rendering import create_context
 
 MIN_FOLDED_JOINTS = 4

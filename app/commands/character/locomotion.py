@@ -15,7 +15,7 @@ from rich.table import Table
 from cubeling.app.commands.output import OverwriteOption, chosen_output
 from cubeling.app.errors import AppError
 from cubeling.characters import Character
-from cubeling.characters.retargeting import (
+from cubeling.characters.model import (
     YAW_RATE_PER_ANGULAR,
     GaitReport,
     LocomotionResult,

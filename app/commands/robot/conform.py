@@ -18,6 +18,7 @@ from cubeling.app.commands.robot.conformance_report import (
     verdict,
 )
 from cubeling.app.errors import AppError
+from cubeling.robot import RobotError, opener, protocol_of
 from cubeling.robot.conformance import (
     Check,
     ConformanceReport,
@@ -26,10 +27,7 @@ from cubeling.robot.conformance import (
     run_checks,
     select_checks,
 )
-from cubeling.robot.errors import RobotError
-from cubeling.robot.link.connection import protocol_of
-from cubeling.robot.link.transport import opener
-from cubeling.tracking.files import write_whole
+from cubeling.tracking import write_whole
 
 PICTURE_COLUMNS = 100
 """Width of a picture of the output."""

@@ -9,9 +9,7 @@ from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
-from cubeling.robot import RobotError, SimulatedPort
-from cubeling.robot.simulators import Simulated
-from cubeling.robot.simulators.memory import simulator_of
+from cubeling.robot import RobotError, Simulated, SimulatedPort, simulator_of
 
 
 def simulate(

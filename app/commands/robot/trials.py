@@ -5,10 +5,8 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from cubeling.affect import Emotion
-from cubeling.affect.words import WORD_PLACES
-from cubeling.robot import Robot, RobotError, Telemetry
-from cubeling.robot.contract.moves import joint_move
+from cubeling.affect import WORD_PLACES, Emotion
+from cubeling.robot import Robot, RobotError, Telemetry, joint_move
 
 EMOTION_TOLERANCE = 0.05
 """Largest distance from a requested emotion at which it counts as shown."""

@@ -9,8 +9,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from cubeling.app.errors import AppError
-from cubeling.app.exporting import ExportedSession
-from cubeling.app.exporting import export as write_tables
+from cubeling.app.exporting import ExportedSession, export as write_tables
 from cubeling.app.exporting.writing import EXPORT_FILES
 from cubeling.app.output_path import check_output_folder
 

@@ -21,8 +21,8 @@ from cubeling.app.session import SessionOptions
 from cubeling.app.speaking.voices import VOICE_VARIABLE
 from cubeling.app.ui.display import has_display
 from cubeling.characters import CONTROLLER_CHOICES
-from cubeling.characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
 from cubeling.characters.rendering import QUALITIES
+from cubeling.characters.speech import DEFAULT_PROFILE, SpeechProfile
 
 DEFAULT_CAMERA = "camera:0"
 

@@ -9,8 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from cubeling.affect import Emotion
-from cubeling.affect.words import WORD_PLACES
+from cubeling.affect import WORD_PLACES, Emotion
 from cubeling.app.errors import AppError
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.session import SessionOptions

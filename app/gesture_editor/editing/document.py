@@ -3,8 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from cubeling.characters.behaviour.intents import Hand
-from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, SymbolicGesture
+from cubeling.characters.behaviour import BodyKey, Hand, HandKey, SymbolicGesture
 
 Row = Literal["right", "left", "body"]
 """Whose keys: the fields of `SymbolicGesture`."""

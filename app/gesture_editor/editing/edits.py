@@ -5,13 +5,7 @@ from itertools import pairwise
 from typing import Any, Literal
 
 from cubeling.app.gesture_editor.editing.document import GestureDocument, Key, Row
-from cubeling.characters.behaviour.symbolic_gesture import (
-    SECTORS_X,
-    SECTORS_Y,
-    BodyKey,
-    HandKey,
-    SymbolicGesture,
-)
+from cubeling.characters.behaviour import SECTORS_X, SECTORS_Y, BodyKey, HandKey, SymbolicGesture
 
 Phase = Literal["preparation", "stroke", "hold", "retraction"]
 PHASES: tuple[Phase, ...] = ("preparation", "stroke", "hold", "retraction")

@@ -5,9 +5,8 @@ from pathlib import Path
 
 from cubeling.app.errors import AppError
 from cubeling.app.gesture_editor.editing.edits import gesture_name
-from cubeling.characters.behaviour.gestures.recording import gesture_from_recording
-from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
-from cubeling.characters.retargeting.recording import load_recording
+from cubeling.characters.behaviour import SymbolicGesture, gesture_from_recording
+from cubeling.characters.model import load_recording
 
 
 def imported(recording: str, start: float = 0.0, end: float = math.inf) -> SymbolicGesture:

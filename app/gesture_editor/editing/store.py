@@ -6,10 +6,14 @@ from pathlib import Path
 
 from cubeling.app.gesture_editor.editing.document import moves
 from cubeling.app.output_path import short_path
-from cubeling.characters.behaviour.gestures.collection import GestureCollection, gestures_in
-from cubeling.characters.behaviour.gestures.files import load_gesture, save_gesture
-from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
-from cubeling.characters.errors import CharacterError
+from cubeling.characters import CharacterError
+from cubeling.characters.behaviour import (
+    GestureCollection,
+    SymbolicGesture,
+    gestures_in,
+    load_gesture,
+    save_gesture,
+)
 
 RECOVERY_FILE = ".unsaved.toml"
 """Where changes are kept until they are saved; the library does not list it."""

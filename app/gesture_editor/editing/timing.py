@@ -1,8 +1,7 @@
 """Where the phases and the keys of a gesture are in time."""
 
 from cubeling.app.gesture_editor.editing.edits import Phase
-from cubeling.characters.behaviour.gestures.timing import Repeats, natural_times, stroke_length
-from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
+from cubeling.characters.behaviour import Repeats, SymbolicGesture, natural_times, stroke_length
 
 SPANS_S = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 40.0, 60.0, 100.0, 160.0)
 """How long a time line may be [s]."""

@@ -1,6 +1,6 @@
 """The words for hands in the editor."""
 
-from cubeling.characters.behaviour.gestures.directions import DIRECTIONS
+from cubeling.characters.behaviour import DIRECTIONS
 
 OPPOSITES = {
     "up": "down", "down": "up", "in": "out", "out": "in", "forward": "back", "back": "forward",

@@ -15,8 +15,7 @@ from cubeling.app.gesture_editor.panels.widgets import (
     Widget,
 )
 from cubeling.app.ui.palette import RULE
-from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
-from cubeling.characters.behaviour.symbolic_gesture import BodyKey
+from cubeling.characters.behaviour import NEUTRAL, BodyKey, GestureExpressivity
 
 LEFT, MIDDLE, RIGHT = 756.0, 1016.0, 1264.0
 """Left edges of the panel's two columns, and the right edge of the second."""

@@ -34,7 +34,7 @@ from cubeling.app.gesture_editor.panels.widgets import (
     button_row,
 )
 from cubeling.app.ui.palette import INK
-from cubeling.characters.behaviour.gestures.contacts import CONTACTS
+from cubeling.characters.behaviour import CONTACTS
 
 WIDTH, HEIGHT = 1280.0, 720.0
 """Of the window, in units of the canvas."""

@@ -30,8 +30,8 @@ from cubeling.app.gesture_editor.panels.widgets import (
     Widget,
     button_row,
 )
-from cubeling.characters.behaviour.symbolic_gesture import SECTORS_Z, HandKey
-from cubeling.characters.ik.reaching.hand_shapes import HAND_SHAPES
+from cubeling.characters.behaviour import SECTORS_Z, HandKey
+from cubeling.characters.motion import HAND_SHAPES
 
 MAX_RADIUS, MAX_TURNS = 0.6, 8.0
 """Greatest amplitude of a path, over the length of the arm, and most turns."""

@@ -9,7 +9,7 @@ from cubeling.app.gesture_editor.editing.state import EditorState
 from cubeling.app.gesture_editor.panels.widgets import ACCENT, CARD, SUBTLE, Look, Widget, rounded
 from cubeling.app.ui.canvas import Canvas
 from cubeling.app.ui.palette import INK, PAPER, RULE, between
-from cubeling.characters.behaviour.symbolic_gesture import SECTORS_X, SECTORS_Y, Place
+from cubeling.characters.behaviour import SECTORS_X, SECTORS_Y, Place
 
 LABEL_WIDTH, LABEL_HEIGHT = 62.0, 18.0
 """Room for the names of rows, to the left, and of columns, above."""

@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.app.gesture_editor.panels.widgets import ACCENT
-from cubeling.characters.behaviour.gestures.space import (
+from cubeling.characters.behaviour import (
     CENTRES_X_CM,
     CENTRES_Y_CM,
     CENTRES_Z_CM,
     CHEST_CM,
     REFERENCE_ARM_M,
     GestureSpace,
+    Place,
 )
-from cubeling.characters.behaviour.symbolic_gesture import Place
-from cubeling.characters.rendering.portrait_camera import PortraitCamera
+from cubeling.characters.rendering import PortraitCamera
 
 Array = NDArray[np.float64]
 

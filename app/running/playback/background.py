@@ -4,7 +4,7 @@ import threading
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
-from cubeling.robot.contract.closeable import Closeable
+from cubeling.robot import Closeable
 
 T = TypeVar("T")
 

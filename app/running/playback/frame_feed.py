@@ -6,8 +6,7 @@ from itertools import islice
 
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.session.replay_inputs import read_replay_inputs
-from cubeling.tracking import Frame, Health, LiveFrames, StoredFrames, open_source
-from cubeling.tracking.sources.base import Timeline
+from cubeling.tracking import Frame, Health, LiveFrames, StoredFrames, Timeline, open_source
 
 SCREEN_UPDATE_INTERVAL_S = 0.05
 """While no frame comes, the screen is updated at least this often."""

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from cubeling.app.ui.canvas import Canvas
 from cubeling.app.ui.palette import ACTION_COLORS, INK, PAPER, RULE, Color, between
-from cubeling.tracking.geometry import se3
+from cubeling.tracking import se3
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]

@@ -34,7 +34,7 @@ from cubeling.app.ui.palette import (
     between,
     mood_color,
 )
-from cubeling.tracking.cube.icons import ICON_COLOURS
+from cubeling.tracking import ICON_COLOURS
 
 CARD_HEIGHT = 108.0
 BAR_Y = 70.0

@@ -7,8 +7,8 @@ from cubeling.app.pipeline.step import Rect
 from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, can_be_written, text_width
 from cubeling.app.ui.cards.layout import CARD_GAP, CARD_MARGIN, are_apart
 from cubeling.app.ui.palette import INK
-from cubeling.characters.control.command import SpeechIntent
-from cubeling.characters.speech.speech import Utterance
+from cubeling.characters import SpeechIntent
+from cubeling.characters.speech import Utterance
 
 SIZE, LINE_HEIGHT = 24.0, 32.0
 """Height of the letters, and distance between the lines."""

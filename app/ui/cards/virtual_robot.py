@@ -7,9 +7,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.affect import Emotion
-from cubeling.affect.hysteresis import HAPPY_ABOVE
-from cubeling.affect.words import closest_word
+from cubeling.affect import HAPPY_ABOVE, Emotion, closest_word
 from cubeling.app.pipeline.scenario import EmotionTarget
 from cubeling.app.ui.display import is_software_renderer
 from cubeling.app.ui.palette import PAPER, between, mood_color

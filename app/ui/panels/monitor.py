@@ -8,9 +8,9 @@ from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.session import SessionOptions
 from cubeling.app.ui.panels.trace import Trace
 from cubeling.app.ui.panels.wire_log import WireLog
-from cubeling.characters.control.speech_profile import DEFAULT_PROFILE
+from cubeling.characters.motion import GestureGraph
 from cubeling.characters.rendering import FULL
-from cubeling.characters.synthesis.gestures.graph import GestureGraph
+from cubeling.characters.speech import DEFAULT_PROFILE
 from cubeling.tracking import Intrinsics, LensEstimate
 
 EMOTION_SPAN_S, EMOTION_INTERVAL_S = 60.0, 0.1

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from functools import cache
 
-from cubeling.affect.personality_file import bundled
+from cubeling.affect import bundled
 from cubeling.app.pipeline.attention import LOOK_CHOICES
 from cubeling.app.pipeline.scenario import SPEED_MAP_NAMES
 from cubeling.app.scenarios import find_scenario

@@ -3,8 +3,7 @@
 from cubeling.app.ui.panels.content import Fact, Log, Note, Panel, Tone, Widget
 from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.panels.wire_log import MAX_MESSAGES, Traffic, WireMessage
-from cubeling.robot import Telemetry
-from cubeling.robot.link.connection import protocol_of
+from cubeling.robot import Telemetry, protocol_of
 
 STATE_TONES: dict[str, Tone] = {"ready": "good", "lost": "bad"}
 """Tones of the link's states; the others are warnings."""

@@ -4,8 +4,7 @@ from cubeling.app.ui.palette import ACTION_COLORS, QUIET
 from cubeling.app.ui.panels.content import Choice, Curve, Fact, Note, Panel, Plot, Slider, Widget
 from cubeling.app.ui.panels.monitor import SPEECH_SPAN_S, SessionMonitor
 from cubeling.app.ui.playback.requests import ChangeSpeech
-from cubeling.characters.control.speech_profile import DATABASES, RANGES, SpeechProfile
-from cubeling.characters.face.visemes.sets import viseme_sets
+from cubeling.characters.speech import DATABASES, RANGES, SpeechProfile, viseme_sets
 
 SLIDERS = {
     "gesture_emphasis": "Gestures",

@@ -4,8 +4,7 @@ from collections import deque
 from dataclasses import dataclass
 
 from cubeling.app.ui.panels.wire_words import DECODERS, LineDecoder, WireDecoder, Words
-from cubeling.robot import Catalogue
-from cubeling.robot.link.exchange import Direction
+from cubeling.robot import Catalogue, Direction
 
 BOTH_DIRECTIONS: tuple[Direction, ...] = ("tx", "rx")
 """To the robot, and from it."""

@@ -3,12 +3,8 @@
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple, Protocol
 
-from cubeling.robot import Catalogue
-from cubeling.robot.drivers.lines import LineReader
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol.fields import MessageError
-from cubeling.robot.protocol.schema import Sender, unpack
-from cubeling.robot.protocol.wire import FrameReader
+from cubeling.robot import Catalogue, FrameReader, MessageError, Sender, messages as m, unpack
+from cubeling.robot.drivers import LineReader
 
 MAX_LINE_CHARS = 56
 """Longest line of text that is shown."""

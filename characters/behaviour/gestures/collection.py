@@ -6,7 +6,7 @@ from functools import lru_cache
 from importlib import resources
 from pathlib import Path
 
-from cubeling.characters.behaviour.gestures.files import SUFFIX, load_gesture, save_gesture
+from cubeling.characters.behaviour.gestures.files import GESTURE_SUFFIX, load_gesture, save_gesture
 from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
 from cubeling.characters.errors import CharacterError
 
@@ -76,7 +76,7 @@ class GestureCollection:
         """
         if self.folder is None:
             raise CharacterError(f"{gesture.name}: there is no folder to save gestures in")
-        path = self.folder / f"{_file_stem(gesture.name)}{SUFFIX}"
+        path = self.folder / f"{_file_stem(gesture.name)}{GESTURE_SUFFIX}"
         save_gesture(gesture, path)
         self._gestures[_key(gesture.name)] = gesture
         return path
@@ -90,7 +90,7 @@ def gestures_in(folder: Path) -> dict[str, SymbolicGesture]:
     CharacterError
         If a file in it is no gesture.
     """
-    files = sorted(folder.glob(f"*{SUFFIX}")) if folder.is_dir() else []
+    files = sorted(folder.glob(f"*{GESTURE_SUFFIX}")) if folder.is_dir() else []
     gestures = [load_gesture(file) for file in files if not file.name.startswith(".")]
     return {gesture.name: gesture for gesture in gestures}
 

@@ -30,7 +30,7 @@ from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, Pla
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.model.files import read_text
 
-SUFFIX = ".toml"
+GESTURE_SUFFIX = ".toml"
 """Suffix of files of gestures."""
 
 MAX_BYTES = 1_000_000

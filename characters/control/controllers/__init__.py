@@ -2,12 +2,9 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 from cubeling.characters.control.controllers.controller import CharacterController
-from cubeling.characters.control.controllers.graph import graph_factory
 from cubeling.characters.control.controllers.in_place import InPlaceController
-from cubeling.characters.control.controllers.matching import matching_factory
 from cubeling.characters.control.controllers.tree import TreeController
 from cubeling.characters.control.controllers.walk import WalkController
 from cubeling.characters.errors import CharacterError
@@ -58,17 +55,32 @@ def _tree(character: Character, motions: Sequence[str]) -> ControllerFactory:
     return first_suitable
 
 
+def _graph(character: Character, motions: Sequence[str]) -> ControllerFactory:
+    from cubeling.characters.control.controllers.graph import graph_factory
+
+    return graph_factory("graph", character, motions)
+
+
+def _parts(character: Character, motions: Sequence[str]) -> ControllerFactory:
+    from cubeling.characters.control.controllers.graph import graph_factory
+
+    return graph_factory("parts", character, motions)
+
+
+def _matching(character: Character, motions: Sequence[str]) -> ControllerFactory:
+    from cubeling.characters.control.controllers.matching import matching_factory
+
+    return matching_factory(character, motions)
+
+
 CONTROLLER_CHOICES: dict[str, ControllerChoice] = {
     "tree": ControllerChoice("the character's own blend trees", _tree),
     "graph": ControllerChoice(
-        "a motion graph, of a .graph file, of motions or of its own clips",
-        partial(graph_factory, "graph"),
+        "a motion graph, of a .graph file, of motions or of its own clips", _graph
     ),
-    "parts": ControllerChoice(
-        "the same with a graph for each part of its body", partial(graph_factory, "parts")
-    ),
+    "parts": ControllerChoice("the same with a graph for each part of its body", _parts),
     "matching": ControllerChoice(
-        "at each moment the frame of its motions that suits best", matching_factory
+        "at each moment the frame of its motions that suits best", _matching
     ),
 }
 """What a user may choose, by name; a new controller is registered here."""

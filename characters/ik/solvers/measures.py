@@ -40,7 +40,7 @@ class Problem:
         """Return a problem with uniformly random angles as its solutions."""
         chains = Chains.straight(np.full(joints, REACH_M / joints), ball_limits(joints))
         _, points = chains.frames(chains.random(count, random))
-        return Problem(chains, arc(joints, count), points[:, -1])
+        return Problem(chains, arc_targets(joints, count), points[:, -1])
 
 
 def ball_limits(joints: int) -> JointLimits:
@@ -53,7 +53,7 @@ def ball_limits(joints: int) -> JointLimits:
     return JointLimits.of_angles(-high, high)
 
 
-def arc(joints: int, count: int) -> Array:
+def arc_targets(joints: int, count: int) -> Array:
     """Return local rotations that bend all joints by the same small angle, (count, joints, 4)."""
     bend = rotations.about("z", np.full(joints, _START_BEND_RAD))
     return np.tile(bend, (count, 1, 1))

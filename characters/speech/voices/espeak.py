@@ -16,11 +16,11 @@ def espeak() -> Voice:
     """Return the voice of eSpeak NG; VoiceError if it is not installed."""
     found = libraries()  # which asks the system, and takes a while
     if not found:
-        raise VoiceError("no voice is installed, such as eSpeak NG", remedy())
+        raise VoiceError("no voice is installed, such as eSpeak NG", espeak_remedy())
     return Voice((sys.executable, "-S", "-u", str(PROGRAM), *found))
 
 
-def installed() -> bool:
+def espeak_installed() -> bool:
     """Return whether eSpeak NG is there: as a package of the system, or as the extra `[voice]`."""
     return bool(libraries())
 
@@ -39,7 +39,7 @@ def libraries() -> tuple[str, ...]:
     return (str(there[0]), str(folder)) if there else ()
 
 
-def remedy() -> str:
+def espeak_remedy() -> str:
     """Return the command that installs eSpeak NG on this system."""
     if shutil.which("apt-get"):
         return "sudo apt-get install -y espeak-ng"

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from cubeling.characters.synthesis.body import default_body_plan
 from cubeling.characters.synthesis.distances.ahn_wohn import AhnWohn
 from cubeling.characters.synthesis.distances.angles import JointAngles
-from cubeling.characters.synthesis.distances.distance import FrameDistance, matrix
+from cubeling.characters.synthesis.distances.distance import FrameDistance, distance_matrix
 from cubeling.characters.synthesis.distances.points import PointClouds
 from cubeling.characters.synthesis.library import MotionLibrary
 
@@ -41,7 +41,7 @@ __all__ = [
     "FrameDistance",
     "JointAngles",
     "PointClouds",
+    "distance_matrix",
     "lee_distance",
-    "matrix",
     "thesis_distance",
 ]

@@ -43,7 +43,7 @@ def tiles(rows: Frames, columns: Frames) -> Iterator[tuple[Frames, Frames]]:
             yield rows[top : top + TILE_FRAMES[0]], columns[left : left + TILE_FRAMES[1]]
 
 
-def matrix(distance: FrameDistance) -> Block:
+def distance_matrix(distance: FrameDistance) -> Block:
     """Return all distances, (frames, frames): exactly symmetric, exactly zero on the diagonal.
 
     Only the blocks on and above the diagonal are computed.

@@ -72,7 +72,7 @@ def analyse(clip: Clip, skeleton: Skeleton, anatomy: Anatomy) -> AnalysedGesture
     return AnalysedGestures(poses, labels | {"both": merged}, tuple(phrases))
 
 
-def learned(clips: Sequence[Clip], skeleton: Skeleton, anatomy: Anatomy) -> GestureLibrary:
+def learn_gestures(clips: Sequence[Clip], skeleton: Skeleton, anatomy: Anatomy) -> GestureLibrary:
     """Return the gestures of clips as a library.
 
     Raises

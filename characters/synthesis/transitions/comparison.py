@@ -23,8 +23,8 @@ from cubeling.characters.synthesis.transitions.evaluation import (
     Answers,
     Requests,
     by_pair,
+    graph_requests,
     part_outcome,
-    requests,
     standard_outcome,
 )
 from cubeling.characters.synthesis.transitions.progressive import SearchSettings, TransitionPlanner
@@ -159,7 +159,7 @@ class SplitComparison:
 
 def common_requests(standard: MotionGraph, graphs: PartGraphs, stride: int) -> Requests:
     """Return requests that both can answer; see `requests`."""
-    return requests(standard.library, standard.kept & graphs.kept, stride)
+    return graph_requests(standard.library, standard.kept & graphs.kept, stride)
 
 
 def bootstrap_interval(values: Array, seed: int = 0) -> tuple[float, float]:

@@ -95,7 +95,7 @@ Answers: TypeAlias = dict[tuple[int, int], Summary]
 """The answers to requests, by the same."""
 
 
-def requests(library: MotionLibrary, kept: Goals, stride: int = 1) -> Requests:
+def graph_requests(library: MotionLibrary, kept: Goals, stride: int = 1) -> Requests:
     """Return the frames from which each clip is asked for in each other clip, by their numbers.
 
     Every `stride`-th kept frame of a clip asks for all other clips that have kept frames.
@@ -127,6 +127,6 @@ def by_pair(
     }
 
 
-def together(answers: Answers) -> Summary:
+def merge_answers(answers: Answers) -> Summary:
     """Return the answers of all pairs of clips as one."""
     return Summary(tuple(outcome for each in answers.values() for outcome in each.outcomes))

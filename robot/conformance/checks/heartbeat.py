@@ -12,8 +12,7 @@ from cubeling.robot.conformance.probe import (
     Probe,
     emotion_distance,
 )
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 
 HEARTBEAT = CheckGroup("Heartbeat and state", 7)
 

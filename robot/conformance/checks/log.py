@@ -5,8 +5,7 @@ from itertools import pairwise
 from cubeling.robot.conformance.check import CheckGroup
 from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
 from cubeling.robot.conformance.probe import TIMING_SLACK_S, Probe
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 
 LOG = CheckGroup("Clock and log", 7)
 

@@ -6,8 +6,7 @@ from cubeling.robot.conformance.check import CheckGroup
 from cubeling.robot.conformance.checks.catalogue import ITEM_WORDS
 from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
 from cubeling.robot.conformance.probe import EFFECT_WITHIN_S, Probe
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 
 PLAYING = CheckGroup("Motions and sounds", 6)
 

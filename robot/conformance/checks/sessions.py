@@ -5,8 +5,7 @@ from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
 from cubeling.robot.conformance.exchange import REPLY_WITHIN_S
 from cubeling.robot.conformance.probe import EMOTION_WITHIN_S, TIMING_SLACK_S, Probe
 from cubeling.robot.conformance.received import ReceivedFrame, describe_frames
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 
 SESSIONS = CheckGroup("Sessions", 5)
 

@@ -18,8 +18,7 @@ from cubeling.robot.drivers.cubeling.capabilities import CapabilityQuery
 from cubeling.robot.drivers.cubeling.reports import RobotReports
 from cubeling.robot.drivers.cubeling.scheduler import Action, CommandScheduler, RoundTrip
 from cubeling.robot.errors import RobotError
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 from cubeling.robot.protocol.fields import MessageError
 from cubeling.robot.protocol.schema import pack, unpack
 from cubeling.robot.protocol.wire import FrameReader, encode_frame

@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 from cubeling.affect import Emotion
 from cubeling.affect.words import closest_word
 from cubeling.robot.drivers.commands import CommandQueue, DesiredState
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 
 Action = m.Play | m.Move
 """The commands that are events: dropped with their session, and never restored."""

@@ -6,8 +6,7 @@ from typing import Any, Protocol
 from cubeling.affect import Emotion
 from cubeling.robot.contract.catalogue import Catalogue
 from cubeling.robot.contract.port import SendBuffer
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 from cubeling.robot.protocol.fields import MessageError
 from cubeling.robot.protocol.schema import pack, unpack
 from cubeling.robot.protocol.wire import FrameReader, crc16, encode_frame

@@ -10,7 +10,7 @@ import pytest
 from cubeling.app.ui.contact_sheets import ContactSheets, save, trimmed
 from cubeling.characters import Character
 from cubeling.characters.formats import load_motion
-from cubeling.characters.model.stick_figure import stick_figure
+from cubeling.characters.model.stick_figures import stick_figure
 from cubeling.characters.rendering import create_context
 from cubeling.characters.rendering.portrait import PAPER_BGR
 from tools.cast import draw_cast

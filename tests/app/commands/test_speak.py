@@ -11,9 +11,9 @@ from cubeling.app.speaking import voices
 from cubeling.characters import load_motion
 from cubeling.characters.control.speech_profile import SpeechProfile
 from cubeling.characters.speech.voices import VoiceError
-from cubeling.characters.speech.voices.espeak import installed
+from cubeling.characters.speech.voices.espeak import espeak_installed
 
-needs_espeak = pytest.mark.skipif(not installed(), reason="eSpeak NG is not installed")
+needs_espeak = pytest.mark.skipif(not espeak_installed(), reason="eSpeak NG is not installed")
 
 
 @needs_espeak

@@ -13,9 +13,9 @@ from cubeling.app.speech_plot import GestureMark, draw, save_plot
 from cubeling.characters import CharacterError
 from cubeling.characters.speech.speech import Phone, Speech, Word
 from cubeling.characters.speech.textgrid import read_textgrid, textgrid_of, write_textgrid
-from cubeling.characters.speech.voices.espeak import installed
+from cubeling.characters.speech.voices.espeak import espeak_installed
 
-needs_espeak = pytest.mark.skipif(not installed(), reason="eSpeak NG is not installed")
+needs_espeak = pytest.mark.skipif(not espeak_installed(), reason="eSpeak NG is not installed")
 RATE = 16_000
 
 

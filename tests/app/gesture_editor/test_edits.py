@@ -3,8 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.app.gesture_editor.editing import edits
 from cubeling.app.gesture_editor.editing.document import EMPTY, ROWS, GestureDocument, moves

@@ -3,8 +3,7 @@
 from itertools import pairwise
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.app.errors import AppError
 from cubeling.app.running.quality_control import MAX_TRIAL_S, QualityControl, checked_quality

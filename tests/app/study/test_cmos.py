@@ -3,8 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from scipy.stats import wilcoxon
 
 from cubeling.app.study.cmos import ANSWER_SCORES, PUBLISHED_THREE_LEVEL, Votes, ranking

@@ -1,7 +1,6 @@
 """The benchmark's targets, and whether the measurements reach them."""
 
-from collections.abc import Callable, Iterator
-from collections.abc import Sequence as Rows
+from collections.abc import Callable, Iterator, Sequence as Rows
 from dataclasses import dataclass
 
 import numpy as np

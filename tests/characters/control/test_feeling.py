@@ -7,8 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import Phase, given, settings
-from hypothesis import strategies as st
+from hypothesis import Phase, given, settings, strategies as st
 
 from cubeling.affect import Emotion
 from cubeling.affect.words import WORD_PLACES

@@ -1,8 +1,7 @@
 """Profiles of BodySpeech: their values, and their files."""
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.characters.control.speech_profile import DATABASES, RANGES, SpeechProfile
 from cubeling.characters.errors import CharacterError

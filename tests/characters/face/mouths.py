@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.mesh import Mesh
 from cubeling.characters.skeleton.pose import Array
-from tools.authoring.human import mouth as human_mouth
-from tools.authoring.human import teeth as human_teeth
+from tools.authoring.human import mouth as human_mouth, teeth as human_teeth
 from tools.authoring.human.rig import build_human_skeleton
 from tools.authoring.vleo import mouth as vleo_mouth
 from tools.authoring.vleo.rig import skeleton as vleo_skeleton

@@ -1,8 +1,7 @@
 """Viseme sets: every sound of every language has a class, and the printed tables are kept."""
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.face.visemes.ipa import letters_of, parts_of

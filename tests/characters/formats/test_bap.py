@@ -5,8 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from cubeling.characters import Character, CharacterError, Clip, Pose, load_motion
 from cubeling.characters.formats.mocap.bap import (

@@ -201,7 +201,7 @@ def test_a_file_cut_anywhere_is_refused_in_one_line(tmp_path, arm):
         refused(path)
 
 
-@pytest.mark.filterwarnings("ignore::characters.errors.CharacterWarning")
+@pytest.mark.filterwarnings("ignore::cubeling.characters.errors.CharacterWarning")
 def test_a_file_with_any_number_changed_loads_or_is_refused(tmp_path, arm):
     arm.animate("LINEAR", [0.0, 1.0], rotations.about("x", [0.0, 1.0]))
     rng = np.random.default_rng(5)

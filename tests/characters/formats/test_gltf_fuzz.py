@@ -10,8 +10,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from PIL import Image
 
 from cubeling.characters import Character, CharacterError
@@ -20,7 +19,7 @@ from cubeling.characters.body.springs import SpringBody
 from cubeling.characters.skeleton import rotations
 from tests.characters.formats.built_gltf import build_arm, glb
 
-pytestmark = pytest.mark.filterwarnings("ignore::characters.errors.CharacterWarning")
+pytestmark = pytest.mark.filterwarnings("ignore::cubeling.characters.errors.CharacterWarning")
 
 
 @cache

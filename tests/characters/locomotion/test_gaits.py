@@ -3,8 +3,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.characters import Character
 from cubeling.characters.locomotion.gaits import MAX_ANGULAR_RAD, RUN_CLIPS, WALK_CLIPS, Gaits

@@ -4,8 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from cubeling.characters import (
     Animator,
@@ -14,7 +13,7 @@ from cubeling.characters import (
     CharacterError,
     LocomotionIntent,
 )
-from cubeling.characters.control.builtin_tree import built_in
+from cubeling.characters.control.builtin_tree import built_in_trees
 from cubeling.characters.control.layers import FOOT_LAYERS
 from cubeling.characters.model.mirroring import mirror_of
 from cubeling.characters.model.sidecar import read_sidecar
@@ -306,7 +305,7 @@ def test_an_invalid_sidecar_is_refused(tmp_path, text, message):
 @pytest.mark.parametrize("name", Character.bundled())
 def test_a_graph_shows_every_clip_that_a_character_plays(name):
     character = Character.load(name)
-    shown = built_in(character)
+    shown = built_in_trees(character)
     graph = to_dot(shown, name)
     assert graph.startswith(f'digraph "{name}" {{')
     used = {row.motion.name for root in shown.roots for row in root.rows} | {"idle"}
@@ -317,7 +316,7 @@ def test_a_graph_shows_every_clip_that_a_character_plays(name):
 def test_a_character_without_clips_has_no_graph():
     still = replace(Character.load("robot"), clips={})
     with pytest.raises(CharacterError, match="robot: has no clips"):
-        built_in(still)
+        built_in_trees(still)
 
 
 def test_a_motion_that_is_used_twice_is_one_box_with_two_edges():

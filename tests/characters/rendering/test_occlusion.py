@@ -3,8 +3,7 @@
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.characters.rendering import Box
 from cubeling.characters.rendering.camera_picture.hand_cover import PictureCover

@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
+from hypothesis import example, given, settings, strategies as st
 
 from cubeling.characters import Character, CharacterError, Clip, Morph, Pose
 from cubeling.characters.rendering.portrait import PAPER_BGR, PortraitRenderer

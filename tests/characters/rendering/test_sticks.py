@@ -7,7 +7,7 @@ import pytest
 
 from cubeling.characters import Character, Pose, Skeleton
 from cubeling.characters.model.character import skin
-from cubeling.characters.model.stick_figure import LEFT_RGB, RIGHT_RGB, stick_figure
+from cubeling.characters.model.stick_figures import LEFT_RGB, RIGHT_RGB, stick_figure
 
 
 @pytest.fixture(scope="module")

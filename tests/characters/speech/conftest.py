@@ -7,12 +7,12 @@ import pytest
 
 from cubeling.characters.speech.speech import Samples
 from cubeling.characters.speech.voices import Voice, espeak
-from cubeling.characters.speech.voices.espeak import installed
+from cubeling.characters.speech.voices.espeak import espeak_installed
 
 
 @pytest.fixture(scope="session")
 def spoken_voice() -> Iterator[Voice]:
-    if not installed():
+    if not espeak_installed():
         pytest.skip("eSpeak NG is not installed")
     with espeak() as voice:
         yield voice

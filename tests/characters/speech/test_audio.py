@@ -6,8 +6,7 @@ import wave
 import av
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.speech.audio import read_speech, resampled

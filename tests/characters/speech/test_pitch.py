@@ -3,8 +3,7 @@
 import numpy as np
 import parselmouth
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from cubeling.characters.speech.contours import measure_prosody
 from cubeling.characters.speech.pitch import PitchSettings, track_pitch

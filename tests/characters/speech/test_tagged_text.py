@@ -1,8 +1,7 @@
 """Tagged text: gestures that begin and end with words."""
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.speech.speech import Word

@@ -5,8 +5,7 @@ import itertools
 import numpy as np
 import parselmouth
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.speech.phones import fill_pauses

@@ -8,9 +8,9 @@ import pytest
 
 from cubeling.characters.speech.speech import SILENCE
 from cubeling.characters.speech.voices import Manner, Voice, VoiceError, espeak
-from cubeling.characters.speech.voices.espeak import installed
+from cubeling.characters.speech.voices.espeak import espeak_installed
 
-needs_espeak = pytest.mark.skipif(not installed(), reason="eSpeak NG is not installed")
+needs_espeak = pytest.mark.skipif(not espeak_installed(), reason="eSpeak NG is not installed")
 
 
 def program(*lines: str) -> Voice:

@@ -6,7 +6,12 @@ import pytest
 from cubeling.characters import CharacterError, Pose, RootDelta
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.synthesis.body import default_body_plan
-from cubeling.characters.synthesis.distances import DISTANCES, JointAngles, PointClouds, matrix
+from cubeling.characters.synthesis.distances import (
+    DISTANCES,
+    JointAngles,
+    PointClouds,
+    distance_matrix,
+)
 from cubeling.characters.synthesis.distances.angles import transition_probabilities
 from cubeling.characters.synthesis.distances.points import windows
 from cubeling.characters.synthesis.graphs.parts import part_distance, threshold_shares
@@ -19,7 +24,7 @@ def test_is_symmetric_not_negative_and_zero_between_a_frame_and_itself(
     name: str, library: MotionLibrary
 ) -> None:
     distance = DISTANCES[name](library)
-    values = matrix(distance)
+    values = distance_matrix(distance)
     assert np.array_equal(values, values.T)
     assert (np.diag(values) == 0.0).all()
     assert (values >= 0.0).all()
@@ -55,7 +60,7 @@ def test_does_not_depend_on_place_heading_or_quaternion_sign(
         turns *= rng.choice([-1.0, 1.0], size=(*turns.shape[:2], 1))
         moved.append(replace(clip, poses=Pose(translations, turns)))
     here, there = (
-        matrix(DISTANCES[name](MotionLibrary.of(each, human.skeleton, human.anatomy)))
+        distance_matrix(DISTANCES[name](MotionLibrary.of(each, human.skeleton, human.anatomy)))
         for each in (clips, moved)
     )
     assert np.allclose(here, there, atol=2e-2 if name == "ahn-wohn" else 2e-4)
@@ -88,14 +93,14 @@ def test_parts_of_every_profile_sum_to_the_whole_body(library: MotionLibrary) ->
     plan = default_body_plan()
     weights = plan.joint_weights(library.anatomy)
     assert sum(weights.values()) == pytest.approx(8.2)
-    whole = matrix(JointAngles(library, weights))
+    whole = distance_matrix(JointAngles(library, weights))
     assert list(plan.profiles) == ["SMG", "SP2", "SP3a", "SP3b", "SP4a", "SP4b", "SP5"]
     for profile in plan.profiles:
         parts = plan.split(profile, library.skeleton, library.anatomy)
         joints = sorted(joint for part in parts for joint in part.joints)
         assert joints == list(range(len(library.skeleton)))
         assert [part.prior for part in parts] == [True] + [False] * (len(parts) - 1)
-        total = sum(matrix(part_distance(library, part)) for part in parts)
+        total = sum(distance_matrix(part_distance(library, part)) for part in parts)
         assert np.allclose(total, whole, atol=1e-4)
         assert sum(threshold_shares(parts)) == pytest.approx(1.0)
 

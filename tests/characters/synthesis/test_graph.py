@@ -3,13 +3,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
 from cubeling.characters import CharacterError
-from cubeling.characters.synthesis.distances import matrix, thesis_distance
+from cubeling.characters.synthesis.distances import distance_matrix, thesis_distance
 from cubeling.characters.synthesis.graphs.building import standard_graph
 from cubeling.characters.synthesis.graphs.candidates import Candidates, find_candidates
 from cubeling.characters.synthesis.graphs.components import largest_component, strong_components
@@ -85,7 +84,7 @@ def test_bounded_paths_are_the_cheapest_of_their_length(edges: Edges, hops: int)
 def test_candidates_are_the_local_minima_between_clips(library: MotionLibrary) -> None:
     distance = thesis_distance(library)
     found = find_candidates(distance, library, 0.2)
-    values = matrix(distance)
+    values = distance_matrix(distance)
     a, b = library.clip("Walk"), library.clip("WalkLeftMedium")
     block = np.pad(values[np.ix_(a, b)], 1, mode="wrap")  # both are loops
     near = [

@@ -3,8 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.characters.motion.motion import RootDelta
 from cubeling.characters.synthesis.matching.prediction import MAX_TURN_RATE, Impulse, Wish, predict

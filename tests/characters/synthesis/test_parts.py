@@ -14,7 +14,7 @@ from cubeling.characters.synthesis.graphs.search import HopCosts
 from cubeling.characters.synthesis.graphs.storage import StoredGraph
 from cubeling.characters.synthesis.library import MotionLibrary
 from cubeling.characters.synthesis.transitions.comparison import Comparison, common_requests
-from cubeling.characters.synthesis.transitions.evaluation import together
+from cubeling.characters.synthesis.transitions.evaluation import merge_answers
 from cubeling.characters.synthesis.transitions.progressive import (
     SearchSettings,
     TransitionPlanner,
@@ -217,6 +217,6 @@ def test_parts_answer_sooner_and_more_smoothly_than_the_whole_body() -> None:
     graphs = split.graphs(split.threshold)
     asked = common_requests(standard, graphs, 8)
     one, parts = whole.answers(standard, asked), split.answers(graphs, asked)
-    assert together(one).response > 2.5 * together(parts).response
-    assert together(one).cost > together(parts).cost
-    assert together(parts).share("legs") == 0.0
+    assert merge_answers(one).response > 2.5 * merge_answers(parts).response
+    assert merge_answers(one).cost > merge_answers(parts).cost
+    assert merge_answers(parts).share("legs") == 0.0

@@ -19,8 +19,7 @@ from cubeling.robot.conformance.checks.moving import MOVING
 from cubeling.robot.conformance.probe import Probe
 from cubeling.robot.conformance.suite import MAX_DURATION_S
 from cubeling.robot.errors import RobotError
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 from cubeling.robot.protocol.schema import unpack
 from cubeling.robot.protocol.wire import decode_frame
 from cubeling.robot.simulators.cubeling import body

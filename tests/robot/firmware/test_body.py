@@ -7,8 +7,7 @@ from types import SimpleNamespace
 from typing import Any, get_args
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from cubeling.affect.hysteresis import Label, next_label
 from cubeling.robot.firmware.dino import body, motions, servos, sounds
@@ -19,8 +18,7 @@ from cubeling.robot.firmware.dino.table import ServoTable
 from cubeling.robot.protocol import messages as m
 from cubeling.robot.simulators.cubeling import dinosaur
 from tests.robot.firmware.conftest import Dino, FailingBoard, Pulse, VirtualBoard
-from tools import firmware_tables as generate
-from tools import wiring
+from tools import firmware_tables as generate, wiring
 
 SERVOS = {servo.pin: servo for servo in ServoTable(servos).servos}
 

@@ -5,8 +5,7 @@ import struct
 from pathlib import Path
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 import cubeling.robot.protocol
 from cubeling.robot.firmware.dino import codec, frames, messages

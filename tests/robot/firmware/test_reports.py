@@ -3,11 +3,9 @@
 from typing import Any
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
-from cubeling.robot.firmware.dino import log as firmware_log
-from cubeling.robot.firmware.dino import servos
+from cubeling.robot.firmware.dino import log as firmware_log, servos
 from cubeling.robot.firmware.dino.robot import run
 from cubeling.robot.firmware.dino.table import ServoTable
 from cubeling.robot.protocol import messages as m

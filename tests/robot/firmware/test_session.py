@@ -3,8 +3,7 @@
 from types import SimpleNamespace
 
 import pytest
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
+from hypothesis import example, given, settings, strategies as st
 
 from cubeling.affect import Emotion
 from cubeling.robot.conformance import SimulatedChannel, all_checks, run_checks

@@ -1,8 +1,7 @@
 """Players and robots' nodes in virtual time: no action is lost or doubled."""
 
 import numpy as np
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from cubeling.affect import Emotion
 from cubeling.robot.network import Member, Player

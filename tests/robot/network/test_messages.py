@@ -3,8 +3,7 @@
 import json
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.robot.network import messages as m
 from cubeling.robot.network.messages import MalformedError, decode, encode

@@ -4,11 +4,9 @@ import contextlib
 from typing import get_args
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import wire
+from cubeling.robot.protocol import messages as m, wire
 from cubeling.robot.protocol.fields import FieldSpec, MessageError
 from cubeling.robot.protocol.schema import HEADER, MESSAGES, MessageSpec, Sender, pack, unpack
 from cubeling.robot.protocol.timing import VERSION

@@ -4,8 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.robot.simulators.channel import MAX_IN_FLIGHT_BYTES, SPLIT_GAP_S, FaultyChannel
 from cubeling.robot.simulators.faults import Faults

@@ -4,8 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import settings
-from hypothesis import strategies as st
+from hypothesis import settings, strategies as st
 from hypothesis.stateful import (
     RuleBasedStateMachine,
     initialize,
@@ -16,8 +15,7 @@ from hypothesis.stateful import (
 
 from cubeling.affect import Emotion
 from cubeling.robot.drivers import DRIVERS
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 from cubeling.robot.simulators.cubeling.simulator import Simulator
 
 HARM = {

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.robot.drivers.pleo.joints import JOINTS
 from cubeling.robot.simulators.pleo.simulator import MAX_UNREAD_BYTES, PleoSimulator

@@ -3,8 +3,7 @@
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.tracking.appearance.colour_space import LINEAR_FROM_SRGB, lab
 from tests.bench.hand_scenes import SKINS

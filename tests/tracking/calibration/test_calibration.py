@@ -12,7 +12,7 @@ from cubeling.tracking.calibration import (
     ViewSample,
     calibrate,
     camera_vector,
-    check,
+    check_camera,
     measured_cube,
 )
 from cubeling.tracking.calibration.solver import fit_poses
@@ -116,7 +116,7 @@ def test_derivatives_match_finite_differences():
 )
 def test_a_saved_camera_is_ok_until_it_has_changed(change, degraded):
     views, _ = views_of(8, noise=0.05)
-    verdict = check(views, camera_vector.to_intrinsics(TRUE + change, SIZE), TARGET)
+    verdict = check_camera(views, camera_vector.to_intrinsics(TRUE + change, SIZE), TARGET)
     assert verdict.degraded is degraded
     assert verdict.focal_change == pytest.approx(-change[0] / (900 + change[0]), abs=0.004)
 
@@ -125,7 +125,7 @@ def test_a_saved_camera_of_the_rational_model_can_be_checked():
     views, _ = views_of(9, noise=0.05)
     plain = camera_vector.to_intrinsics(TRUE, SIZE)
     eight = np.array([*plain.distortion, 0.0, 0.0, 0.0])
-    verdict = check(views, Intrinsics(plain.matrix, eight, SIZE), TARGET)
+    verdict = check_camera(views, Intrinsics(plain.matrix, eight, SIZE), TARGET)
     assert not verdict.degraded
 
 

@@ -6,13 +6,12 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.tracking import CubeModel, TrackingError
 from cubeling.tracking.cube.file import write_cube
 from cubeling.tracking.cube.marker import marker_cells
-from cubeling.tracking.cube.model import FACE_AXES, bundled, face_corners
+from cubeling.tracking.cube.model import FACE_AXES, bundled_cubes, face_corners
 from cubeling.tracking.geometry import se3
 
 GOOD = """
@@ -42,7 +41,7 @@ def refusal(tmp_path, text):
 
 
 def test_the_bundled_cubes_carry_the_roles_they_are_made_for():
-    assert bundled() == ("companion", "locomotion")
+    assert bundled_cubes() == ("companion", "locomotion")
     roles = {face.name: face.role for face in CubeModel.load("locomotion").faces}
     assert (roles["front"], roles["left"], roles["right"], roles["back"]) == (
         "idle",
@@ -56,7 +55,7 @@ def test_the_bundled_cubes_carry_the_roles_they_are_made_for():
 
 def test_no_two_bundled_markers_are_taken_for_one_another_and_none_for_itself_turned():
     """Six of sixteen bits apart, on one cube and between the two."""
-    ids = [face.marker_id for name in bundled() for face in CubeModel.load(name).faces]
+    ids = [face.marker_id for name in bundled_cubes() for face in CubeModel.load(name).faces]
     assert len(set(ids)) == 12
     bits = {number: marker_cells("DICT_4X4_50", number)[1:-1, 1:-1] for number in ids}
     for one in ids:

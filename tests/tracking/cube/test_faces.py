@@ -2,18 +2,17 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
-from hypothesis import strategies as st
+from hypothesis import assume, given, strategies as st
 from numpy.typing import NDArray
 
 from cubeling.tracking.cube.faces import FacePlanes, face_frame, plane_normal
-from cubeling.tracking.cube.model import FACE_AXES, CubeModel, Face, bundled, face_corners
+from cubeling.tracking.cube.model import FACE_AXES, CubeModel, Face, bundled_cubes, face_corners
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.synthetic.folding import fold_cube
 
 Array = NDArray[np.float64]
 
-CUBES = [CubeModel.load(name) for name in bundled()]
+CUBES = [CubeModel.load(name) for name in bundled_cubes()]
 CUBE = CubeModel.load("locomotion")
 FACES = FacePlanes(CUBE)
 

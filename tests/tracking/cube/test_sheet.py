@@ -10,7 +10,7 @@ import pytest
 from cubeling.tracking import CubeModel, TrackingError, icon_mask, icon_paths, write_sheet
 from cubeling.tracking.cube.icons import ICON_COLOURS, icons, signed_area
 from cubeling.tracking.cube.marker import marker_cells, marker_loops
-from cubeling.tracking.cube.model import aruco_dictionary, bundled
+from cubeling.tracking.cube.model import aruco_dictionary, bundled_cubes
 from cubeling.tracking.cube.printing.layout import PAPER_SIZES_MM, SheetLayout, largest_edge_mm
 from cubeling.tracking.cube.printing.unfolding import Unfolding
 from tests.tracking.cube.folding import cube_from_face
@@ -41,7 +41,7 @@ def detected(image, dictionary, pixels_per_mm=PIXELS_PER_MM):
     }
 
 
-@pytest.fixture(scope="module", params=bundled())
+@pytest.fixture(scope="module", params=bundled_cubes())
 def printed(request, tmp_path_factory):
     cube = CubeModel.load(request.param)
     path = tmp_path_factory.mktemp("sheet") / "cube.pdf"

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from cubeling.tracking.cube.model import FACE_AXES, CubeModel, bundled, face_corners
+from cubeling.tracking.cube.model import FACE_AXES, CubeModel, bundled_cubes, face_corners
 from cubeling.tracking.cube.printing.unfolding import Unfolding
 from tests.tracking.cube.folding import cube_from_face, cube_from_tab
 
@@ -20,7 +20,7 @@ def carried(matrix, points):
     return (flat @ matrix.T)[:, :3]
 
 
-@pytest.mark.parametrize("name", bundled())
+@pytest.mark.parametrize("name", bundled_cubes())
 def test_the_folded_net_has_every_marker_where_the_model_has_it(name):
     cube = CubeModel.load(name)
     net = Unfolding(cube.edge)

@@ -1,8 +1,7 @@
 """Parts are complete however the network splits the stream."""
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.tracking.sources.multipart import MAX_PART_BYTES, MultipartError, MultipartParser
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.tracker.rest import MAX_FRAME_GAP_S, MAX_REST_FRAMES, Rest

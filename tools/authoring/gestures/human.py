@@ -24,8 +24,6 @@ from tools.authoring.gestures.timeline import (
 from tools.authoring.human.acting import GAZE_PITCH_DEG
 from tools.authoring.human.limbs import (
     SIDES as ARMS,
-)
-from tools.authoring.human.limbs import (
     HandTarget,
     elbow_rotation,
     hang_arm,

@@ -8,12 +8,10 @@ from tools.authoring.modelling.meshes import join
 from tools.authoring.modelling.quadruped import loop_clip
 from tools.authoring.modelling.shapes import Vector, linear_rgb
 from tools.authoring.robot.angry import angry
-from tools.authoring.robot.body import body, sockets
-from tools.authoring.robot.body import lit_lenses as body_lenses
+from tools.authoring.robot.body import body, lit_lenses as body_lenses, sockets
 from tools.authoring.robot.expressions import expression_names, with_expressions
 from tools.authoring.robot.happy import happy
-from tools.authoring.robot.head import eyes, head
-from tools.authoring.robot.head import lit_lenses as head_lenses
+from tools.authoring.robot.head import eyes, head, lit_lenses as head_lenses
 from tools.authoring.robot.motion import LEVELS
 from tools.authoring.robot.neutral import neutral
 from tools.authoring.robot.rig import FEET, MOODS, scaled_with_head, shipped_skeleton, skeleton

@@ -13,8 +13,13 @@ from tools.authoring.modelling.shapes import Array, linear_rgb
 from tools.authoring.modelling.surface import normals_of
 from tools.authoring.vleo.body import BACK_TEAL, LASH
 from tools.authoring.vleo.expressions import EXPRESSIONS, NEUTRAL, VleoExpression
-from tools.authoring.vleo.head import EYE_AXES, LID_OPENING_RAD, REST_GAZE, head_shape
-from tools.authoring.vleo.head import EYE_RADIUS_M as EYE_RADIUS_M
+from tools.authoring.vleo.head import (
+    EYE_AXES,
+    EYE_RADIUS_M as EYE_RADIUS_M,
+    LID_OPENING_RAD,
+    REST_GAZE,
+    head_shape,
+)
 from tools.authoring.vleo.rig import EYE_CENTRE_M
 from tools.authoring.vleo.skin import skin_colors
 

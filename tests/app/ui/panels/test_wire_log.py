@@ -2,8 +2,7 @@
 
 import dataclasses
 
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.app.ui.panels.wire_log import MAX_CHUNKS, MAX_MESSAGES, RATE_SPAN_S, WireLog
 from cubeling.app.ui.panels.wire_words import WORDS, FrameDecoder

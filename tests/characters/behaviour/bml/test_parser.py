@@ -1,8 +1,7 @@
 """BML documents are read, and what is no BML is refused in one line."""
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.characters.behaviour.bml import BML, Mark, SyncReference, parse
 from cubeling.characters.behaviour.bml.parser import MAX_BEHAVIOURS, reference

@@ -1,8 +1,7 @@
 """Files and collections of gestures."""
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from cubeling.characters import CharacterError
 from cubeling.characters.behaviour.expressivity import GestureExpressivity

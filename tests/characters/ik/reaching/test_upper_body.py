@@ -5,8 +5,7 @@ from typing import TypedDict
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.characters import Pose
 from cubeling.characters.ik.reaching import HandTarget, ReachKind, ReachStyle

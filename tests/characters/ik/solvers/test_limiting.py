@@ -8,7 +8,7 @@ import pytest
 from cubeling.characters.ik.solvers import columns
 from cubeling.characters.ik.solvers.chains import Chains
 from cubeling.characters.ik.solvers.limiting import propagated
-from cubeling.characters.ik.solvers.measures import arc
+from cubeling.characters.ik.solvers.measures import arc_targets
 from cubeling.characters.ik.solvers.positional import PositionalSolver
 from cubeling.characters.ik.solvers.springs import MassSprings
 from cubeling.characters.ik.solvers.task import Limiting, Task
@@ -29,7 +29,7 @@ def planar_chains(first_deg: float = 120.0, others_deg: float = 50.0) -> Chains:
 def planar_task(limiting: Limiting) -> Task:
     chains = planar_chains()
     _, points = chains.frames(chains.random(COUNT, np.random.default_rng(4)))
-    return Task.of(chains, points[:, -1], arc(6, COUNT), np.full(COUNT, 1e-3), limiting)
+    return Task.of(chains, points[:, -1], arc_targets(6, COUNT), np.full(COUNT, 1e-3), limiting)
 
 
 def errors(limiting: Limiting, loops: int) -> Array:
@@ -53,7 +53,7 @@ def test_parent_takes_what_its_child_cannot() -> None:
     chains = planar_chains()
     turned = rotations.about("z", np.radians([[0.0, 0.0, 0.0, 0.0, 0.0, 80.0]]))
     target = np.array([[0.9, 0.3, 0.0]])
-    task = Task.of(chains, target, arc(6, 1), np.full(1, 1e-3), "propagate")
+    task = Task.of(chains, target, arc_targets(6, 1), np.full(1, 1e-3), "propagate")
     _, points = task.frames(columns.to_columns(turned))
     angles = np.degrees(columns.to_euler(propagated(task, columns.to_columns(turned), points)))
     levers = np.linalg.norm(target - points[:-1, :, 0], axis=-1)

@@ -1,12 +1,11 @@
 """Rotations from positions (S13, S15)."""
 
 import numpy as np
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from cubeling.characters.ik.solvers import columns
 from cubeling.characters.ik.solvers.chains import Chains
-from cubeling.characters.ik.solvers.measures import Problem, arc, target_path, twist
+from cubeling.characters.ik.solvers.measures import Problem, arc_targets, target_path, twist
 from cubeling.characters.ik.solvers.orientation import horn
 from cubeling.characters.ik.solvers.solving import solve
 from cubeling.characters.skeleton import rotations
@@ -46,7 +45,7 @@ def test_up_vectors_stay_perpendicular_to_their_bones() -> None:
 
 
 def test_bones_do_not_twist_while_a_chain_follows_its_target() -> None:
-    count, start = 20, arc(6, 20)
+    count, start = 20, arc_targets(6, 20)
     problem = Problem.random(6, count, np.random.default_rng(3))
     random = np.random.default_rng(4)
     paths = np.stack([target_path(60, 0.01, random) for _ in range(count)], 1)

@@ -2,12 +2,17 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.ik.solvers.chains import Chains
-from cubeling.characters.ik.solvers.measures import Problem, arc, joint_change, violations, zig_zag
+from cubeling.characters.ik.solvers.measures import (
+    Problem,
+    arc_targets,
+    joint_change,
+    violations,
+    zig_zag,
+)
 from cubeling.characters.ik.solvers.single import SingleChain
 from cubeling.characters.ik.solvers.solving import SOLVERS, solve
 from cubeling.characters.ik.solvers.springs import MassSprings, verlet
@@ -95,7 +100,7 @@ def test_chain_points_straight_to_what_is_out_of_reach(method: str) -> None:
     chains = Chains.straight(np.array([0.3, 0.1, 0.2, 0.2]))
     directions = np.random.default_rng(5).normal(size=(50, 3))
     targets = directions / np.linalg.norm(directions, axis=1, keepdims=True) * 0.9
-    found = solve(chains, targets, arc(4, 50), method=method)
+    found = solve(chains, targets, arc_targets(4, 50), method=method)
     bones = np.diff(found.positions, axis=1) / chains.lengths[:, None]
     cosines = (bones * targets[:, None] / 0.9).sum(-1)
     assert np.degrees(np.arccos(np.clip(cosines, -1, 1))).max() < 2.0
@@ -155,7 +160,7 @@ def test_chain_curls_without_zig_zag_to_targets_near_its_base(method: str) -> No
     for joints in (3, 6, 10):
         chains = Chains.straight(np.full(joints, 1 / joints))
         targets = 0.02 * directions * np.arange(1, 11).repeat(4)[:, None]
-        found = solve(chains, targets, arc(joints, 40), method=method)
+        found = solve(chains, targets, arc_targets(joints, 40), method=method)
         assert found.solved.all()
         assert zig_zag(found.positions).sum() == 0
 

@@ -8,7 +8,7 @@ import pytest
 from cubeling.characters import Clip
 from cubeling.characters.control.controllers.recordings import read_motions
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.synthesis.gestures.learning import RATE_HZ, analyse, learned
+from cubeling.characters.synthesis.gestures.learning import RATE_HZ, analyse, learn_gestures
 from cubeling.characters.synthesis.gestures.segmentation import (
     HOLD,
     PREPARATION,
@@ -76,7 +76,9 @@ def test_a_phrase_ends_where_the_next_one_begins():
 
 
 def test_recordings_become_units_from_rest_to_rest(human, beating):
-    library = learned([beating(BEATS), beating(BEATS, "left")], human.skeleton, human.anatomy)
+    library = learn_gestures(
+        [beating(BEATS), beating(BEATS, "left")], human.skeleton, human.anatomy
+    )
     assert [each.hand for each in library.phrases] == ["right", "right", "left", "left"]
     assert library.consecutive == (False, True, False, True)
     for phrase in library.phrases:
@@ -91,14 +93,14 @@ def test_recordings_become_units_from_rest_to_rest(human, beating):
 @pytest.mark.parametrize("knots", [[(0, 0), (3, 0)], [(0, 0), (0.4, 30), (0.8, 0), (1.2, 30)]])
 def test_who_never_leaves_rest_or_never_rests_is_refused_in_one_line(human, beating, knots):
     with pytest.raises(CharacterError, match="no gesture found") as caught:
-        learned([beating(knots)], human.skeleton, human.anatomy)
+        learn_gestures([beating(knots)], human.skeleton, human.anatomy)
     assert "\n" not in str(caught.value)
 
 
 @pytest.mark.skipif(not (SHARED_DATA / "bvh").is_dir(), reason="no shared data")
 def test_people_who_gesture_are_learned_and_walkers_are_not(human):
     (clip,) = read_motions([str(SHARED_DATA / "bvh" / "131_03.bvh")], human)
-    assert len(learned([clip], human.skeleton, human.anatomy).phrases) >= 4
+    assert len(learn_gestures([clip], human.skeleton, human.anatomy).phrases) >= 4
     (walk,) = read_motions([str(SHARED_DATA / "cmu-mocap" / "02" / "02_01.amc")], human)
     with pytest.raises(CharacterError, match="no gesture found"):
-        learned([walk], human.skeleton, human.anatomy)
+        learn_gestures([walk], human.skeleton, human.anatomy)

@@ -5,8 +5,7 @@ from typing import Any
 import pytest
 
 from cubeling.affect import Emotion
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 from cubeling.robot.protocol.schema import pack, unpack
 from cubeling.robot.protocol.wire import FrameReader, encode_frame
 from cubeling.robot.simulators.cubeling.dinosaur import CATALOGUE

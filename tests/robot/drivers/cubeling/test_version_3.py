@@ -8,8 +8,7 @@ import pytest
 from cubeling.affect import Emotion
 from cubeling.robot.contract.moves import joint_move
 from cubeling.robot.contract.telemetry import MAX_LOG_LINES
-from cubeling.robot.protocol import messages as m
-from cubeling.robot.protocol import timing
+from cubeling.robot.protocol import messages as m, timing
 from cubeling.robot.protocol.schema import pack
 from cubeling.robot.protocol.wire import encode_frame
 from cubeling.robot.simulators.cubeling.dinosaur import CATALOGUE

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cubeling.robot.drivers.pleo.console_reader import MAX_LINE_CHARS, ConsoleReader
 from cubeling.robot.drivers.pleo.timing import PROMPT_SETTLE_S, STRAY_SETTLE_S

@@ -1,0 +1,1 @@
+from cubeling.app.pipeline.playground import Playground as Playground

@@ -1,0 +1,77 @@
+from cubeling.characters.behaviour.bml.document import Block as Block
+from cubeling.characters.behaviour.bml.feedback import (
+    BlockProgress as BlockProgress,
+    BmlWarning as BmlWarning,
+    Feedback as Feedback,
+    feedback_xml as feedback_xml,
+)
+from cubeling.characters.behaviour.bml.parser import parse as parse
+from cubeling.characters.behaviour.bml.realizer import Realizer as Realizer
+from cubeling.characters.behaviour.expressivity import (
+    NEUTRAL as NEUTRAL,
+    GestureExpressivity as GestureExpressivity,
+)
+from cubeling.characters.behaviour.fml.planner import behaviours_of as behaviours_of
+from cubeling.characters.behaviour.gestures.collection import (
+    GestureCollection as GestureCollection,
+    gestures_in as gestures_in,
+)
+from cubeling.characters.behaviour.gestures.contacts import CONTACTS as CONTACTS
+from cubeling.characters.behaviour.gestures.directions import DIRECTIONS as DIRECTIONS
+from cubeling.characters.behaviour.gestures.files import (
+    GESTURE_SUFFIX as GESTURE_SUFFIX,
+    load_gesture as load_gesture,
+    save_gesture as save_gesture,
+)
+from cubeling.characters.behaviour.gestures.motion import GestureMotion as GestureMotion
+from cubeling.characters.behaviour.gestures.planning import Performer as Performer
+from cubeling.characters.behaviour.gestures.recording import (
+    gesture_from_recording as gesture_from_recording,
+)
+from cubeling.characters.behaviour.gestures.space import (
+    CENTRES_X_CM as CENTRES_X_CM,
+    CENTRES_Y_CM as CENTRES_Y_CM,
+    CENTRES_Z_CM as CENTRES_Z_CM,
+    CHEST_CM as CHEST_CM,
+    REFERENCE_ARM_M as REFERENCE_ARM_M,
+    GestureSpace as GestureSpace,
+)
+from cubeling.characters.behaviour.gestures.timing import (
+    Repeats as Repeats,
+    apex_share as apex_share,
+    natural_times as natural_times,
+    stroke_length as stroke_length,
+)
+from cubeling.characters.behaviour.intents import (
+    BehaviourIntent as BehaviourIntent,
+    GazeIntent as GazeIntent,
+    GestureIntent as GestureIntent,
+    Hand as Hand,
+    HeadIntent as HeadIntent,
+    ReachIntent as ReachIntent,
+    StrokeTimes as StrokeTimes,
+    Times as Times,
+)
+from cubeling.characters.behaviour.performing.character_performer import (
+    CharacterPerformer as CharacterPerformer,
+)
+from cubeling.characters.behaviour.performing.performed import (
+    Manner as Manner,
+    Performed as Performed,
+    Performing as Performing,
+    Saying as Saying,
+)
+from cubeling.characters.behaviour.performing.speech_kind import retime_speeches as retime_speeches
+from cubeling.characters.behaviour.performing.surroundings import (
+    Surroundings as Surroundings,
+    numbers_of as numbers_of,
+)
+from cubeling.characters.behaviour.symbolic_gesture import (
+    SECTORS_X as SECTORS_X,
+    SECTORS_Y as SECTORS_Y,
+    SECTORS_Z as SECTORS_Z,
+    BodyKey as BodyKey,
+    HandKey as HandKey,
+    Place as Place,
+    SymbolicGesture as SymbolicGesture,
+)

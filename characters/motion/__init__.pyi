@@ -1,0 +1,95 @@
+from cubeling.characters.ik.reaching.effort import reach_effort as reach_effort
+from cubeling.characters.ik.reaching.hand_shapes import HAND_SHAPES as HAND_SHAPES
+from cubeling.characters.ik.reaching.hands import find_hand as find_hand
+from cubeling.characters.ik.solvers.measures import (
+    REACH_M as REACH_M,
+    Problem as Problem,
+    arc_targets as arc_targets,
+    joint_change as joint_change,
+    target_path as target_path,
+    twist as twist,
+    violations as violations,
+    zig_zag as zig_zag,
+)
+from cubeling.characters.ik.solvers.single import SingleChain as SingleChain
+from cubeling.characters.ik.solvers.solving import (
+    SOLVERS as SOLVERS,
+    TOLERANCE as TOLERANCE,
+    solve as solve,
+)
+from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M as ARRIVAL_DISTANCE_M
+from cubeling.characters.motion.baking import bake as bake, stacked as stacked
+from cubeling.characters.motion.motion import Motion as Motion
+from cubeling.characters.motion.schedule import Schedule as Schedule
+from cubeling.characters.motion.schedule_file import ScheduleReader as ScheduleReader
+from cubeling.characters.motion.trees.dot import to_dot as to_dot
+from cubeling.characters.motion.trees.plan import (
+    Node as Node,
+    Plan as Plan,
+    Transition as Transition,
+)
+from cubeling.characters.skeleton import rotations as rotations
+from cubeling.characters.skeleton.pose import Array as Array, Skeleton as Skeleton
+from cubeling.characters.smoothing import smoothstep as smoothstep
+from cubeling.characters.synthesis.archive import skeleton_identity as skeleton_identity
+from cubeling.characters.synthesis.distances import DISTANCES as DISTANCES
+from cubeling.characters.synthesis.distances.distance import distance_matrix as distance_matrix
+from cubeling.characters.synthesis.gestures.graph import (
+    GestureGraph as GestureGraph,
+    sweep as sweep,
+)
+from cubeling.characters.synthesis.gestures.learning import learn_gestures as learn_gestures
+from cubeling.characters.synthesis.gestures.library import GestureLibrary as GestureLibrary
+from cubeling.characters.synthesis.gestures.plan import PlannedGesture as PlannedGesture
+from cubeling.characters.synthesis.graphs.building import (
+    DEFAULT_PROFILE as DEFAULT_PROFILE,
+    analyse as analyse,
+    check_choices as check_choices,
+    connectivity_curves as connectivity_curves,
+    part_graphs as part_graphs,
+    standard_graph as standard_graph,
+)
+from cubeling.characters.synthesis.graphs.graph import (
+    EdgeCosts as EdgeCosts,
+    MotionGraph as MotionGraph,
+)
+from cubeling.characters.synthesis.graphs.parts import PartGraphs as PartGraphs
+from cubeling.characters.synthesis.graphs.storage import (
+    WHOLE_BODY as WHOLE_BODY,
+    StoredGraph as StoredGraph,
+    load_graph as load_graph,
+    save_graph as save_graph,
+)
+from cubeling.characters.synthesis.idle.alignment import Alignment as Alignment
+from cubeling.characters.synthesis.idle.database import (
+    IdleDatabase as IdleDatabase,
+    RestingPosture as RestingPosture,
+)
+from cubeling.characters.synthesis.idle.posture_space import PostureVectors as PostureVectors
+from cubeling.characters.synthesis.idle.recordings import (
+    BALANCES as BALANCES,
+    read_standing as read_standing,
+)
+from cubeling.characters.synthesis.idle.storage import (
+    Person as Person,
+    load_person as load_person,
+    save_person as save_person,
+)
+from cubeling.characters.synthesis.idle.stretches import StretchStream as StretchStream
+from cubeling.characters.synthesis.idle.variations import COMPONENTS as COMPONENTS
+from cubeling.characters.synthesis.library import (
+    DEFAULT_RATE_HZ as DEFAULT_RATE_HZ,
+    MotionLibrary as MotionLibrary,
+)
+from cubeling.characters.synthesis.transitions.comparison import (
+    Comparison as Comparison,
+    SplitComparison as SplitComparison,
+    common_requests as common_requests,
+)
+from cubeling.characters.synthesis.transitions.evaluation import (
+    Answers as Answers,
+    Requests as Requests,
+    Summary as Summary,
+    graph_requests as graph_requests,
+    merge_answers as merge_answers,
+)

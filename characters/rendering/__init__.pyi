@@ -1,0 +1,35 @@
+from cubeling.characters.rendering.context import (
+    create_context as create_context,
+    draws_in_software as draws_in_software,
+)
+from cubeling.characters.rendering.portrait import (
+    PAPER_BGR as PAPER_BGR,
+    PortraitRenderer as PortraitRenderer,
+    side_by_side as side_by_side,
+)
+from cubeling.characters.rendering.portrait_camera import (
+    CharacterExtent as CharacterExtent,
+    PortraitCamera as PortraitCamera,
+    joints_below as joints_below,
+)
+from cubeling.characters.rendering.quality import (
+    FULL as FULL,
+    QUALITIES as QUALITIES,
+    Effect as Effect,
+    Quality as Quality,
+)
+from cubeling.characters.rendering.scene import (
+    RIM_SHARE as RIM_SHARE,
+    WALL_SHARE as WALL_SHARE,
+    Box as Box,
+    Cover as Cover,
+    FloorPath as FloorPath,
+    Focus as Focus,
+    MeasuredLight as MeasuredLight,
+    Scene as Scene,
+    SceneCharacter as SceneCharacter,
+    Softness as Softness,
+    View as View,
+)
+from cubeling.characters.rendering.stage import Stage as Stage
+from cubeling.characters.rendering.toys import GRIP_M as GRIP_M, toy as toy

@@ -1,0 +1,38 @@
+from cubeling.tracking.calibration.collector import calibrate_camera as calibrate_camera
+from cubeling.tracking.calibration.solver import Calibration as Calibration
+from cubeling.tracking.cube.file import write_cube as write_cube
+from cubeling.tracking.cube.icons import (
+    ICON_COLOURS as ICON_COLOURS,
+    icon_mask as icon_mask,
+    icon_paths as icon_paths,
+)
+from cubeling.tracking.cube.marker import marker_cells as marker_cells
+from cubeling.tracking.cube.model import (
+    CubeModel as CubeModel,
+    Face as Face,
+    bundled_cubes as bundled_cubes,
+    face_corners as face_corners,
+)
+from cubeling.tracking.cube.printing.sheet import write_sheet as write_sheet
+from cubeling.tracking.detection.markers import MarkerDetector as MarkerDetector
+from cubeling.tracking.detection.recognition import CubeRecognizer as CubeRecognizer
+from cubeling.tracking.errors import TrackingError as TrackingError
+from cubeling.tracking.files import write_whole as write_whole
+from cubeling.tracking.geometry import se3 as se3
+from cubeling.tracking.geometry.frame import Frame as Frame
+from cubeling.tracking.geometry.intrinsics import Intrinsics as Intrinsics
+from cubeling.tracking.geometry.state import CubeControls as CubeControls, CubeState as CubeState
+from cubeling.tracking.gestures.gestures import CubeGestures as CubeGestures
+from cubeling.tracking.gestures.table import SIDE_NORMALS as SIDE_NORMALS
+from cubeling.tracking.refinement.lens_estimate import LensEstimate as LensEstimate
+from cubeling.tracking.sources import open_source as open_source
+from cubeling.tracking.sources.base import (
+    FrameSource as FrameSource,
+    LiveFrames as LiveFrames,
+    StoredFrames as StoredFrames,
+    Timeline as Timeline,
+    nanoseconds_of as nanoseconds_of,
+)
+from cubeling.tracking.sources.device import Health as Health
+from cubeling.tracking.tracker.several import CubesTracker as CubesTracker
+from cubeling.tracking.tracker.tracker import CubeTracker as CubeTracker
