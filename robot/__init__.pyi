@@ -2,6 +2,7 @@ from cubeling.affect.emotion import Emotion as Emotion
 from cubeling.robot.contract.catalogue import Catalogue as Catalogue, JointLimits as JointLimits
 from cubeling.robot.contract.closeable import Closeable as Closeable
 from cubeling.robot.contract.moves import joint_move as joint_move
+from cubeling.robot.contract.port import Direction as Direction
 from cubeling.robot.contract.telemetry import (
     ClockEstimate as ClockEstimate,
     LinkCounts as LinkCounts,
@@ -11,7 +12,6 @@ from cubeling.robot.contract.telemetry import (
 )
 from cubeling.robot.errors import RobotError as RobotError
 from cubeling.robot.link.connection import connect as connect, protocol_of as protocol_of
-from cubeling.robot.link.exchange import Direction as Direction
 from cubeling.robot.link.linked_robot import Robot as Robot
 from cubeling.robot.link.ports import SerialPort as SerialPort, serial_ports as serial_ports
 from cubeling.robot.link.transport import opener as opener

@@ -3,8 +3,8 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
@@ -51,6 +51,9 @@ from cubeling.tracking import (
     Intrinsics,
     LensEstimate,
 )
+
+if TYPE_CHECKING:
+    import moderngl
 
 SUBTITLE_S = 1.2
 """A line stays in the command for so long after its end [s], for those who read it."""
@@ -124,7 +127,7 @@ class Playground:
         *,
         cube: CubeModel | None = None,
         character: Character | None = None,
-        context: moderngl.Context | None = None,
+        context: "moderngl.Context | None" = None,
         look: str = "auto",
         fixed: bool = False,
         known_cubes: Sequence[CubeModel] = (),

@@ -3,19 +3,24 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from typing import TYPE_CHECKING
 
-import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.app.pipeline.cube_window import Interior
 from cubeling.app.pipeline.resident import MIN_SIZE
 from cubeling.app.pipeline.scenario import Outcome
-from cubeling.app.pipeline.surroundings import Surroundings
 from cubeling.app.pipeline.things import Body
 from cubeling.characters import PosedCharacter
-from cubeling.characters.rendering import FULL, Quality, SceneCharacter, Stage, draws_in_software
+from cubeling.characters.rendering import FULL, Quality, SceneCharacter
 from cubeling.tracking import CubeControls, CubeModel, CubeState, Frame, Intrinsics
+
+if TYPE_CHECKING:
+    import moderngl
+
+    from cubeling.app.pipeline.surroundings import Surroundings
+    from cubeling.characters.rendering import Stage
 
 
 class StepRenderer:
@@ -37,30 +42,37 @@ class StepRenderer:
     """
 
     def __init__(
-        self, context: moderngl.Context | None, intrinsics: Intrinsics, realism: Sequence[str]
+        self, context: "moderngl.Context | None", intrinsics: Intrinsics, realism: Sequence[str]
     ) -> None:
         self._context, self._intrinsics, self._realism = context, intrinsics, tuple(realism)
-        self._stage = None if context is None else Stage(context, intrinsics.size)
+        self._stage = None if context is None else _stage_of(context, intrinsics)
+        self._surroundings: Surroundings | None = None
         self._quality = FULL
 
     def play(self, cube: CubeModel) -> None:
         """Begin with another cube: what the pictures have shown so far is forgotten."""
-        self._surroundings = Surroundings(cube, self._intrinsics, self._realism)
         if self._stage is not None:
+            from cubeling.app.pipeline.surroundings import Surroundings
+
+            self._surroundings = Surroundings(cube, self._intrinsics, self._realism)
             self._stage.forget()
 
     def look_through(self, intrinsics: Intrinsics) -> None:
         """Take another camera; `play` must follow."""
         if self._context is not None and intrinsics.size != self._intrinsics.size:
             self.close()
-            self._stage = Stage(self._context, intrinsics.size)
+            self._stage = _stage_of(self._context, intrinsics)
             self._stage.quality = self._quality
         self._intrinsics = intrinsics
 
     @property
     def in_software(self) -> bool:
         """Whether pictures are drawn on the processor, not on a graphics card."""
-        return self._context is not None and draws_in_software(self._context)
+        if self._context is None:
+            return False
+        from cubeling.characters.rendering import draws_in_software
+
+        return draws_in_software(self._context)
 
     @property
     def quality(self) -> Quality:
@@ -94,7 +106,7 @@ class StepRenderer:
         `interior` is what is seen in the cube, None for a closed one, and `blood` that of
         `Complexion`.
         """
-        if self._stage is None:
+        if self._stage is None or self._surroundings is None:
             return None
         view = self._surroundings.view(frame, state, controls, self._quality.matched)
         seen = body.posed.visible and controls.camera_from_table is not None
@@ -129,3 +141,10 @@ class StepRenderer:
         if self._stage is not None:
             self._stage.release()
             self._stage = None
+
+
+def _stage_of(context: "moderngl.Context", intrinsics: Intrinsics) -> "Stage":
+    """Return a stage for the pictures of a camera; the renderer is loaded only where it draws."""
+    from cubeling.characters.rendering import Stage
+
+    return Stage(context, intrinsics.size)

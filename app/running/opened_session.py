@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from cubeling.affect import AffectError, Personality
 from cubeling.app.errors import AppError
@@ -11,19 +12,21 @@ from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import ReplayInputs
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
-from cubeling.app.running.players import PlayerPublisher
-from cubeling.app.running.recording import SessionRecording
 from cubeling.app.running.robots import RobotLine
 from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.scenarios import Scenario, ScenarioSettings, find_scenario, make_scenario
 from cubeling.app.session import SessionOptions
-from cubeling.app.sound import SessionSound
 from cubeling.app.speaking.speaker import Speaker
 from cubeling.app.ui.panels import SessionMonitor
 from cubeling.app.ui.playback.status import EndCard
 from cubeling.app.ui.screen import Screen
 from cubeling.characters import CharacterError
 from cubeling.tracking import CubeModel, FrameSource, TrackingError
+
+if TYPE_CHECKING:
+    from cubeling.app.running.players import PlayerPublisher
+    from cubeling.app.running.recording import SessionRecording
+    from cubeling.app.sound import SessionSound
 
 
 @dataclass
@@ -48,7 +51,7 @@ class OpenedSession:
     screen: Screen
     """Where the pictures go."""
 
-    sound: SessionSound | None
+    sound: "SessionSound | None"
     """What is heard; None without pictures, and for a file without sound."""
 
     speaker: Speaker
@@ -63,7 +66,7 @@ class OpenedSession:
     clock: SessionClock
     """The time that the robot lives by."""
 
-    player: PlayerPublisher | None
+    player: "PlayerPublisher | None"
     """Publishes the character's actions and emotions, or None."""
 
     pace: Pace | None
@@ -87,7 +90,7 @@ class OpenedSession:
     first_source: FrameSource
     """The source at the start, which whoever opened it closes."""
 
-    recording: SessionRecording | None = None
+    recording: "SessionRecording | None" = None
     """Records the session, or None."""
 
     openings: frozenset[float] = frozenset()
@@ -194,6 +197,8 @@ class OpenedSession:
 
     def record(self, path: Path) -> None:
         """Record from the next frame on; raises AppError if the file cannot be written."""
+        from cubeling.app.running.recording import SessionRecording
+
         self.recording = SessionRecording(
             path, self.options, self.playground, self.source, self.wire, from_within=True
         )

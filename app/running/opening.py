@@ -5,8 +5,7 @@ import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-
-import moderngl
+from typing import TYPE_CHECKING
 
 from cubeling.app.errors import AppError
 from cubeling.app.output_path import check_output, default_folder
@@ -15,25 +14,16 @@ from cubeling.app.pipeline.playground import Playground
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
 from cubeling.app.running.opened_session import OpenedSession, scenario_of
-from cubeling.app.running.players import PlayerPublisher
-from cubeling.app.running.recording import SessionRecording
 from cubeling.app.running.robots import RobotLine, is_real_robot
 from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.scenarios import scenario_cube
 from cubeling.app.session import SessionOptions, check_codec, opening_times, start_over_times
 from cubeling.app.session.replay_inputs import read_replay_inputs
-from cubeling.app.sound import Mixer, SessionSound, SoundBank
 from cubeling.app.speaking.opening import open_speaker
-from cubeling.app.ui.cards.overlay import virtual_robot_side
-from cubeling.app.ui.cards.virtual_robot import VirtualRobot
-from cubeling.app.ui.output_file import OUTPUT_SUFFIXES, OutputFile
 from cubeling.app.ui.panels import SessionMonitor
 from cubeling.app.ui.playback.status import EndCard
-from cubeling.app.ui.playback.timeline import STRIP_HEIGHT
 from cubeling.app.ui.screen import NullScreen, Screen
-from cubeling.app.ui.video_file import has_sound
-from cubeling.characters import Character, choose_controller, clips_of_actions, standing_as
-from cubeling.characters.rendering import create_context
+from cubeling.characters import Character, choose_controller
 from cubeling.tracking import (
     CubeModel,
     FrameSource,
@@ -42,6 +32,13 @@ from cubeling.tracking import (
     open_source,
 )
 
+# What only some sessions have (a window, sound, a recording, players) is loaded by those.
+if TYPE_CHECKING:
+    import moderngl
+
+    from cubeling.app.running.players import PlayerPublisher
+    from cubeling.app.sound import SessionSound
+
 
 @contextmanager
 def open_session(
@@ -49,7 +46,7 @@ def open_session(
     *,
     source: FrameSource | None = None,
     screen: Screen | None = None,
-    player: PlayerPublisher | None = None,
+    player: "PlayerPublisher | None" = None,
     ending: EndCard | None = None,
     preferences: PreferenceStore | None = None,
 ) -> Iterator[OpenedSession]:
@@ -95,8 +92,9 @@ def open_session(
             raise AppError(
                 f"the controller {options.controller!r} stands by its own motions: leave out --idle"
             )
+        from cubeling.characters import standing_as
+
         character = standing_as(character, options.idle)
-    bank = SoundBank.load(options.sounds, clips_of_actions(character.clips))
     controller = choose_controller(options.controller, character, options.motions)
     calibration = None if options.intrinsics is None else Intrinsics.load(options.intrinsics)
     with ExitStack() as closing:
@@ -108,7 +106,7 @@ def open_session(
         preferences = preferences or PreferenceStore()
         monitor = SessionMonitor(options, FrameTimes(time.perf_counter))
         if screen is None:
-            sound = open_sound(options, bank, closing)
+            sound = open_sound(options, character, closing)
             screen, context = _open_screen(options, source, sound, preferences, monitor, closing)
         playground = Playground(
             scenario,
@@ -134,6 +132,8 @@ def open_session(
         wire, clock = WireTap(), SessionClock()
         recording = None
         if options.record is not None:
+            from cubeling.app.running.recording import SessionRecording
+
             recording = closing.enter_context(
                 SessionRecording(
                     options.record,
@@ -178,9 +178,18 @@ def open_session(
         yield session
 
 
-def open_sound(options: SessionOptions, bank: SoundBank, closing: ExitStack) -> SessionSound | None:
+def open_sound(
+    options: SessionOptions, character: Character, closing: ExitStack
+) -> "SessionSound | None":
     """Start the sound of a window or a video; None if it cannot have any."""
     path = options.output
+    if not options.pictures and options.sounds is None:
+        return None
+    from cubeling.app.sound import Mixer, SessionSound, SoundBank
+    from cubeling.app.ui.video_file import has_sound
+    from cubeling.characters import clips_of_actions
+
+    bank = SoundBank.load(options.sounds, clips_of_actions(character.clips))
     if not options.pictures or (path is not None and (options.muted or not has_sound(path))):
         return None
     sound = SessionSound(
@@ -196,15 +205,20 @@ def open_sound(options: SessionOptions, bank: SoundBank, closing: ExitStack) -> 
 def _open_screen(
     options: SessionOptions,
     source: FrameSource,
-    sound: SessionSound | None,
+    sound: "SessionSound | None",
     preferences: PreferenceStore,
     monitor: SessionMonitor,
     closing: ExitStack,
-) -> tuple[Screen, moderngl.Context | None]:
+) -> "tuple[Screen, moderngl.Context | None]":
     """Open the window or the output file, and the context to draw in."""
     if not options.pictures:
         return NullScreen(), None
     if options.output is not None:
+        from cubeling.app.ui.cards.overlay import virtual_robot_side
+        from cubeling.app.ui.cards.virtual_robot import VirtualRobot
+        from cubeling.app.ui.output_file import OutputFile
+        from cubeling.characters.rendering import create_context
+
         context = create_context()
         closing.callback(context.release)
         virtual_robot = VirtualRobot(context, virtual_robot_side(source.size[1]))
@@ -212,9 +226,8 @@ def _open_screen(
         samples = None if sound is None else sound.mixer.render
         output = OutputFile(options.output, source.size, source.rate, virtual_robot, samples)
         return closing.enter_context(output), context
-    from cubeling.app.ui.window import (
-        Window,  # imports libraries that a computer without display lacks
-    )
+    from cubeling.app.ui.playback.timeline import STRIP_HEIGHT
+    from cubeling.app.ui.window import Window  # whose libraries a computer without display lacks
 
     strip = STRIP_HEIGHT if is_seekable(source) else 0.0
     folder = options.folder or default_folder()
@@ -229,7 +242,7 @@ def is_seekable(source: FrameSource) -> bool:
 
 
 def _pace(
-    options: SessionOptions, source: FrameSource, player: PlayerPublisher | None
+    options: SessionOptions, source: FrameSource, player: "PlayerPublisher | None"
 ) -> Pace | None:
     """Return the pace of recorded frames: that of who watches them or lives with them."""
     # A real robot and other players live in real time.
@@ -281,6 +294,8 @@ def check_start(options: SessionOptions, source: FrameSource) -> None:
 def check_output_paths(options: SessionOptions) -> None:
     """Refuse files that cannot be written, before anything is opened."""
     if options.output is not None:
+        from cubeling.app.ui.output_file import OUTPUT_SUFFIXES
+
         check_output(options.output, "video", OUTPUT_SUFFIXES, overwrite=options.overwrite)
         if not options.pictures:
             raise AppError(f"without pictures there is nothing to write to '{options.output}'")

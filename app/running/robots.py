@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from pathlib import Path
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 from cubeling.affect import NEUTRAL, closest_word
 from cubeling.app.pipeline.scenario import EmotionTarget
@@ -15,10 +15,10 @@ from cubeling.robot import (
     LogLine,
     Robot,
     RobotError,
-    SimulatedPort,
-    SteppedRobot,
-    connect,
 )
+
+if TYPE_CHECKING:
+    from cubeling.robot import SteppedRobot
 
 OnBytes = Callable[[Direction, bytes, float], None]
 """Called with a direction, bytes and the time of the robot's clock [s] for all on the wire."""
@@ -49,7 +49,7 @@ class RobotLine(Closeable):
         clock: Clock = time.monotonic,
         *,
         real: bool = False,
-        stepped: SteppedRobot | None = None,
+        stepped: "SteppedRobot | None" = None,
     ) -> None:
         self.clock = clock
         """The time that `on_bytes` receives [s]."""
@@ -82,6 +82,8 @@ class RobotLine(Closeable):
         """
         if url == "none":
             return cls(clock=clock)
+        from cubeling.robot import SimulatedPort, SteppedRobot, connect
+
         real = is_real_robot(url)
         with ExitStack() as closing:
             if stepped and not real:

@@ -1,10 +1,13 @@
 """The bytes on the robot's wire, for whatever recording there is."""
 
 import threading
+from typing import TYPE_CHECKING
 
-from cubeling.app.session import Recorder
 from cubeling.app.ui.panels.wire_log import WireLog
 from cubeling.robot import Direction
+
+if TYPE_CHECKING:
+    from cubeling.app.session import Recorder
 
 
 class WireTap:
@@ -53,7 +56,7 @@ class WireTap:
             if self._aligned:
                 self._held, self._offset = timestamp, None
 
-    def record_to(self, recorder: Recorder | None, since: float = 0.0) -> None:
+    def record_to(self, recorder: "Recorder | None", since: float = 0.0) -> None:
         """Pass the bytes to a recording that begins at a timestamp [s], or to none."""
         with self._lock:
             self._recorder, self._since = recorder, since

@@ -30,7 +30,7 @@ REST_LAG_S = 0.5
 class Animator:
     """Animates a character under commands: one controller, then an ordered list of layers.
 
-    Unless another is given, the controller is the first of `CONTROLLERS` that suits the character:
+    Unless another is given, the controller is the first that suits the character:
     the plan of the file beside it, walking and running, or acting in place.
 
     Parameters

@@ -7,15 +7,16 @@ import tomllib
 from dataclasses import asdict, dataclass, fields, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.face.visemes.sets import viseme_sets
 from cubeling.characters.model.files import read_file
 from cubeling.characters.speech.accents import AccentSettings
-from cubeling.characters.synthesis.gestures.graph import GestureGraph
 from cubeling.characters.synthesis.gestures.library import Database, GestureLibrary
-from cubeling.characters.synthesis.gestures.planning import GesturePlanner, GestureSettings
+
+if TYPE_CHECKING:
+    from cubeling.characters.synthesis.gestures.planning import GesturePlanner
 
 DATABASES: tuple[str, ...] = get_args(Database)
 """Parts of a gesture library: the stronger gestures, the weaker ones, or all."""
@@ -84,7 +85,7 @@ class SpeechProfile:
         """How accents are found."""
         return AccentSettings(self.accent_threshold, self.accent_distance)
 
-    def planner(self, library: GestureLibrary) -> GesturePlanner:
+    def planner(self, library: GestureLibrary) -> "GesturePlanner":
         """Return what plans gestures of a library; making one takes a while, so once."""
         weights = (
             *((part, self.spine_weight) for part in ("spine", "chest", "upperChest")),
@@ -148,6 +149,9 @@ def _planner(
     database: Database,
     threshold: float | None,
     weights: tuple[tuple[str, float], ...],
-) -> GesturePlanner:
+) -> "GesturePlanner":
+    from cubeling.characters.synthesis.gestures.graph import GestureGraph
+    from cubeling.characters.synthesis.gestures.planning import GesturePlanner, GestureSettings
+
     graph = GestureGraph.of(library.database(database), threshold, dict(weights))
     return GesturePlanner.of(graph, GestureSettings(database=database, threshold=threshold))

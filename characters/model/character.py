@@ -5,11 +5,11 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib import resources
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.ik.reaching.upper_body import UpperBody
 from cubeling.characters.locomotion.gaits import Gaits
 from cubeling.characters.model.bind_pose import bound_upright
 from cubeling.characters.model.constraints import JointConstraint
@@ -26,8 +26,11 @@ from cubeling.characters.motion.motion import StandingMotion
 from cubeling.characters.motion.trees.plan import Plan
 from cubeling.characters.skeleton.anatomy import BODY_PARTS, Anatomy
 from cubeling.characters.skeleton.pose import Array, Skeleton
-from cubeling.characters.synthesis.gestures.library import GestureLibrary
 from cubeling.registry import Registry
+
+if TYPE_CHECKING:
+    from cubeling.characters.ik.reaching.upper_body import UpperBody
+    from cubeling.characters.synthesis.gestures.library import GestureLibrary
 
 CHARACTER_READERS: "Registry[Callable[[Path], Character]]" = Registry(
     dict.fromkeys(
@@ -82,7 +85,7 @@ class Character:
     standing: StandingFactory | None = None
     """Makes the motion that it stands with from a seed; None for its idle clip."""
 
-    gestures: GestureLibrary | None = None
+    gestures: "GestureLibrary | None" = None
     """With which its hands beat the rhythm of what it says; None for its head alone."""
 
     seed: int = 0
@@ -182,8 +185,10 @@ class Character:
         return replace(self, semantics={**dict.fromkeys(BODY_PARTS, ""), **names})
 
     @cached_property
-    def upper_body(self) -> UpperBody:
+    def upper_body(self) -> "UpperBody":
         """Its torso and arms, which put hands where they are to be."""
+        from cubeling.characters.ik.reaching.upper_body import UpperBody
+
         return UpperBody.of(self.skeleton, self.anatomy)
 
     @property

@@ -1,14 +1,16 @@
 """How a character beats the rhythm of what it says: the .gestures file beside it."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.skeleton.pose import Skeleton
-from cubeling.characters.synthesis.archive import skeleton_identity
-from cubeling.characters.synthesis.gestures.library import GestureLibrary
+
+if TYPE_CHECKING:
+    from cubeling.characters.synthesis.gestures.library import GestureLibrary
 
 
-def gestures_beside(path: Path, skeleton: Skeleton) -> GestureLibrary | None:
+def gestures_beside(path: Path, skeleton: Skeleton) -> "GestureLibrary | None":
     """Return the gestures in the .gestures file beside the file of a character; None without one.
 
     Raises
@@ -20,7 +22,7 @@ def gestures_beside(path: Path, skeleton: Skeleton) -> GestureLibrary | None:
     return gestures_for(file, skeleton, path.name) if file.exists() else None
 
 
-def gestures_for(file: Path, skeleton: Skeleton, name: str) -> GestureLibrary:
+def gestures_for(file: Path, skeleton: Skeleton, name: str) -> "GestureLibrary":
     """Return the gestures of a file for the character of this name.
 
     Raises
@@ -28,6 +30,9 @@ def gestures_for(file: Path, skeleton: Skeleton, name: str) -> GestureLibrary:
     CharacterError
         If it cannot be read, or was made for another skeleton.
     """
+    from cubeling.characters.synthesis.archive import skeleton_identity
+    from cubeling.characters.synthesis.gestures.library import GestureLibrary
+
     library = GestureLibrary.load(file)
     if library.skeleton_identity != skeleton_identity(skeleton):
         raise CharacterError(

@@ -4,19 +4,17 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.motion.motion import StandingMotion
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.pose import Skeleton
-from cubeling.characters.synthesis.archive import skeleton_identity
-from cubeling.characters.synthesis.idle.database import IdleDatabase
-from cubeling.characters.synthesis.idle.idle_motion import IdleMotion
-from cubeling.characters.synthesis.idle.posture_space import PostureVectors
-from cubeling.characters.synthesis.idle.recordings import StandingRecording
-from cubeling.characters.synthesis.idle.standing import PlantedPaws, StandingPerson
-from cubeling.characters.synthesis.idle.storage import load_person
+
+# Few characters stand as recorded: what that takes is loaded for those.
+if TYPE_CHECKING:
+    from cubeling.characters.synthesis.idle.recordings import StandingRecording
 
 StandingFactory = Callable[[int], StandingMotion]
 """Makes the motion that a character stands with from a seed."""
@@ -31,7 +29,7 @@ def standing_factory(
     skeleton: Skeleton,
     anatomy: Anatomy,
     clips: Mapping[str, Clip],
-    recordings: tuple[StandingRecording, ...],
+    recordings: "tuple[StandingRecording, ...]",
     *,
     acting: bool = True,
 ) -> StandingFactory:
@@ -40,6 +38,11 @@ def standing_factory(
     The first of its idle clips shows how it holds what posture vectors leave out,
     such as its fingers. All these clips are its acts, if it is `acting`.
     """
+    from cubeling.characters.synthesis.idle.database import IdleDatabase
+    from cubeling.characters.synthesis.idle.idle_motion import IdleMotion
+    from cubeling.characters.synthesis.idle.posture_space import PostureVectors
+    from cubeling.characters.synthesis.idle.standing import PlantedPaws, StandingPerson
+
     acts = idle_clips(clips)
     held = acts[0].poses[0] if acts else skeleton.rest
     paws = PlantedPaws.of(held, skeleton, anatomy)
@@ -54,7 +57,7 @@ def standing_factory(
     )
 
 
-def recordings_beside(path: Path, skeleton: Skeleton) -> tuple[StandingRecording, ...]:
+def recordings_beside(path: Path, skeleton: Skeleton) -> "tuple[StandingRecording, ...]":
     """Return the recordings in the .idle file beside the file of a character; () without one.
 
     Raises
@@ -65,6 +68,9 @@ def recordings_beside(path: Path, skeleton: Skeleton) -> tuple[StandingRecording
     idle = path.with_suffix(".idle")
     if not idle.exists():
         return ()
+    from cubeling.characters.synthesis.archive import skeleton_identity
+    from cubeling.characters.synthesis.idle.storage import load_person
+
     own, _, recordings = load_person(idle)
     if skeleton_identity(own) != skeleton_identity(skeleton):
         raise CharacterError(

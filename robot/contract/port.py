@@ -1,10 +1,16 @@
 """What a link needs of a port, real or simulated."""
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Literal, Protocol
 
 Clock = Callable[[], float]
 """Returns the time [s]."""
+
+Direction = Literal["tx", "rx"]
+"""From the host to the robot, or back."""
+
+ByteHook = Callable[[Direction, bytes, float], None]
+"""Called with a direction, the bytes and the time [s]."""
 
 READ_TIMEOUT_S = 0.005
 """Longest wait in one read [s]: a beat, a retry or a close is late by this much at most, and a beat

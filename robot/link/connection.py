@@ -4,9 +4,9 @@ import time
 from pathlib import Path
 
 from cubeling.robot.contract.driver import DRIVERS
-from cubeling.robot.contract.port import Clock
+from cubeling.robot.contract.port import ByteHook, Clock, Direction
 from cubeling.robot.errors import RobotError
-from cubeling.robot.link.exchange import ByteHook, Direction, IoThread
+from cubeling.robot.link.exchange import IoThread
 from cubeling.robot.link.line_sample import LineSample
 from cubeling.robot.link.linked_robot import Robot
 from cubeling.robot.link.transport import opener, spaced

@@ -6,19 +6,12 @@
 import contextlib
 import threading
 from collections.abc import Callable
-from typing import Literal
 
 import serial
 
 from cubeling.robot.contract.driver import Driver
-from cubeling.robot.contract.port import Clock, Opener, Port
+from cubeling.robot.contract.port import ByteHook, Clock, Direction, Opener, Port
 from cubeling.robot.errors import RobotError
-
-Direction = Literal["tx", "rx"]
-"""From the host to the robot, or back."""
-
-ByteHook = Callable[[Direction, bytes, float], None]
-"""Called with a direction, the bytes and the time [s]."""
 
 REOPEN_INTERVAL_S = 0.25
 """Time between two attempts to open a port that is gone [s]."""

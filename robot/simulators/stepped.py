@@ -4,11 +4,11 @@ import math
 from pathlib import Path
 
 from cubeling.robot.contract.driver import Driver
-from cubeling.robot.contract.port import Clock, Opener, Port
+from cubeling.robot.contract.port import ByteHook, Clock, Opener, Port
 from cubeling.robot.drivers import DRIVERS
 from cubeling.robot.errors import RobotError
 from cubeling.robot.link.connection import CATALOGUE_TIMEOUT_S, protocol_of
-from cubeling.robot.link.exchange import MAX_READ_BYTES, REOPEN_INTERVAL_S, ByteHook, PortExchange
+from cubeling.robot.link.exchange import MAX_READ_BYTES, REOPEN_INTERVAL_S, PortExchange
 from cubeling.robot.link.linked_robot import Robot
 from cubeling.robot.link.transport import opener
 

@@ -1,17 +1,21 @@
 """What the panels show of a session: its last steps, its robot, its times."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from cubeling.app.pipeline.frame_times import FrameTimes
-from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.session import SessionOptions
 from cubeling.app.ui.panels.trace import Trace
 from cubeling.app.ui.panels.wire_log import WireLog
-from cubeling.characters.motion import GestureGraph
 from cubeling.characters.rendering import FULL
 from cubeling.characters.speech import DEFAULT_PROFILE
 from cubeling.tracking import Intrinsics, LensEstimate
+
+if TYPE_CHECKING:
+    from cubeling.app.pipeline.playground import Playground
+    from cubeling.characters.motion import GestureGraph
 
 EMOTION_SPAN_S, EMOTION_INTERVAL_S = 60.0, 0.1
 """How long emotions are kept, and the least time between two of them."""
@@ -80,7 +84,7 @@ class SessionMonitor:
         self.intrinsics: Intrinsics | None = None
         """Of the camera; None before the first step."""
 
-    def update(self, step: Step, robot: RobotView, playground: Playground) -> None:
+    def update(self, step: Step, robot: RobotView, playground: "Playground") -> None:
         """Take what a frame gave; who has the session keeps the other attributes up to date."""
         self.step, self.robot = step, robot
         self.lens, self.intrinsics = playground.lens, playground.intrinsics
@@ -93,7 +97,7 @@ class SessionMonitor:
         self.tracking.add(now, float(state.visible), error)
         self._listen(step, playground)
 
-    def _listen(self, step: Step, playground: Playground) -> None:
+    def _listen(self, step: Step, playground: "Playground") -> None:
         """Take what is said in a frame."""
         now, line, speech = step.frame.timestamp, step.line, step.command.speech
         if line is None or speech is None:

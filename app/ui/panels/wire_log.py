@@ -2,9 +2,12 @@
 
 from collections import deque
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from cubeling.app.ui.panels.wire_words import DECODERS, LineDecoder, WireDecoder, Words
 from cubeling.robot import Catalogue, Direction
+
+if TYPE_CHECKING:
+    from cubeling.app.ui.panels.wire_words import WireDecoder, Words
 
 BOTH_DIRECTIONS: tuple[Direction, ...] = ("tx", "rx")
 """To the robot, and from it."""
@@ -71,6 +74,8 @@ class WireLog:
         `protocol` is one of `robot.contract.driver.DRIVERS`; `catalogue` names the robot's moods.
         """
         if protocol != self._protocol:
+            from cubeling.app.ui.panels.wire_words import DECODERS, LineDecoder
+
             kind = DECODERS.get(protocol, LineDecoder)
             self._protocol, self._decoders = protocol, {"tx": kind("host"), "rx": kind("robot")}
         while self._chunks:
@@ -85,7 +90,7 @@ class WireLog:
         rates = {way: self._rate(way) for way in BOTH_DIRECTIONS}
         return Traffic(tuple(self._messages), routine, rates)
 
-    def _keep(self, words: Words, message: WireMessage) -> None:
+    def _keep(self, words: "Words", message: WireMessage) -> None:
         if words.routine:
             self._routine[message.direction] = message
         else:

@@ -4,8 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from cubeling.characters.control.controllers.controller import CharacterController
-from cubeling.characters.control.controllers.in_place import InPlaceController
-from cubeling.characters.control.controllers.tree import TreeController
 from cubeling.characters.control.controllers.walk import WalkController
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.model.character import Character
@@ -17,9 +15,6 @@ WALKER_HEIGHT_M = 0.17
 ACTOR_HEIGHT_M = 0.15
 """Default height on the table of a character that acts in place [m]."""
 
-
-CONTROLLERS: list[type[CharacterController]] = [TreeController, WalkController, InPlaceController]
-"""The controllers of "tree", in the order in which they are tried: the first that suits plays."""
 
 ControllerFactory = Callable[[Character, float, RootDelta | None], CharacterController]
 """Makes the controller of a character from it, the scale and the first place on the table."""
@@ -42,8 +37,16 @@ class ControllerChoice:
 def first_suitable(
     character: Character, scale: float, place: RootDelta | None
 ) -> CharacterController:
-    """Make the first controller of `CONTROLLERS` that suits a character."""
-    return next(each for each in CONTROLLERS if each.suits(character))(character, scale, place)
+    """Make the controller of "tree" for a character: by its plan, walking, or acting in place."""
+    if character.plan is not None:
+        from cubeling.characters.control.controllers.tree import TreeController
+
+        return TreeController(character, scale, place)
+    if WalkController.suits(character):
+        return WalkController(character, scale, place)
+    from cubeling.characters.control.controllers.in_place import InPlaceController
+
+    return InPlaceController(character, scale, place)
 
 
 def _tree(character: Character, motions: Sequence[str]) -> ControllerFactory:

@@ -54,7 +54,7 @@ class ControllerFrame:
 
 
 class CharacterController(Protocol):
-    """Plays one character under commands: one of `CONTROLLERS`.
+    """Plays one character under commands: chosen by `first_suitable`, or by name.
 
     `scale` is in table metres per metre of the character. Without a first `place` it starts where
     it is first sent.
@@ -64,11 +64,6 @@ class CharacterController(Protocol):
     """Whether it walks and runs; else it hops."""
 
     def __init__(self, character: Character, scale: float, place: RootDelta | None) -> None: ...
-
-    @staticmethod
-    def suits(character: Character) -> bool:
-        """Return whether it can play a character."""
-        ...
 
     @property
     def actions(self) -> tuple[str, ...]:

@@ -69,11 +69,6 @@ class InPlaceController:
         """The actions that it knows, besides standing."""
         return tuple(self._actions)
 
-    @staticmethod
-    def suits(character: Character) -> bool:
-        """Return true: it plays any character."""
-        return True
-
     def update(
         self, command: CharacterCommand, elapsed: float, tempo: float = 1.0
     ) -> ControllerFrame:

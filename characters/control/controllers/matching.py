@@ -100,11 +100,6 @@ class MatchingController:
         """The actions that it knows, besides standing, walking and running."""
         return tuple(self._actions)
 
-    @staticmethod
-    def suits(character: Character) -> bool:
-        """Whether a character can walk by its own clips."""
-        return WalkController.suits(character)
-
     def update(
         self, command: CharacterCommand, elapsed: float, tempo: float = 1.0
     ) -> ControllerFrame:

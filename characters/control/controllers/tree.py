@@ -40,7 +40,7 @@ class TreeController:
     walks = True
 
     def __init__(self, character: Character, scale: float, place: RootDelta | None) -> None:
-        assert character.plan is not None  # it suits
+        assert character.plan is not None  # `first_suitable` asks
         self._plan: Plan = character.plan
         self._place = place or RootDelta()
         self._scale = scale
@@ -67,11 +67,6 @@ class TreeController:
     def actions(self) -> tuple[str, ...]:
         """The names of its states; their conditions decide which action enters them."""
         return () if self._plan.machine is None else tuple(self._plan.machine.states)
-
-    @staticmethod
-    def suits(character: Character) -> bool:
-        """Whether a character has a plan."""
-        return character.plan is not None
 
     def update(
         self, command: CharacterCommand, elapsed: float, tempo: float = 1.0

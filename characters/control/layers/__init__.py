@@ -2,7 +2,6 @@
 
 from cubeling.characters.control.layers.behaviour import FaceShiftLayer, StanceLayer
 from cubeling.characters.control.layers.breath import BreathLayer
-from cubeling.characters.control.layers.constraints import ConstraintLayer
 from cubeling.characters.control.layers.face import FaceLayer
 from cubeling.characters.control.layers.foot_lock import FootLockLayer
 from cubeling.characters.control.layers.gaze import GazeLayer
@@ -12,9 +11,8 @@ from cubeling.characters.control.layers.posture import PostureLayer
 from cubeling.characters.control.layers.reach import ReachLayer
 from cubeling.characters.control.layers.sitting_up import SittingUpLayer
 from cubeling.characters.control.layers.speech import SpeechLayer
-from cubeling.characters.control.layers.springs import SpringLayer
-from cubeling.characters.control.layers.upper_body import DependentJointsLayer, SelfCollisionLayer
 from cubeling.characters.model.character import Character
+from cubeling.registry import Registry
 
 FOOT_LAYERS: tuple[LayerFactory, ...] = (FootLockLayer,)
 """What a character needs besides its clips."""
@@ -36,11 +34,21 @@ LIVELINESS_LAYERS: tuple[LayerFactory, ...] = (
 DEFAULT_LAYERS: tuple[LayerFactory, ...] = (*FOOT_LAYERS, *LIVELINESS_LAYERS)
 """The layers of every character."""
 
-BODY_LAYERS: dict[str, LayerFactory] = {
-    "dependent_joints": DependentJointsLayer,
-    "self_collision": SelfCollisionLayer,
-}
+BODY_LAYERS = Registry[LayerFactory](
+    {
+        "dependent_joints": "cubeling.characters.control.layers.upper_body:DependentJointsLayer",
+        "self_collision": "cubeling.characters.control.layers.upper_body:SelfCollisionLayer",
+    }
+)
 """What the file beside a character may ask for, by name."""
+
+FOLLOWING_LAYERS = Registry[LayerFactory](
+    {
+        "constraints": "cubeling.characters.control.layers.constraints:ConstraintLayer",
+        "springs": "cubeling.characters.control.layers.springs:SpringLayer",
+    }
+)
+"""What moves after the body, for characters that have it, by the attribute that says so."""
 
 
 def layers_of(character: Character) -> tuple[LayerFactory, ...]:
@@ -53,8 +61,7 @@ def layers_of(character: Character) -> tuple[LayerFactory, ...]:
         *asked.get("dependent_joints", ()),
         *DEFAULT_LAYERS,
         *asked.get("self_collision", ()),
-        *((ConstraintLayer,) if character.constraints else ()),
-        *((SpringLayer,) if character.springs else ()),
+        *(FOLLOWING_LAYERS[name] for name in FOLLOWING_LAYERS if getattr(character, name)),
     )
 
 
@@ -63,11 +70,9 @@ __all__ = [
     "DEFAULT_LAYERS",
     "FOOT_LAYERS",
     "LIVELINESS_LAYERS",
-    "ConstraintLayer",
     "FootLockLayer",
     "FrameContext",
     "LayerFactory",
     "SpeechLayer",
-    "SpringLayer",
     "layers_of",
 ]

@@ -161,7 +161,7 @@ def test_only_what_is_shown_is_heard(changes, heard):
     changes = {**changes, "output": Path(changes["output"]) if "output" in changes else None}
     options = SessionOptions(scenario="follow", source="x", **changes)
     with ExitStack() as closing:
-        assert (open_sound(options, SoundBank(), closing) is not None) == heard
+        assert (open_sound(options, Character.load("human"), closing) is not None) == heard
 
 
 def test_a_muted_session_starts_no_loudspeaker_until_it_is_to_be_heard(monkeypatch):

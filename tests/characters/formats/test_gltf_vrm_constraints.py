@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from cubeling.characters import Animator, Character, CharacterCommand, CharacterError, RootDelta
-from cubeling.characters.control.layers import ConstraintLayer, layers_of
+from cubeling.characters.control.layers import layers_of
+from cubeling.characters.control.layers.constraints import ConstraintLayer
 from cubeling.characters.skeleton import rotations
 from tests.characters.formats.built_gltf import build_arm
 

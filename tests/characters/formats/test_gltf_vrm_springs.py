@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cubeling.characters import Animator, Character, CharacterCommand, CharacterError, RootDelta
-from cubeling.characters.control.layers import SpringLayer
+from cubeling.characters.control.layers.springs import SpringLayer
 from cubeling.characters.skeleton import rotations
 from tests.characters.formats.built_gltf import build_arm
 

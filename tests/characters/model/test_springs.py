@@ -7,7 +7,8 @@ import pytest
 
 from cubeling.characters import Animator, Character, CharacterCommand, CharacterError, RootDelta
 from cubeling.characters.control.command import LocomotionIntent
-from cubeling.characters.control.layers import SpringLayer, layers_of
+from cubeling.characters.control.layers import layers_of
+from cubeling.characters.control.layers.springs import SpringLayer
 from cubeling.characters.model.springs import REFERENCE_HEIGHT_M
 
 
