@@ -6,6 +6,7 @@ is "tail1", "tail2" ….
 """
 
 import difflib
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -81,18 +82,15 @@ class Anatomy:
         >>> anatomy.kind, anatomy.missing
         ('humanoid', ())
         """
-        known = {
-            part: _declared_joint(part, name, skeleton) for part, name in (semantics or {}).items()
-        }
-        fixed = {part: joint for part, joint in known.items() if joint is not None}
-        guessed = find_parts(skeleton, fixed)
-        joints = {
-            part: joint
-            for part, joint in guessed.items()
-            if part not in known and joint not in fixed.values()
-        } | fixed
-        ordered = {part: joints[part] for part in BODY_PARTS if part in joints}
-        return Anatomy(_kind(ordered), ordered)
+        if semantics:
+            return _guess(skeleton, semantics)
+        for guessed, anatomy in tuple(
+            _GUESSED
+        ):  # every clip of a character asks for its feet again
+            if guessed is skeleton:
+                return anatomy
+        _GUESSED.append((skeleton, _guess(skeleton, {})))
+        return _GUESSED[-1][1]
 
     def joint(self, part: str) -> int | None:
         """Return the joint number of a part, or None if there is none."""
@@ -113,6 +111,23 @@ class Anatomy:
         """Joints of the feet, left before right, hind before front."""
         names = ("leftFoot", "rightFoot", "leftFrontFoot", "rightFrontFoot")
         return tuple(self.joints[name] for name in names if name in self.joints)
+
+
+def _guess(skeleton: Skeleton, semantics: Mapping[str, str]) -> Anatomy:
+    known = {part: _declared_joint(part, name, skeleton) for part, name in semantics.items()}
+    fixed = {part: joint for part, joint in known.items() if joint is not None}
+    guessed = find_parts(skeleton, fixed)
+    joints = {
+        part: joint
+        for part, joint in guessed.items()
+        if part not in known and joint not in fixed.values()
+    } | fixed
+    ordered = {part: joints[part] for part in BODY_PARTS if part in joints}
+    return Anatomy(_kind(ordered), ordered)
+
+
+_GUESSED: deque[tuple[Skeleton, Anatomy]] = deque(maxlen=8)
+"""The last guesses, for as many skeletons as a session has at a time."""
 
 
 def _kind(joints: Mapping[str, int]) -> Kind:
