@@ -42,7 +42,7 @@ class SmearedPatterns:
         steps = ((np.arange(count) + 0.5) / count * span - PAPER_CELLS) / cells
         x, y = np.meshgrid(steps, steps)
         self._places = np.stack([x.ravel(), y.ravel()], axis=1)
-        self._patterns = _smeared_patterns(cube.dictionary, ids, count)
+        self._drawn_from = cube.dictionary, ids, count
 
     def match(self, soft: Image, quads: Quads) -> tuple[Indices, Array]:
         """Find the marker that each quad of an image, (H, W), is most like.
@@ -50,7 +50,8 @@ class SmearedPatterns:
         Return 4 × index of its face + rotation, or −1, and the correlation, (N,) each.
         """
         values = _normalized(sampled(soft, quads.map(self._places)))
-        alike = np.tensordot(values, self._patterns, axes=([1], [2])).max(axis=2)
+        patterns = _smeared_patterns(*self._drawn_from)
+        alike = np.tensordot(values, patterns, axes=([1], [2])).max(axis=2)
         order = np.argsort(alike, axis=1, kind="stable")
         best, next_best = np.take_along_axis(alike, order[:, :-3:-1], axis=1).T
         good = (best > MIN_CORRELATION) & (best - next_best > MIN_LEAD)
@@ -62,7 +63,8 @@ class SmearedPatterns:
 def _smeared_patterns(dictionary: str, marker_ids: tuple[int, ...], count: int) -> Floats:
     """Return every marker in four rotations with every blur, (markers · 4, smears, count²).
 
-    Drawing them takes 0.1 s, and all trackers of a cube share them.
+    Drawing them takes 0.1 s: they are drawn when a quad is first compared with them, and all
+    trackers of a cube share them.
     """
     cells = [marker_cells(dictionary, number) for number in marker_ids]
     turned = [np.rot90(each, turn) for each in cells for turn in range(4)]

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from cubeling.app.pipeline import step_renderer
+from cubeling.app.pipeline import surroundings
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.surroundings import Surroundings
 from cubeling.app.running.opening import intrinsics_for
@@ -98,7 +98,7 @@ def straight_and_after_a_seek():
 def test_after_a_seek_what_is_measured_is_as_in_a_straight_run(
     straight_and_after_a_seek, monkeypatch
 ):
-    monkeypatch.setattr(step_renderer, "Surroundings", NotedSurroundings)
+    monkeypatch.setattr(surroundings, "Surroundings", NotedSurroundings)
     NotedSurroundings.noted.clear()
     straight_and_after_a_seek()
     noted = [[each and astuple(each) for each in kept] for kept in NotedSurroundings.noted]
