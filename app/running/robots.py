@@ -13,12 +13,11 @@ from cubeling.robot import (
     Closeable,
     Direction,
     LogLine,
-    Robot,
     RobotError,
 )
 
 if TYPE_CHECKING:
-    from cubeling.robot import SteppedRobot
+    from cubeling.robot import Robot, SteppedRobot
 
 OnBytes = Callable[[Direction, bytes, float], None]
 """Called with a direction, bytes and the time of the robot's clock [s] for all on the wire."""
@@ -45,7 +44,7 @@ class RobotLine(Closeable):
 
     def __init__(
         self,
-        robot: Robot | None = None,
+        robot: "Robot | None" = None,
         clock: Clock = time.monotonic,
         *,
         real: bool = False,

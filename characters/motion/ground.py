@@ -4,6 +4,7 @@ On a treadmill the standing feet show the ground's velocity: most foot joints th
 standing feet, and move with about the same velocity.
 """
 
+from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
@@ -64,7 +65,21 @@ class JointTrajectories:
 
 
 def joint_trajectories(clip: Clip, skeleton: Skeleton) -> JointTrajectories:
-    """Return the trajectories of all joints; with root motion, loops are periodic in its frame."""
+    """Return the trajectories of all joints; with root motion, loops are periodic in its frame.
+
+    Those of the last clips are kept: gaits ask for them three times, for steps, feet and contacts.
+    """
+    for known_clip, known_skeleton, kept in tuple(_KEPT):
+        if known_clip is clip and known_skeleton is skeleton:
+            return kept
+    _KEPT.append((clip, skeleton, _trajectories(clip, skeleton)))
+    return _KEPT[-1][2]
+
+
+_KEPT: deque[tuple[Clip, Skeleton, JointTrajectories]] = deque(maxlen=16)
+
+
+def _trajectories(clip: Clip, skeleton: Skeleton) -> JointTrajectories:
     placed = clip.in_place if clip.root_motion else clip.poses
     positions = placed.globals(skeleton)[..., :3, 3]
     world = clip.poses.globals(skeleton)[..., :3, 3] if clip.root_motion else positions

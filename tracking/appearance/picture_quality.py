@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import astuple, dataclass, replace
+from functools import cache
 
 import cv2
 import numpy as np
@@ -62,11 +63,16 @@ _FLAT = 4  # samples at each end of a line
 _ALONG = np.linspace(0.12, 0.88, LINES_PER_SIDE)
 
 
-def _blurred_steps() -> Array:
-    """Return steps from -1 to 1 of each blur and shift, (blurs × shifts, samples)."""
+@cache
+def _blurred_steps() -> tuple[Array, Array]:
+    """Return steps of each blur and shift, (blurs × shifts, samples).
+
+    From −1 to 1, and the same with mean 0 and length 1.
+    """
     blurs, shifts = (each.ravel() for each in np.meshgrid(_BLURS, _SHIFTS, indexing="ij"))
     erf = np.vectorize(math.erf, otypes=[float])
-    return np.asarray(erf((_OFFSETS - shifts[:, None]) / blurs[:, None] / math.sqrt(2.0)))
+    steps = np.asarray(erf((_OFFSETS - shifts[:, None]) / blurs[:, None] / math.sqrt(2.0)))
+    return steps, _normalized(steps)
 
 
 def _normalized(profiles: Array) -> Array:
@@ -74,10 +80,6 @@ def _normalized(profiles: Array) -> Array:
     return np.asarray(
         centred / np.maximum(np.linalg.norm(centred, axis=-1, keepdims=True), 1e-9), np.float64
     )
-
-
-_STEPS = _blurred_steps()
-_NORMALIZED_STEPS = _normalized(_STEPS)  # with mean 0 and length 1
 
 
 @dataclass(frozen=True)
@@ -191,7 +193,8 @@ def _measured(before: Floats, profiles: Floats) -> PictureQuality | None:
     # Lenses blur light, not grey values.
     light = (profiles / np.float32(255.0)) ** np.float32(TONE_EXPONENT)
     mean_light = np.asarray(light.mean(1), np.float64)
-    fits = _normalized(mean_light) @ _NORMALIZED_STEPS.T
+    steps, normalized_steps = _blurred_steps()
+    fits = _normalized(mean_light) @ normalized_steps.T
     clear = (fits.max(1) > MIN_FIT) & (white < SATURATED) & (white - black > MIN_CONTRAST)
     if not clear.any():
         return None
@@ -202,7 +205,7 @@ def _measured(before: Floats, profiles: Floats) -> PictureQuality | None:
     change = np.delete(change, np.s_[_FLAT:-_FLAT], axis=-1)
     mean = float(np.minimum(change, np.quantile(change, _OUTLIERS)).mean())
     variance = max(math.pi / 2 * mean**2 / 2 - _ROUNDING_VARIANCE, 0.0)
-    ink, paper = _ink_and_paper(mean_light[clear], _STEPS[best])
+    ink, paper = _ink_and_paper(mean_light[clear], steps[best])
     haze = max(ink / paper - INK_SHARE, 0.0) / (1.0 - INK_SHARE)
     return PictureQuality(blur, math.sqrt(variance) / _INTERPOLATED_NOISE, haze, paper)
 

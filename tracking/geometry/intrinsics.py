@@ -8,7 +8,6 @@ from typing import Any, Self
 
 import cv2
 import numpy as np
-import yaml
 from numpy.typing import ArrayLike
 
 from cubeling.tracking.errors import TrackingError
@@ -112,6 +111,8 @@ class Intrinsics:
         TrackingError
             The file is missing, is not YAML, or its camera cannot be used.
         """
+        import yaml  # takes 15 ms to load, and most cameras have no file
+
         try:
             document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
         except OSError as error:
@@ -165,6 +166,8 @@ class Intrinsics:
             "rectification_matrix": _table(np.eye(3)),
             "projection_matrix": _table(np.hstack([self.matrix, np.zeros((3, 1))])),
         }
+        import yaml
+
         text = yaml.safe_dump(document, sort_keys=False, default_flow_style=None)
         write_whole(path, text.encode(), "camera file")
 

@@ -10,9 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-import PIL.Image
 from numpy.typing import NDArray
-from PIL import UnidentifiedImageError
 
 from cubeling.characters.errors import CharacterWarning
 from cubeling.characters.formats.gltf.buffer import GlbBuilder
@@ -55,6 +53,8 @@ class _ImageDecoder:
         return self._decoded[source, mode]
 
     def _decode(self, data: bytes | memoryview, name: str, mode: Literal["RGB", "RGBA"]) -> Image:
+        import PIL.Image
+
         try:
             # Warnings of the library, for example about palettes, need no action.
             with warnings.catch_warnings():
@@ -65,7 +65,7 @@ class _ImageDecoder:
                         grey = (np.asarray(opened).astype(np.uint32) >> 8).astype(np.uint8)
                         return np.asarray(PIL.Image.fromarray(grey).convert(mode))
                     return np.asarray(opened.convert(mode))
-        except UnidentifiedImageError:
+        except PIL.UnidentifiedImageError:
             raise DamagedFileError(f"{name} is neither PNG, JPEG nor WebP") from None
         except PIL.Image.DecompressionBombError:
             raise DamagedFileError(f"{name} is larger than {MAX_SIDE_PX} pixels per side") from None
@@ -262,6 +262,8 @@ class MaterialWriter:
 
     def _texture(self, image: Image) -> dict[str, int]:
         """Return a reference to the texture of an image."""
+        import PIL.Image
+
         file = io.BytesIO()
         PIL.Image.fromarray(image).save(file, "PNG")
         data = file.getvalue()
