@@ -62,13 +62,6 @@ class Step:
         """The emotion that character and robot show."""
         return self.outcome.emotion
 
-    @property
-    def begun_line(self) -> SpokenLine | None:
-        """The line that begins in this frame, if one does."""
-        speech = self.command.speech
-        begins = speech is not None and speech.start == self.frame.timestamp
-        return self.line if begins else None
-
     def messages(self) -> dict[str, object]:
         """Return the messages between camera and picture, by their topic in a recording."""
         return {

@@ -80,7 +80,7 @@ class SessionRecording(Closeable):
         return self._encode(frame)
 
     def write(self, step: Step, inputs: Inputs) -> None:
-        """Record a step, whose frame `encode` returned, and what the player asked for in it."""
+        """Record a step, whose frame `encode` returned, and what came in with it."""
         now = self._last = step.frame.timestamp
         if inputs.clear:
             self.event(START_OVER_EVENT, now)
@@ -93,7 +93,7 @@ class SessionRecording(Closeable):
                 self._recorder.clock(datetime.now(UTC) - timedelta(seconds=now))
             if self._from_within:
                 self._wire.record_to(self._recorder, now)
-        self._recorder.write(step)
+        self._recorder.write(step, inputs)
         if step.controls.placed:
             self.event(f"placed {step.controls.top_face}", now)
         for gesture in step.controls.gestures:

@@ -22,9 +22,12 @@ CLOCK_RECORD, CLOCK_ZERO = "cubeling clock", "zero_utc"
 IMAGE_TOPIC = "/camera/image"
 """The channel of the camera's frames."""
 
+INPUTS_TOPIC = "/inputs"
+"""The channel of what came in with a frame next to its picture."""
+
 LINE_TOPIC = "/audio/line"
 """The channel of what the character says: a message with the sound in the frame in which a line
-begins. The command of that frame holds the words."""
+begins. The inputs of that frame hold the words."""
 
 _FULL_SCALE = 32767  # the largest sample of 16 bits
 _NOISE = 1e-9  # the greatest number of a pose that counts as zero; 1 is exact to 6e-8

@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from foxglove_schemas_protobuf.RawAudio_pb2 import RawAudio
 from mcap.exceptions import McapError
 from mcap.reader import NonSeekingReader, SeekingReader
 from mcap.records import Chunk, DataEnd, Metadata
@@ -17,23 +16,14 @@ from zstandard import ZstdError
 
 from cubeling.app.counted import counted
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.spoken_line import SpokenLine
-from cubeling.app.session.encoding import (
-    CLOCK_RECORD,
-    CLOCK_ZERO,
-    IMAGE_TOPIC,
-    LINE_TOPIC,
-    decode,
-    decode_sound,
-)
+from cubeling.app.session.encoding import CLOCK_RECORD, CLOCK_ZERO, IMAGE_TOPIC, MESSAGE_TYPES
 from cubeling.app.session.options import SessionOptions
-from cubeling.characters import CharacterCommand
 
 START_OVER_EVENT = "start over"
-"""Event of a player who starts over. It is an input, so a replay repeats it."""
+"""Event of a player who starts over."""
 
 INSIDE_EVENT = "cube opened or closed"
-"""Event of a player who asks to open the cube, or to close it; an input, as `START_OVER_EVENT`."""
+"""Event of a player who asks to open the cube, or to close it."""
 
 MCAP_MAGIC = b"\x89MCAP0\r\n"
 """The first and the last bytes of an MCAP file."""
@@ -172,35 +162,11 @@ def messages(path: Path, *topics: str) -> Iterator[tuple[str, float, bytes]]:
             return
 
 
-def start_over_times(path: Path) -> frozenset[float]:
-    """Return the timestamps of the frames in which the player started over [s]."""
-    return frozenset(time for time, event in events(path) if event == START_OVER_EVENT)
-
-
-def opening_times(path: Path) -> frozenset[float]:
-    """Return the timestamps of the frames in which the player opened or closed the cube [s]."""
-    return frozenset(time for time, event in events(path) if event == INSIDE_EVENT)
+def has_channels(path: Path) -> bool:
+    """Return whether a session has every channel from the cube to the robot, or only inputs."""
+    return all(next(messages(path, topic), None) is not None for topic in MESSAGE_TYPES)
 
 
 def events(path: Path) -> list[tuple[float, str]]:
     """Return the events of a session with their timestamps [s]."""
     return [(time, json.loads(data)["event"]) for _, time, data in messages(path, "/events")]
-
-
-def spoken_lines(path: Path) -> dict[float, SpokenLine]:
-    """Return what the character says in a session, by the frame in which it begins [s].
-
-    What was said is an input, so a replay needs no voice.
-    """
-    sounds = {time: data for _, time, data in messages(path, LINE_TOPIC)}
-    if not sounds:
-        return {}
-    lines: dict[float, SpokenLine] = {}
-    for _, time, document in messages(path, "/character/command"):
-        if time in sounds:
-            speech = decode(CharacterCommand, document).speech
-            audio = RawAudio.FromString(sounds[time])
-            if speech is not None:
-                sound = decode_sound(audio.data)
-                lines[time] = SpokenLine(speech.utterance, sound, audio.sample_rate, speech.profile)
-    return lines

@@ -17,18 +17,21 @@ from mcap.writer import Writer
 from mcap_protobuf.schema import register_schema
 
 from cubeling.app.errors import AppError
+from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.pipeline.step import Step
 from cubeling.app.session.encoding import (
     CLOCK_RECORD,
     CLOCK_ZERO,
     IMAGE_TOPIC,
+    INPUTS_TOPIC,
     LINE_TOPIC,
     MESSAGE_TYPES,
     encode,
     encode_sound,
     schema,
 )
+from cubeling.app.session.inputs import RecordedInputs
 from cubeling.robot import Closeable
 from cubeling.tracking import Frame, Intrinsics, nanoseconds_of
 
@@ -40,6 +43,7 @@ MAX_QUEUED_WRITES = 256
 
 JSON_SCHEMAS = {
     **{topic: (f"cubeling.{kind.__name__}", schema(kind)) for topic, kind in MESSAGE_TYPES.items()},
+    INPUTS_TOPIC: ("cubeling.RecordedInputs", schema(RecordedInputs)),
     "/robot/wire": (
         "cubeling.Wire",
         b'{"type":"object","properties":{"direction":{"enum":["tx","rx"]},"hex":{"type":"string"}}}',
@@ -111,14 +115,18 @@ class Recorder(Closeable):
         values = {CLOCK_ZERO: zero.isoformat(timespec="milliseconds")}
         self._submit(partial(self._writer.add_metadata, CLOCK_RECORD, values))
 
-    def write(self, step: Step) -> None:
-        """Record the camera's frame and every message after it."""
+    def write(self, step: Step, inputs: Inputs | None = None) -> None:
+        """Record the camera's frame, what came in with it, and every message after them."""
         self._steps += 1
+        now = step.frame.timestamp
         self._frame(step.frame)
-        if step.begun_line is not None:
-            self._line(step.begun_line, step.frame.timestamp)
+        came_in = None if inputs is None else RecordedInputs.of(inputs, now)
+        if inputs is not None and inputs.line is not None:
+            self._line(inputs.line, now)
+        if came_in is not None:
+            self._json(INPUTS_TOPIC, partial(encode, came_in), now)
         for topic, message in step.messages().items():
-            self._json(topic, partial(encode, message), step.frame.timestamp)
+            self._json(topic, partial(encode, message), now)
 
     def wire(self, direction: str, data: bytes, timestamp: float) -> None:
         """Record bytes that were sent to the robot ("tx") or received from it ("rx")."""

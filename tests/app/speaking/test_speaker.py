@@ -108,6 +108,7 @@ def test_a_line_that_begins_in_a_frame_that_is_left_out_begins_in_the_next(tmp_p
                 break
             assert loop.step(frame).line is None
         following, after = loop.step(next(frames)), loop.step(next(frames))
-    assert following.begun_line is not None
-    assert after.line is following.line
-    assert after.begun_line is None
+    assert following.command.speech is not None
+    assert following.command.speech.start == following.frame.timestamp
+    assert after.line is following.line is not None
+    assert after.command.speech == following.command.speech
