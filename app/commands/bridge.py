@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.live import Live
 
 from cubeling.app.commands.access import Broker, Ca, PasswordFile, Site
+from cubeling.app.commands.session.complete import complete_session
 from cubeling.app.errors import AppError
 from cubeling.app.running.bridge import Bridge
 from cubeling.app.running.network import DEFAULT_SITE, Network
@@ -94,6 +95,7 @@ def bridge(
             network,
             robots,
             sessions,
+            complete=complete_session,
             follow=follow or (ANY_NAME,),
             hold=hold,
             max_age=max_age,

@@ -14,6 +14,7 @@ from cubeling.app.commands.output import (
     chosen_output,
     needs_matplotlib,
 )
+from cubeling.app.commands.session.complete import complete_session
 from cubeling.app.counted import counted
 from cubeling.app.errors import AppError
 from cubeling.app.moods import read_history, read_robot_traces, replay_with, write_table
@@ -62,11 +63,13 @@ def plot(
         raise AppError(f"{count}: name at most {MAX_PERSONALITIES}")
     with needs_matplotlib():
         from cubeling.app.moods.plot import save_plot
-    history = read_history(session, salvage=salvage)
+    with complete_session(session, salvage=salvage) as complete:
+        history = read_history(complete, salvage=salvage)
+        traces = read_robot_traces(complete)
     others = [replay_with(history, each) for each in personalities]
     fitting = fitting_label_set(history.recorded.labels)
     labels = personalities[0].label_set if personalities else fitting
-    save_plot(output, history, others, read_robot_traces(session), labels)
+    save_plot(output, history, others, traces, labels)
     Console().print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
 
 
@@ -90,11 +93,12 @@ def table(
     Example: [cyan]cubeling mood table recordings/companion.mcap -o moods.csv[/]
     """
     output = chosen_output(output, f"{session.stem}-mood.csv", "table", (".csv",), overwrite)
-    history = read_history(session, salvage=salvage)
-    track = history.recorded
-    if personality is not None:
-        track = replay_with(history, Personality.load(personality))
-    rows = write_table(output, history, track, read_robot_traces(session))
+    other = None if personality is None else Personality.load(personality)
+    with complete_session(session, salvage=salvage) as complete:
+        history = read_history(complete, salvage=salvage)
+        traces = read_robot_traces(complete)
+    track = history.recorded if other is None else replay_with(history, other)
+    rows = write_table(output, history, track, traces)
     Console().print(
         f"[bold]{escape(str(output))}[/] has {counted(rows, 'row')}",
         soft_wrap=True,

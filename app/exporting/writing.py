@@ -51,6 +51,9 @@ class ExportedSession:
     condition: str = ""
     """The condition of the study; "" for none."""
 
+    complete: Path | None = None
+    """The same session with every channel; None if its own file has them."""
+
     @classmethod
     def read(
         cls, path: Path, participant: str = "", condition: str = "", *, salvage: bool = False
@@ -103,7 +106,7 @@ def _session_rows(sessions: Sequence[ExportedSession]) -> Iterator[list[Cell]]:
 
 def _table_rows(sessions: Sequence[ExportedSession], table: Table) -> Iterator[list[Cell]]:
     for session in sessions:
-        for topic, time, data in messages(session.path, table.topic):
+        for topic, time, data in messages(session.complete or session.path, table.topic):
             try:
                 kind = MESSAGE_TYPES.get(topic)
                 message = json.loads(data) if kind is None else decode(kind, data)

@@ -1,7 +1,7 @@
 """The bridge: robots that follow players on other computers, and recorded sessions as players."""
 
-from collections.abc import Iterable, Iterator
-from contextlib import ExitStack
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import AbstractContextManager, ExitStack, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -69,6 +69,7 @@ class Bridge(Closeable):
     """Robots and recorded players on a network. Close it, or use it in a `with` statement.
 
     `robots` has the URLs of the robots to drive, `sessions` the sessions to publish, by name;
+    `complete` opens a session with every channel, after all that may be wrong has been checked;
     `follow` names players as `Pattern.parse` takes them. For `hold` [s] a robot keeps the emotion
     of a player who is gone; actions expire at the age of `max_age` [s]. `on_message` is called
     with every message of the site, on a thread of the network.
@@ -83,6 +84,7 @@ class Bridge(Closeable):
         robots: dict[str, str],
         sessions: dict[str, Path],
         *,
+        complete: Callable[[Path], AbstractContextManager[Path]] = nullcontext,
         follow: Iterable[str] = (ANY_NAME,),
         hold: float = HOLD_S,
         max_age: float = MAX_AGE_S,
@@ -108,6 +110,9 @@ class Bridge(Closeable):
             opened = {
                 name: self._closing.enter_context(connect(url)) for name, url in robots.items()
             }
+            files = {
+                name: self._closing.enter_context(complete(path)) for name, path in sessions.items()
+            }
             self.roster: BusClient[Roster] = network.join(
                 Roster(on_message=on_message), f"{network.site}:roster"
             )
@@ -116,7 +121,7 @@ class Bridge(Closeable):
                 member = network.member("robot", name)
                 node = RobotNode(member, robot, network.session, follows, hold)
                 self.clients[f"robot {name}"] = network.join(node, f"{member.site}:robot:{name}")
-            for name, path in sessions.items():
+            for name, path in files.items():
                 publisher = PlayerPublisher(network, name, max_age)
                 self.clients[f"player {name}"] = publisher.client
                 self._recorded.append(RecordedPlayer(publisher, path))
@@ -132,4 +137,5 @@ class Bridge(Closeable):
     def close(self) -> None:
         """Disconnect all members, then the robots. A second call does nothing."""
         self.network.close()
+        self._recorded.clear()  # they read files that are removed now
         self._closing.close()

@@ -71,8 +71,12 @@ def check_session(
 def _steps(session: OpenedSession, progress: Progress | None) -> Iterator[Step]:
     """Process every frame, whatever its time."""
     for frame in session.source:
-        line = session.speaker.line(frame.timestamp)
-        inputs = Inputs(clear=frame.timestamp in session.start_overs, line=line)
+        now = frame.timestamp
+        inputs = Inputs(
+            clear=now in session.start_overs,
+            line=session.speaker.line(now),
+            inside=now in session.openings,
+        )
         step = session.playground.step(frame, inputs)
         if progress is not None:
             progress(step)

@@ -21,15 +21,20 @@ FIELD_OF_TOPIC = {
 """The field of `ReplayInputs` for each channel, in the order of the stages after the camera."""
 
 
+def check_stage(start: str) -> None:
+    """Raise AppError if a replay cannot start from a stage."""
+    if start not in START_STAGES:
+        raise AppError(
+            f"a replay cannot start from '{start}': choose one of {', '.join(START_STAGES)}"
+        )
+
+
 def read_replay_inputs(source: str, start: str) -> Iterator[ReplayInputs]:
     """Yield the recorded messages up to the stage `start`, for each frame.
 
     Raises AppError if there is no such stage, or the source is no session.
     """
-    if start not in START_STAGES:
-        raise AppError(
-            f"a replay cannot start from '{start}': choose one of {', '.join(START_STAGES)}"
-        )
+    check_stage(start)
     if not source.endswith(".mcap"):
         raise AppError(f"'{source}' has no recorded channels to start from '{start}'")
     return _read(Path(source), tuple(FIELD_OF_TOPIC)[: START_STAGES.index(start)])

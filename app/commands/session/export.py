@@ -1,6 +1,8 @@
 """`cubeling export`."""
 
 from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -8,6 +10,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
+from cubeling.app.commands.session.complete import complete_session
 from cubeling.app.errors import AppError
 from cubeling.app.exporting import ExportedSession, export as write_tables
 from cubeling.app.exporting.writing import EXPORT_FILES
@@ -49,8 +52,15 @@ def export(
         ExportedSession.read(path, *of, salvage=salvage)
         for path, *of in zip(sessions, people, conditions, strict=True)
     ]
-    output.mkdir(exist_ok=True)
-    rows = write_tables(exported, output)
+    with ExitStack() as closing:
+        complete = [
+            replace(
+                each, complete=closing.enter_context(complete_session(each.path, salvage=salvage))
+            )
+            for each in exported
+        ]
+        output.mkdir(exist_ok=True)
+        rows = write_tables(complete, output)
     console = Console(highlight=False, soft_wrap=True)
     for name, count in rows.items():
         console.print(f"{name:10} {count:8} {'row' if count == 1 else 'rows'}")

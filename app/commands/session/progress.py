@@ -140,13 +140,26 @@ def run_with_progress(session: OpenedSession, console: Console, title: str) -> S
 def _progress(
     session: OpenedSession, console: Console, title: str
 ) -> Iterator[Callable[[Step], None]]:
-    """Show progress: nothing next to a window, a bar in a terminal, lines anywhere else."""
+    """Show the progress of a session, except next to a window."""
     duration = session.source.duration
     if duration is not None and session.options.end_s is not None:
         duration = min(duration, session.options.end_s)
     if session.options.windowed:
         yield lambda step: None
-    elif duration is None or not console.is_terminal:
+    else:
+        with show_progress(title, duration, console) as report:
+            yield report
+
+
+@contextmanager
+def show_progress(
+    title: str, duration: float | None, console: Console
+) -> Iterator[Callable[[Step], None]]:
+    """Show how far the frames are of a duration [s]: a bar in a terminal, else lines.
+
+    Lines are on standard error; the bar is where the console is, and goes at the end.
+    """
+    if duration is None or not console.is_terminal:
         yield ProgressLines(title, duration)
     else:
         columns = (

@@ -1,5 +1,6 @@
 """`cubeling replay`."""
 
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -9,6 +10,7 @@ from rich.console import Console
 
 from cubeling.app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
 from cubeling.app.commands.output import OverwriteOption
+from cubeling.app.commands.session.complete import complete_session
 from cubeling.app.commands.session.part import EndOption, LoopOption, StartOption
 from cubeling.app.commands.session.play import (
     ALL_REALISM,
@@ -34,9 +36,11 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.cube_window import inside_of
 from cubeling.app.pipeline.surroundings import realism_of
 from cubeling.app.running.network import DEFAULT_SITE
+from cubeling.app.running.opening import check_output_paths, check_part
 from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
 from cubeling.app.running.replay_check import check_session
 from cubeling.app.session import session_info
+from cubeling.app.session.replay_inputs import check_stage
 from cubeling.app.ui.display import has_display
 
 
@@ -131,14 +135,21 @@ def replay(
         loop=loop,
         folder=folder,
     )
-    if check:
-        if start or end is not None:
-            raise AppError("--check compares a whole session: leave out --start and --end")
-        result = check_session(
-            session, options, ProgressLines(f"checking {session.name}", info.duration)
-        )
-        Console().print(result)
-        raise typer.Exit(0 if result.identical else 1)
-    options, kept = preferences.open(options)
-    with publisher(mqtt, player, site, password_file, ca) as line:
+    check_stage(stage)
+    if check and (start or end is not None):
+        raise AppError("--check compares a whole session: leave out --start and --end")
+    check_output_paths(options)
+    check_part(options)
+    with ExitStack() as closing:
+        complete = session
+        if check or stage != "camera":
+            complete = closing.enter_context(complete_session(session, salvage=salvage))
+        if check:
+            result = check_session(
+                complete, options, ProgressLines(f"checking {session.name}", info.duration)
+            )
+            Console().print(result)
+            raise typer.Exit(0 if result.identical else 1)
+        options, kept = preferences.open(replace(options, source=str(complete)))
+        line = closing.enter_context(publisher(mqtt, player, site, password_file, ca))
         play_session(options, f"replaying {session.name}", player=line, preferences=kept)

@@ -1,0 +1,38 @@
+"""Sessions with every channel, for the commands that read them."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from rich.console import Console
+
+from cubeling.app.session import has_channels, session_info
+
+
+@contextmanager
+def complete_session(path: Path, *, salvage: bool = False) -> Iterator[Path]:
+    """Yield a session with every channel: the file itself, or a temporary one if it lacks some.
+
+    What it lacks is computed first, with a progress bar on standard error.
+
+    Raises
+    ------
+    AppError, TrackingError, CharacterError, AffectError
+        The file is no session or was cut off, or cannot be played.
+    KeyboardInterrupt
+        Ctrl-C ended the computation.
+    """
+    duration = session_info(path, salvage=salvage).duration
+    if has_channels(path):
+        yield path
+        return
+    # They load all that plays a session, which most sessions do not need here.
+    from cubeling.app.commands.session.progress import show_progress
+    from cubeling.app.running.computing import compute_channels
+
+    with TemporaryDirectory(prefix="cubeling-") as folder:
+        complete = Path(folder) / f"{path.stem}.mcap"
+        with show_progress(f"computing {path.name}", duration, Console(stderr=True)) as progress:
+            compute_channels(path, complete, progress, salvage=salvage)
+        yield complete
