@@ -1,0 +1,102 @@
+"""Sessions that older versions of the program recorded are read, played and replayed."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tests.sessions
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.session import (
+    events,
+    has_channels,
+    messages,
+    opening_times,
+    session_info,
+    spoken_lines,
+    start_over_times,
+)
+from cubeling.app.session.encoding import MESSAGE_TYPES, decode
+from cubeling.app.session.replay_inputs import read_replay_inputs
+from cubeling.tracking import open_source
+from tests.app.session.test_replay import assert_close
+
+FOLDER = Path(tests.sessions.__path__[0])
+
+SESSIONS = {
+    # The first: no gaze and no emotion in the command, a shake that is a field, a word next to the
+    # emotion, metadata without a character, a look, a personality.
+    "fields": ("companion", {"idle", "kiss"}),  # f7f045ca
+    # With gaze and emotion, in single fields of the command; faces move.
+    "moods": ("companion", {"idle", "kiss"}),  # 2ad762fb
+    # Commands of intents, an emotion that has its word, gestures.
+    "intents": ("follow", {"move"}),  # b9292a9e
+    # With speech, more morphs, and a controller in the metadata.
+    "speech": ("sketch", {"idle"}),  # 07074f9e
+    # With behaviour: hands reach.
+    "behaviour": ("reach", {"idle"}),  # a585c192
+    # What is said is in the command only. It was recorded with the small pictures that it has.
+    "spoken": ("companion", {"idle"}),  # b3314e50
+}
+"""The scenario of each and what its character does, beside the commit whose program recorded it."""
+
+FRAMES = 20
+
+
+@pytest.mark.parametrize("name", SESSIONS)
+def test_every_message_of_an_older_session_is_read_as_todays(name):
+    scenario, activities = SESSIONS[name]
+    path = FOLDER / f"{name}.mcap"
+    assert path.stat().st_size <= 100_000
+    info = session_info(path)
+    assert (info.options.scenario, info.frames, round(info.duration, 1)) == (scenario, FRAMES, 1.9)
+    assert has_channels(path)
+    read = {
+        topic: [decode(kind, data) for _, _, data in messages(path, topic)]
+        for topic, kind in MESSAGE_TYPES.items()
+    }
+    assert {len(each) for each in read.values()} == {FRAMES}
+    assert {command.activity for command in read["/character/command"]} == activities
+    assert {target.emotion.label for target in read["/robot/emotion"]} == {"neutral"}
+    assert all(each.emotion is None for each in read["/character/command"]) == (name == "fields")
+    assert all(np.isfinite(posed.pose.rotations).all() for posed in read["/character/pose"])
+
+
+@pytest.mark.parametrize("start", ["state", "command", "pose"])
+@pytest.mark.parametrize("name", SESSIONS)
+def test_an_older_session_is_played_from_what_it_recorded(name, start):
+    path = FOLDER / f"{name}.mcap"
+    recorded = read_replay_inputs(str(path), start)
+    with open_source(str(path)) as source:
+        intrinsics = intrinsics_for(source.intrinsics, source.size)
+        playground = Playground(session_info(path).options.scenario, intrinsics)
+        steps = [playground.step(frame, replay=next(recorded, None)) for frame in source]
+    assert len(steps) == FRAMES
+    assert any(step.posed.visible for step in steps)
+
+
+def test_an_older_session_whose_character_speaks_is_replayed():
+    """Bit for bit where processors round alike: its pictures are those that its program saw."""
+    path = FOLDER / "spoken.mcap"
+    lines, cleared, opened = spoken_lines(path), start_over_times(path), opening_times(path)
+    (line,) = lines.values()
+    assert (line.utterance.text, line.rate, len(line.samples)) == ("Hello there!", 16000, 9600)
+    assert events(path) == [
+        (*opened, "cube opened or closed"),
+        (*cleared, "start over"),
+    ]
+    with open_source(str(path)) as source:
+        playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
+        made = [
+            (topic, now, message)
+            for frame in source
+            for now in (frame.timestamp,)
+            for step in (playground.step(frame, Inputs(clear=now in cleared, line=lines.get(now))),)
+            for topic, message in step.messages().items()
+        ]
+    for (topic, time, data), (_, _, message) in zip(
+        messages(path, *MESSAGE_TYPES), made, strict=True
+    ):
+        assert_close(topic, time, decode(MESSAGE_TYPES[topic], data), message)

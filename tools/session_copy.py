@@ -1,0 +1,77 @@
+"""Copying a part of a session's messages to another file, byte for byte."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from mcap.reader import SeekingReader
+from mcap.writer import Writer
+
+from cubeling.app.session.encoding import IMAGE_TOPIC, INPUTS_TOPIC, LINE_TOPIC, encode
+from cubeling.app.session.inputs import RecordedInputs, recorded_inputs
+from cubeling.app.session.reading import messages
+from cubeling.app.session.recorder import CHUNK_BYTES, JSON_SCHEMAS
+
+INPUT_TOPICS = (IMAGE_TOPIC, "/camera/calibration", INPUTS_TOPIC, LINE_TOPIC, "/events")
+"""The channels of what came in."""
+
+Change = Callable[[str, float, bytes], bytes | None]
+"""Takes a message's topic, its time [s] and its bytes; returns those to write, or None to drop."""
+
+
+def keep_inputs(session: Path, path: Path) -> None:
+    """Copy what came in of a session: a replay computes the rest from it.
+
+    The camera's bytes stay as they are. What an older session says in its commands is copied to
+    the inputs.
+    """
+    has_inputs = next(messages(session, INPUTS_TOPIC), None) is not None
+    added = {} if has_inputs else recorded_inputs(session)
+    copy_session(
+        session, path, lambda topic, _, data: data if topic in INPUT_TOPICS else None, added
+    )
+
+
+def copy_session(
+    session: Path, path: Path, change: Change, added: Mapping[float, RecordedInputs] | None = None
+) -> None:
+    """Copy the metadata and messages of a complete session.
+
+    Parameters
+    ----------
+    session
+        The session to read.
+    path
+        The .mcap file to write.
+    change
+        What becomes of each message.
+    added
+        Inputs to add, by the time of their frame [s].
+    """
+    added = added or {}
+    with session.open("rb") as source, path.open("wb") as file:
+        writer, ids = Writer(file, chunk_size=CHUNK_BYTES), dict[str, int]()
+        writer.start(profile="", library="cubeling")
+        for record in SeekingReader(source).iter_metadata():
+            writer.add_metadata(record.name, record.metadata)
+        source.seek(0)
+        reader = SeekingReader(source, validate_crcs=True)
+        for schema, channel, message in reader.iter_messages(log_time_order=False):
+            time = message.log_time / 1e9
+            data = change(channel.topic, time, message.data)
+            if data is None:
+                continue
+            if channel.topic not in ids:
+                form = (schema.name, schema.encoding, schema.data) if schema else ("", "", b"")
+                ids[channel.topic] = writer.register_channel(
+                    channel.topic, channel.message_encoding, writer.register_schema(*form)
+                )
+            writer.add_message(ids[channel.topic], message.log_time, data, message.publish_time)
+            if channel.topic == IMAGE_TOPIC and time in added:
+                if INPUTS_TOPIC not in ids:
+                    name, text = JSON_SCHEMAS[INPUTS_TOPIC]
+                    ids[INPUTS_TOPIC] = writer.register_channel(
+                        INPUTS_TOPIC, "json", writer.register_schema(name, "jsonschema", text)
+                    )
+                document = encode(added[time])
+                writer.add_message(ids[INPUTS_TOPIC], message.log_time, document, message.log_time)
+        writer.finish()  # type: ignore[no-untyped-call]  # mcap has no types here
