@@ -3,7 +3,9 @@
 import gc
 import os
 import sys
-from collections.abc import Generator
+import time
+from collections.abc import Callable, Generator
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -47,3 +49,34 @@ def pytest_collection() -> Generator[None, object, object]:
     finally:
         gc.freeze()
         gc.enable()
+
+
+COMPUTING_S = 300.0
+"""A process waits so long for a recording that another one computes [s]."""
+
+
+@pytest.fixture(scope="session")
+def computed_session(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """Return a bundled recording with every channel; the first process that asks computes it."""
+    from cubeling.app.running.computing import compute_channels
+    from cubeling.app.session.bundled import bundled
+
+    folder = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        folder = folder.parent  # of all processes
+
+    def find(name: str) -> Path:
+        path, begun = folder / f"{name}.mcap", folder / f"{name}.begun"
+        try:
+            begun.touch(exist_ok=False)
+        except FileExistsError:
+            end = time.monotonic() + COMPUTING_S
+            while not path.exists():
+                assert time.monotonic() < end, f"another process did not compute {name}"
+                time.sleep(0.1)
+            return path
+        partial = folder / f"{name}-partial.mcap"
+        compute_channels(bundled(name), partial)
+        return partial.rename(path)
+
+    return find

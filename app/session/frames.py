@@ -20,7 +20,7 @@ JPEG_QUALITY = 92
 H264_CRF = 19
 """Constant rate factor of x264: a larger one gives smaller files and worse pictures. With 19 the
 mean error of a pose is 7 % larger than from the camera's own pixels, and a bundled session takes
-less than 6 MB (`python -m tests.bench.codecs`)."""
+less than 3 MB (`python -m tests.bench.codecs`)."""
 
 KEYFRAME_INTERVAL_S = 5
 """Time between pictures that can be decoded alone [s]."""

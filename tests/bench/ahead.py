@@ -16,6 +16,7 @@ from rich.console import Console
 from rich.table import Table
 
 import cubeling.app.scenarios as _scenarios  # registers them
+from cubeling.app.commands.session.complete import complete_session
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.session import messages
@@ -51,8 +52,8 @@ TREMOR_M, TREMOR_HZ = 2e-4, np.array([6.3, 8.1, 9.7])
 def recorded() -> list[CubeState]:
     """Return the states of the bundled recording."""
     topic = "/cube/state"
-    data = (each for _, _, each in messages(bundled("follow"), topic))
-    return [decode(MESSAGE_TYPES[topic], each) for each in data]
+    with complete_session(bundled("follow")) as session:
+        return [decode(MESSAGE_TYPES[topic], data) for _, _, data in messages(session, topic)]
 
 
 def hand(seed: int, turn: float, seconds: float = 40.0) -> list[CubeState]:

@@ -60,9 +60,15 @@ def test_an_action_is_published_when_it_begins_and_only_if_visible():
         assert line.client.endpoint.counts["made"] == 3
 
 
-def test_a_recorded_session_drives_robots_without_a_broker():
+@pytest.fixture(scope="module")
+def companion(computed_session: Callable[[str], Path]) -> Path:
+    """The recording with every channel."""
+    return computed_session("companion")
+
+
+def test_a_recorded_session_drives_robots_without_a_broker(companion):
     robots = {"rex": "sim", "max": "sim:cubeling?seed=2"}
-    with Network() as network, Bridge(network, robots, {"ann": COMPANION}) as bridge:
+    with Network() as network, Bridge(network, robots, {"ann": companion}) as bridge:
         roster = bridge.roster.endpoint
         assert bridge.advance(0.0)
         soon(lambda: len(roster.members) == 3)
@@ -81,10 +87,10 @@ def test_a_recorded_session_drives_robots_without_a_broker():
             assert table(roster, time.monotonic()).row_count == 3
 
 
-def test_a_recorded_session_plays_in_its_own_time():
+def test_a_recorded_session_plays_in_its_own_time(companion):
     with Network() as network:
         line = PlayerPublisher(network, "ann")
-        player = RecordedPlayer(line, COMPANION)
+        player = RecordedPlayer(line, companion)
         made = []
         for second in range(60):
             player.advance(100.0 + second)

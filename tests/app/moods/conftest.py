@@ -17,9 +17,15 @@ FRAME = 1 / 30
 
 
 @pytest.fixture(scope="module")
-def history(bundled_session):
+def companion(computed_session):
+    """A whole session with every channel."""
+    return computed_session("companion")
+
+
+@pytest.fixture(scope="module")
+def history(companion):
     """The moods of a whole session."""
-    return read_history(bundled_session)
+    return read_history(companion)
 
 
 @pytest.fixture(scope="module")

@@ -17,8 +17,8 @@ from tests.app.moods.talking import words_of
 THESIS = LABEL_SETS["thesis"]
 
 
-def test_the_plot_says_what_it_shows_and_in_which_units(history, bundled_session, tmp_path):
-    save_plot(tmp_path / "m.svg", history, (), read_robot_traces(bundled_session), THESIS)
+def test_the_plot_says_what_it_shows_and_in_which_units(history, companion, tmp_path):
+    save_plot(tmp_path / "m.svg", history, (), read_robot_traces(companion), THESIS)
     words = words_of(tmp_path / "m.svg")
     for expected in ("valence [1]", "arousal [1]", "time [s]", "neutral", "happy", "angry"):
         assert expected in words
@@ -29,10 +29,10 @@ def test_the_plot_says_what_it_shows_and_in_which_units(history, bundled_session
     assert any("scenario companion" in each for each in words)
 
 
-def test_the_plot_names_who_feels_again_and_in_whose_words(history, bundled_session, tmp_path):
+def test_the_plot_names_who_feels_again_and_in_whose_words(history, companion, tmp_path):
     names = ("lively", "calm")
     again = [replay_with(history, Personality.load(name)) for name in names]
-    wire = read_robot_traces(bundled_session)
+    wire = read_robot_traces(companion)
     save_plot(tmp_path / "m.svg", history, again, wire, LABEL_SETS["circumplex"])
     words = words_of(tmp_path / "m.svg")
     assert any("felt again by lively and calm" in each for each in words)
@@ -40,11 +40,11 @@ def test_the_plot_names_who_feels_again_and_in_whose_words(history, bundled_sess
     assert "observed on the robot" not in words
 
 
-def test_the_same_plot_as_svg_pdf_and_png(history, bundled_session, tmp_path):
+def test_the_same_plot_as_svg_pdf_and_png(history, companion, tmp_path):
     for suffix in ("svg", "pdf", "png"):
         paths = tmp_path / f"m.{suffix}", tmp_path / f"again.{suffix}"
         for path in paths:
-            save_plot(path, history, (), read_robot_traces(bundled_session), THESIS)
+            save_plot(path, history, (), read_robot_traces(companion), THESIS)
         assert paths[0].read_bytes() == paths[1].read_bytes()
     page = pypdfium2.PdfDocument(tmp_path / "m.pdf")[0]
     assert "valence [1]" in page.get_textpage().get_text_range()
@@ -56,7 +56,7 @@ def test_the_same_plot_as_svg_pdf_and_png(history, bundled_session, tmp_path):
     assert pixels.std() > 10
 
 
-def test_the_plot_of_a_long_session_is_a_small_file(history, bundled_session, tmp_path):
+def test_the_plot_of_a_long_session_is_a_small_file(history, companion, tmp_path):
     """Points that change no line are left out: half an hour takes about as much as a minute."""
     times = 44
     length = len(history.recorded.times)
@@ -68,8 +68,8 @@ def test_the_plot_of_a_long_session_is_a_small_file(history, bundled_session, tm
     )
     commands = tuple(each for each in history.commands for _ in range(times))
     long = dataclasses.replace(history, recorded=felt, commands=commands)
-    save_plot(tmp_path / "long.svg", long, (), read_robot_traces(bundled_session), THESIS)
-    save_plot(tmp_path / "short.svg", history, (), read_robot_traces(bundled_session), THESIS)
+    save_plot(tmp_path / "long.svg", long, (), read_robot_traces(companion), THESIS)
+    save_plot(tmp_path / "short.svg", history, (), read_robot_traces(companion), THESIS)
     sizes = [(tmp_path / f"{name}.svg").stat().st_size for name in ("long", "short")]
     assert sizes[0] < 2 * sizes[1]
 

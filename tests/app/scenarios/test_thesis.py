@@ -1,14 +1,18 @@
 """What the thesis says the cube does, on pictures of a cube: recorded, and drawn for the test."""
 
 import itertools
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 
 from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import EmotionTarget
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.scenarios.speed import SPEED_MAPS
-from cubeling.tracking import open_source
+from cubeling.app.session import messages
+from cubeling.app.session.encoding import decode
+from cubeling.characters import CharacterCommand
 from cubeling.tracking.synthetic import open_synthetic
 
 SMALL = "width=640&height=360&rate=15&clutter=0&shadow=0&hand=0"
@@ -62,11 +66,22 @@ def test_a_new_face_starts_at_zero_and_two_turns_span_the_intensity(two_turns):
 
 
 @pytest.fixture(scope="module")
-def companion_session(bundled_session):
-    """Every second frame of the bundled recording, without pictures."""
-    with open_source(str(bundled_session)) as source:
-        playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
-        return [playground.step(frame) for frame in itertools.islice(source, 0, None, 2)]
+def companion_session(computed_session):
+    """Commands and emotions of the bundled recording."""
+    path = computed_session("companion")
+    commands = (data for _, _, data in messages(path, "/character/command"))
+    emotions = (data for _, _, data in messages(path, "/robot/emotion"))
+    return [
+        Felt(decode(CharacterCommand, command), decode(EmotionTarget, emotion))
+        for command, emotion in zip(commands, emotions, strict=True)
+    ]
+
+
+class Felt(NamedTuple):
+    """What is asked of the character in a frame, and what it feels."""
+
+    command: CharacterCommand
+    emotion: EmotionTarget
 
 
 def test_kisses_make_happy_and_shouts_angry_never_skipping_neutral(companion_session):

@@ -5,22 +5,32 @@ import pytest
 
 from cubeling.app.scenarios import SCENARIOS
 from cubeling.app.session import messages
-from cubeling.app.session.bundled import bundled
 from cubeling.app.session.encoding import decode
 from cubeling.tracking import CubeControls, CubeState
 from cubeling.tracking.synthetic import open_synthetic
 
 
-def recorded(name, topic, kind):
-    return [decode(kind, data) for _, _, data in messages(bundled(name), topic)]
+@pytest.fixture(scope="module", params=SCENARIOS)
+def recording(request, computed_session):
+    """The name of a bundled recording, and its file with every channel."""
+    return request.param, computed_session(request.param)
 
 
-@pytest.mark.parametrize("name", SCENARIOS)
-def test_the_recorded_pose_is_the_true_one(name):
+def computed(path, topic, kind):
+    return [decode(kind, data) for _, _, data in messages(path, topic)]
+
+
+def test_the_cube_is_found_in_nearly_every_frame(recording):
+    states = computed(recording[1], "/cube/state", CubeState)
+    assert np.mean([state.visible for state in states]) > 0.97
+
+
+def test_the_pose_is_the_true_one(recording):
     """Through lens, noise, blur, fingers and H.264."""
+    name, path = recording
     source = open_synthetic(name)
     shifts, angles = [], []
-    for index, state in enumerate(recorded(name, "/cube/state", CubeState)):
+    for index, state in enumerate(computed(path, "/cube/state", CubeState)):
         if not state.visible or state.camera_from_cube is None:
             continue
         truth, pose = source.truth(index), state.camera_from_cube
@@ -32,11 +42,11 @@ def test_the_recorded_pose_is_the_true_one(name):
     assert np.max(shifts) < 0.02, "silently wrong"
 
 
-@pytest.mark.parametrize("name", SCENARIOS)
-def test_every_resting_frame_has_the_right_top_face(name):
+def test_every_resting_frame_has_the_right_top_face(recording):
+    name, path = recording
     source = open_synthetic(name)
     resting = 0
-    for index, controls in enumerate(recorded(name, "/cube/controls", CubeControls)):
+    for index, controls in enumerate(computed(path, "/cube/controls", CubeControls)):
         state = source.state(index)
         if controls.resting and state.resting:
             resting += 1

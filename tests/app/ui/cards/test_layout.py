@@ -3,10 +3,10 @@
 import itertools
 
 import numpy as np
+import pytest
 
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.running.opening import intrinsics_for
-from cubeling.app.session.bundled import bundled
 from cubeling.app.session.replay_inputs import read_replay_inputs
 from cubeling.app.ui.cards.layout import MIN_STAY_S, CardLayout, Corner, card_box
 from cubeling.tracking import open_source
@@ -69,12 +69,17 @@ def overlaps(corner, size, subjects):
     )
 
 
-def test_in_the_bundled_sketch_cube_and_character_are_seldom_behind_a_card():
+@pytest.fixture(scope="module")
+def sketch(computed_session):
+    """The recording with every channel."""
+    return str(computed_session("sketch"))
+
+
+def test_in_the_bundled_sketch_cube_and_character_are_seldom_behind_a_card(sketch):
     layout, hidden, at_home = CardLayout(), [], []
-    recording = str(bundled("sketch"))
-    with open_source(recording) as source:
+    with open_source(sketch) as source:
         playground = Playground("sketch", intrinsics_for(source.intrinsics, source.size))
-        recorded = read_replay_inputs(recording, "command")
+        recorded = read_replay_inputs(sketch, "command")
         for frame, replay in itertools.islice(zip(source, recorded, strict=True), 700):
             subjects = playground.step(frame, replay=replay).subjects
             corners = layout.update(CARDS, subjects, WIDTH, frame.timestamp)
