@@ -10,8 +10,7 @@ from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.session.encoding import INPUTS_TOPIC, LINE_TOPIC, decode, decode_sound
 from cubeling.app.session.reading import INSIDE_EVENT, START_OVER_EVENT, events, messages
-from cubeling.characters import CharacterCommand
-from cubeling.characters.control.command import SpeechIntent
+from cubeling.characters import CharacterCommand, SpeechIntent
 
 
 @dataclass(frozen=True)
