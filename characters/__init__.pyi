@@ -17,9 +17,15 @@ from cubeling.characters.control.controllers.actions import clips_of_actions as 
 from cubeling.characters.control.controllers.idle import standing_as as standing_as
 from cubeling.characters.control.controllers.in_place import InPlaceController as InPlaceController
 from cubeling.characters.control.controllers.recordings import read_motions as read_motions
-from cubeling.characters.control.layers import layers_of as layers_of
+from cubeling.characters.control.layers import (
+    DEFAULT_LAYERS as DEFAULT_LAYERS,
+    layers_of as layers_of,
+)
 from cubeling.characters.control.layers.gestures import GestureLayer as GestureLayer
-from cubeling.characters.control.layers.layer import LayerFactory as LayerFactory
+from cubeling.characters.control.layers.layer import (
+    FrameContext as FrameContext,
+    LayerFactory as LayerFactory,
+)
 from cubeling.characters.control.layers.live_mouth import LiveMouthLayer as LiveMouthLayer
 from cubeling.characters.control.layers.speech import known_gestures as known_gestures
 from cubeling.characters.control.layers.upper_body import (

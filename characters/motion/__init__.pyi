@@ -20,6 +20,7 @@ from cubeling.characters.ik.solvers.solving import (
 from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M as ARRIVAL_DISTANCE_M
 from cubeling.characters.motion.baking import bake as bake, stacked as stacked
 from cubeling.characters.motion.motion import Motion as Motion
+from cubeling.characters.motion.phase import phased as phased
 from cubeling.characters.motion.schedule import Schedule as Schedule
 from cubeling.characters.motion.schedule_file import ScheduleReader as ScheduleReader
 from cubeling.characters.motion.trees.dot import to_dot as to_dot
@@ -65,6 +66,7 @@ from cubeling.characters.synthesis.idle.database import (
     IdleDatabase as IdleDatabase,
     RestingPosture as RestingPosture,
 )
+from cubeling.characters.synthesis.idle.idle_motion import IdleMotion as IdleMotion
 from cubeling.characters.synthesis.idle.posture_space import PostureVectors as PostureVectors
 from cubeling.characters.synthesis.idle.recordings import (
     BALANCES as BALANCES,
@@ -93,3 +95,4 @@ from cubeling.characters.synthesis.transitions.evaluation import (
     graph_requests as graph_requests,
     merge_answers as merge_answers,
 )
+from cubeling.characters.synthesis.transitions.playback import path_clip as path_clip
