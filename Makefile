@@ -8,7 +8,7 @@ endif
 INSTALL := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 
 .DEFAULT_GOAL := demo
-.PHONY: demo test campaign campaign-tenth check bench bench-tracking bench-photographs recordings assets pictures cast clean
+.PHONY: demo test campaign campaign-tenth check package bench bench-tracking bench-photographs recordings assets pictures cast clean
 
 demo: .venv/ready  ## set everything up and play
 	$(BIN)/cubeling demo
@@ -40,6 +40,9 @@ check: .venv/ready-dev  ## check formatting, lint, the floors of the rooms, and 
 	$(BIN)/python -m tools.package_links
 	cd build/packages && ../../$(BIN)/lint-imports --config ../../.importlinter --cache-dir ../../.import_linter_cache
 	$(BIN)/mypy
+
+package: .venv/ready-dev  ## build what is published, and try it in a fresh environment, beside Robot Framework
+	$(BIN)/python -m tools.package_check
 
 bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.line
