@@ -10,9 +10,10 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-# The same examples everywhere, however busy the machine is.
-settings.register_profile("suite", derandomize=True, deadline=None)
-settings.load_profile("suite")
+from tests.examples import register_profiles
+
+register_profiles()
+settings.load_profile("quick")  # `make test-all` takes another: --hypothesis-profile full
 
 for name in ("FORCE_COLOR", "GITHUB_ACTIONS", "PY_COLORS"):
     os.environ.pop(name, None)  # with them, Typer prints colours without a terminal

@@ -17,6 +17,7 @@ from cubeling.app.scenarios.reach_catching import (
     Catching,
     Prospect,
 )
+from tests.examples import examples
 
 FRAME = 1 / 30
 EASY, HARD, FAR = 0.2, 1.6, 4.0
@@ -121,7 +122,7 @@ def test_nothing_flickers_where_the_cube_is_at_the_limit_of_its_reach(play):
     assert changes <= 4
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(
     st.lists(
         st.tuples(

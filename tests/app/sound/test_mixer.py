@@ -6,6 +6,7 @@ from hypothesis import given, settings, strategies as st
 
 from cubeling.app.sound import Cue, Mixer, SoundBank
 from cubeling.app.sound.mixer import CEILING, FADE_OUT, KNEE, MAX_SOUNDS
+from tests.examples import examples
 
 RAMP = np.linspace(0.1, 0.5, 1000)
 
@@ -28,7 +29,7 @@ def test_a_cue_begins_with_the_next_sample_and_ends_by_itself():
     blocks=st.lists(st.integers(0, 700), min_size=1, max_size=12),
     gains=st.lists(st.floats(0, 1), min_size=1, max_size=4),
 )
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_the_size_of_the_blocks_does_not_matter(blocks, gains):
     one, many = mixer(ramp=RAMP), mixer(ramp=RAMP)
     for gain in gains:

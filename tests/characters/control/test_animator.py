@@ -23,6 +23,7 @@ from cubeling.characters.motion.motion import RootDelta
 from cubeling.characters.skeleton import rotations
 from tests.characters.commands import command
 from tests.characters.control.played import RATE_HZ, heading, place, play, velocities
+from tests.examples import examples
 
 
 def arrival(character, speed, target, place=None, seconds=40):
@@ -59,7 +60,7 @@ def test_a_walker_is_seventeen_centimetres_tall(anyone):
     assert top[1] == pytest.approx(0.17)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=examples(25))
 @given(
     st.floats(-0.4, 0.4), st.floats(-0.4, 0.4), st.floats(-math.pi, math.pi), st.floats(0.6, 5.0)
 )

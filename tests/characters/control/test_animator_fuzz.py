@@ -11,6 +11,7 @@ from cubeling.characters import Animator, Character, CharacterError
 from cubeling.characters.control.animator import MAX_TIME_STEP_S
 from cubeling.characters.motion.motion import RootDelta
 from tests.characters.commands import command
+from tests.examples import examples
 
 DATA = Path(__file__).parents[3].parent / "shared" / "data" / "gltf"
 CAST = ("human", "vleo", "robot", "RobotExpressive.glb", "Fox.glb")
@@ -75,7 +76,7 @@ def played(someone, story):
                 break
 
 
-@settings(max_examples=12)
+@settings(max_examples=examples(12))
 @given(story=stories())
 def test_no_command_breaks_a_character(someone, story):
     before = None
@@ -93,7 +94,7 @@ def test_no_command_breaks_a_character(someone, story):
         before = posed
 
 
-@settings(max_examples=2)
+@settings(max_examples=examples(2))
 @given(story=stories())
 def test_the_same_story_twice(someone, story):
     first, second = (

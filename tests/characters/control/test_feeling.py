@@ -31,6 +31,7 @@ from cubeling.characters.face.lids import Lids, blink_shares
 from cubeling.characters.model.character import skin
 from tests.bundled_characters import bundled_character
 from tests.characters.commands import command
+from tests.examples import examples
 
 STEP_S = 1 / 30
 MAX_WEIGHT_RATE = 8.0
@@ -159,7 +160,9 @@ words = st.sampled_from(["", "neutral", "unheard of", *FACE_RECIPES])
 moods = st.tuples(st.floats(-1, 1), st.floats(-1, 1), words)
 
 
-@settings(max_examples=20, deadline=None, phases=(Phase.explicit, Phase.reuse, Phase.generate))
+@settings(
+    max_examples=examples(20), deadline=None, phases=(Phase.explicit, Phase.reuse, Phase.generate)
+)
 @given(
     name=st.sampled_from(list(CAST)),
     plan=st.lists(st.tuples(st.one_of(st.none(), moods), st.integers(1, 15)), max_size=6),

@@ -17,6 +17,7 @@ from cubeling.characters.face.lids import Lids
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
 from tests.characters.layers import AppliedLayers
+from tests.examples import examples
 
 STEP_S = 1 / 60
 NAMES = ("hips", "spine", "chest", "neck", "head", "LeftEye", "RightEye", "LeftFoot")
@@ -55,7 +56,7 @@ def angle(a, b):
     return math.acos(min(max(float(cosine), -1.0), 1.0))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(st.integers(0, 9), st.floats(-1.3, 1.3), st.floats(-0.5, 0.5), st.floats(0.6, 5.0))
 def test_eyes_end_on_what_they_look_at(seed, yaw, pitch, distance):
     skeleton, anatomy = bust(seed)
@@ -72,7 +73,7 @@ def test_eyes_end_on_what_they_look_at(seed, yaw, pitch, distance):
     assert angle(looking(skeleton, pose, 4), target - middle) < math.radians(22)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=examples(20), deadline=None)
 @given(st.integers(0, 9), st.lists(st.floats(-5, 5), min_size=3, max_size=3))
 def test_nothing_turns_farther_than_a_body_can(seed, target):
     skeleton, anatomy = bust(seed)

@@ -14,6 +14,7 @@ from cubeling.characters.face.visemes.coarticulation import (
 )
 from cubeling.characters.face.visemes.sets import MOUTH_SHAPES, viseme_sets
 from cubeling.characters.speech.speech import SILENCE, Accent, Phone, Utterance
+from tests.examples import examples
 
 PUBLISHED = Coarticulation("sapi", sharpness=1.0, contacts=False)
 
@@ -53,7 +54,7 @@ phones = st.lists(
 
 
 @pytest.mark.parametrize("name", viseme_sets())
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(phones=phones, emphasis=st.floats(-1, 1), strength=st.floats(0, 1))
 def test_shares_sum_to_one_and_never_jump(name, phones, emphasis, strength):
     said = spoken(*phones, accents=(Accent(0.2, strength),))

@@ -7,6 +7,7 @@ from hypothesis import given, settings, strategies as st
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.face.fap import FAP_COUNT, FaceParameters, FapTrack, read_faps, write_faps
 from cubeling.characters.model.character import Character
+from tests.examples import examples
 
 PARTS = [
     *("jawOpen", "mouthFunnel", "mouthPucker", "mouthSmileLeft", "mouthSmileRight", "tongueOut"),
@@ -16,7 +17,7 @@ PARTS = [
 ]
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=examples(15), deadline=None)
 @given(st.lists(st.floats(0, 1), min_size=len(PARTS), max_size=len(PARTS)))
 def test_parts_of_a_face_come_back_if_no_parameter_is_at_its_limit(weights):
     face = FaceParameters(PARTS)

@@ -13,6 +13,7 @@ from cubeling.characters.formats.mocap import amc
 from cubeling.characters.formats.mocap.axes_and_units import CMU_UNIT_M
 from cubeling.characters.skeleton import rotations
 from tests.characters.formats.hopper import AMC, ASF, hopper, places
+from tests.examples import examples
 
 DATA = Path(__file__).parents[4] / "shared" / "data"
 SAMPLES = sorted((DATA / "cmu-mocap").glob("*/*.amc"))
@@ -164,7 +165,7 @@ def test_bones_tips_rate_and_units(tmp_path: Path) -> None:
 
 
 @given(data=st.data())
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 def test_any_axes_and_angles_agree_with_the_reference(
     data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
 ) -> None:

@@ -10,6 +10,7 @@ from cubeling.characters import CharacterError
 from cubeling.characters.formats import load_motion
 from tests.characters.formats.hopper import AMC, ASF, hopper, places
 from tests.characters.formats.mutated_text import mutated
+from tests.examples import examples
 
 
 @pytest.mark.parametrize(
@@ -85,7 +86,7 @@ def test_a_damaged_skeleton_is_refused_with_its_line(
 
 
 @given(data=st.data())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_a_mutated_file_loads_or_is_refused_in_one_line(
     data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
@@ -101,7 +102,7 @@ def test_a_mutated_file_loads_or_is_refused_in_one_line(
 
 
 @given(junk=st.binary(max_size=300), kind=st.sampled_from(["asf", "amc"]))
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 def test_random_bytes_are_refused(
     junk: bytes, kind: str, tmp_path_factory: pytest.TempPathFactory
 ) -> None:

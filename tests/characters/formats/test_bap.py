@@ -26,6 +26,7 @@ from cubeling.characters.retargeting.bap import baps_of, save_bap
 from cubeling.characters.retargeting.retarget import retarget
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array
+from tests.examples import examples
 
 BODY = ("hips", "head", *(f"{s}{part}" for s in ("left", "right")
         for part in ("UpperArm", "LowerArm", "Hand", "LowerLeg", "Foot")))  # fmt: skip
@@ -58,7 +59,7 @@ def test_every_part_of_a_person_is_in_the_body() -> None:
     assert hanim_anatomy().missing == ()
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.lists(st.floats(-1.5, 1.5), min_size=6, max_size=6))
 def test_an_angle_comes_back_within_half_a_unit(angles: list[float]) -> None:
     joints = ("l_shoulder", "vt6")
@@ -76,7 +77,7 @@ def test_a_forearm_that_is_raised_ahead_flexes_the_elbow_alone() -> None:
     assert np.count_nonzero(values) == 1
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_hinges_leave_hands_and_feet_where_they_are(seed: int) -> None:
     draw = np.random.default_rng(seed)

@@ -13,6 +13,7 @@ from cubeling.characters.formats import Performance, load_motion
 from cubeling.characters.formats.mocap.axes_and_units import CMU_UNIT_M
 from cubeling.characters.skeleton import rotations
 from tests.characters.formats.mutated_text import mutated
+from tests.examples import examples
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # it imports pyglm by its old name
@@ -158,7 +159,7 @@ def test_all_frames_are_read_where_there_are_more_than_stated(tmp_path: Path) ->
     unit=st.sampled_from([1.0, 0.3048, 0.0254, 0.01, 0.001]),
     yaw=st.floats(-np.pi, np.pi),
 )
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 def test_vertical_axis_and_unit_are_recognised(
     axis: str, unit: float, yaw: float, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
@@ -311,7 +312,7 @@ def test_a_motion_too_large_for_memory_is_refused(tmp_path: Path) -> None:
 
 
 @given(data=st.data())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_a_mutated_file_loads_or_is_refused_in_one_line(
     data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
@@ -326,7 +327,7 @@ def test_a_mutated_file_loads_or_is_refused_in_one_line(
 
 
 @given(junk=st.binary(max_size=300))
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 def test_random_bytes_are_refused(junk: bytes, tmp_path_factory: pytest.TempPathFactory) -> None:
     with pytest.raises(CharacterError):
         load_motion(written(tmp_path_factory.mktemp("junk"), junk))

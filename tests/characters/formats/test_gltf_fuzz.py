@@ -18,6 +18,7 @@ from cubeling.characters.body.constraints import ConstrainedJoints
 from cubeling.characters.body.springs import SpringBody
 from cubeling.characters.skeleton import rotations
 from tests.characters.formats.built_gltf import build_arm, glb
+from tests.examples import examples
 
 pytestmark = pytest.mark.filterwarnings("ignore::cubeling.characters.errors.CharacterWarning")
 
@@ -181,7 +182,7 @@ ODD_VALUES = st.one_of(
 
 
 @given(st.data())
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_any_changed_json_member_loads_or_is_refused(data):
     document, blob = copy.deepcopy(specimen())
     for _ in range(data.draw(st.integers(1, 3))):
@@ -212,7 +213,7 @@ def test_any_changed_json_member_loads_or_is_refused(data):
 
 
 @given(st.data())
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_any_changed_bytes_load_or_are_refused(data):
     document, blob = specimen()
     whole = bytearray(glb(document, blob))
@@ -225,7 +226,7 @@ def test_any_changed_bytes_load_or_are_refused(data):
 
 
 @given(st.binary(max_size=200))
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 def test_random_data_are_refused(noise):
     survives(noise)
     survives(b"glTF\2\0\0\0" + noise)

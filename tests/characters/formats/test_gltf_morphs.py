@@ -11,6 +11,7 @@ from cubeling.characters.model.character import skin
 from cubeling.characters.model.mesh import Morph
 from cubeling.characters.skeleton import rotations
 from tests.characters.formats.built_gltf import build_arm
+from tests.examples import examples
 
 
 def load(tmp_path, build):
@@ -139,7 +140,7 @@ def block(names, own):
 
 
 @given(meshes_of_morphs())
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 def test_morphs_survive_saving_and_loading(drawn):
     character = block(*drawn)
     names, own = drawn

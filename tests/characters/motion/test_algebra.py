@@ -37,6 +37,7 @@ from cubeling.characters import (
 from cubeling.characters.motion.blend import TimeScaled
 from cubeling.characters.motion.phase import PhasedMotion, RetimedMotion, StaticPose, as_cyclic
 from cubeling.characters.skeleton import rotations
+from tests.examples import examples
 
 NAMES = ("root", "spine", "LeftArm", "RightArm", "LeftHand", "RightHand")
 REST = Pose(
@@ -133,7 +134,7 @@ def nested(inner: st.SearchStrategy[Motion]) -> st.SearchStrategy[Motion]:
 trees = st.recursive(leaves, nested, max_leaves=5)
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(trees, times)
 def test_any_tree_of_motions_gives_the_same_poses_again(motion, time):
     assert isinstance(motion, Motion)
@@ -148,7 +149,7 @@ def test_any_tree_of_motions_gives_the_same_poses_again(motion, time):
     assert np.array_equal(pose.translations, again.translations)
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 @given(trees, st.lists(times, min_size=3, max_size=3))
 def test_deltas_of_parts_compose_to_the_delta_of_the_whole(motion, at):
     start, middle, end = sorted(at)

@@ -16,6 +16,7 @@ from cubeling.characters import (
 )
 from cubeling.characters.motion.phase import StaticPose
 from cubeling.characters.skeleton import rotations
+from tests.examples import examples
 
 REST = Pose(np.zeros((3, 3)), np.tile(rotations.IDENTITY, (3, 1)))
 SKELETON = Skeleton(("root", "spine", "arm"), (-1, 0, 1), REST)
@@ -100,7 +101,7 @@ def test_masks_name_joints_subtrees_and_roles():
     assert mask.tolist() == [0.5, 0.8, 0.2]
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.lists(st.tuples(st.sampled_from("abc"), st.floats(0.0, 0.4)), max_size=8))
 def test_a_state_machine_is_continuous_at_any_switch(requests):
     states = {name: Swing(seed) for seed, name in enumerate("abc")}
@@ -145,7 +146,7 @@ def test_a_cross_fade_samples_two_poses_only_while_it_lasts():
     assert fade.duration == 2.5
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.lists(st.tuples(st.sampled_from("abc"), st.sampled_from([0.0, 0.2])), max_size=4))
 def test_a_state_machine_may_cross_fade_between_any_switches(requests):
     states = {name: Swing(seed) for seed, name in enumerate("abc")}

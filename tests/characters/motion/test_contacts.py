@@ -11,6 +11,7 @@ from cubeling.characters.formats.loading import load_motion
 from cubeling.characters.motion.contacts import find_contacts, spans
 from cubeling.characters.motion.ground import find_ground, joint_trajectories
 from cubeling.characters.skeleton.feet import find_feet
+from tests.examples import examples
 from tools.authoring.human.limbs import FOOT
 from tools.authoring.human.motion import GAITS
 from tools.authoring.modelling.gait import GroundArc, foot_motion
@@ -64,7 +65,7 @@ def test_the_treadmill_of_a_walk_in_place_runs_as_fast_as_the_walk(human, author
     assert np.degrees(ground.yaw_rate) == pytest.approx(-gait.yaw_rate, rel=0.15, abs=3)
 
 
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 @given(
     shift=st.integers(1, GAITS["Walk"].frames - 1), size=st.floats(0.05, 40), lift=st.floats(-1, 1)
 )

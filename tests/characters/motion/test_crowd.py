@@ -7,6 +7,7 @@ from cubeling.characters.motion.batch.bank import ClipBank
 from cubeling.characters.motion.batch.crowd import crowd_globals
 from cubeling.characters.motion.blend import mix
 from cubeling.characters.skeleton.rotations import about, normalize
+from tests.examples import examples
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +47,7 @@ def test_a_crowd_mixes_as_one_character_does(vleo):
         assert 2 * np.arccos(np.clip(near, 0, 1)).max() < np.radians(0.5)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_matrices_of_any_skeleton_are_those_of_its_poses(seed):
     rng = np.random.default_rng(seed)

@@ -22,6 +22,7 @@ from cubeling.characters.motion.trees.conditions import Condition, ConditionErro
 from cubeling.characters.motion.trees.dot import to_dot
 from cubeling.characters.motion.trees.plan import NODE_KINDS, PARAMETERS
 from cubeling.characters.motion.trees.reading import read_plan
+from tests.examples import examples
 
 HUMAN_TOML = """
 [parameters]
@@ -250,7 +251,7 @@ def test_expressions_other_than_comparisons_are_refused(text):
         Condition.read(text, frozenset({"action"}), frozenset({"speed", "done"}))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(st.data())
 def test_any_document_is_read_or_refused_in_one_line(data):
     document = tomllib.loads(HUMAN_TOML)

@@ -14,6 +14,7 @@ from cubeling.characters.rendering.geometry.morph_mixer import MorphMixer
 from cubeling.characters.rendering.geometry.skinned_character import SkinnedCharacter
 from cubeling.characters.rendering.geometry.vertices import CharacterVertices
 from cubeling.characters.rendering.programs import ShaderPrograms
+from tests.examples import examples
 
 NAMES = ("grin", "absent", "tall")
 
@@ -107,7 +108,7 @@ def test_weights_of_another_character_are_refused_in_one_line(stage, view, jeste
         stage.draw(view, [SceneCharacter(jester, posed)])
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=examples(20), deadline=None)
 @given(grin=st.floats(0, 1), tall=st.floats(0, 1), bend=st.floats(-1.5, 1.5))
 def test_the_extreme_vertices_bound_morphed_shapes_too(jester, grin, tall, bend):
     geometry = CharacterVertices.of(jester.meshes)

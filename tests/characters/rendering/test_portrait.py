@@ -14,6 +14,7 @@ from cubeling.characters.rendering.portrait_camera import (
     CharacterExtent,
     PortraitCamera,
 )
+from tests.examples import examples
 
 SIZE = (90, 120)
 
@@ -60,7 +61,7 @@ def holds_all_of_it(picture):
     return free >= 3 and filled > 0.75
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(
     points=st.lists(st.tuples(*[st.floats(-0.5, 0.5)] * 3), min_size=2, max_size=9),
     elevation=st.floats(-0.3, 1.2),

@@ -13,6 +13,7 @@ from cubeling.characters.rendering.geometry.extreme_vertices import SkinnedPoint
 from cubeling.characters.rendering.geometry.skinned_character import SkinnedCharacter
 from cubeling.characters.rendering.geometry.vertices import CasterRun, CharacterVertices
 from cubeling.characters.rendering.programs import ShaderPrograms
+from tests.examples import examples
 
 
 @pytest.fixture
@@ -139,7 +140,7 @@ def test_each_mesh_keeps_its_bind_pose(ctx, programs, pawn):
     ]
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(bend=st.floats(-1.5, 1.5), turn=st.floats(-3.0, 3.0))
 def test_the_extreme_vertices_bound_all_vertices(pawn, bend, turn):
     geometry = CharacterVertices.of(pawn.meshes)
@@ -153,7 +154,7 @@ def test_the_extreme_vertices_bound_all_vertices(pawn, bend, turn):
     assert np.abs(outline.max(axis=0) - every.max(axis=0)).max() < 0.03
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(st.integers(0, 10_000))
 def test_the_extreme_vertices_of_a_sphere_bound_it_from_any_side(pawn, seed):
     """No direction is further than 17.7° from all 98, so a smooth sphere keeps cos 17.7° = 0.953.

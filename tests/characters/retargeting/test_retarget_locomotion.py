@@ -25,6 +25,7 @@ from cubeling.characters.retargeting.root import clip_with_root, with_root_joint
 from cubeling.characters.retargeting.transfer import turns_from_rest
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
+from tests.examples import examples
 
 SHARED = Path(__file__).parents[4] / "shared" / "data"
 
@@ -203,7 +204,7 @@ def test_adding_a_root_joint_does_not_move_the_character(human):
         assert (mesh.joints == old.joints + 1).all()
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(
     st.floats(0.3, 4), st.floats(-2.5, 2.5), st.floats(-0.5, 0.5), st.floats(0, 2), st.floats(0, 1)
 )

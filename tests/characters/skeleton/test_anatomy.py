@@ -11,6 +11,7 @@ from cubeling.characters.skeleton.anatomy import BODY_PARTS, Anatomy
 from cubeling.characters.skeleton.body_parts.joint_names import read_name
 from tests.characters.skeleton.bodies import DOG, PERSON, named_body, skeleton_of
 from tests.characters.skeleton.test_naming import ANIMALS, PEOPLE
+from tests.examples import examples
 
 DATA = Path(__file__).parents[4] / "shared" / "data" / "gltf"
 
@@ -257,7 +258,7 @@ def test_any_name_can_be_read(name):
     read_name(name)
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(st.data())
 def test_any_tree_gets_an_anatomy_of_known_parts_and_distinct_joints(data):
     count = data.draw(st.integers(1, 12))

@@ -17,6 +17,7 @@ from cubeling.characters.speech.strength import (
     psi,
 )
 from cubeling.characters.speech.tagged_text import TaggedText
+from tests.examples import examples
 
 SYLLABLES = (0.3, 0.52, 0.75, 1.0, 1.22, 1.5, 1.75)
 ACCENTED = (0.52, 1.0, 1.75)
@@ -59,7 +60,7 @@ def random_prosody(seed: int) -> Prosody:
     return Prosody(times, f0, 4 * smooth - 20, voiced, np.zeros((0, 2)), 6.0)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(
     st.integers(0, 1000),
     st.lists(st.floats(0, 1), min_size=2, max_size=2).map(sorted),

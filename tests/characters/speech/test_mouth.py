@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from cubeling.characters.speech.mouth import MouthTracker, phones_from_sound
+from tests.examples import examples
 
 FORMANTS = {"a": (750, 1200, 2500), "i": (280, 2300, 2900), "u": (330, 750, 2300)}
 BLOCK_S = 0.01
@@ -56,7 +57,7 @@ def test_the_mouth_is_less_than_60_ms_behind(rate):
     assert opened[-1] < 0.01
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(st.integers(0, 100))
 def test_blocks_of_any_length_give_the_same_mouth(seed):
     random = np.random.default_rng(seed)

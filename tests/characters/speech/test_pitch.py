@@ -7,6 +7,7 @@ from hypothesis import given, settings, strategies as st
 
 from cubeling.characters.speech.contours import measure_prosody
 from cubeling.characters.speech.pitch import PitchSettings, track_pitch
+from tests.examples import examples
 
 
 def harmonics(pitch, rate):
@@ -16,7 +17,7 @@ def harmonics(pitch, rate):
     return (0.2 * tone).astype(np.float32)
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(st.floats(85, 450), st.sampled_from([8000, 16_000, 44_100, 96_000]))
 def test_a_steady_voice_has_its_pitch(pitch, rate):
     track = track_pitch(harmonics(np.full(rate // 2, pitch), rate), rate)

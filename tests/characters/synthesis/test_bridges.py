@@ -17,6 +17,7 @@ from cubeling.characters.synthesis.idle.bridges import (
 from cubeling.characters.synthesis.idle.database import BalanceShift, IdleDatabase, RestingPosture
 from cubeling.characters.synthesis.idle.idle_motion import IdleMotion
 from cubeling.characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
+from tests.examples import examples
 
 RATE = 25.0
 BALANCES = "left", "both", "right"
@@ -77,7 +78,7 @@ def test_ways_of_one_length_are_all_taken(kind: PostureVectors) -> None:
     assert ways == {("left", "both"), ("right", "both")}
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.sampled_from(BALANCES), st.floats(0.0, 8.0), st.floats(0.12, 20.0), st.integers(0, 999))
 def test_it_is_there_exactly_and_in_time(
     kind: PostureVectors, goal: str, before: float, within: float, seed: int

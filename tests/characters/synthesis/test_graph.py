@@ -18,6 +18,7 @@ from cubeling.characters.synthesis.graphs.search import HopCosts, cost_to_go
 from cubeling.characters.synthesis.graphs.storage import WHOLE_BODY, StoredGraph
 from cubeling.characters.synthesis.library import MotionLibrary
 from cubeling.characters.synthesis.transitions.playback import path_clip
+from tests.examples import examples
 
 
 @st.composite
@@ -39,7 +40,7 @@ def test_a_node_without_a_way_back_is_dropped() -> None:
     assert np.flatnonzero(largest_component(successors)).tolist() == [0, 2, 3, 4, 5]
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(graphs())
 def test_components_are_those_of_scipy(edges: Edges) -> None:
     own = strong_components(edges.successors)
@@ -47,7 +48,7 @@ def test_components_are_those_of_scipy(edges: Edges) -> None:
     assert np.array_equal(own[:, None] == own, theirs[:, None] == theirs)
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(graphs(), st.data())
 def test_shortest_paths_are_those_of_scipy(edges: Edges, data: st.DataObject) -> None:
     goals = np.array(data.draw(st.lists(st.booleans(), min_size=edges.count, max_size=edges.count)))
@@ -63,7 +64,7 @@ def test_shortest_paths_are_those_of_scipy(edges: Edges, data: st.DataObject) ->
             assert goals[path[-1]]
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(graphs(), st.integers(0, 6))
 def test_bounded_paths_are_the_cheapest_of_their_length(edges: Edges, hops: int) -> None:
     table = HopCosts.of(edges, (0,), hops)

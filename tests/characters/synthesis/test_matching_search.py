@@ -5,9 +5,10 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from cubeling.characters.synthesis.matching.nearest import NearestRow
+from tests.examples import examples
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(st.integers(1, 400), st.integers(1, 27), st.integers(0, 2**32 - 1))
 def test_the_nearest_row_is_that_of_all_rows(count, columns, seed):
     rng = np.random.default_rng(seed)

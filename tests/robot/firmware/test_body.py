@@ -17,6 +17,7 @@ from cubeling.robot.firmware.dino.robot import run, run_until_exit
 from cubeling.robot.firmware.dino.table import ServoTable
 from cubeling.robot.protocol import messages as m
 from cubeling.robot.simulators.cubeling import dinosaur
+from tests.examples import examples
 from tests.robot.firmware.conftest import Dino, FailingBoard, Pulse, VirtualBoard
 from tools import firmware_tables as generate, wiring
 
@@ -54,7 +55,7 @@ def obey(dino: Dino, commands: list[tuple[Any, int, int]]) -> None:
 
 
 @given(COMMANDS)
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_no_servo_exceeds_its_top_speed_or_its_limits(commands):
     dino = Dino()
     obey(dino, commands)
@@ -158,7 +159,7 @@ def test_an_emotion_changes_at_a_bounded_rate_in_any_direction():
 
 
 @given(st.lists(st.sampled_from([-1.0, -0.4, -0.3, -0.2, 0.0, 0.2, 0.3, 0.4, 1.0]), max_size=6))
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_without_a_named_mood_it_chooses_the_mood_of_the_simulated_robot(valences):
     dino = Dino()
     dino.send(m.Hello(2, 9))

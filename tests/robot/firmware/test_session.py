@@ -12,6 +12,7 @@ from cubeling.robot.protocol import messages as m
 from cubeling.robot.protocol.schema import pack, unpack
 from cubeling.robot.protocol.wire import FrameReader, encode_frame
 from cubeling.robot.simulators.cubeling.simulator import Simulator
+from tests.examples import examples
 from tests.robot.firmware.conftest import Dino
 
 
@@ -160,7 +161,7 @@ def _steps() -> st.SearchStrategy[list[tuple[int, int, object, int]]]:
 
 @given(_steps())
 @example([(1, 3, m.Bye(), 0), (1, 3, m.Hello(3, 1), 0), (1, 3, m.Play(1, 2, 6), 105)])
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_it_answers_any_input_like_the_simulated_robot(steps):
     """The same bytes at the same times; only what is their own may differ."""
     ours, simulated = Dino(), Simulator(3)

@@ -12,6 +12,7 @@ from cubeling.robot.network.messages import MESSAGE_TYPES
 from cubeling.robot.simulators import SIMULATORS
 from tests.campaigns.decoders import MAX_GROWTH_BYTES, MAX_HELD_BYTES, TARGETS
 from tests.campaigns.soak import weight
+from tests.examples import examples
 
 ROOT = Path(__file__).parents[3]
 
@@ -97,7 +98,7 @@ def inputs_for(name: str) -> st.SearchStrategy[bytes]:
 def test_no_decoder_fails_on_anything(name):
     target = TARGETS[name]
 
-    @settings(max_examples=30, deadline=None)
+    @settings(max_examples=examples(30), deadline=None)
     @given(inputs_for(name))
     def holds(data: bytes) -> None:
         target(data)

@@ -9,6 +9,7 @@ from cubeling.robot.network.endpoint import LOST_AFTER_S
 from cubeling.robot.network.followers import Followers
 from cubeling.robot.network.messages import AckMessage, ActionMessage, StatusMessage, decode, encode
 from cubeling.robot.network.player import EMOTION_EVERY_S, MAX_AGE_S, MAX_PENDING_ACTIONS
+from tests.examples import examples
 from tests.robot.network.conftest import DeliveryFaults, NetworkWorld
 
 STEPS = st.lists(
@@ -23,7 +24,7 @@ STEPS = st.lists(
 )
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(
     seed=st.integers(0, 10_000),
     drop=st.sampled_from([0.0, 0.1, 0.3]),

@@ -17,6 +17,7 @@ from cubeling.affect import Emotion
 from cubeling.robot.drivers import DRIVERS
 from cubeling.robot.protocol import messages as m, timing
 from cubeling.robot.simulators.cubeling.simulator import Simulator
+from tests.examples import examples
 
 HARM = {
     "drops": {"drop": 0.2},
@@ -225,5 +226,5 @@ def test_whatever_happens_in_whatever_order_the_promises_are_kept(world):
     class StormHere(Storm):
         make_world = world
 
-    patient = settings(max_examples=60, stateful_step_count=40, deadline=None)
+    patient = settings(max_examples=examples(60), stateful_step_count=40, deadline=None)
     run_state_machine_as_test(StormHere, settings=patient)

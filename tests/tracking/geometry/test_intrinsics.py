@@ -7,6 +7,7 @@ from hypothesis import given, settings, strategies as st
 from hypothesis.extra.numpy import arrays
 
 from cubeling.tracking import Intrinsics, TrackingError
+from tests.examples import examples
 
 ROS_FILE = """
 image_width: 640
@@ -32,7 +33,7 @@ lens = st.sampled_from([4, 5, 8]).flatmap(
 @given(
     focal, focal, st.floats(-1e4, 1e4), lens, st.tuples(st.integers(1, 9999), st.integers(1, 9999))
 )
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 def test_a_saved_camera_is_read_back_exactly(tmp_path_factory, fx, fy, centre, distortion, size):
     matrix = np.array([[fx, 0.25, centre], [0, fy, centre / 3], [0, 0, 1]])
     camera = Intrinsics(matrix, distortion, size)

@@ -15,6 +15,7 @@ from cubeling.tracking.geometry.image_region import Patch
 from cubeling.tracking.geometry.projection import Projection
 from cubeling.tracking.refinement.evidence import Evidence
 from cubeling.tracking.refinement.photometry.still_alignment import StillAligner, StillAlignment
+from tests.examples import examples
 from tests.tracking.drawn import held
 from tests.tracking.refinement.seen_softly import CAMERA, corners_off, drawn, patch
 
@@ -55,7 +56,7 @@ def off_px(found: StillAlignment, truth: Array) -> float:
     return corners_off(CUBE, found.camera_from_cube, truth, tuple(found.correlations))
 
 
-@settings(deadline=None, max_examples=15, derandomize=True)
+@settings(deadline=None, max_examples=examples(15), derandomize=True)
 @given(
     cell_px=st.floats(2.5, 9.0),
     blur_cells=st.floats(0.0, 0.25),

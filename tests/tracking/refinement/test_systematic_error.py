@@ -21,6 +21,7 @@ from cubeling.tracking.refinement.systematic_error import (
     MEASURED_FOCAL,
     SystematicError,
 )
+from tests.examples import examples
 from tests.tracking.drawn import CAMERA, held
 
 Array = NDArray[np.float64]
@@ -184,7 +185,7 @@ poses = st.builds(
 )  # fmt: skip
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(poses, st.permutations(THREE))
 def test_fewer_faces_are_less_sure_in_every_direction(pose: Array, faces: list[str]) -> None:
     for count in (1, 2):
@@ -193,7 +194,7 @@ def test_fewer_faces_are_less_sure_in_every_direction(pose: Array, faces: list[s
         assert ratios(wider, narrower).min() > 1 - 1e-6
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(poses)
 def test_both_covariances_are_ones(pose: Array) -> None:
     for camera in (CAMERA, MEASURED):

@@ -18,6 +18,7 @@ from mcap_protobuf.writer import Writer
 from cubeling.tracking import FrameSource, Intrinsics, TrackingError, open_source
 from cubeling.tracking.sources import SCHEME_MODULES, decoding
 from cubeling.tracking.sources.base import StoredFrames, Timeline, nanoseconds_of, seconds_of
+from tests.examples import examples
 
 SIZE = (160, 120)
 STEP_NS = 33_333_333
@@ -168,7 +169,7 @@ def test_every_complete_frame_of_a_truncated_session_is_read(session, tmp_path):
 
 @given(place=st.floats(0.1, 0.9), bit=st.integers(0, 7))
 @example(place=0.24608066831063077, bit=3)  # the type of a record: a whole chunk is skipped
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_a_flipped_bit_never_gives_a_wrong_image(session, tmp_path_factory, place, bit):
     data = bytearray(session.read_bytes())
     data[int(place * len(data))] ^= 1 << bit

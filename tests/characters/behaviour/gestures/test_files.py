@@ -16,6 +16,7 @@ from cubeling.characters.behaviour.symbolic_gesture import (
     Place,
     SymbolicGesture,
 )
+from tests.examples import examples
 
 OFFSETS = st.tuples(*[st.floats(-2.0, 2.0)] * 3)
 PLACES = st.builds(
@@ -45,7 +46,7 @@ def _ordered(keys):
     return tuple(times[at] for at in sorted(times))
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(
     st.text(st.characters(codec="utf-8", exclude_categories=("C", "Z")), min_size=1, max_size=20),
     st.text(max_size=30),

@@ -14,6 +14,7 @@ from cubeling.characters.behaviour.gestures.planning import GesturePlanning, Per
 from cubeling.characters.behaviour.gestures.timing import apex_share
 from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
 from cubeling.characters.skeleton import rotations
+from tests.examples import examples
 
 NAMES = ("human", "vleo", "robot")
 LOW, HIGH = Place("XC", "YLowerC", "ZMiddle"), Place("XP", "YUpperC", "ZMiddle")
@@ -230,7 +231,7 @@ def test_a_plan_made_bit_by_bit_is_the_plan_made_at_once(performers):
 
 
 @given(st.lists(st.floats(-1.0, 1.0), min_size=6, max_size=6))
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 def test_every_style_gives_finite_postures(performers, values):
     style = GestureExpressivity(*values)
     motion = performers["human"].plan(SWING, "both", style)

@@ -10,9 +10,10 @@ from cubeling.characters.ik.solvers.orientation import horn
 from cubeling.characters.ik.solvers.solving import solve
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.joint_limits import to_euler
+from tests.examples import examples
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(st.integers(0, 10_000))
 def test_horn_equals_the_product_of_orthonormal_frames(seed: int) -> None:
     random = np.random.default_rng(seed)

@@ -19,6 +19,7 @@ from cubeling.characters.ik.solvers.springs import MassSprings, verlet
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.joint_limits import JointLimits
 from cubeling.characters.skeleton.pose import Array
+from tests.examples import examples
 
 COUNT = 50
 
@@ -221,7 +222,7 @@ def test_each_chain_of_a_batch_may_have_its_own_bones() -> None:
     assert np.allclose(alone.positions[0], found.positions[7], atol=1e-9)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.integers(0, 10_000), st.booleans())
 def test_one_chain_in_scalars_is_the_batch_of_one(seed: int, limited: bool) -> None:
     problem = Problem.random(5, 1, np.random.default_rng(seed))

@@ -17,6 +17,7 @@ from cubeling.characters.synthesis.gestures.analysis import (
     masses,
 )
 from cubeling.characters.synthesis.gestures.learning import analyse
+from tests.examples import examples
 
 RATE = 120.0
 
@@ -32,7 +33,7 @@ def strength(degrees, seconds, variant="mean"):
     return gesture_strength(stroke(degrees, seconds), {0: 2.0}, RATE, variant)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(st.floats(8, 70), st.floats(0.5, 2.0))
 def test_stretching_by_w_lowers_the_mean_by_2_ln_w_and_the_total_by_ln_w(degrees, w):
     for variant, power in (("mean", 2.0), ("total", 1.0)):

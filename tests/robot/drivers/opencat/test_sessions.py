@@ -20,6 +20,7 @@ from cubeling.robot.link.transport import SpacedPort
 from cubeling.robot.protocol import messages as m
 from cubeling.robot.simulators.opencat.quirks import BoardQuirks
 from cubeling.robot.simulators.opencat.simulator import OpenCatSimulator, nybble
+from tests.examples import examples
 
 QUIRKY = BoardQuirks(slow=0.1, mangled=0.03, brown_outs=0.05, restless=8.0, battery_lasts=900.0)
 BOARDS = {
@@ -128,7 +129,7 @@ def test_nothing_grows_in_a_day(desk):
     assert d.state in ("ready", "degraded", "lost")
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.lists(st.tuples(st.binary(max_size=60), st.floats(0.0, 3.0)), max_size=20))
 def test_garbage_raises_nothing_sends_nothing_wrong_and_is_recovered_from(garbage):
     host = OpenCatHost()
@@ -151,7 +152,7 @@ def test_garbage_raises_nothing_sends_nothing_wrong_and_is_recovered_from(garbag
     assert host.telemetry(now).acknowledged == Emotion(0.7, 0.6, "happy")
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.data())
 def test_how_the_stream_is_cut_makes_no_difference(data):
     session = _session()

@@ -17,6 +17,7 @@ from cubeling.robot.drivers.reachy.driver import (
     ReachyDriver,
 )
 from cubeling.robot.protocol import messages as m
+from tests.examples import examples
 
 HAPPY = Emotion(0.8, 0.6, "happy")
 MOODS = tuple(motion.name for motion in motions.MOODS)
@@ -57,7 +58,7 @@ def test_targets_are_sent_at_most_at_their_rate():
     assert np.diff(times).min() >= TARGET_INTERVAL_S - 1e-6
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(st.lists(st.tuples(st.sampled_from(MOODS), st.floats(0.05, 2.0)), min_size=1, max_size=6))
 def test_no_joint_leaves_its_limits_or_is_faster_than_allowed(moods):
     desk = Desk()
