@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from tests.cost import CostCheck
 from tests.examples import register_profiles
 
 register_profiles()
@@ -28,6 +29,12 @@ os.environ.setdefault("MALLOC_MMAP_THRESHOLD_", str(2**25))
 os.environ.setdefault("MALLOC_TRIM_THRESHOLD_", str(2**30))
 
 import cubeling as cubeling  # noqa: E402  before numpy, whose rounding it sets
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Name the tests that take long without a reason; in CI they fail the run."""
+    controls = not hasattr(config, "workerinput")  # it hears of the tests of all workers of xdist
+    config.pluginmanager.register(CostCheck(strict=controls and "CI" in os.environ), "cost")
 
 
 @pytest.fixture(scope="session", autouse=True)
