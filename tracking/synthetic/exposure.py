@@ -29,14 +29,7 @@ class ExposureRenderer:
         self._cube = cube
         self._options = options
         self._to_light = camera.camera_from_table[:3, :3] @ (TO_LIGHT / np.linalg.norm(TO_LIGHT))
-        random = np.random.default_rng(options.seed)
-        self._desk = render_desk(camera, desk_texture(random, options.clutter))
-        if options.clutter:
-            draw_objects(self._desk, camera)
-        self._vignette = _vignette(camera)
-        # One tile of noise, cropped at random for each frame, costs a tenth of fresh noise.
-        size = (camera.size[1] + 128, camera.size[0] + 128, 3)
-        self._noise = random.standard_normal(size, dtype=np.float32)
+        self._desk, self._vignette, self._noise = still_parts(camera, options.seed, options.clutter)
 
     def draw(self, states: list[SceneState], poses: list[Array], index: int, in_air: bool) -> Image:
         """Return the image of one exposure, (H, W, 3) uint8 BGR.
@@ -155,6 +148,19 @@ class ExposureRenderer:
                 light = light + options.noise * _noise(light, tile[strip])
             sensed[strip] = np.clip(np.rint(light), 0, 255)
         return sensed
+
+
+def still_parts(camera: CameraRays, seed: int, clutter: bool) -> tuple[Floats, Floats, Floats]:
+    """Draw what is the same in all images: desk, vignette, both (H, W, 3), and a tile of noise.
+
+    The tile is cropped at random for each frame: that costs a tenth of fresh noise.
+    """
+    random = np.random.default_rng(seed)
+    desk = render_desk(camera, desk_texture(random, clutter))
+    if clutter:
+        draw_objects(desk, camera)
+    size = (camera.size[1] + 128, camera.size[0] + 128, 3)
+    return desk, _vignette(camera), random.standard_normal(size, dtype=np.float32)
 
 
 def shutter_samples(camera: CameraRays, corners: list[Array]) -> int:

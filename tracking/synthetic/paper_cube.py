@@ -38,12 +38,8 @@ class PaperCube:
     def __init__(self, cube: CubeModel, camera: CameraRays, seed: int) -> None:
         self.cube = cube
         self._camera = camera
-        random = np.random.default_rng(seed)
-        by_name = {face.name: face for face in cube.faces}
         self._fold_poses = face_poses(cube)
-        self._textures = {
-            name: _mipmaps(_face_texture(cube, by_name.get(name), random)) for name in FACE_AXES
-        }
+        self._textures = face_textures(cube, seed)
 
     def corners(self, camera_from_cube: Array) -> Array:
         """Return the cube's eight corners in the camera frame, (8, 3)."""
@@ -163,6 +159,13 @@ class PaperCube:
         seen *= np.array([brightness] * 3 + [1.0], np.float32)
         mask = inside[box]
         cv2.copyTo(seen, mask.view(np.uint8), shown[box])
+
+
+def face_textures(cube: CubeModel, seed: int) -> dict[str, list[Floats]]:
+    """Draw the prints of all faces, each in several resolutions; `seed` is that of the grain."""
+    random = np.random.default_rng(seed)
+    by_name = {face.name: face for face in cube.faces}
+    return {name: _mipmaps(_face_texture(cube, by_name.get(name), random)) for name in FACE_AXES}
 
 
 def _face_texture(cube: CubeModel, face: Face | None, random: np.random.Generator) -> Floats:
