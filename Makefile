@@ -8,14 +8,23 @@ endif
 INSTALL := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 
 .DEFAULT_GOAL := demo
-.PHONY: demo test campaign campaign-tenth check package bench bench-tracking bench-photographs recordings assets pictures cast clean
+.PHONY: demo test test-all test-rest campaign campaign-tenth check package bench bench-tracking bench-photographs recordings assets pictures cast clean
 
 demo: .venv/ready  ## set everything up and play
 	$(BIN)/cubeling demo
 
-# The tests of a file run in one process, as they share fixtures that take long to make.
-test: .venv/ready-dev  ## run the whole test suite on all cores
-	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
+# The tests of a file run in one process, as they share fixtures that take long to make. Byte code is kept even where the
+# environment says otherwise, or each process that a test starts compiles the program again.
+PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest --numprocesses auto --dist loadfile
+
+test: .venv/ready-dev  ## test all rooms, on all cores
+	$(PYTEST) -m "not full"
+
+test-all: .venv/ready-dev  ## the same, and what checks bundled files, benchmarks and planted faults, with all of Hypothesis' examples
+	$(PYTEST) --hypothesis-profile full
+
+test-rest: .venv/ready-dev  ## what `make test-all` does beyond `make test`
+	$(PYTEST) --hypothesis-profile full -m "full or hypothesis"
 
 # The campaigns run for longer than a test suite may take, over random faults in virtual time.
 campaign: .venv/ready-dev  ## a million exchanges with robots, what the checksum misses, a day without growth, an afternoon of key presses, 10⁵ blocks of BML, ten minutes of pictures

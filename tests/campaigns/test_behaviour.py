@@ -1,6 +1,10 @@
 """A share of the campaign of generated BML blocks."""
 
+import pytest
+
 from tests.campaigns.behaviour import run
+
+pytestmark = pytest.mark.full
 
 
 def test_generated_blocks_lose_nothing_and_report_in_time():

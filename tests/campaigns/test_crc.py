@@ -10,6 +10,8 @@ from tests.campaigns.detected_errors import bursts, damaged
 from tests.campaigns.error_rate import BODIES, ErrorRate
 from tests.campaigns.undetected_errors import predicted
 
+pytestmark = pytest.mark.full
+
 
 def test_errors_pass_the_check_at_the_predicted_rates():
     wrong = [one for one in error_rates(20_000, 60_000, seed=1) if not one.as_predicted]

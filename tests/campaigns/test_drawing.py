@@ -5,6 +5,8 @@ import pytest
 from cubeling.characters.rendering import create_context
 from tests.campaigns.drawing import Held, grown, held
 
+pytestmark = pytest.mark.full
+
 
 def test_an_object_that_is_kept_is_counted():
     context = create_context()

@@ -2,7 +2,11 @@
 
 from collections import deque
 
+import pytest
+
 from tests.campaigns.soak import growth, soak, weight
+
+pytestmark = pytest.mark.full
 
 
 def test_fluctuations_are_not_growth():

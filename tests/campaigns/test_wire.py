@@ -10,6 +10,8 @@ from tests.campaigns.monitor import emotion_of
 from tests.campaigns.wire import add_up, failures, quantile, run_world, runs_for
 from tests.campaigns.world import CampaignWorld
 
+pytestmark = pytest.mark.full
+
 BY_NAME = {mix.name: mix for mix in FAULT_MIXES}
 
 

@@ -15,6 +15,8 @@ from tools.ray_tracing import (
 )
 from tools.ray_tracing.mesh import Floats
 
+pytestmark = pytest.mark.full
+
 MATRIX = np.array([[40.0, 0, 20], [0, 40.0, 15], [0, 0, 1]])
 
 

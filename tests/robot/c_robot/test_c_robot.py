@@ -107,6 +107,7 @@ def test_it_conforms_in_every_check(build):
     assert failures(build("steps")) == []
 
 
+@pytest.mark.full
 def test_a_mistake_in_it_is_seen(build, tmp_path):
     source = (HERE / "robot.c").read_text()
     mistaken = source.replace("if (number <= self->taken)", "if (number == self->taken)")

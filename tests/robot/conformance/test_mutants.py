@@ -22,6 +22,7 @@ def failures(robot: Mutant, checks) -> list[str]:
     return [one.check.name for one in report.results if one.verdict == "failed"]
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     ("check", "mutant"), PAIRS, ids=[f"{mutant.__name__}-{check}" for check, mutant in PAIRS]
 )

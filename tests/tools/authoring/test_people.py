@@ -14,6 +14,8 @@ from tools.authoring.__main__ import ASSETS
 from tools.authoring.modelling.standing import MOODS
 from tools.authoring.people import STANDING, recording_of
 
+pytestmark = pytest.mark.full
+
 
 @pytest.fixture(scope="module", params=Character.bundled())
 def someone(request: pytest.FixtureRequest) -> Character:

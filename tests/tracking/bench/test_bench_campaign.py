@@ -9,6 +9,8 @@ import pytest
 from tests.bench.tracking import campaign
 from tests.bench.tracking.sequences import Sequence, sequence
 
+pytestmark = pytest.mark.full
+
 FRAMES = 5
 
 

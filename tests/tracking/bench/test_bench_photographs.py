@@ -26,6 +26,8 @@ from tests.bench.photographs.scoring import (
 from tests.bench.tracking.scoring import CHI2_95_PERCENT
 from tests.bench.tracking.table import OURS
 
+pytestmark = pytest.mark.full
+
 needs_photographs = pytest.mark.skipif(
     not dodecahedron.paths(), reason="the photographs are not on this machine"
 )

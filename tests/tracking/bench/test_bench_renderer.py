@@ -18,6 +18,8 @@ from tests.bench.tracking.plans import SEQUENCE_PLANS
 from tests.bench.tracking.renderer import WHITE_LEVEL, Scene, expose
 from tests.bench.tracking.sequences import NAMES, Sequence, sequence
 
+pytestmark = pytest.mark.full
+
 SMALL = LensModel(
     np.array([[1500.0, 0, 203.0], [0, 1490.0, 195.0], [0, 0, 1]]),
     np.array([-0.9, 0.6, 0.002, -0.003, 0.1]),

@@ -8,6 +8,8 @@ from tests.bench.tracking.rivals.environments import ENTRIES, Entry, Unavailable
 from tests.bench.tracking.rivals.worker import Worker
 from tests.tracking.drawn import held, photograph, scene
 
+pytestmark = pytest.mark.full
+
 MATRIX = np.array([[900.0, 0, 641.5], [0, 902.0, 357.0], [0, 0, 1]])
 POSE = held(at=(0.02, -0.01, 0.45))
 """Three faces are seen: of a single one, square on, the tracker would be unsure."""

@@ -8,6 +8,8 @@ from tests.bench.tracking import readme, table, targets
 from tests.bench.tracking.benchmark_run import BenchmarkRun
 from tests.bench.tracking.scoring import Truth, errors, position_later, score
 
+pytestmark = pytest.mark.full
+
 RATE = 30.0
 
 

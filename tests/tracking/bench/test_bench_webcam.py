@@ -18,6 +18,8 @@ from tests.bench.tracking.renderer import Scene, expose
 from tests.bench.tracking.sequences import NAMES, sequence
 from tests.bench.tracking.worn_paper import patched, worn
 
+pytestmark = pytest.mark.full
+
 EVEN = Light(np.array([0.0, 0.0, -1.0]), power=0.0, sky=0.0, bounce=0.95)
 
 SMALL = LensModel(

@@ -74,6 +74,7 @@ def test_databases_are_the_stronger_and_the_weaker_phrases(library):
         library.database("loud")
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("name", ["human", "vleo"])
 def test_a_bundled_library_is_what_the_authoring_makes(name):
     character = Character.load(name)

@@ -25,6 +25,8 @@ from tools.authoring.human.rig import JOINT_POSITIONS
 from tools.authoring.human.secondary_motion import GRAVITY_M_S2
 from tools.cast import SHEET_MOODS
 
+pytestmark = pytest.mark.full
+
 WALKS = [f"Walk{side}{size}" for side in ("Left", "Right") for size in ("Short", "Medium", "Wide")]
 RUNS = [f"Run{side}{size}" for side in ("Left", "Right") for size in ("Medium", "Wide")]
 GAITS = ["Walk", *WALKS, "Run", *RUNS]

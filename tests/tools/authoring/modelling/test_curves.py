@@ -5,6 +5,8 @@ import pytest
 
 from tools.authoring.modelling.curves import delayed, keys, spring_follow, wave
 
+pytestmark = pytest.mark.full
+
 
 def test_keys_are_met_and_never_overshot() -> None:
     curve = keys(100, (0.1, 2.0), (0.4, -1.0), (0.7, 0.5))

@@ -10,6 +10,8 @@ from tools.authoring.modelling.lathe import loft
 from tools.authoring.modelling.meshes import join, mirrored_mesh, morphed
 from tools.authoring.modelling.rig import build_skeleton
 
+pytestmark = pytest.mark.full
+
 
 @pytest.fixture(scope="module")
 def skeleton() -> Skeleton:

@@ -23,6 +23,8 @@ from tools.authoring.modelling.shapes import (
 )
 from tools.authoring.modelling.tube import tube
 
+pytestmark = pytest.mark.full
+
 LEGS = build_skeleton(
     {
         "root": ("", (0.0, 0.0, 0.0)),

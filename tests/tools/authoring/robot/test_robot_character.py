@@ -18,6 +18,8 @@ from tools.authoring.robot.character import build_robot
 from tools.authoring.robot.expressions import EXPRESSIONS
 from tools.authoring.robot.rig import FEET, LAMPS, MOODS, skeleton
 
+pytestmark = pytest.mark.full
+
 LEVELS = ("head", "legs", "tail")
 CLIPS = ("idle", *(f"{mood}_{level}" for mood in MOODS for level in LEVELS))
 PLANTED = dict.fromkeys(("idle", "happy_head", "angry_head"), FEET) | {

@@ -20,6 +20,8 @@ from tools.authoring.vleo.expressions import EXPRESSIONS as FACES
 from tools.authoring.vleo.head import EYE_RADIUS_M, REST_GAZE
 from tools.authoring.vleo.rig import BURSTS, EYE_CENTRE_M, FEET, HEARTS
 
+pytestmark = pytest.mark.full
+
 KISSES = ("kiss_head", "kiss_legs", "kiss_tail")
 SHOUTS = ("shout_head", "shout_legs", "shout_tail")
 GESTURES = ("nod", "shake")
