@@ -17,7 +17,8 @@ from cubeling.tracking.appearance.hand.finder import HandFinder
 from cubeling.tracking.appearance.hand.mask import HandMask
 from cubeling.tracking.appearance.hand.window import Window
 from tests.bench.hand_mask import covered, overlap
-from tests.bench.hand_scenes import SKINS, HandScene, HandView
+from tests.bench.hand_scenes import SKINS, HandView
+from tests.tracking.appearance.hand.resting_scene import RestingScene
 from tests.tracking.appearance.hand.test_finder import CUBE, state_at
 
 SCALE, EDGE = 3, 30.0
@@ -57,7 +58,7 @@ def at(row: int, column: int) -> tuple[int, int]:
     ("azimuth", "skin"), [(10, "Monk 03"), (-60, "Monk 09"), (-165, "Monk 03")]
 )
 def test_an_arm_is_covered_to_the_border_of_the_picture(azimuth, skin):
-    made = HandScene(HandView(SKINS[skin], azimuth, seed=2, defocus=0.6), CUBE)
+    made = RestingScene(HandView(SKINS[skin], azimuth, seed=2, defocus=0.6), CUBE)
     finder = HandFinder(CUBE, made.intrinsics)
     for index in range(27):
         frame, truth = made.frame(index)
@@ -66,7 +67,7 @@ def test_an_arm_is_covered_to_the_border_of_the_picture(azimuth, skin):
 
 
 def test_an_arm_that_was_there_from_the_beginning_leaves_no_ghost():
-    made = HandScene(HandView("3f6fc4", azimuth_deg=10, seed=1), CUBE)
+    made = RestingScene(HandView("3f6fc4", azimuth_deg=10, seed=1), CUBE)
     finder = HandFinder(CUBE, made.intrinsics)
     for index in range(25, 46):
         frame, truth = made.frame(index)

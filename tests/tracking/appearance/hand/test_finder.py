@@ -19,7 +19,8 @@ from cubeling.tracking.geometry.state import CubeState
 from cubeling.tracking.sources import open_source
 from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.bench.hand_mask import covered, overlap
-from tests.bench.hand_scenes import GLOVES, SKINS, HandScene, HandView
+from tests.bench.hand_scenes import GLOVES, SKINS, HandView
+from tests.tracking.appearance.hand.resting_scene import RestingScene
 from tests.tracking.drawn import WIDE, held, photograph, scene
 
 CUBE = CubeModel.load("locomotion")
@@ -37,7 +38,7 @@ def shown(
     view: HandView, frames: int, begin: int = 0
 ) -> tuple[HandMask | None, np.ndarray, tuple[slice, slice]]:
     """The mask of the last of some frames, with the true cover and the region."""
-    made = HandScene(view, CUBE)
+    made = RestingScene(view, CUBE)
     finder, mask = HandFinder(CUBE, made.intrinsics), None
     truth = np.zeros((720, 1280), np.float32)
     for index in range(begin, frames):
@@ -57,7 +58,7 @@ def overlap_in(view: HandView, frames: int, begin: int = 0) -> float:
 @pytest.fixture(scope="module")
 def film() -> tuple[Intrinsics, list[tuple[np.ndarray, np.ndarray]]]:
     """A camera and its pictures of a hand that takes the cube, with the cube's pose in each."""
-    made = HandScene(HandView("825c43", azimuth_deg=-120, seed=3), CUBE)
+    made = RestingScene(HandView("825c43", azimuth_deg=-120, seed=3), CUBE)
     return made.intrinsics, [(made.frame(i)[0].image, made.truth(i)) for i in range(25)]
 
 
@@ -88,7 +89,7 @@ def test_what_a_hand_hides_is_on_the_near_side_of_the_cube(film):
 
 
 def test_a_cube_without_a_hand_is_not_covered():
-    made = HandScene(HandView("000000", hand=False), CUBE)
+    made = RestingScene(HandView("000000", hand=False), CUBE)
     finder = HandFinder(CUBE, made.intrinsics)
     for index in range(30):
         frame, _ = made.frame(index)
@@ -97,7 +98,7 @@ def test_a_cube_without_a_hand_is_not_covered():
 
 def test_a_hand_of_another_colour_is_found_after_the_first():
     skins = GLOVES["yellow rubber"], SKINS["Monk 06"]  # the second is as the desk
-    scenes = [HandScene(HandView(skin, -120, seed=3, defocus=1.2), CUBE) for skin in skins]
+    scenes = [RestingScene(HandView(skin, -120, seed=3, defocus=1.2), CUBE) for skin in skins]
     finder, scores = HandFinder(CUBE, scenes[0].intrinsics), []
     for made, index in itertools.product(scenes, range(31)):
         frame, truth = made.frame(index)
@@ -212,7 +213,7 @@ def test_a_finger_is_found_when_the_cube_has_come_nearer():
 
 
 def test_a_window_that_shows_the_same_is_looked_at_now_and_then():
-    made = HandScene(HandView("000000", hand=False), CUBE)
+    made = RestingScene(HandView("000000", hand=False), CUBE)
     projection = Projection(made.intrinsics)
     window = WindowFinder(CUBE, projection, np.zeros((6, 4, 3))).window(made.truth(0))
     assert window is not None
@@ -334,7 +335,7 @@ def test_a_hand_is_found_again_at_once_after_a_pose_at_the_lens(film):
 
 
 def test_a_hand_that_lets_go_is_in_front_until_it_has_left_the_surroundings():
-    made = HandScene(HandView(SKINS["Monk 03"], azimuth_deg=-120, seed=3), CUBE)
+    made = RestingScene(HandView(SKINS["Monk 03"], azimuth_deg=-120, seed=3), CUBE)
     finder, scores = HandFinder(CUBE, made.intrinsics), []
     for index in [*range(28), *range(27, 17, -1)]:
         frame, truth = made.frame(index)

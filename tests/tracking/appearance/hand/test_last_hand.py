@@ -19,7 +19,8 @@ from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.geometry.projection import Projection
 from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.bench.hand_mask import covered, missed_share, overlap
-from tests.bench.hand_scenes import SKINS, HandScene, HandView
+from tests.bench.hand_scenes import SKINS, HandView
+from tests.tracking.appearance.hand.resting_scene import RestingScene
 from tests.tracking.drawn import WIDE, held
 
 CUBE = CubeModel.load("locomotion")
@@ -113,7 +114,7 @@ def test_a_hand_is_looked_at_when_a_lost_cube_is_found_again(last):
 
 def test_a_carried_hand_covers_the_same_as_one_that_is_looked_at():
     view = HandView(SKINS["Monk 07"], azimuth_deg=-60, seed=2, tapping=True)
-    made = HandScene(view, CUBE, rate_hz=30)
+    made = RestingScene(view, CUBE, rate_hz=30)
     tracker, finder = CubeTracker(CUBE, made.intrinsics), HandFinder(CUBE, made.intrinsics)
     scores, shares, missed = [], [], []
     for index in [*range(30), *range(76, 130)]:
