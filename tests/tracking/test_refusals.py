@@ -51,12 +51,19 @@ def lay(canvas: Picture, texture: Picture, corners: Array) -> None:
             [0, 0, 1.0],
         ]
     )
-    homography = finer @ CAMERA.matrix @ plane.T
-    size = (canvas.shape[1], canvas.shape[0])
+    outline = finer @ CAMERA.matrix @ np.vstack([corners, corners[1] + corners[2] - corners[0]]).T
+    pixels = outline[:2] / outline[2]
+    rows, columns = canvas.shape
+    left, top = np.clip(pixels.min(axis=1).astype(int) - 2, 0, (columns, rows)).tolist()
+    end, bottom = np.clip(pixels.max(axis=1).astype(int) + 3, 0, (columns, rows)).tolist()
+    part = canvas[top:bottom, left:end]
+    shifted = np.array([[1, 0, -left], [0, 1, -top], [0, 0, 1.0]])
+    homography = shifted @ finer @ CAMERA.matrix @ plane.T
+    size = (end - left, bottom - top)
     drawn = cv2.warpPerspective(texture, homography, size, flags=cv2.INTER_LINEAR)
     solid = np.full_like(texture, 255)
     inside = cv2.warpPerspective(solid, homography, size, flags=cv2.INTER_NEAREST) > 0
-    canvas[inside] = drawn[inside]
+    part[inside] = drawn[inside]
 
 
 def empty() -> Picture:

@@ -36,6 +36,7 @@ def moving(human, way):
     return Recording("moved", replace(walk, poses=poses), human.skeleton, human.anatomy)
 
 
+@pytest.mark.usefixtures("straight_only")
 def test_our_own_walk_and_run_have_no_fault(human):
     for name in ("Walk", "Run"):
         (report,) = made(human, exported(human, name, 3.2)).recordings
@@ -99,6 +100,7 @@ def test_feet_that_never_stand_still_are_refused(human):
         refuse_other_motion(replace(gait, clip=replace(walk, poses=skating)))
 
 
+@pytest.mark.usefixtures("straight_only")
 def test_a_body_that_grows_is_told(human):
     walk = human.clips["Walk"]
     longer = walk.poses.translations.copy()

@@ -164,6 +164,7 @@ def test_a_recorded_curve_is_used_for_its_side_and_mirrored_for_the_other(human)
     assert "Run" not in origins
 
 
+@pytest.mark.usefixtures("straight_only")
 def test_a_walk_in_place_moves_over_the_ground(human):
     walk = human.clips["Walk"]
     treadmill = replace(walk, poses=walk.in_place)
@@ -242,6 +243,7 @@ def test_motion_capture_makes_locomotion_clips_without_sliding(tmp_path):
     assert posed.table_from_character[2, 3] > 0.1
 
 
+@pytest.mark.usefixtures("straight_only")
 def test_a_walk_with_standing_and_turning_around_it_is_found():
     recording = load(SHARED / "bvh" / "131_01.bvh")
     (found,) = make_locomotion(Character.load("human"), [recording]).recordings
@@ -249,6 +251,7 @@ def test_a_walk_with_standing_and_turning_around_it_is_found():
     assert 1.0 < found.duration < 1.4
 
 
+@pytest.mark.usefixtures("straight_only")
 @pytest.mark.parametrize("size", [1.0, 1.3])
 def test_a_made_idle_faces_ahead_and_stands_over_its_root(human, taught, size):
     """Whatever the person faced and wherever she stood in the recording."""
@@ -270,6 +273,7 @@ def test_a_made_idle_faces_ahead_and_stands_over_its_root(human, taught, size):
     assert np.abs(at[[0, 2]]).max() < 0.05
 
 
+@pytest.mark.usefixtures("straight_only")
 def test_made_clips_look_ahead_though_the_neck_was_recorded_straight(human):
     """Motion capture has straight necks at rest, so people who look ahead seem to look down."""
     recording = exported(human, "Walk")

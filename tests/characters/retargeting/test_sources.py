@@ -11,11 +11,14 @@ from cubeling.characters import Character, CharacterError, Pose
 from cubeling.characters.formats import is_motion_only
 from cubeling.characters.formats.mocap.bvh_writing import save_bvh
 from cubeling.characters.retargeting import Recording, load_recording, make_locomotion
+from cubeling.characters.retargeting.locomotion import locomotion_clips
 from cubeling.characters.retargeting.standing_rest import uprightness
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.pose import Skeleton
 from tests.characters.retargeting.test_retarget_locomotion import exported
+
+pytestmark = pytest.mark.usefixtures("straight_only")
 
 
 @pytest.fixture(scope="module")
@@ -26,6 +29,14 @@ def human():
 @pytest.fixture(scope="module")
 def walk(human):
     return exported(human, "Walk")
+
+
+@pytest.fixture(scope="module")
+def gait_of_walk(human, walk):
+    """What is made of the walk as it was recorded."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(locomotion_clips, "WALK_CLIPS", {0.0: "Walk"})
+        return found(human, walk)
 
 
 def along_x(recording):
@@ -76,15 +87,17 @@ def found(human, recording):
     return make_locomotion(replace(human, clips={}), [recording])
 
 
-def test_bones_that_lie_along_one_axis_rest_in_a_frame_that_stands(human, walk, tmp_path):
+def test_bones_that_lie_along_one_axis_rest_in_a_frame_that_stands(
+    human, walk, gait_of_walk, tmp_path
+):
     path = written(along_x(walk), tmp_path / "lying.bvh")
     lying = load_recording(str(path), rest="zero")
     stands = load_recording(str(path))
     for recording, upright in ((lying, False), (stands, True)):
         at_rest = recording.skeleton.rest.globals(recording.skeleton)[None]
         assert (uprightness(at_rest, recording.anatomy)[0] > 0.8) == upright
-    expected, made = (found(human, each) for each in (walk, stands))
-    (ours,), (theirs,) = made.recordings, expected.recordings
+    made = found(human, stands)
+    (ours,), (theirs,) = made.recordings, gait_of_walk.recordings
     assert (ours.duration, ours.speed) == pytest.approx((theirs.duration, theirs.speed), rel=0.05)
     assert ours.slide < 0.01
     poses = made.character.clips["Walk"].poses.globals(made.character.skeleton)
@@ -104,7 +117,7 @@ def test_the_rest_pose_may_be_stated_as_a_frame(walk, tmp_path):
             load_recording(str(path), rest=wrong)
 
 
-def test_a_first_frame_of_calibration_is_left_out(human, walk, tmp_path):
+def test_a_first_frame_of_calibration_is_left_out(human, walk, gait_of_walk, tmp_path):
     rest, poses = walk.skeleton.rest, walk.clip.poses
     translations = np.concatenate([rest.translations[None], poses.translations])
     turns = np.concatenate([rest.rotations[None], poses.rotations])
@@ -112,16 +125,18 @@ def test_a_first_frame_of_calibration_is_left_out(human, walk, tmp_path):
     path = written(replace(walk, clip=calibrated), tmp_path / "calibrated.bvh")
     recording = load_recording(str(path))
     assert len(recording.clip) == len(walk.clip)
-    (ours,), (theirs,) = (found(human, each).recordings for each in (recording, walk))
+    (ours,), (theirs,) = found(human, recording).recordings, gait_of_walk.recordings
     assert (ours.duration, ours.seam) == pytest.approx((theirs.duration, theirs.seam), abs=1e-3)
 
 
-def test_a_root_joint_fixed_above_the_hips_does_not_stop_a_walk(human, walk, tmp_path):
+def test_a_root_joint_fixed_above_the_hips_does_not_stop_a_walk(
+    human, walk, gait_of_walk, tmp_path
+):
     path = written(walk, tmp_path / "rooted.bvh", start="world")
     assert path.read_text().splitlines()[1] == "ROOT world"
     recording = load_recording(str(path))
     assert recording.skeleton.names[recording.anatomy.joints["hips"]].lower() == "hips"
-    (ours,), (theirs,) = (found(human, each).recordings for each in (recording, walk))
+    (ours,), (theirs,) = found(human, recording).recordings, gait_of_walk.recordings
     assert ours.speed == pytest.approx(theirs.speed, rel=0.02)
 
 
