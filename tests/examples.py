@@ -1,5 +1,9 @@
 """How many examples Hypothesis draws: some in `make test`, all of them in `make test-all`."""
 
+from collections.abc import Iterable
+from typing import Any
+
+import pytest
 from hypothesis import settings
 
 QUICK_SHARE, MIN_EXAMPLES = 0.2, 5
@@ -24,3 +28,14 @@ def register_profiles() -> None:
     settings.register_profile("full", derandomize=True, deadline=None, max_examples=FULL_EXAMPLES)
     few = quick(FULL_EXAMPLES)
     settings.register_profile("quick", settings.get_profile("full"), max_examples=few)
+
+
+def some(values: Iterable[Any], quick: int = 1) -> list[Any]:
+    """Return values that repeat one claim, of which `make test` tries the first.
+
+    The others are examples like those that Hypothesis draws: `@parametrize("seed", some(SEEDS))`.
+    A tuple has a value for each of several names.
+    """
+    given = [value if isinstance(value, tuple) else (value,) for value in values]
+    others = [pytest.param(*value, marks=pytest.mark.full) for value in given[quick:]]
+    return [pytest.param(*value) for value in given[:quick]] + others

@@ -15,7 +15,7 @@ from cubeling.app.session.encoding import decode
 from cubeling.characters import CharacterCommand
 from cubeling.tracking.synthetic import open_synthetic
 
-SMALL = "width=640&height=360&rate=15&clutter=0&shadow=0&hand=0"
+SMALL = "width=640&height=360&rate=12&clutter=0&shadow=0&hand=0"
 
 
 @pytest.fixture(scope="module")

@@ -17,6 +17,7 @@ from cubeling.tracking.calibration import (
 )
 from cubeling.tracking.calibration.solver import fit_poses
 from cubeling.tracking.geometry import se3
+from tests.examples import some
 from tests.tracking.calibration.waved import aligned, corner_views, folded_corners
 
 SIZE = (1280, 720)
@@ -31,7 +32,7 @@ def views_of(seed, count=70, noise=0.12, camera=TRUE, **how):
     return corner_views(CUBE, real, camera, SIZE, random, count, noise, **how), real
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("seed", some([0, 1, 2]))
 def test_focal_length_to_half_a_percent_and_folds_to_a_fifth_of_a_millimetre(seed):
     views, real = views_of(seed, count=100, noise=0.1)
     found = calibrate(views, TARGET)
@@ -49,7 +50,7 @@ def test_focal_length_to_half_a_percent_and_folds_to_a_fifth_of_a_millimetre(see
 @pytest.mark.parametrize("focal", [560.0, 1500.0])
 def test_wide_and_long_lenses_are_found_without_a_hint(focal):
     camera = np.array([focal, focal, *TRUE[2:]])
-    views, _ = views_of(3, count=40, camera=camera, near=0.25 * focal / 900)
+    views, _ = views_of(3, count=24, camera=camera, near=0.25 * focal / 900)
     found = calibrate(views, TARGET)
     assert abs(found.intrinsics.matrix[0, 0] / focal - 1) < max(0.005, 3 * found.focal_spread)
 
@@ -68,13 +69,13 @@ def test_too_few_views_are_refused():
 
 
 def test_outlier_views_are_dropped():
-    views, _ = views_of(6, count=40)
+    views, _ = views_of(6, count=24)
     random = np.random.default_rng(0)
-    for number in (3, 17, 30):
+    for number in (3, 11, 20):
         spoilt = views[number].pixels + 25 * random.standard_normal(views[number].pixels.shape)
         views[number] = replace(views[number], pixels=spoilt)
     found = calibrate(views, TARGET)
-    assert found.views <= 37
+    assert found.views <= 21
     assert abs(found.intrinsics.matrix[0, 0] / TRUE[0] - 1) < 0.005
 
 
@@ -115,14 +116,14 @@ def test_derivatives_match_finite_differences():
     ],
 )
 def test_a_saved_camera_is_ok_until_it_has_changed(change, degraded):
-    views, _ = views_of(8, noise=0.05)
+    views, _ = views_of(8, count=30, noise=0.05)
     verdict = check_camera(views, camera_vector.to_intrinsics(TRUE + change, SIZE), TARGET)
     assert verdict.degraded is degraded
     assert verdict.focal_change == pytest.approx(-change[0] / (900 + change[0]), abs=0.004)
 
 
 def test_a_saved_camera_of_the_rational_model_can_be_checked():
-    views, _ = views_of(9, noise=0.05)
+    views, _ = views_of(9, count=30, noise=0.05)
     plain = camera_vector.to_intrinsics(TRUE, SIZE)
     eight = np.array([*plain.distortion, 0.0, 0.0, 0.0])
     verdict = check_camera(views, Intrinsics(plain.matrix, eight, SIZE), TARGET)
