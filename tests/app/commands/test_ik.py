@@ -11,7 +11,7 @@ from cubeling.characters.ik.solvers.solving import SOLVERS
 def test_bench_prints_table_7_1_beside_what_we_measure(monkeypatch: pytest.MonkeyPatch) -> None:
     some = {name: SOLVERS[name] for name in ("springs", "damped")}
     monkeypatch.setattr("cubeling.app.commands.ik.SOLVERS", some)
-    monkeypatch.setattr("cubeling.app.commands.ik._PATH_FRAMES", 10)
+    monkeypatch.setattr("cubeling.app.commands.ik._PATH_FRAMES", 5)
     run = CliRunner(env={"COLUMNS": "150"}).invoke(app, ["bench", "--targets", "10"])
     assert run.exit_code == 0, run.output
     for method in some:

@@ -41,20 +41,20 @@ def interrupt_after(monkeypatch):
 def test_ctrl_c_keeps_what_was_rendered_and_says_so(
     cubeling, short_session, interrupt_after, suffix
 ):
-    interrupt_after(16)
+    interrupt_after(7)
     code, out, err = cubeling("replay", short_session, "-o", f"out{suffix}")
     assert (code, err) == (130, "")
-    assert f"Stopped: 0.5 s are kept in out{suffix}" in out
+    assert f"Stopped: 0.2 s are kept in out{suffix}" in out
     assert [path.name for path in Path().iterdir()] == [f"out{suffix}"]
     with av.open(f"out{suffix}") as file:
-        assert [frame.time for frame in file.decode(video=0)][-1] == pytest.approx(0.5, abs=0.01)
+        assert [frame.time for frame in file.decode(video=0)][-1] == pytest.approx(0.2, abs=0.01)
 
 
 def test_ctrl_c_keeps_the_sheet_of_frames(cubeling, short_session, interrupt_after):
-    interrupt_after(10)
+    interrupt_after(7)
     code, out, _ = cubeling("replay", short_session, "-o", "out.png")
     assert code == 130
-    assert "0.3 s are kept in out.png" in out
+    assert "0.2 s are kept in out.png" in out
     assert cv2.imread("out.png") is not None
 
 

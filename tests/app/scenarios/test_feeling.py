@@ -23,6 +23,7 @@ from cubeling.robot import Catalogue, Telemetry
 from cubeling.robot.drivers.cubeling.host import HostLink
 from cubeling.robot.simulators.cubeling.simulator import Simulator
 from cubeling.tracking import CubeState, Frame, Intrinsics
+from tests.examples import some
 
 LAG = 0.15
 """How long after a frame a simulated robot may still tell of the mood before [s]."""
@@ -122,8 +123,8 @@ def test_the_label_of_a_robot_without_feedback_is_its_closest_mood():
 
 @pytest.mark.parametrize(
     ("name", "personality"),
-    [("companion", None), ("companion", "lively"), ("follow", None), ("follow", "shy"),
-     ("sketch", None)],
+    some([("companion", None), ("follow", "shy"), ("sketch", None), ("companion", "lively"),
+          ("follow", None)], 3),
 )  # fmt: skip
 def test_character_likeness_and_robot_show_one_mood(name, personality, hand, virtual_robot):
     pair, words, labels, since = Pair(), list[str](), set[str](), -math.inf

@@ -23,7 +23,7 @@ from cubeling.characters.motion.motion import RootDelta
 from cubeling.characters.skeleton import rotations
 from tests.characters.commands import command
 from tests.characters.control.played import RATE_HZ, heading, place, play, velocities
-from tests.examples import examples
+from tests.examples import examples, some
 
 
 def arrival(character, speed, target, place=None, seconds=40):
@@ -69,7 +69,7 @@ def test_it_always_arrives(walker, x, z, yaw, speed):
     assert arrival(walker, speed, np.array([x, z]), start) < 30
 
 
-@pytest.mark.parametrize("degrees", [30, 90, 135, 180, -90])
+@pytest.mark.parametrize("degrees", some([135, -90, 30, 90, 180], 2))
 @pytest.mark.parametrize("distance", [0.055, 0.07, 0.1])
 def test_it_does_not_orbit_a_near_target(human, degrees, distance):
     angle = math.radians(degrees)
@@ -78,7 +78,7 @@ def test_it_does_not_orbit_a_near_target(human, degrees, distance):
         assert arrival(human, speed, target) < 6
 
 
-@pytest.mark.parametrize("degrees", [0, 60, 180])
+@pytest.mark.parametrize("degrees", some([180, 60, 0], 2))
 def test_the_faster_the_sooner_and_running_before_walking(anyone, degrees):
     target = 0.4 * np.array([math.sin(math.radians(degrees)), math.cos(math.radians(degrees))])
     times = [arrival(anyone, speed, target) for speed in (0.7, 1.5, 2.7, 3.5, 5.0)]

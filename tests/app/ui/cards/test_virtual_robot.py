@@ -61,7 +61,7 @@ def test_the_same_session_gives_the_same_pictures(context):
 
 def test_it_never_stands_still_and_stays_in_the_picture(context):
     for mood in ((0.3, "neutral"), (1.0, "happy"), (-1.0, "angry")):
-        pictures = played(context, [mood] * 12)
+        pictures = played(context, [mood] * 5)
         assert all((a != b).any() for a, b in itertools.pairwise(pictures))
         empty = backdrop(SIDE, mood[0])
         for picture in pictures:  # its shadow falls to the right
