@@ -41,7 +41,7 @@ def test_a_sharp_cube_is_found_to_a_tenth_of_a_millimetre() -> None:
     source = open_synthetic("poses")
     assert source.intrinsics is not None
     errors, inside = [], []
-    for index in range(0, 300, 25):
+    for index in range(0, 300, 30):
         state = CubeTracker(source.cube, source.intrinsics).update(source.frame(index))
         assert state.visible
         assert state.camera_from_cube is not None
