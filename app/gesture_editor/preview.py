@@ -106,13 +106,13 @@ class Preview:
     context
         Where it draws; it is not released. None to pose only.
     load
-        Returns a character by its name.
+        Returns a character by its name; `Character.load` without one.
     """
 
     def __init__(
-        self, context: moderngl.Context | None, load: Callable[[str], Character] = Character.load
+        self, context: moderngl.Context | None, load: Callable[[str], Character] | None = None
     ) -> None:
-        self._context, self._load = context, load
+        self._context, self._load = context, load or Character.load
         self._characters: dict[str, Character] = {}
         self._performance: Performance | None = None
         self._animator: Animator | None = None
