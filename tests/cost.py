@@ -17,6 +17,9 @@ NOISE = 2.0
 """How much longer a test may seem to take. The machines swing by half, and the first test of a
 process pays for what its commands load."""
 
+REASONS = "slow", "full"
+"""Markers of tests that may take longer: those with a reason, and those not of every change."""
+
 Hook = Generator[None, object, object]
 
 _spent, _shared = pytest.StashKey[float](), pytest.StashKey[float]()
@@ -64,7 +67,7 @@ class CostCheck:
     ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
         """Write the cost into the report, which comes from another process with xdist."""
         report = yield
-        if call.when == "call" and item.get_closest_marker("slow") is None:
+        if call.when == "call" and not any(map(item.get_closest_marker, REASONS)):
             own = item.stash[_spent] - item.stash[_shared]
             report.user_properties.append(("cpu_s", own))
         return report

@@ -33,6 +33,9 @@ def test_within_noise(shared, spend): spend({LONG})
 
 @pytest.mark.slow(reason="a day of traffic")
 def test_with_a_reason(spend): spend({TOO_LONG})
+
+@pytest.mark.full
+def test_not_of_every_change(spend): spend({TOO_LONG})
 """
 
 
@@ -53,7 +56,7 @@ class Clock:
 
 def run(folder: Path, strict: bool, suite: str = SUITE) -> tuple[int, CostCheck]:
     (folder / f"{folder.name}.py").write_text(suite)
-    (folder / "pytest.ini").write_text("[pytest]\nmarkers =\n    slow: has a reason\n")
+    (folder / "pytest.ini").write_text("[pytest]\nmarkers =\n    slow: why\n    full: rarely\n")
     clock = Clock()
     check = CostCheck(strict, clock)
     arguments = ["--import-mode=importlib", "-p", "no:xdist", "-p", "no:cacheprovider"]
