@@ -18,6 +18,7 @@ from cubeling.tracking.appearance.hand.mask import HandMask
 from cubeling.tracking.appearance.hand.window import Window
 from tests.bench.hand_mask import covered, overlap
 from tests.bench.hand_scenes import SKINS, HandView
+from tests.examples import some
 from tests.tracking.appearance.hand.resting_scene import RestingScene
 from tests.tracking.appearance.hand.test_finder import CUBE, state_at
 
@@ -55,7 +56,7 @@ def at(row: int, column: int) -> tuple[int, int]:
 
 
 @pytest.mark.parametrize(
-    ("azimuth", "skin"), [(10, "Monk 03"), (-60, "Monk 09"), (-165, "Monk 03")]
+    ("azimuth", "skin"), some([(-60, "Monk 09"), (10, "Monk 03"), (-165, "Monk 03")], 2)
 )
 def test_an_arm_is_covered_to_the_border_of_the_picture(azimuth, skin):
     made = RestingScene(HandView(SKINS[skin], azimuth, seed=2, defocus=0.6), CUBE)

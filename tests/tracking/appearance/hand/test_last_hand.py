@@ -117,7 +117,7 @@ def test_a_carried_hand_covers_the_same_as_one_that_is_looked_at():
     made = RestingScene(view, CUBE, rate_hz=30)
     tracker, finder = CubeTracker(CUBE, made.intrinsics), HandFinder(CUBE, made.intrinsics)
     scores, shares, missed = [], [], []
-    for index in [*range(30), *range(76, 130)]:
+    for index in [*range(20), *range(76, 112)]:
         frame, truth = made.frame(index)
         found = finder.update(frame.image, tracker.update(frame))
         if made.state(index).grip > 0.99:
