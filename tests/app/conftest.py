@@ -22,6 +22,7 @@ from cubeling.tracking import CubeControls, open_source
 from tests.bundled_characters import (
     bundled_characters_are_read_once as bundled_characters_are_read_once,
 )
+from tests.drawn_once import desks_are_drawn_once as desks_are_drawn_once
 
 FRAME = 1 / 30
 

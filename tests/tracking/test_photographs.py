@@ -75,6 +75,7 @@ def one_marker(number: int, marker_mm: float) -> CubeModel:
     return CubeModel.from_document(document, "test", "test")
 
 
+@pytest.mark.slow(reason="two cubes are looked for in all four reflections")
 @pytest.mark.parametrize("path", some(FEW_FIRST, len(FEW)), ids=lambda path: path.stem)
 def test_no_bundled_cube_is_seen_in_any_photograph(path: Path) -> None:
     picture = photograph(path)
@@ -126,6 +127,7 @@ def board() -> tuple[dict[int, Array], Array]:
     return places, se3.pose(rotation, np.asarray(shift, np.float64).ravel())
 
 
+@pytest.mark.slow(reason="each of 17 markers is a cube of its own")
 def test_single_markers_of_a_real_board_are_right_or_refused() -> None:
     """25 px in a photograph often lean both ways alike; what is reported must be right."""
     places, camera_from_board = board()
@@ -151,6 +153,7 @@ def flat_model(places: dict[int, Array], numbers: list[int]) -> tuple[CubeModel,
     return CubeModel("board", DICTIONARY, 0.03, 0.02, faces), body
 
 
+@pytest.mark.slow(reason="the whole picture is searched for twelve bodies")
 def test_edges_on_a_real_board_agree_with_its_chessboard() -> None:
     """Six markers of 20 mm at 40 cm, found by their edges, and 24 chessboard corners by OpenCV."""
     places, camera_from_board = board()

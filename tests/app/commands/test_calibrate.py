@@ -61,6 +61,7 @@ def shown(monkeypatch, cubeling):
     return run
 
 
+@pytest.mark.slow(reason="a camera is calibrated and checked twice")
 def test_waving_the_cube_writes_camera_cube_and_coverage(shown, waved, tmp_path):
     code, out, err, _ = shown(
         waved, "-o", "camera.yaml", "--save-cube", "mine.toml", "--coverage", "seen.png"
@@ -90,6 +91,7 @@ def test_waving_the_cube_writes_camera_cube_and_coverage(shown, waved, tmp_path)
     assert "DEGRADED  worse.yaml: focal length -2." in out
 
 
+@pytest.mark.slow(reason="the coach wants to see the cube from all sides")
 def test_a_live_session_ends_by_itself_when_the_coach_is_content(shown, waved):
     endless = [
         Frame(frame.image, 20.0 * round_ + frame.timestamp, n)

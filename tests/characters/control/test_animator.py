@@ -135,6 +135,7 @@ def test_planted_feet_do_not_slide(human):
     assert np.median(slowest[standing]) < 0.02  # [m/s] of a person 1.7 m tall
 
 
+@pytest.mark.slow(reason="it is asked for 25 things, at 60 frames a second")
 def test_no_joint_jumps_whatever_is_asked(human):
     rng = np.random.default_rng(3)
     stiff = replace(human, springs=())  # hair may jump

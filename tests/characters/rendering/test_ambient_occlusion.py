@@ -246,6 +246,7 @@ def test_what_ends_soon_behind_its_front_hides_less_of_a_wall(ctx, programs):
     assert deep + 0.05 < thin < thinner < 0.99, (deep, thin, thinner)
 
 
+@pytest.mark.slow(reason="rays are traced from every texel of a character")
 def test_the_programs_own_picture_of_a_character_is_close_to_rays(ctx):
     found = product_quality(ctx, "robot", 32)
     assert found.misplaced_mm < 1e-3

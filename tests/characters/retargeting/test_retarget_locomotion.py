@@ -126,6 +126,7 @@ def test_left_and_right_are_mirror_images(taught):
         assert (ours.x, ours.z, ours.yaw) == pytest.approx((-theirs.x, theirs.z, -theirs.yaw))
 
 
+@pytest.mark.slow(reason="a whole tree of walking is made")
 def test_mirrored_bones_keep_their_lengths_on_an_uneven_body_in_a_file_that_rounds(human):
     skeleton, walk = human.skeleton, human.clips["Walk"]
     longer = np.zeros((len(skeleton), 3))
@@ -151,6 +152,7 @@ def test_it_goes_where_it_is_sent(taught):
     assert math.hypot(x - 0.25, z + 0.2) < 0.07
 
 
+@pytest.mark.slow(reason="a whole tree of walking is made")
 def test_a_recorded_curve_is_used_for_its_side_and_mirrored_for_the_other(human):
     made = make_locomotion(
         replace(human, clips={}),

@@ -342,6 +342,7 @@ def test_people_who_walk_or_sit_or_jump_are_refused(human: Character) -> None:
         read_standing(replace(still, poses=replace(standing, translations=leaping)), *body)
 
 
+@pytest.mark.slow(reason="a long recording of a person is analysed")
 @pytest.mark.skipif(not IDLE.is_dir(), reason="needs shared/data/idle")
 def test_a_real_person_shifts_her_balance(human: Character, kind: PostureVectors) -> None:
     (clip,) = read_motions([str(IDLE / "007_acted.bvh")], human)

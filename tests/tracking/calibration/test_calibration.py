@@ -32,6 +32,7 @@ def views_of(seed, count=70, noise=0.12, camera=TRUE, **how):
     return corner_views(CUBE, real, camera, SIZE, random, count, noise, **how), real
 
 
+@pytest.mark.slow(reason="so small an error needs a hundred views")
 @pytest.mark.parametrize("seed", some([0, 1, 2]))
 def test_focal_length_to_half_a_percent_and_folds_to_a_fifth_of_a_millimetre(seed):
     views, real = views_of(seed, count=100, noise=0.1)

@@ -36,6 +36,7 @@ def photograph(*names):
     return np.asarray(grey, np.uint8)
 
 
+@pytest.mark.slow(reason="a camera is calibrated from 54 drawn pictures")
 def test_waving_a_cube_determines_lens_and_folding_errors():
     source = open_synthetic("wave?fold=0.8&seed=4&clutter=0&noise=3&size=960x540")
     cube = CubeModel.load("locomotion")
@@ -180,6 +181,7 @@ def board_picture(board, camera, pose):
     return cv2.cvtColor(cv2.GaussianBlur(seen, (0, 0), 0.6), cv2.COLOR_GRAY2BGR)
 
 
+@pytest.mark.slow(reason="a camera is calibrated from 15 drawn pictures")
 def test_waving_a_board_determines_the_lens():
     matrix = np.array([[610.0, 0, 325], [0, 611, 236], [0, 0, 1]])
     camera = Intrinsics(matrix, np.array([-0.15, 0.07, 0.0005, -0.0005, 0]), (640, 480))

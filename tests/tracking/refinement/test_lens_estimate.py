@@ -55,6 +55,7 @@ def watched(claimed: float, k1: float, count: int = 30) -> CubeTracker:
     return tracker
 
 
+@pytest.mark.slow(reason="a lens is known after some thirty places")
 @pytest.mark.parametrize("k1", some([K1, -0.1]))
 def test_a_lens_that_claims_zero_is_measured_in_play(k1: float) -> None:
     lens = watched(0.0, k1).lens
@@ -62,6 +63,7 @@ def test_a_lens_that_claims_zero_is_measured_in_play(k1: float) -> None:
     assert lens.off
 
 
+@pytest.mark.slow(reason="a lens is known after some thirty places")
 @pytest.mark.parametrize("k1", some([K1, 0.0]))
 def test_an_honest_lens_is_believed(k1: float) -> None:
     lens = watched(k1, k1).lens

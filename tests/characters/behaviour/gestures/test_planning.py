@@ -62,6 +62,7 @@ def test_a_palm_is_where_its_cell_is(performers, left):
     assert np.linalg.norm(shown - performer.space.point(place, left)) < 0.01
 
 
+@pytest.mark.slow(reason="all 56 gestures are planned twice")
 @pytest.mark.parametrize("name", NAMES)
 def test_what_a_processor_rounds_changes_no_posture(performers, name):
     performer = performers[name]

@@ -114,6 +114,7 @@ def test_lost_and_flipped_bytes_only_delay(seed, desk):
     assert not d.robot.forbidden
 
 
+@pytest.mark.slow(reason="a day passes in virtual time")
 def test_nothing_grows_in_a_day(desk):
     d = desk(OpenCatSimulator(3), step=1.0)
     random = np.random.default_rng(3)
