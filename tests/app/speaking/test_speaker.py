@@ -34,10 +34,12 @@ for line in sys.stdin.buffer:
 """
 
 
-@pytest.fixture
-def buzz(monkeypatch):
-    """Let a voice be installed that buzzes."""
-    monkeypatch.setattr(voices, "espeak", lambda: Voice((sys.executable, "-S", "-c", BUZZ)))
+@pytest.fixture(scope="module")
+def spoken(tmp_path_factory) -> Path:
+    """A session in which a voice is installed that buzzes."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(voices, "espeak", lambda: Voice((sys.executable, "-S", "-c", BUZZ)))
+        return recording_of(tmp_path_factory.mktemp("spoken"))
 
 
 def recording_of(tmp_path: Path, **changes) -> Path:
@@ -57,21 +59,20 @@ def said_in(path: Path) -> list[str]:
     return list(dict.fromkeys(texts))
 
 
-def test_a_session_with_speech_replays_byte_for_byte_without_a_voice(tmp_path, buzz, monkeypatch):
-    path = recording_of(tmp_path)
-    assert said_in(path)
-    assert [line.utterance.text for line in spoken_lines(path).values()] == said_in(path)
+def test_a_session_with_speech_replays_byte_for_byte_without_a_voice(spoken, monkeypatch):
+    assert said_in(spoken)
+    assert [line.utterance.text for line in spoken_lines(spoken).values()] == said_in(spoken)
 
     def gone():
         raise VoiceError("no voice")
 
     monkeypatch.setattr(voices, "espeak", gone)
-    options = SessionOptions(scenario="companion", source=str(path))
-    assert check_session(path, options).identical
+    options = SessionOptions(scenario="companion", source=str(spoken))
+    assert check_session(spoken, options).identical
 
 
-def test_a_recorded_line_keeps_its_sound(tmp_path, buzz):
-    line = next(iter(spoken_lines(recording_of(tmp_path)).values()))
+def test_a_recorded_line_keeps_its_sound(spoken):
+    line = next(iter(spoken_lines(spoken).values()))
     assert line.rate == 16000
     assert len(line.samples) == 800 * len(line.utterance.text)
     assert abs(line.samples).max() == pytest.approx(9000 / 2**15, rel=1e-3)
@@ -95,10 +96,9 @@ def test_a_voice_that_always_dies_is_given_up_and_the_session_goes_on(tmp_path, 
     assert said_in(recording_of(tmp_path)) == []
 
 
-def test_a_line_that_begins_in_a_frame_that_is_left_out_begins_in_the_next(tmp_path, buzz):
-    path = recording_of(tmp_path)
-    begin = min(spoken_lines(path))
-    options = SessionOptions(scenario="companion", source=str(path), robot="none", pictures=False)
+def test_a_line_that_begins_in_a_frame_that_is_left_out_begins_in_the_next(spoken):
+    begin = min(spoken_lines(spoken))
+    options = SessionOptions(scenario="companion", source=str(spoken), robot="none", pictures=False)
     with open_session(options) as session:
         loop = FrameLoop(session, Summary("companion"))
         frames = iter(session.source)
