@@ -68,6 +68,7 @@ def test_shows_rests_pauses_and_shifts(cubeling, anna) -> None:
     assert "100%" in out  # after the left foot comes the right one
 
 
+@pytest.mark.slow(reason="portraits are drawn into a plot")
 def test_plots_her_postures_shifts_and_variations(cubeling, anna, tmp_path) -> None:
     code, out, _ = cubeling("idle", "show", "anna.idle", "-o", "a.png", "--mood", "happy")
     assert code == 0

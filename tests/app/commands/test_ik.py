@@ -8,6 +8,7 @@ from cubeling.app.commands.ik import PRINTED, app, measure_alone, measure_sure
 from cubeling.characters.ik.solvers.solving import SOLVERS
 
 
+@pytest.mark.slow(reason="it measures solvers")
 def test_bench_prints_table_7_1_beside_what_we_measure(monkeypatch: pytest.MonkeyPatch) -> None:
     some = {name: SOLVERS[name] for name in ("springs", "damped")}
     monkeypatch.setattr("cubeling.app.commands.ik.SOLVERS", some)

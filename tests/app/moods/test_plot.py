@@ -40,6 +40,7 @@ def test_the_plot_names_who_feels_again_and_in_whose_words(history, companion, t
     assert "observed on the robot" not in words
 
 
+@pytest.mark.slow(reason="three formats are written twice")
 def test_the_same_plot_as_svg_pdf_and_png(history, companion, tmp_path):
     for suffix in ("svg", "pdf", "png"):
         paths = tmp_path / f"m.{suffix}", tmp_path / f"again.{suffix}"

@@ -227,6 +227,7 @@ def test_starting_over_forgets_what_was_felt(hand):
         assert again.emotion == home.emotion
 
 
+@pytest.mark.slow(reason="a session is played and replayed three times")
 def test_a_personality_is_recorded_and_taken_in_the_replay(cubeling, short_session, tmp_path):
     made, other = tmp_path / "made.mcap", tmp_path / "other.mcap"
     quiet = ("--no-pictures", "--robot", "none")

@@ -91,6 +91,7 @@ def test_the_character_stops_before_it_stands_in_the_cube(hand, name):
     assert max(moods) > moods[0] + 0.2  # it is glad to have come
 
 
+@pytest.mark.slow(reason="the character hops after some seconds of tracking")
 def test_a_character_that_hops_is_told_with_the_command_that_gives_it_a_walk(cubeling):
     part = (bundled("follow"), "--end", "8", "--no-pictures")
     code, out, _ = cubeling("replay", *part, "--character", "vleo")

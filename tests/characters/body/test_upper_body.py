@@ -77,6 +77,7 @@ def test_clear_poses_do_not_collide_and_crossed_arms_do(human, body, kind) -> No
     assert body.collides(wide, human.skeleton).mean() > 0.05
 
 
+@pytest.mark.slow(reason="a share of frames needs many of them")
 def test_few_frames_collide_in_the_ranges_and_legs_stay(human, body, kind, ranges) -> None:
     wide = wide_arms(human, kind, 9)
     kept = ranges.keep(wide)

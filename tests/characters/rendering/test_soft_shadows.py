@@ -118,6 +118,7 @@ def test_who_is_inside_a_cube_does_not_coarsen_the_shadow_on_the_table(ctx, view
     stage.release()
 
 
+@pytest.mark.slow(reason="a picture is lit from the whole lamp in each pixel")
 def test_close_up_the_light_of_the_lamp_is_found_for_cells_nearly_as_for_each_pixel(
     ctx, monkeypatch
 ):

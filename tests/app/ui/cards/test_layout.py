@@ -75,6 +75,7 @@ def sketch(computed_session):
     return str(computed_session("sketch"))
 
 
+@pytest.mark.slow(reason="most of a recording is played")
 def test_in_the_bundled_sketch_cube_and_character_are_seldom_behind_a_card(sketch):
     layout, hidden, at_home = CardLayout(), [], []
     with open_source(sketch) as source:
