@@ -6,6 +6,7 @@ import pytest
 
 from cubeling.characters import Character
 from cubeling.characters.locomotion.gaits import WALK_CLIPS
+from tests.characters.retargeting.conftest import straight_only as straight_only
 
 
 def test_one_command_makes_a_character_that_walks(cubeling, tmp_path):
@@ -50,7 +51,7 @@ def test_inputs_are_not_overwritten(cubeling, tmp_path):
     assert mine.read_bytes() == before
 
 
-def test_a_run_slower_than_the_walk_is_reported(cubeling):
+def test_a_run_slower_than_the_walk_is_reported(cubeling, straight_only):
     code, out, _ = cubeling(
         "character", "locomotion", "human", "--walk", "human#Run", "--run", "human#Walk"
     )
@@ -58,7 +59,7 @@ def test_a_run_slower_than_the_walk_is_reported(cubeling):
     assert "slower than it walks" in out
 
 
-def test_visible_faults_are_told(cubeling, tmp_path):
+def test_visible_faults_are_told(cubeling, straight_only, tmp_path):
     human = Character.load("human")
     walk = human.clips["Walk"]
     longer = walk.poses.translations.copy()
