@@ -231,6 +231,7 @@ def load(path):
     return load_recording(str(path))
 
 
+@pytest.mark.slow(reason="whole trees of walking and running are made")
 def test_motion_capture_makes_locomotion_clips_without_sliding(tmp_path):
     walk, run = captured("16/16_15"), captured("16/16_35")
     made = make_locomotion(Character.load(SHARED / "gltf" / "CesiumMan.glb"), [walk], [run])
