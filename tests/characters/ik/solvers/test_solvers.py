@@ -21,7 +21,7 @@ from cubeling.characters.skeleton.joint_limits import JointLimits
 from cubeling.characters.skeleton.pose import Array
 from tests.examples import examples
 
-COUNT = 50
+COUNT = 25
 
 
 @pytest.fixture(scope="module", params=[6, 10])
