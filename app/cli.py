@@ -9,7 +9,6 @@ import signal
 import sys
 import warnings
 from importlib import import_module
-from importlib.metadata import version as installed_version
 from typing import Annotated, Any, TextIO
 
 import typer
@@ -108,6 +107,8 @@ app = typer.Typer(
 def print_version(asked: bool) -> None:
     """Print the version, and end."""
     if asked:
+        from importlib.metadata import version as installed_version  # 15 ms, only for this
+
         Console(highlight=False).print(f"cubeling {installed_version('cubeling')}")
         raise typer.Exit
 

@@ -7,10 +7,13 @@ from cubeling.characters.control.command import (
     PosedCharacter as PosedCharacter,
     SpeechIntent as SpeechIntent,
 )
-from cubeling.characters.control.controllers import (
+from cubeling.characters.control.controller_choices import (
     CONTROLLER_CHOICES as CONTROLLER_CHOICES,
-    ControllerFactory as ControllerFactory,
+    check_controller as check_controller,
     choose_controller as choose_controller,
+)
+from cubeling.characters.control.controllers import (
+    ControllerFactory as ControllerFactory,
     first_suitable as first_suitable,
 )
 from cubeling.characters.control.controllers.actions import clips_of_actions as clips_of_actions

@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.speaking.performance import View, framed
+from cubeling.app.speaking.performance import framed
+from cubeling.app.speaking.view import View
 from cubeling.characters import Character, Pose
 
 Focus = tuple[NDArray[np.float64], float]

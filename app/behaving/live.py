@@ -18,7 +18,8 @@ from cubeling.app.sound.loudspeaker import Loudspeaker
 from cubeling.app.sound.mixer import Mixer
 from cubeling.app.sound.session_sound import SPEECH_GAIN, at_sample_rate
 from cubeling.app.sound.synthesis import SAMPLE_RATE
-from cubeling.app.speaking.performance import AZIMUTH_RAD, ELEVATION_RAD, View
+from cubeling.app.speaking.performance import AZIMUTH_RAD, ELEVATION_RAD
+from cubeling.app.speaking.view import View
 from cubeling.characters import Character
 from cubeling.characters.behaviour import feedback_xml
 from cubeling.characters.rendering import PortraitRenderer

@@ -10,10 +10,10 @@ from cubeling.app.behaving.recording import BehaviourRecording
 from cubeling.app.speaking.performance import (
     AZIMUTH_RAD,
     ELEVATION_RAD,
-    View,
     put_subtitle,
     sound_blocks,
 )
+from cubeling.app.speaking.view import View
 from cubeling.app.ui.video_file import VideoFile
 from cubeling.characters import Character, SpeechIntent
 from cubeling.characters.rendering import PortraitRenderer, create_context

@@ -1,18 +1,20 @@
 """Options of the commands that use an MQTT broker."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 
 from cubeling.app.errors import AppError
-from cubeling.app.running.network import Network
-from cubeling.app.running.players import PlayerPublisher
 from cubeling.app.ui.literal_text import literal_text
-from cubeling.robot.network import Credentials
+
+if TYPE_CHECKING:
+    from cubeling.app.running.players import PlayerPublisher
 
 Broker = Annotated[
     str | None,
@@ -53,6 +55,10 @@ def publisher(
             if name is None
             else "--player needs --mqtt URL, the address of the broker"
         )
+    from cubeling.app.running.network import Network
+    from cubeling.app.running.players import PlayerPublisher
+    from cubeling.robot.network import Credentials
+
     with Network(url, site, Credentials(None, password_file, ca)) as network:
         yield PlayerPublisher(network, name, on_problem=report_problem)
 

@@ -1,39 +1,31 @@
 """`cubeling behave`."""
 
+from __future__ import annotations
+
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
 from rich.markup import escape
 
-from cubeling.app.behaving.live import NoOutput, Output, WindowOutput, play_live
-from cubeling.app.behaving.opening import open_lines, read_document
-from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer, target_of
-from cubeling.app.behaving.recording import BehaviourRecording, perform
-from cubeling.app.behaving.server import BlockServer
-from cubeling.app.behaving.video import write_video
-from cubeling.app.behaving.voice import ThreadedSource
 from cubeling.app.commands.output import OverwriteOption, chosen_output
 from cubeling.app.commands.session.play import VoiceOption
 from cubeling.app.commands.session.preference_options import emotion_of, size_of
 from cubeling.app.counted import counted
 from cubeling.app.errors import AppError
 from cubeling.app.output_path import check_output
-from cubeling.app.speaking.performance import View
+from cubeling.app.speaking.view import View
 from cubeling.app.ui.display import has_display
-from cubeling.app.ui.video_file import VIDEO_FORMATS
-from cubeling.characters import Character
-from cubeling.characters.behaviour import (
-    BlockProgress,
-    BmlWarning,
-    Feedback,
-    GestureExpressivity,
-    feedback_xml,
-)
-from cubeling.characters.model import save_bap, save_bvh, with_root_joint
-from cubeling.characters.speech import blood_of
+from cubeling.app.ui.output_formats import VIDEO_FORMATS
+
+if TYPE_CHECKING:
+    from cubeling.app.behaving.live import Output
+    from cubeling.app.behaving.player import BehaviourOptions
+    from cubeling.app.behaving.recording import BehaviourRecording
+    from cubeling.characters import Character
+    from cubeling.characters.behaviour import Feedback
 
 OUTPUT_SUFFIXES = (".bvh", ".bap", *VIDEO_FORMATS)
 
@@ -109,6 +101,14 @@ def behave(
 
     Example: [cyan]cubeling behave hello.bml -o hello.mp4[/]
     """
+    from cubeling.app.behaving.opening import open_lines, read_document
+    from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
+    from cubeling.app.behaving.recording import perform
+    from cubeling.characters import Character
+    from cubeling.characters.behaviour import GestureExpressivity
+    from cubeling.characters.model import with_root_joint
+    from cubeling.characters.speech import blood_of
+
     how = GestureExpressivity(spatial, openness, fluidity, bias, tension, power)
     options = BehaviourOptions(how, emotion_of(emotion), seed, _targets(target or []))
     body, pixels = with_root_joint(Character.load(character)), size_of(size)
@@ -149,6 +149,12 @@ def _serve(
     """Play in a window, or without one, and take blocks until that is closed or interrupted."""
     if shown is not None and not has_display():
         raise AppError("there is no display here: add --no-window")
+    from cubeling.app.behaving.live import NoOutput, WindowOutput, play_live
+    from cubeling.app.behaving.opening import open_lines
+    from cubeling.app.behaving.player import BehaviourPlayer
+    from cubeling.app.behaving.server import BlockServer
+    from cubeling.app.behaving.voice import ThreadedSource
+
     with ExitStack() as closing:
         server = BlockServer(port)
         closing.callback(server.close)
@@ -171,6 +177,8 @@ def _serve(
 
 def feedback_document(feedback: tuple[Feedback, ...]) -> str:
     """Return all feedback as one XML document."""
+    from cubeling.characters.behaviour import feedback_xml
+
     lines = [feedback_xml(each) for each in feedback]
     return "\n".join(
         ['<?xml version="1.0" encoding="utf-8"?>', "<feedback>", *lines, "</feedback>", ""]
@@ -186,6 +194,9 @@ def _write(
     subtitles: bool,
     blood: float,
 ) -> None:
+    from cubeling.app.behaving.video import write_video
+    from cubeling.characters.model import save_bap, save_bvh
+
     match path.suffix.lower():
         case ".bvh":
             save_bvh(done.clip, body.skeleton, body.anatomy, path)
@@ -197,6 +208,8 @@ def _write(
 
 def _report(console: Console, path: Path, done: BehaviourRecording, problem: str) -> None:
     """Print warnings, and what is written."""
+    from cubeling.characters.behaviour import BlockProgress, BmlWarning
+
     if problem:
         console.print(f"[yellow]nothing is said:[/] {escape(problem)}", soft_wrap=True)
     for each in done.feedback:
@@ -214,6 +227,8 @@ def _report(console: Console, path: Path, done: BehaviourRecording, problem: str
 
 
 def _targets(texts: list[str]) -> dict[str, Any]:
+    from cubeling.app.behaving.player import target_of
+
     try:
         return dict(map(target_of, texts))
     except ValueError as error:

@@ -1,11 +1,13 @@
 """`cubeling bridge`."""
 
+from __future__ import annotations
+
 import threading
 import time
 from collections.abc import Iterable
 from contextlib import nullcontext, suppress
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
@@ -14,11 +16,12 @@ from rich.live import Live
 from cubeling.app.commands.access import Broker, Ca, PasswordFile, Site
 from cubeling.app.commands.session.complete import complete_session
 from cubeling.app.errors import AppError
-from cubeling.app.running.bridge import Bridge
-from cubeling.app.running.network import DEFAULT_SITE, Network
 from cubeling.app.ui.literal_text import literal_text
-from cubeling.app.ui.roster import line, table
-from cubeling.robot.network import ANY_NAME, HOLD_S, MAX_AGE_S, Credentials, Member, StatusMessage
+from cubeling.robot.network import ANY_NAME, DEFAULT_SITE, HOLD_S, MAX_AGE_S
+
+if TYPE_CHECKING:
+    from cubeling.app.running.bridge import Bridge
+    from cubeling.robot.network import Member
 
 STEP_EVERY_S = 0.02
 """Time between two steps of the recorded players [s]."""
@@ -86,6 +89,10 @@ def bridge(
             "without --mqtt there are no other members: give both --robot and --play, "
             "or a broker with --mqtt URL"
         )
+    from cubeling.app.running.bridge import Bridge
+    from cubeling.app.running.network import Network
+    from cubeling.robot.network import Credentials
+
     credentials = Credentials(user, password_file, ca, cert, key)
     console = Console()
     printer = EventPrinter(console, every=watch)
@@ -110,9 +117,11 @@ def bridge(
 
 
 def run(
-    bridge: Bridge, console: Console, printer: "EventPrinter", seconds: float | None, *, live: bool
+    bridge: Bridge, console: Console, printer: EventPrinter, seconds: float | None, *, live: bool
 ) -> None:
     """Run a bridge until its time is over or, without a broker, until its players are done."""
+    from cubeling.app.ui.roster import table
+
     began = time.monotonic()
     end = None if seconds is None else began + seconds
     drawn = began - DRAW_EVERY_S
@@ -145,6 +154,9 @@ class EventPrinter:
 
     def message(self, member: Member, kind: str, message: Any) -> None:
         """Print a message if it matters; called on a thread of the network."""
+        from cubeling.app.ui.roster import line
+        from cubeling.robot.network import StatusMessage
+
         if self.quiet:
             return
         if self._every:

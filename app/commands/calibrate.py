@@ -1,11 +1,12 @@
 """`cubeling calibrate`."""
 
+from __future__ import annotations
+
 import shlex
 from contextlib import ExitStack, suppress
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
 from rich.console import Console
 from rich.markup import escape
@@ -14,30 +15,12 @@ from cubeling.app.commands.session.play import DEFAULT_CAMERA, CubeOption
 from cubeling.app.counted import counted
 from cubeling.app.errors import AppError
 from cubeling.app.output_path import check_output
-from cubeling.app.pipeline.other_cube import scenario_for
-from cubeling.app.running.opening import intrinsics_for
-from cubeling.app.ui.calibration.coach_lines import COVERAGE_SUFFIXES, CoachLines, write_coverage
-from cubeling.app.ui.calibration.session import CalibrationSession, Coach
 from cubeling.app.ui.display import has_display
-from cubeling.tracking import (
-    CubeModel,
-    FrameSource,
-    Intrinsics,
-    bundled_cubes,
-    face_corners,
-    open_source,
-    write_cube,
-)
-from cubeling.tracking.calibration import (
-    Board,
-    BoardFinder,
-    Calibration,
-    CubeFinder,
-    TargetFinder,
-    check_camera,
-    measured_cube,
-    write_board,
-)
+
+if TYPE_CHECKING:
+    from cubeling.app.ui.calibration.session import CalibrationSession, Coach
+    from cubeling.tracking import CubeModel, FrameSource, Intrinsics
+    from cubeling.tracking.calibration import Calibration, TargetFinder
 
 CAMERA_FILE = Path("camera.yaml")
 
@@ -102,6 +85,11 @@ def calibrate(
 
     Example: [cyan]cubeling calibrate -o camera.yaml --save-cube my-cube.toml[/]
     """
+    from cubeling.app.running.opening import intrinsics_for
+    from cubeling.app.ui.calibration.coach_lines import write_coverage
+    from cubeling.tracking import Intrinsics, open_source
+    from cubeling.tracking.calibration import CubeFinder, write_board
+
     console = Console(soft_wrap=True, highlight=False)
     if print_board is not None:
         check_output(print_board, "board", (".pdf",), overwrite=overwrite)
@@ -132,6 +120,9 @@ def target_finders(cube: str | None, board: str) -> list[TargetFinder]:
     """Return the finders of what may be held up: the named cube, any bundled one, or the board."""
     if board not in ("", "charuco"):
         raise AppError(f"no board is called '{board}': use charuco")
+    from cubeling.tracking import CubeModel, bundled_cubes
+    from cubeling.tracking.calibration import Board, BoardFinder, CubeFinder
+
     if board:
         return [BoardFinder(Board())]
     return [CubeFinder(CubeModel.load(name)) for name in ([cube] if cube else bundled_cubes())]
@@ -152,6 +143,9 @@ def _collect_views(
     finders: list[TargetFinder], frames: FrameSource, target: str, shown: bool, seconds: float
 ) -> CalibrationSession:
     """Run the coach in a window or on the terminal; Ctrl-C ends the session, not the program."""
+    from cubeling.app.ui.calibration.coach_lines import CoachLines
+    from cubeling.app.ui.calibration.session import CalibrationSession
+
     session = CalibrationSession(finders, frames.size)
     with ExitStack() as closing, suppress(KeyboardInterrupt):
         coach: Coach = CoachLines(Console(soft_wrap=True, highlight=False), target)
@@ -174,6 +168,8 @@ def _report_check(
 ) -> int:
     """Compare a saved camera with the views, print the result, and return the exit code."""
     session.check_seen()
+    from cubeling.tracking.calibration import check_camera
+
     verdict = check_camera(session.collector.views, saved, session.finder.target(size))
     color, word = ("red", "DEGRADED") if verdict.degraded else ("green", "OK")
     x, y = verdict.centre_change
@@ -192,6 +188,12 @@ def _report_cube(
     ideal: CubeModel, found: Calibration, camera: Path, path: Path | None, console: Console
 ) -> None:
     """Print how far the cube is from its design, save it if asked to, and say what comes next."""
+    import numpy as np
+
+    from cubeling.app.pipeline.other_cube import scenario_for
+    from cubeling.tracking import face_corners, write_cube
+    from cubeling.tracking.calibration import measured_cube
+
     cube = measured_cube(ideal, found.plates)
     worst = 0.0
     for face in cube.faces:
@@ -224,6 +226,8 @@ def _check_paths(
 
     The camera's file of the default name is the program's own, so it may exist.
     """
+    from cubeling.app.ui.calibration.coach_lines import COVERAGE_SUFFIXES
+
     for path, kind, suffixes in (
         (output, "camera", CAMERA_SUFFIXES),
         (save_cube, "cube", (".toml",)),

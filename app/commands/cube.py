@@ -8,8 +8,6 @@ from rich.console import Console
 from rich.markup import escape
 
 from cubeling.app.commands.output import OverwriteOption, chosen_output
-from cubeling.app.scenarios.roles import check_roles
-from cubeling.tracking import CubeModel, write_sheet
 
 
 def cube(
@@ -28,6 +26,9 @@ def cube(
 
     Example: [cyan]cubeling cube companion --paper letter -o cube.pdf[/]
     """
+    from cubeling.app.scenarios.roles import check_roles
+    from cubeling.tracking import CubeModel, write_sheet
+
     model = CubeModel.load(name)
     check_roles(model, name)
     path = chosen_output(output, f"{Path(name).stem}.pdf", "sheet", (".pdf",), overwrite)

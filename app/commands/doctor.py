@@ -1,30 +1,24 @@
 """`cubeling doctor`: what this computer has and lacks."""
 
+from __future__ import annotations
+
 import importlib.metadata
 import platform
 import shutil
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
-import av
-import cv2
 import typer
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from cubeling.app.errors import AppError
-from cubeling.app.running.summary import camera_line
 from cubeling.app.scenarios import SCENARIOS
-from cubeling.app.session.bundled import bundled
-from cubeling.app.sound import NoSoundError
-from cubeling.app.sound.loudspeaker import load_portaudio, open_stream
 from cubeling.app.ui.display import has_display, is_software_renderer
-from cubeling.characters import Character, CharacterError
-from cubeling.characters.rendering import create_context
-from cubeling.characters.speech import espeak_installed, espeak_remedy
-from cubeling.robot import serial_ports
-from cubeling.tracking import FrameSource, LiveFrames, TrackingError, open_source
+
+if TYPE_CHECKING:
+    from cubeling.tracking import FrameSource
 
 VERDICT_MARKS = {"good": "[green]✓[/]", "missing": "[yellow]–[/]", "bad": "[red]✗[/]"}
 
@@ -98,6 +92,8 @@ def _python() -> Finding:
 
 
 def _opencv() -> Finding:
+    import cv2
+
     for name in ("opencv-python", "opencv-contrib-python", "opencv-python-headless"):
         if not list(importlib.metadata.distributions(name=name)):
             continue
@@ -116,6 +112,9 @@ def _opencv() -> Finding:
 
 
 def _drawing() -> Finding:
+    from cubeling.characters import CharacterError
+    from cubeling.characters.rendering import create_context
+
     try:
         context = create_context()
     except CharacterError as error:
@@ -146,12 +145,16 @@ def _mesa() -> str:
 
 
 def _video() -> Finding:
+    import av
+
     if "libx264" in av.codecs_available:
         return Finding("video", "good", f"H.264 by PyAV {av.__version__}")
     return Finding("video", "bad", "PyAV has no libx264", "pip install --force-reinstall av")
 
 
 def _characters() -> Finding:
+    from cubeling.characters import Character, CharacterError
+
     try:
         characters = [Character.load(name) for name in ("human", "vleo", "robot")]
     except CharacterError as error:
@@ -161,6 +164,8 @@ def _characters() -> Finding:
 
 
 def _recordings() -> Finding:
+    from cubeling.app.session.bundled import bundled
+
     try:
         names = [bundled(name).name for name in SCENARIOS]
     except AppError as error:
@@ -176,6 +181,9 @@ def _display() -> Finding:
 
 def _sound() -> Finding:
     """Open the loudspeaker for a moment, in silence."""
+    from cubeling.app.sound import NoSoundError
+    from cubeling.app.sound.loudspeaker import load_portaudio, open_stream
+
     try:
         stream = open_stream(load_portaudio(), None)
     except NoSoundError as error:
@@ -187,6 +195,8 @@ def _sound() -> Finding:
 
 
 def _voice() -> Finding:
+    from cubeling.characters.speech import espeak_installed, espeak_remedy
+
     if espeak_installed():
         return Finding("voice", "good", "eSpeak NG: characters speak")
     return Finding("voice", "missing", "no eSpeak NG: characters are silent", espeak_remedy())
@@ -194,6 +204,8 @@ def _voice() -> Finding:
 
 def _ports() -> Finding:
     """Look for ports that a robot may be on; one that is not on USB says nothing of itself."""
+    from cubeling.robot import serial_ports
+
     ports = serial_ports()
     usb = [port.url for port in ports if port.vendor is not None]
     others = [port.url for port in ports if port.vendor is None]
@@ -215,6 +227,8 @@ def _broker() -> Finding:
 
 
 def _camera() -> Finding:
+    from cubeling.tracking import TrackingError, open_source
+
     try:
         with open_source("camera:0") as source:
             read_for(source, CAMERA_CHECK_S)
@@ -234,6 +248,9 @@ def read_for(source: FrameSource, seconds: float) -> None:
 
 def camera_report(uri: str, source: FrameSource) -> str:
     """Return what a camera delivers, and whether it accepted the settings."""
+    from cubeling.app.running.summary import camera_line
+    from cubeling.tracking import LiveFrames
+
     size = f"{uri}, {source.size[0]}x{source.size[1]}"
     if not isinstance(source, LiveFrames):
         return size

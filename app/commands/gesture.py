@@ -1,8 +1,10 @@
 """`cubeling gesture`."""
 
+from __future__ import annotations
+
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.box import SIMPLE_HEAD
@@ -12,19 +14,11 @@ from rich.table import Table
 
 from cubeling.app.commands.output import OverwriteOption, chosen_output
 from cubeling.app.errors import AppError
-from cubeling.app.gesture_editor.editing.edits import gesture_name, performers
-from cubeling.app.gesture_editor.editing.importing import imported
-from cubeling.app.gesture_editor.editing.store import GestureStore
-from cubeling.app.gesture_editor.editing.timing import duration, phase_spans
 from cubeling.app.ui.display import has_display
-from cubeling.characters import Character
-from cubeling.characters.behaviour import (
-    GESTURE_SUFFIX,
-    BodyKey,
-    HandKey,
-    SymbolicGesture,
-    save_gesture,
-)
+
+if TYPE_CHECKING:
+    from cubeling.app.gesture_editor.editing.store import GestureStore
+    from cubeling.characters.behaviour import BodyKey, HandKey, SymbolicGesture
 
 SHEET_SUFFIXES = (".png", ".jpg")
 
@@ -61,10 +55,10 @@ def edit(
 
     Example: [cyan]cubeling gesture edit WAVE[/]
     """
-    from cubeling.app.gesture_editor.window import edit as edit_in_window
-
     if not has_display():
         raise AppError("the editor needs a window: run it where there is a display")
+    from cubeling.app.gesture_editor.window import edit as edit_in_window
+
     edit_in_window(folder, character, name)
 
 
@@ -74,6 +68,9 @@ def list_gestures(folder: FolderOption = GESTURE_FOLDER) -> None:
 
     Example: [cyan]cubeling gesture list[/]
     """
+    from cubeling.app.gesture_editor.editing.store import GestureStore
+    from cubeling.app.gesture_editor.editing.timing import duration
+
     store = GestureStore(folder)
     rows = Table(box=SIMPLE_HEAD)
     for heading in ("gesture", "hands", "length", "whose", "what it means"):
@@ -105,6 +102,9 @@ def show(
     """
     if output is not None:
         chosen_output(output, "", "picture", SHEET_SUFFIXES, overwrite)
+    from cubeling.app.gesture_editor.editing.store import GestureStore
+    from cubeling.characters import Character
+
     gesture = GestureStore(folder).load(name)
     describe(Console(), gesture)
     if output is not None:
@@ -139,6 +139,11 @@ def import_gesture(
 
     Example: [cyan]cubeling gesture import greeting.bvh --from 1.2 --to 2.4 -o GREET[/]
     """
+    from cubeling.app.gesture_editor.editing.edits import gesture_name
+    from cubeling.app.gesture_editor.editing.importing import imported
+    from cubeling.app.gesture_editor.editing.store import GestureStore
+    from cubeling.characters.behaviour import GESTURE_SUFFIX, save_gesture
+
     file = output is not None and output.endswith(GESTURE_SUFFIX)
     if file:
         chosen_output(Path(str(output)), "", "gesture", (GESTURE_SUFFIX,), overwrite)
@@ -163,6 +168,8 @@ def _saved(store: GestureStore, gesture: SymbolicGesture, overwrite: bool) -> st
 
 def describe(console: Console, gesture: SymbolicGesture) -> None:
     """Print the phases and the keys of a gesture."""
+    from cubeling.app.gesture_editor.editing.timing import phase_spans
+
     console.print(f"[bold]{escape(gesture.name)}[/]  {escape(gesture.summary)}", highlight=False)
     spans = phase_spans(gesture).items()
     words = ", ".join(f"{phase} {end - start:.2f} s" for phase, (start, end) in spans)
@@ -176,6 +183,8 @@ def describe(console: Console, gesture: SymbolicGesture) -> None:
 
 def hands(gesture: SymbolicGesture) -> str:
     """Return who performs a gesture, such as "right hand" or "trunk and head"."""
+    from cubeling.app.gesture_editor.editing.edits import performers
+
     if not (gesture.right or gesture.left):
         return "trunk and head"
     who = performers(gesture)
@@ -193,6 +202,8 @@ def _hand_table(row: str, keys: tuple[HandKey, ...]) -> Table:
 
 
 def _body_table(keys: tuple[BodyKey, ...]) -> Table:
+    from cubeling.characters.behaviour import BodyKey
+
     rows = Table(title="trunk and head", title_justify="left", box=SIMPLE_HEAD)
     names = [field.name for field in fields(BodyKey)]
     for name in names:

@@ -1,13 +1,14 @@
 """`cubeling gestures`."""
 
+from __future__ import annotations
+
 from collections import Counter
 from contextlib import ExitStack
 from dataclasses import replace
 from importlib import resources
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -16,15 +17,10 @@ from rich.table import Table
 
 from cubeling.app.commands.output import OverwriteOption, chosen_output
 from cubeling.app.counted import counted
-from cubeling.characters import Character, read_motions
-from cubeling.characters.model import stick_figure, with_root_joint
-from cubeling.characters.motion import (
-    GestureGraph,
-    GestureLibrary,
-    learn_gestures,
-    skeleton_identity,
-    sweep,
-)
+
+if TYPE_CHECKING:
+    from cubeling.characters import Character
+    from cubeling.characters.motion import GestureLibrary
 
 SHEET_SUFFIXES = (".png", ".jpg")
 
@@ -68,6 +64,10 @@ def learn(
     Example: [cyan]cubeling gestures learn talk.bvh -o anna.gestures[/]
     """
     target = chosen_output(output, "my.gestures", "gesture library", (".gestures",), overwrite)
+    from cubeling.characters import Character, read_motions
+    from cubeling.characters.model import with_root_joint
+    from cubeling.characters.motion import learn_gestures
+
     body = with_root_joint(Character.load(character))
     console = Console()
     with console.status("reading"):
@@ -101,6 +101,8 @@ def show(
     if output is not None:
         chosen_output(output, "", "picture", SHEET_SUFFIXES, overwrite)
     console = Console()
+    from cubeling.characters.motion import GestureLibrary
+
     found = GestureLibrary.load(_file(library))
     describe(console, found)
     if output is not None:
@@ -110,6 +112,10 @@ def show(
 
 def describe(console: Console, library: GestureLibrary) -> None:
     """Print what is in a library, and Table 4.2 of its graph (M7)."""
+    import numpy as np
+
+    from cubeling.characters.motion import GestureGraph, sweep
+
     seconds = sum(len(each.turns) for each in library.recordings) / library.rate
     console.print(
         f"{len(library.phrases)} gesture phrases in {seconds:.0f} s of motion", highlight=False
@@ -140,6 +146,8 @@ def describe(console: Console, library: GestureLibrary) -> None:
 
 def draw(path: Path, library: GestureLibrary) -> None:
     """Draw where each stroke of a library starts, and its apex."""
+    import numpy as np
+
     from cubeling.app.ui.contact_sheets import frame_sheet, save
     from cubeling.characters.rendering import PortraitRenderer, create_context, side_by_side
 
@@ -164,6 +172,10 @@ def draw(path: Path, library: GestureLibrary) -> None:
 
 def _body(library: GestureLibrary) -> Character:
     """Return the bundled character of the library's skeleton, or a stick figure."""
+    from cubeling.characters import Character
+    from cubeling.characters.model import stick_figure
+    from cubeling.characters.motion import skeleton_identity
+
     for name in Character.bundled():
         character = Character.load(name)
         if skeleton_identity(character.skeleton) == library.skeleton_identity:
@@ -173,6 +185,8 @@ def _body(library: GestureLibrary) -> Character:
 
 def _file(library: Path) -> Path:
     """Return the file of a library; the one beside a bundled character of that name."""
+    from cubeling.characters import Character
+
     if str(library) not in Character.bundled() or library.exists():
         return library
     return Path(str(resources.files("cubeling.characters") / "assets" / f"{library}.gestures"))

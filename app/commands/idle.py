@@ -1,8 +1,10 @@
 """`cubeling idle`."""
 
+from __future__ import annotations
+
 from importlib import resources
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.box import SIMPLE_HEAD
@@ -19,19 +21,10 @@ from cubeling.app.commands.output import (
     needs_matplotlib,
 )
 from cubeling.app.counted import counted
-from cubeling.characters import Character, read_motions
-from cubeling.characters.model import with_root_joint
-from cubeling.characters.motion import (
-    BALANCES,
-    COMPONENTS,
-    Alignment,
-    IdleDatabase,
-    Person,
-    PostureVectors,
-    load_person,
-    read_standing,
-    save_person,
-)
+from cubeling.characters.motion import Alignment
+
+if TYPE_CHECKING:
+    from cubeling.characters.motion import Person
 
 app = typer.Typer(
     help="Learn how a person stands, from recordings, and let a character stand so.",
@@ -69,6 +62,10 @@ def learn(
     """
     target = chosen_output(output, "my.idle", "idle motion", (".idle",), overwrite)
     felt = [_felt(each) for each in recordings]
+    from cubeling.characters import Character, read_motions
+    from cubeling.characters.model import with_root_joint
+    from cubeling.characters.motion import read_standing, save_person
+
     body = with_root_joint(Character.load(character))
     console = Console()
     with console.status("reading"):
@@ -109,6 +106,8 @@ def show(
     region_of(mood)  # refuses what is no emotion
     emotion = Emotion(*WORD_PLACES[mood], mood)
     console = Console()
+    from cubeling.characters.motion import IdleDatabase, PostureVectors, load_person
+
     found = load_person(_file(person))
     skeleton, anatomy, recordings = found
     describe(console, found)
@@ -123,6 +122,8 @@ def show(
 
 def _file(person: Path) -> Path:
     """Return the file of a person; the one beside a bundled character of that name."""
+    from cubeling.characters import Character
+
     if str(person) not in Character.bundled() or person.exists():
         return person
     return Path(str(resources.files("cubeling.characters") / "assets" / f"{person}.idle"))
@@ -136,6 +137,8 @@ def _felt(recording: str) -> tuple[str, Region | None]:
 
 def describe(console: Console, person: Person) -> None:
     """Print what is known of a person's idle motion."""
+    from cubeling.characters.motion import BALANCES, COMPONENTS, IdleDatabase, PostureVectors
+
     skeleton, anatomy, recordings = person
     database = IdleDatabase.of(recordings, PostureVectors.of(skeleton, anatomy))
     length = sum(len(each.vectors) / each.rate for each in recordings)

@@ -1,23 +1,25 @@
 """`cubeling latency`."""
 
+from __future__ import annotations
+
 import json
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 
 from cubeling.app.commands.session.play import DEFAULT_CAMERA
 from cubeling.app.errors import AppError
-from cubeling.app.latency.program import ProgramTimes, program_times
-from cubeling.app.latency.result import latency_result
-from cubeling.app.latency.session import MIN_FLIPS, LatencySession
+from cubeling.app.latency import MIN_FLIPS
 from cubeling.app.output_path import check_output
-from cubeling.app.scenarios import scenario_cube
-from cubeling.app.session import SessionOptions
+from cubeling.app.scenarios import check_scenario
 from cubeling.app.ui.display import has_display
-from cubeling.tracking import LiveFrames, open_source
+
+if TYPE_CHECKING:
+    from cubeling.app.latency.program import ProgramTimes
+    from cubeling.app.latency.session import LatencySession
 
 Source = Annotated[
     str, typer.Option("--source", "-s", help="A live camera: camera:0, http://PHONE:8080/video.")
@@ -55,12 +57,18 @@ def latency(
     """
     play = None if scenario == "none" else scenario
     if play is not None:
-        scenario_cube(play)  # refuses a misspelt name
+        check_scenario(play)
     if results is not None:
         check_output(results, "result", (".json",), overwrite=overwrite)
     if not has_display():
         raise AppError("the latency is that of a screen, and there is no display here")
     console = Console(highlight=False)
+    from cubeling.app.latency.program import program_times
+    from cubeling.app.latency.result import latency_result
+    from cubeling.app.latency.session import LatencySession
+    from cubeling.app.session import SessionOptions
+    from cubeling.tracking import LiveFrames, open_source
+
     with ExitStack() as closing:
         frames = closing.enter_context(open_source(source))
         if not isinstance(frames, LiveFrames):

@@ -17,7 +17,6 @@ from cubeling.app.commands.output import (
 from cubeling.app.commands.session.complete import complete_session
 from cubeling.app.counted import counted
 from cubeling.app.errors import AppError
-from cubeling.app.moods import read_history, read_robot_traces, replay_with, write_table
 
 app = typer.Typer(
     help="Plot and tabulate the moods of recorded sessions; print personalities.",
@@ -63,6 +62,8 @@ def plot(
         raise AppError(f"{count}: name at most {MAX_PERSONALITIES}")
     with needs_matplotlib():
         from cubeling.app.moods.plot import save_plot
+    from cubeling.app.moods import read_history, read_robot_traces, replay_with
+
     with complete_session(session, salvage=salvage) as complete:
         history = read_history(complete, salvage=salvage)
         traces = read_robot_traces(complete)
@@ -94,6 +95,8 @@ def table(
     """
     output = chosen_output(output, f"{session.stem}-mood.csv", "table", (".csv",), overwrite)
     other = None if personality is None else Personality.load(personality)
+    from cubeling.app.moods import read_history, read_robot_traces, replay_with, write_table
+
     with complete_session(session, salvage=salvage) as complete:
         history = read_history(complete, salvage=salvage)
         traces = read_robot_traces(complete)

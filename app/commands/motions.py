@@ -1,7 +1,9 @@
 """`cubeling motions`."""
 
+from __future__ import annotations
+
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.box import SIMPLE_HEAD
@@ -19,24 +21,10 @@ from cubeling.app.commands.output import (
 )
 from cubeling.app.counted import counted
 from cubeling.app.errors import AppError
-from cubeling.app.motion_graphs.recordings import clip_names, gather
-from cubeling.app.motion_graphs.tables import make_tables
-from cubeling.characters import Character
-from cubeling.characters.model import with_root_joint
-from cubeling.characters.motion import (
-    DEFAULT_PROFILE,
-    DEFAULT_RATE_HZ,
-    MotionGraph,
-    MotionLibrary,
-    PartGraphs,
-    StoredGraph,
-    analyse,
-    check_choices,
-    load_graph,
-    part_graphs,
-    save_graph,
-    standard_graph,
-)
+from cubeling.characters.motion import DEFAULT_PROFILE
+
+if TYPE_CHECKING:
+    from cubeling.characters.motion import MotionGraph, MotionLibrary, PartGraphs, StoredGraph
 
 app = typer.Typer(
     help="Make motion graphs of your own recordings: where one clip can follow another.",
@@ -83,6 +71,17 @@ def build(
     if threshold is not None and not threshold > 0:
         raise AppError(f"a threshold of {threshold:g} joins nothing: give a positive one")
     target = chosen_output(output, "my.graph", "motion graph", (".graph",), overwrite)
+    from cubeling.app.motion_graphs.recordings import clip_names, gather
+    from cubeling.characters import Character
+    from cubeling.characters.model import with_root_joint
+    from cubeling.characters.motion import (
+        DEFAULT_RATE_HZ,
+        MotionLibrary,
+        analyse,
+        check_choices,
+        save_graph,
+    )
+
     check_choices(profile, distance)
     body = with_root_joint(Character.load(character))
     names = clip_names(clips)
@@ -129,6 +128,8 @@ def show(
     """
     if output is not None:
         chosen_output(output, "", "plot", PLOT_SUFFIXES, overwrite)
+    from cubeling.characters.motion import load_graph
+
     stored = load_graph(graph)
     console = Console()
     describe(console, stored)
@@ -171,6 +172,12 @@ def tables(
     target = chosen_output(output, "tables.html", "page", (".html",), overwrite)
     with needs_matplotlib():
         from cubeling.app.motion_graphs.page import write_page
+    from cubeling.app.motion_graphs.recordings import clip_names, gather
+    from cubeling.app.motion_graphs.tables import make_tables
+    from cubeling.characters import Character
+    from cubeling.characters.model import with_root_joint
+    from cubeling.characters.motion import DEFAULT_RATE_HZ, MotionLibrary
+
     body = with_root_joint(Character.load(character))
     console = Console()
     with console.status("reading") as status:
@@ -187,6 +194,8 @@ def tables(
 
 def describe(console: Console, stored: StoredGraph) -> None:
     """Print what a motion graph holds, and what was pruned."""
+    from cubeling.characters.motion import part_graphs, standard_graph
+
     library = stored.library
     whole, parts = standard_graph(stored), part_graphs(stored)
     console.print(

@@ -1,11 +1,12 @@
 """`cubeling schedule`."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
 from rich.console import Console
 from rich.markup import escape
@@ -13,25 +14,11 @@ from rich.markup import escape
 from cubeling.app.commands.output import OverwriteOption, chosen_output
 from cubeling.app.counted import counted
 from cubeling.app.errors import AppError
-from cubeling.app.ui.video_file import VIDEO_FORMATS, VideoFile
-from cubeling.characters import (
-    Character,
-    CharacterError,
-    Clip,
-    dependent_joints_of,
-    read_motions,
-    safe_ranges_of,
-    standing_as,
-)
-from cubeling.characters.model import (
-    load_recording,
-    read_file,
-    save_bvh,
-    with_bind_pose,
-    with_root_joint,
-)
-from cubeling.characters.motion import Motion, Schedule, ScheduleReader, bake, skeleton_identity
-from cubeling.characters.rendering import PortraitRenderer, create_context
+from cubeling.app.ui.output_formats import VIDEO_FORMATS
+
+if TYPE_CHECKING:
+    from cubeling.characters import Character, Clip
+    from cubeling.characters.motion import Motion, Schedule
 
 MAX_BYTES = 10_000_000
 """Larger schedules are not written by hand."""
@@ -68,6 +55,10 @@ def schedule(
     """
     suffixes = (".bvh", ".glb", *VIDEO_FORMATS)
     target = chosen_output(output, "schedule.bvh", "schedule", suffixes, overwrite)
+    from cubeling.characters import Character, dependent_joints_of, safe_ranges_of
+    from cubeling.characters.model import read_file, with_root_joint
+    from cubeling.characters.motion import ScheduleReader, bake
+
     body = with_root_joint(Character.load(character))
     reader = ScheduleReader(
         body.skeleton,
@@ -91,6 +82,8 @@ def schedule(
 
 def _length(file: Path, found: Schedule) -> float:
     """Return when the last action of a schedule ends [s]."""
+    import numpy as np
+
     ends = [action.end for action in found.actions if np.isfinite(action.end)]
     if not ends:
         raise AppError(f"{file}: no action has an end; say how long with --seconds")
@@ -109,6 +102,10 @@ def _beside(file: Path, name: str) -> str:
 
 def _motion(name: str, body: Character) -> Motion:
     """Return the motion of a file or clip, retargeted if it is on another skeleton."""
+    from cubeling.characters import read_motions
+    from cubeling.characters.model import load_recording, with_bind_pose
+    from cubeling.characters.motion import skeleton_identity
+
     recording = load_recording(name)
     same = skeleton_identity(recording.skeleton) == skeleton_identity(with_bind_pose(body))
     return recording.clip if same else read_motions([name], body)[0]
@@ -116,6 +113,8 @@ def _motion(name: str, body: Character) -> Motion:
 
 def _idle(file: Path, name: str, body: Character, seed: int) -> Motion:
     """Return the idle motion of an .idle file, or of a bundled character."""
+    from cubeling.characters import Character, CharacterError, standing_as
+
     if name.endswith(".idle"):
         motion = standing_as(body, Path(_beside(file, name))).standing
     else:
@@ -135,6 +134,8 @@ def _writer(target: Path) -> Callable[[Clip, Character, Path], None]:
 
 
 def _write_bvh(clip: Clip, body: Character, target: Path) -> None:
+    from cubeling.characters.model import save_bvh
+
     save_bvh(clip, body.skeleton, body.anatomy, target)
 
 
@@ -143,6 +144,11 @@ def _write_glb(clip: Clip, body: Character, target: Path) -> None:
 
 
 def _write_video(clip: Clip, body: Character, target: Path) -> None:
+    import numpy as np
+
+    from cubeling.app.ui.video_file import VideoFile
+    from cubeling.characters.rendering import PortraitRenderer, create_context
+
     context = create_context()
     renderer = PortraitRenderer(context, VIDEO_SIZE)
     some = [clip.poses[n] for n in np.linspace(0, len(clip) - 1, 24).astype(int).tolist()]

@@ -9,7 +9,6 @@ from rich.markup import escape
 from rich.table import Table
 
 from cubeling.app.output_path import check_output_folder
-from cubeling.app.sound import SAMPLE_RATE, SOUNDS, SoundBank, write_wave
 
 
 def sounds(
@@ -25,6 +24,8 @@ def sounds(
 
     Example: [cyan]cubeling sounds -o sounds[/]
     """
+    from cubeling.app.sound import SAMPLE_RATE, SOUNDS, SoundBank, write_wave
+
     bank = SoundBank()
     files = {
         f"{name}-{number}.wav": samples

@@ -1,8 +1,10 @@
 """`cubeling speak`."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
@@ -15,31 +17,14 @@ from cubeling.app.commands.session.preference_options import emotion_of, size_of
 from cubeling.app.counted import counted
 from cubeling.app.errors import AppError
 from cubeling.app.output_path import check_output
-from cubeling.app.pipeline.spoken_line import SpokenLine
-from cubeling.app.sound import write_wave
-from cubeling.app.sound.session_sound import at_sample_rate
-from cubeling.app.speaking.live import speak_live
-from cubeling.app.speaking.performance import Direction, View, performed, write_video
-from cubeling.app.speaking.voices import open_voice
+from cubeling.app.speaking.view import View
 from cubeling.app.ui.display import has_display
-from cubeling.app.ui.video_file import VIDEO_FORMATS
-from cubeling.characters import Character, known_gestures
-from cubeling.characters.model import gestures_for, read_text, save_bvh, with_root_joint
-from cubeling.characters.speech import (
-    DATABASES,
-    DEFAULT_PROFILE,
-    Speech,
-    SpeechProfile,
-    TaggedText,
-    align,
-    blood_of,
-    manner_of,
-    phones_from_sound,
-    read_speech,
-    say,
-    utterance_of,
-    viseme_sets,
-)
+from cubeling.app.ui.output_formats import VIDEO_FORMATS
+from cubeling.characters.speech import DATABASES, DEFAULT_PROFILE, viseme_sets
+
+if TYPE_CHECKING:
+    from cubeling.characters import Character
+    from cubeling.characters.speech import Speech, TaggedText
 
 MAX_TEXT_BYTES = 100_000
 """Larger files are no speeches."""
@@ -146,6 +131,15 @@ def speak(
 
     Example: [cyan]cubeling speak "Hello! I am a paper cube." -o hello.mp4[/]
     """
+    from cubeling.app.pipeline.spoken_line import SpokenLine
+    from cubeling.app.sound import write_wave
+    from cubeling.app.sound.session_sound import at_sample_rate
+    from cubeling.app.speaking.live import speak_live
+    from cubeling.app.speaking.performance import Direction, performed, write_video
+    from cubeling.characters import Character
+    from cubeling.characters.model import gestures_for, read_text, save_bvh, with_root_joint
+    from cubeling.characters.speech import SpeechProfile, TaggedText, blood_of, utterance_of
+
     given = {
         "database": database,
         "threshold": threshold,
@@ -216,12 +210,18 @@ def speak(
 
 def _spoken(text: str, language: str, emotion: Emotion | None, command: str | None) -> Speech:
     """Return a text as the voice speaks it."""
+    from cubeling.app.speaking.voices import open_voice
+    from cubeling.characters.speech import manner_of, say
+
     with open_voice(command) as voice:
         return say(voice, text, language, manner_of(emotion))
 
 
 def _heard(audio: Path, tagged: TaggedText, language: str, command: str | None) -> Speech:
     """Return a recording, with the times of its words where the text is known."""
+    from cubeling.app.speaking.voices import open_voice
+    from cubeling.characters.speech import align, phones_from_sound, read_speech
+
     recording = read_speech(audio)
     if not tagged.text.strip():
         phones = phones_from_sound(recording.samples, recording.rate)
@@ -232,6 +232,8 @@ def _heard(audio: Path, tagged: TaggedText, language: str, command: str | None) 
 
 def _check_gestures(tagged: TaggedText, character: Character) -> None:
     """Refuse a gesture that the character does not know."""
+    from cubeling.characters import known_gestures
+
     known = known_gestures(character)
     for span in tagged.spans:
         if span.name not in known:

@@ -1,10 +1,11 @@
 """`cubeling speech`."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -20,26 +21,11 @@ from cubeling.app.commands.output import (
 )
 from cubeling.app.counted import counted
 from cubeling.app.errors import AppError
-from cubeling.characters import Character, CharacterError
-from cubeling.characters.model import read_text
-from cubeling.characters.motion import PlannedGesture
-from cubeling.characters.speech import (
-    DEFAULT_PROFILE,
-    Accent,
-    AccentSettings,
-    Speech,
-    accents_of,
-    align as align_by_warping,
-    align_with_sphinx,
-    espeak,
-    measure_prosody,
-    read_speech,
-    read_textgrid,
-    syllable_nuclei,
-    textgrid_of,
-    with_textgrid,
-    write_textgrid,
-)
+from cubeling.characters.speech import DEFAULT_PROFILE
+
+if TYPE_CHECKING:
+    from cubeling.characters.motion import PlannedGesture
+    from cubeling.characters.speech import Accent, AccentSettings, Speech
 
 MAX_PLOT_S = 120.0
 """Longest speech that is plotted [s]."""
@@ -68,7 +54,7 @@ def show(
     ] = None,
     threshold: Annotated[
         float, typer.Option(min=0.0, max=1.0, help="Least strength of an accent.")
-    ] = AccentSettings.threshold,
+    ] = DEFAULT_PROFILE.accent_threshold,
     character: Annotated[
         str, typer.Option(help="Whose gestures are plotted: bundled, or a .glb file.")
     ] = "human",
@@ -88,6 +74,8 @@ def show(
     if text is not None and textgrid is not None:
         raise AppError("give --text or --textgrid, not both")
     console = Console()
+    from cubeling.characters.speech import AccentSettings, read_speech, read_textgrid, with_textgrid
+
     speech = read_speech(file)
     if output is not None and speech.duration > MAX_PLOT_S:
         raise AppError(f"a plot shows up to {MAX_PLOT_S:g} s, and '{file}' is longer: cut it")
@@ -113,6 +101,8 @@ def planned_gestures(
     character: str, accents: Sequence[Accent], duration: float
 ) -> tuple[PlannedGesture, ...]:
     """Return the gestures with which a character would say it; () for one without gestures."""
+    from cubeling.characters import Character
+
     gestures = Character.load(character).gestures
     if gestures is None:
         return ()
@@ -139,6 +129,8 @@ def align(
     target = chosen_output(output, f"{file.stem}.TextGrid", "TextGrid", (".textgrid",), overwrite)
     console = Console()
     said = said_text(text)
+    from cubeling.characters.speech import read_speech, textgrid_of, write_textgrid
+
     speech = aligned(read_speech(file), said, lang, console, sphinx=sphinx)
     write_textgrid(target, textgrid_of(speech))
     console.print(
@@ -151,6 +143,9 @@ def align(
 
 def said_text(text: str) -> str:
     """Return a text, or what is in the file that it names after an @."""
+    from cubeling.characters import CharacterError
+    from cubeling.characters.model import read_text
+
     if not text.startswith("@"):
         return text
     try:
@@ -165,6 +160,8 @@ def aligned(
     """Return a recording with the times of its words and phones."""
     if sphinx and language.split("-")[0] != "en":
         raise AppError(f"PocketSphinx knows English only, not '{language}': leave out --sphinx")
+    from cubeling.characters.speech import align as align_by_warping, align_with_sphinx, espeak
+
     with console.status("aligning"), espeak() as voice:
         if sphinx:
             return align_with_sphinx(speech, text, voice)
@@ -173,6 +170,10 @@ def aligned(
 
 def describe(console: Console, speech: Speech, settings: AccentSettings) -> tuple[Accent, ...]:
     """Print what a recording is like, and its accents; return these."""
+    import numpy as np
+
+    from cubeling.characters.speech import accents_of, measure_prosody, syllable_nuclei
+
     prosody = measure_prosody(speech.samples, speech.rate, settings.prosody)
     accents = accents_of(prosody, speech.phones, settings)
     voiced = prosody.f0[prosody.f0 > 0]

@@ -8,15 +8,13 @@ import numpy as np
 
 from cubeling.app.counted import counted
 from cubeling.app.errors import AppError
+from cubeling.app.latency import MIN_FLIPS
 from cubeling.app.latency.flips import FlipDetector
 from cubeling.app.latency.pattern import PatternReader, Picture, draw_pattern
 from cubeling.tracking import LiveFrames
 
 PATIENCE_S = 30.0
 """Time without a flip that is seen, after which the measurement ends [s]."""
-
-MIN_FLIPS = 5
-"""Fewer flips say nothing."""
 
 POLL_S = 0.02
 """Longest wait for a picture before the window is polled [s]."""

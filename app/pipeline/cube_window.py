@@ -7,20 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.errors import AppError
+from cubeling.app.pipeline.choices import inside_of
 from cubeling.app.pipeline.resident import Resident
 from cubeling.characters import Character, CharacterCommand, PosedCharacter
 from cubeling.characters.rendering import Box
 from cubeling.tracking import SIDE_NORMALS, CubeControls, CubeModel, CubeState
 
 Array = NDArray[np.float64]
-
-INSIDE_CHOICES = {
-    "auto": "while a face without a role is shown, and by the key I",
-    "always": "from the beginning, until the key I",
-    "never": "not at all",
-}
-"""When the character is inside the cube, and what that means."""
 
 DWELL_S = 0.5
 """A face must be shown for so long before it opens or closes the cube [s]: others are shown for a
@@ -39,14 +32,6 @@ INVITATION_S = 5.0
 HOLD_S = 0.25
 """A cube that is lost for no longer than this stays open where it was last seen [s]: fingers hide
 it for moments."""
-
-
-def inside_of(name: str) -> str:
-    """Return one of `INSIDE_CHOICES`; raise AppError for another name."""
-    if name not in INSIDE_CHOICES:
-        known = ", ".join(INSIDE_CHOICES)
-        raise AppError(f"the character cannot be inside '{name}': choose one of {known}")
-    return name
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.attention import Attention
 from cubeling.app.pipeline.checkpoint import Checkpoint
+from cubeling.app.pipeline.choices import REALISM_CHOICES
 from cubeling.app.pipeline.cube_window import CubeWindow, Interior
 from cubeling.app.pipeline.frame_times import Lap
 from cubeling.app.pipeline.other_cube import OtherCube, advice
@@ -27,7 +28,6 @@ from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.pipeline.step import ReplayInputs, Step
 from cubeling.app.pipeline.step_renderer import StepRenderer
 from cubeling.app.pipeline.subjects import subjects
-from cubeling.app.pipeline.surroundings import REALISM_CHOICES
 from cubeling.app.pipeline.things import Body, BodyParts
 from cubeling.characters import (
     Animator,

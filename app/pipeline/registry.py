@@ -1,19 +1,23 @@
 """The scenarios by name: the bundled ones, and those that other packages add."""
 
-from functools import cache
-from importlib.metadata import EntryPoint, EntryPoints, entry_points
+from __future__ import annotations
 
-from cubeling.affect import Personality
+from functools import cache
+from typing import TYPE_CHECKING
+
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.scenario import Scenario, ScenarioSettings
-from cubeling.app.pipeline.scenario_errors import scenario_errors
 from cubeling.registry import Registry
-from cubeling.tracking import CubeModel
+
+if TYPE_CHECKING:  # the command line asks for names and summaries, which need neither of these
+    from importlib.metadata import EntryPoint, EntryPoints
+
+    from cubeling.app.pipeline.scenario import Scenario
+    from cubeling.tracking import CubeModel
 
 ENTRY_POINT_GROUP = "cubeling.scenarios"
 """The group in which a package names its scenarios, one entry point each."""
 
-SCENARIOS = Registry[type[Scenario]](
+SCENARIOS: Registry[type[Scenario]] = Registry(
     {
         "follow": "cubeling.app.scenarios.follow:Follow",
         "sketch": "cubeling.app.scenarios.sketch:Sketch",
@@ -21,12 +25,23 @@ SCENARIOS = Registry[type[Scenario]](
         "reach": "cubeling.app.scenarios.reach:Reach",
     }
 )
-"""The bundled scenarios by name; a new one is registered here."""
+"""The bundled scenarios by name; a new one is registered here, and in `SUMMARIES`."""
+
+SUMMARIES = {
+    "follow": "the character follows the cube; turn the cube to make it walk or run",
+    "sketch": "the cube draws a path of up to eight points, and the character walks it",
+    "companion": "Vleo kisses or shouts, and changes the robot's mood",
+    "reach": "the character reaches for the cube, and brings small things to it",
+}
+"""What the bundled scenarios are, for the help of the command line; each class takes it from here.
+One sentence each, without a full stop."""
 
 
 @cache
 def added_scenarios() -> EntryPoints:
     """Return the scenarios of other packages; reading the installed ones takes 15 ms, so once."""
+    from importlib.metadata import entry_points
+
     return entry_points(group=ENTRY_POINT_GROUP)
 
 
@@ -41,6 +56,25 @@ def find_scenario(name: str) -> type[Scenario]:
     Raises AppError if there is none of that name, if two packages add one, or if the package that
     adds it is broken.
     """
+    point = _added(name)
+    return SCENARIOS[name] if point is None else _load(point)
+
+
+def check_scenario(name: str) -> None:
+    """Raise AppError if there is no scenario of a name, or if two packages add one; load none."""
+    _added(name)
+
+
+def scenario_summary(name: str) -> str:
+    """Return what a scenario is; only one of another package is loaded for it.
+
+    Raises AppError as `find_scenario` does.
+    """
+    return SUMMARIES[name] if _added(name) is None else find_scenario(name).summary
+
+
+def _added(name: str) -> EntryPoint | None:
+    """Return where another package has a scenario; None for a bundled one."""
     points = sorted(added_scenarios().select(name=name), key=_package)
     packages = [*(["cubeling"] if name in SCENARIOS else []), *map(_package, points)]
     if not packages:
@@ -51,7 +85,7 @@ def find_scenario(name: str) -> type[Scenario]:
             f"the packages {' and '.join(packages)} each have a scenario '{name}': "
             "uninstall one, or rename its scenario"
         )
-    return _load(points[0]) if points else SCENARIOS[name]
+    return points[0] if points else None
 
 
 def _package(point: EntryPoint) -> str:
@@ -60,6 +94,8 @@ def _package(point: EntryPoint) -> str:
 
 def _load(point: EntryPoint) -> type[Scenario]:
     """Import the scenario of another package, which may fail in any way."""
+    from cubeling.app.pipeline.scenario import Scenario
+
     broken = f"the scenario '{point.name}' of the package '{_package(point)}' cannot be used"
     try:
         scenario: type[Scenario] = point.load()
@@ -94,6 +130,11 @@ def make_scenario(
     Raises AppError if the scenario cannot be used or a setting is wrong, and AffectError if the
     personality is missing or cannot be used.
     """
+    from cubeling.affect import Personality
+    from cubeling.app.pipeline.scenario import ScenarioSettings
+    from cubeling.app.pipeline.scenario_errors import scenario_errors
+    from cubeling.tracking import CubeModel
+
     loaded = None if personality is None else Personality.load(personality)
     settings = ScenarioSettings(speed_map, turns, loaded)
     scenario = find_scenario(name)

@@ -8,20 +8,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cubeling.app.errors import AppError
 from cubeling.characters.rendering import Box, Cover, Focus, MeasuredLight, Softness, View
 from cubeling.tracking import CubeControls, CubeModel, CubeState, Frame, Intrinsics
 from cubeling.tracking.appearance import EDGE_SLOPE, HandFinder, HandMask, LightMeter, QualityMeter
-
-REALISM_CHOICES = {
-    "hand": "the hand that holds the cube hides what is behind it",
-    "light": "light and shadow fall as on the cube",
-    "softness": "characters are as soft, as noisy and as hazy as the picture",
-    "focus": "what is much nearer or further than the cube is out of focus, in the quality rich",
-    "wrinkles": "skin wrinkles where a face moves",
-    "blush": "a face flushes and pales with its emotion",
-}
-"""What makes the drawing belong in the picture, and what that means."""
 
 DIRECTION_CERTAINTIES = 0.6, 0.8
 """Certainties of the light's direction from which on it is used at all, and fully."""
@@ -31,32 +20,6 @@ APERTURE_M = 0.002
 
 FOCUSING_S = 0.5
 """Time constant with which the camera's focus follows the cube [s]."""
-
-NO_REALISM = "none"
-"""The name of none of `REALISM_CHOICES`."""
-
-
-def realism_of(text: str) -> tuple[str, ...]:
-    """Return the choices in a text, separated by commas.
-
-    >>> realism_of("hand, light")
-    ('hand', 'light')
-    >>> realism_of("none")
-    ()
-
-    Raises
-    ------
-    AppError
-        One of them is none of `REALISM_CHOICES`.
-    """
-    names = tuple(part.strip() for part in text.split(","))
-    if names == (NO_REALISM,):
-        return ()
-    for name in names:
-        if name not in REALISM_CHOICES:
-            known = ", ".join(REALISM_CHOICES)
-            raise AppError(f"a picture cannot follow '{name}': choose of {known}, or {NO_REALISM}")
-    return names
 
 
 class Surroundings:

@@ -6,6 +6,7 @@ from typing import TypeVar
 
 from cubeling.robot import Closeable
 from cubeling.robot.network import (
+    DEFAULT_SITE,
     Address,
     Bus,
     BusClient,
@@ -19,9 +20,6 @@ from cubeling.robot.network import (
 )
 
 E = TypeVar("E", bound=Endpoint)
-
-DEFAULT_SITE = "home"
-"""The default site."""
 
 
 class Network(Closeable):

@@ -8,19 +8,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cubeling.app.errors import AppError
-from cubeling.app.output_path import check_output, default_folder
+from cubeling.app.output_path import default_folder
 from cubeling.app.pipeline.frame_times import FrameTimes
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
 from cubeling.app.running.opened_session import OpenedSession, scenario_of
+from cubeling.app.running.option_checks import check_output_paths, check_part
 from cubeling.app.running.robots import RobotLine, is_real_robot
 from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.scenarios import scenario_cube
-from cubeling.app.session import SessionOptions, check_codec, opening_times, start_over_times
+from cubeling.app.session import SessionOptions, opening_times, start_over_times
 from cubeling.app.session.replay_inputs import read_replay_inputs
 from cubeling.app.speaking.opening import open_speaker
-from cubeling.app.ui.panels import SessionMonitor
+from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.status import EndCard
 from cubeling.app.ui.screen import NullScreen, Screen
 from cubeling.characters import Character, choose_controller
@@ -270,18 +271,6 @@ def intrinsics_for(intrinsics: Intrinsics | None, size: tuple[int, int]) -> Intr
     return intrinsics.scaled(size)
 
 
-def check_part(options: SessionOptions) -> None:
-    """Refuse a part of a recording that is empty, and a loop that nobody could end."""
-    if options.loop and not options.windowed:
-        raise AppError("--loop needs a window: a file would never end")
-    if options.start_s < 0.0:
-        raise AppError(f"--start counts from the first frame: {options.start_s:g} s is before it")
-    if options.end_s is not None and options.end_s <= options.start_s:
-        raise AppError(
-            f"--end {options.end_s:g} is not after --start {options.start_s:g}: nothing is left"
-        )
-
-
 def check_start(options: SessionOptions, source: FrameSource) -> None:
     """Refuse to start after the end of a recording."""
     if source.duration and options.start_s >= source.duration:
@@ -289,16 +278,3 @@ def check_start(options: SessionOptions, source: FrameSource) -> None:
             f"--start {options.start_s:g} is after the end of the recording, "
             f"which lasts {source.duration:.1f} s"
         )
-
-
-def check_output_paths(options: SessionOptions) -> None:
-    """Refuse files that cannot be written, before anything is opened."""
-    if options.output is not None:
-        from cubeling.app.ui.output_file import OUTPUT_SUFFIXES
-
-        check_output(options.output, "video", OUTPUT_SUFFIXES, overwrite=options.overwrite)
-        if not options.pictures:
-            raise AppError(f"without pictures there is nothing to write to '{options.output}'")
-    if options.record is not None:
-        check_output(options.record, "recording", (".mcap",), overwrite=False, remedy="remove it")
-        check_codec(options.codec)

@@ -1,10 +1,12 @@
 from cubeling.app.pipeline.registry import (
     ENTRY_POINT_GROUP as ENTRY_POINT_GROUP,
     SCENARIOS as SCENARIOS,
+    check_scenario as check_scenario,
     find_scenario as find_scenario,
     make_scenario as make_scenario,
     scenario_cube as scenario_cube,
     scenario_names as scenario_names,
+    scenario_summary as scenario_summary,
 )
 from cubeling.app.pipeline.scenario import (
     EmotionTarget as EmotionTarget,

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.affect import Personality
+from cubeling.app.pipeline.registry import SUMMARIES
 from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
@@ -41,7 +42,7 @@ class Companion:
     """
 
     name = "companion"
-    summary = "Vleo kisses or shouts, and changes the robot's mood"
+    summary = SUMMARIES["companion"]
     cube = "companion"
     roles: tuple[str, ...] = ("idle", "kiss", "shout")
     character = "vleo"

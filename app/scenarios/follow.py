@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.affect import Personality
+from cubeling.app.pipeline.registry import SUMMARIES
 from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
@@ -37,7 +38,7 @@ class Follow:
     """
 
     name = "follow"
-    summary = "the character follows the cube; turn the cube to make it walk or run"
+    summary = SUMMARIES["follow"]
     cube = "locomotion"
     roles: tuple[str, ...] = ()
     character = "human"

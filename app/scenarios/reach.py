@@ -3,6 +3,7 @@
 import numpy as np
 
 from cubeling.affect import Personality
+from cubeling.app.pipeline.registry import SUMMARIES
 from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
 from cubeling.app.pipeline.things import Body
 from cubeling.app.scenarios.follow import PLAYER_POSITION, gait
@@ -82,7 +83,7 @@ class Reach:
     """
 
     name = "reach"
-    summary = "the character reaches for the cube, and brings small things to it"
+    summary = SUMMARIES["reach"]
     cube = "locomotion"
     roles: tuple[str, ...] = ()
     character = "human"

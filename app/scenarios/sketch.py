@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.affect import Personality
+from cubeling.app.pipeline.registry import SUMMARIES
 from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
 from cubeling.app.scenarios.follow import PLAYER_POSITION, gait
 from cubeling.app.scenarios.mood import MoodController
@@ -45,7 +46,7 @@ class Sketch:
     """
 
     name = "sketch"
-    summary = "the cube draws a path of up to eight points, and the character walks it"
+    summary = SUMMARIES["sketch"]
     cube = "locomotion"
     roles: tuple[str, ...] = ()
     character = "human"

@@ -1,6 +1,7 @@
+from cubeling.app.session.codecs import check_codec as check_codec
+from cubeling.app.session.file_start import check_session_file as check_session_file
 from cubeling.app.session.frames import (
     FrameEncoder as FrameEncoder,
-    check_codec as check_codec,
     frame_encoder as frame_encoder,
 )
 from cubeling.app.session.inputs import (

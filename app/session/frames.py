@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 
 from cubeling.app.errors import AppError
+from cubeling.app.session.codecs import CODECS, check_codec
 from cubeling.tracking import Frame
 
 FrameEncoder = Callable[[Frame], Frame]
@@ -47,14 +48,8 @@ def frame_encoder(codec: str, size: tuple[int, int], rate: float) -> FrameEncode
         There is no such codec, or it cannot encode pictures of this size.
     """
     check_codec(codec)
-    return CODECS[codec](size, rate)
-
-
-def check_codec(codec: str) -> None:
-    """Raise AppError if there is no such codec."""
-    if codec not in CODECS:
-        known = ", ".join(CODECS)
-        raise AppError(f"a session cannot hold '{codec}' pictures: choose one of {known}")
+    encoder: FrameEncoder = CODECS[codec](size, rate)
+    return encoder
 
 
 def automatic_encoder(size: tuple[int, int], rate: float) -> FrameEncoder:
@@ -62,6 +57,11 @@ def automatic_encoder(size: tuple[int, int], rate: float) -> FrameEncoder:
     even = size[0] % 2 == size[1] % 2 == 0
     encode = H264Encoder(size, rate) if even else encode_jpeg
     return lambda frame: encode(frame) if frame.encoded is None else frame
+
+
+def jpeg_encoder(size: tuple[int, int], rate: float) -> FrameEncoder:
+    """Return the encoder of JPEG pictures, which depends on neither."""
+    return encode_jpeg
 
 
 def encode_jpeg(frame: Frame) -> Frame:
@@ -133,11 +133,3 @@ class H264Encoder:
         return dataclasses.replace(
             frame, image=np.asarray(image, np.uint8), encoded=data, encoding="h264"
         )
-
-
-CODECS: dict[str, Callable[[tuple[int, int], float], FrameEncoder]] = {
-    "auto": automatic_encoder,
-    "jpeg": lambda size, rate: encode_jpeg,
-    "h264": H264Encoder,
-}
-"""How a session can hold pictures: makes an encoder for a size [px] and a rate [frames/s]."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
 
-from cubeling.app.pipeline.surroundings import REALISM_CHOICES
+from cubeling.app.pipeline.choices import REALISM_CHOICES
 from cubeling.characters.speech import DEFAULT_PROFILE, SpeechProfile
 
 
@@ -83,7 +83,7 @@ class SessionOptions:
     """The .mcap file to record the session to."""
 
     codec: str = "auto"
-    """How a recording stores the camera's pictures: one of `frames.CODECS`."""
+    """How a recording stores the camera's pictures: one of `CODECS`."""
 
     output: Path | None = None
     """The video, animation or contact sheet to write; None to open a window."""

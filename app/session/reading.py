@@ -2,7 +2,6 @@
 
 import json
 import os
-import stat
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,6 +16,7 @@ from zstandard import ZstdError
 from cubeling.app.counted import counted
 from cubeling.app.errors import AppError
 from cubeling.app.session.encoding import CLOCK_RECORD, CLOCK_ZERO, IMAGE_TOPIC, MESSAGE_TYPES
+from cubeling.app.session.file_start import MCAP_MAGIC, check_session_file
 from cubeling.app.session.options import SessionOptions
 
 START_OVER_EVENT = "start over"
@@ -24,9 +24,6 @@ START_OVER_EVENT = "start over"
 
 INSIDE_EVENT = "cube opened or closed"
 """Event of a player who asks to open the cube, or to close it."""
-
-MCAP_MAGIC = b"\x89MCAP0\r\n"
-"""The first and the last bytes of an MCAP file."""
 
 READ_ERRORS = (McapError, EOFError, ValueError, struct.error, LookupError, OSError, ZstdError)
 """What the MCAP reader raises for a damaged file: one that ends early, an index that points to no
@@ -65,7 +62,7 @@ def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:
     AppError
         The file cannot be read, is no session, or was cut off.
     """
-    _check_magic(path)
+    check_session_file(path)
     if salvage:
         frames, seconds = _readable_frames(path)
         return _info(path, frames, seconds)
@@ -121,19 +118,6 @@ def _readable_frames(path: Path) -> tuple[int, float]:
     """Return how many camera frames can be read, and their duration [s]."""
     times = [time for _, time, _ in messages(path, IMAGE_TOPIC)]
     return len(times), times[-1] - times[0] if times else 0.0
-
-
-def _check_magic(path: Path) -> None:
-    """Refuse a file that cannot be read or is no session."""
-    try:
-        if stat.S_ISFIFO(path.stat().st_mode):  # opening one waits for a writer
-            raise AppError(f"cannot read the session '{path}': it is a pipe, no file")
-        with path.open("rb") as file:
-            start = file.read(len(MCAP_MAGIC))
-    except OSError as error:
-        raise AppError(f"cannot read the session '{path}': {error.strerror}") from error
-    if start != MCAP_MAGIC:
-        raise AppError(f"'{path}' is not a session: it does not begin as an .mcap file does")
 
 
 def _is_complete(path: Path) -> bool:

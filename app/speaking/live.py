@@ -11,9 +11,9 @@ from cubeling.app.speaking.performance import (
     AZIMUTH_RAD,
     ELEVATION_RAD,
     VIEWER,
-    View,
     framed,
 )
+from cubeling.app.speaking.view import View
 from cubeling.characters import (
     Animator,
     Character,

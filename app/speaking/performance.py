@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +11,7 @@ from cubeling.affect import Emotion
 from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.sound import SAMPLE_RATE
 from cubeling.app.sound.session_sound import at_sample_rate
+from cubeling.app.speaking.view import View
 from cubeling.app.ui.canvas import PICTURE_HEIGHT
 from cubeling.app.ui.cards.subtitles import draw_subtitle, subtitle, subtitle_place
 from cubeling.app.ui.video_file import VideoFile
@@ -52,8 +52,6 @@ AZIMUTH_RAD, ELEVATION_RAD = 0.22, 0.08
 
 NAME_LETTERS = 40
 """Letters of a text that name its clip."""
-
-View = Literal["hands", "body", "face"]
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,6 @@ import shlex
 from cubeling.app.errors import AppError
 from cubeling.characters.speech import Voice, espeak
 
-VOICE_VARIABLE = "CUBELING_VOICE"
-"""Environment variable of the option `--voice`."""
-
 
 def open_voice(command: str | None) -> Voice:
     """Return a voice, which the caller closes; None for eSpeak NG.

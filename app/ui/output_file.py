@@ -13,16 +13,11 @@ from cubeling.app.ui.cards.layout import CardLayout
 from cubeling.app.ui.cards.overlay import overlay
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
 from cubeling.app.ui.frame_sheet import FrameSheet
+from cubeling.app.ui.output_formats import SHEET_SUFFIX
 from cubeling.app.ui.playback.cards import draw_ending
 from cubeling.app.ui.playback.status import SessionStatus
 from cubeling.app.ui.screen import NullScreen
-from cubeling.app.ui.video_file import VIDEO_FORMATS, AudioSource, VideoFile
-
-SHEET_SUFFIX = ".png"
-"""Suffix of a contact sheet of frames."""
-
-OUTPUT_SUFFIXES = (*VIDEO_FORMATS, SHEET_SUFFIX)
-"""Suffixes of the files that a session can be written to."""
+from cubeling.app.ui.video_file import AudioSource, VideoFile
 
 ENDING_S, ENDING_RATE = 3.0, 10.0
 """How long the card at the end of a video is shown [s], and its pictures a second."""

@@ -1,9 +1,8 @@
 """Writing pictures, and what is heard with them, to a video file or an animation."""
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 from typing import Self
@@ -15,6 +14,7 @@ from numpy.typing import NDArray
 
 from cubeling.app.errors import AppError
 from cubeling.app.sound import SAMPLE_RATE
+from cubeling.app.ui.output_formats import VIDEO_FORMATS
 
 AudioSource = Callable[[int], NDArray[np.float32]]
 """Returns the next samples of stereo sound, (count, 2)."""
@@ -24,54 +24,6 @@ AUDIO_BIT_RATE = 128_000
 
 # Half the processor time of the encoder's default search.
 _AUDIO_OPTIONS = {"aac": {"aac_coder": "fast"}}
-
-
-@dataclass(frozen=True)
-class VideoFileFormat:
-    """How pictures are stored in one kind of file."""
-
-    container: str
-    """FFmpeg's name of the file format."""
-
-    codec: str
-    """FFmpeg's name of the encoder."""
-
-    options: Mapping[str, str]
-    """Options of the encoder."""
-
-    container_options: Mapping[str, str] = field(default_factory=dict)
-    """Options of the file format."""
-
-    pixel_format: str = "yuv420p"
-    """FFmpeg's name of the pixels that the encoder takes."""
-
-    audio_codec: str = ""
-    """FFmpeg's name of the encoder of sound; "" for a kind of file without sound."""
-
-    ticks_per_s: int = 1000
-    """Time base: timestamps are kept to the millisecond, in a GIF to 10 ms."""
-
-    interval: float = 0.0
-    """Least time between two pictures [s]; those in between are left out."""
-
-    max_width: int = 10_000
-    """Wider pictures are scaled down to this width [px]."""
-
-
-# Good quality for this content; veryfast leaves processor time for rendering.
-_X264 = {"preset": "veryfast", "crf": "19"}
-_VP9 = {"deadline": "realtime", "cpu-used": "7", "row-mt": "1", "crf": "28", "b": "0"}
-
-VIDEO_FORMATS = {
-    ".mp4": VideoFileFormat("mp4", "libx264", _X264, {"movflags": "faststart"}, audio_codec="aac"),
-    ".mkv": VideoFileFormat("matroska", "libx264", _X264, audio_codec="libopus"),
-    ".webm": VideoFileFormat("webm", "libvpx-vp9", _VP9, audio_codec="libopus"),
-    # A GIF hardly compresses: at full size and rate, a second of it has several megabytes.
-    ".gif": VideoFileFormat(
-        "gif", "gif", {}, pixel_format="pal8", ticks_per_s=100, interval=0.1, max_width=480
-    ),
-}
-"""The kinds of video by the suffix of the file."""
 
 
 def has_sound(path: Path) -> bool:

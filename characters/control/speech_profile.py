@@ -3,6 +3,8 @@
 Source: Fernández-Baena, PhD thesis, La Salle – URL, 2015, section 4.5 (M9).
 """
 
+from __future__ import annotations
+
 import tomllib
 from dataclasses import asdict, dataclass, fields, replace
 from functools import lru_cache
@@ -12,10 +14,11 @@ from typing import TYPE_CHECKING, Any, get_args
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.face.visemes.sets import viseme_sets
 from cubeling.characters.model.files import read_file
-from cubeling.characters.speech.accents import AccentSettings
-from cubeling.characters.synthesis.gestures.library import Database, GestureLibrary
+from cubeling.characters.synthesis.choices import Database
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # a profile is read and checked before anything that plays it is loaded
+    from cubeling.characters.speech.accents import AccentSettings
+    from cubeling.characters.synthesis.gestures.library import GestureLibrary
     from cubeling.characters.synthesis.gestures.planning import GesturePlanner
 
 DATABASES: tuple[str, ...] = get_args(Database)
@@ -83,9 +86,11 @@ class SpeechProfile:
     @property
     def accents(self) -> AccentSettings:
         """How accents are found."""
+        from cubeling.characters.speech.accents import AccentSettings
+
         return AccentSettings(self.accent_threshold, self.accent_distance)
 
-    def planner(self, library: GestureLibrary) -> "GesturePlanner":
+    def planner(self, library: GestureLibrary) -> GesturePlanner:
         """Return what plans gestures of a library; making one takes a while, so once."""
         weights = (
             *((part, self.spine_weight) for part in ("spine", "chest", "upperChest")),
@@ -96,7 +101,7 @@ class SpeechProfile:
         return _planner(library, self.database, self.threshold or None, weights)
 
     @staticmethod
-    def load(path: Path) -> "SpeechProfile":
+    def load(path: Path) -> SpeechProfile:
         """Read a .toml file; what it leaves out is usual.
 
         Raises
@@ -121,7 +126,7 @@ class SpeechProfile:
         except OSError as error:
             raise CharacterError(f"{path}: cannot be written ({error.strerror})") from None
 
-    def changed(self, setting: str, value: str | float) -> "SpeechProfile":
+    def changed(self, setting: str, value: str | float) -> SpeechProfile:
         """Return the profile with another value of a setting."""
         return replace(self, **{setting: value})  # type: ignore[arg-type]
 
@@ -149,7 +154,7 @@ def _planner(
     database: Database,
     threshold: float | None,
     weights: tuple[tuple[str, float], ...],
-) -> "GesturePlanner":
+) -> GesturePlanner:
     from cubeling.characters.synthesis.gestures.graph import GestureGraph
     from cubeling.characters.synthesis.gestures.planning import GesturePlanner, GestureSettings
 

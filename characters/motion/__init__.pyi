@@ -33,6 +33,10 @@ from cubeling.characters.skeleton import rotations as rotations
 from cubeling.characters.skeleton.pose import Array as Array, Skeleton as Skeleton
 from cubeling.characters.smoothing import smoothstep as smoothstep
 from cubeling.characters.synthesis.archive import skeleton_identity as skeleton_identity
+from cubeling.characters.synthesis.choices import (
+    DEFAULT_PROFILE as DEFAULT_PROFILE,
+    Alignment as Alignment,
+)
 from cubeling.characters.synthesis.distances import DISTANCES as DISTANCES
 from cubeling.characters.synthesis.distances.distance import distance_matrix as distance_matrix
 from cubeling.characters.synthesis.gestures.graph import (
@@ -43,7 +47,6 @@ from cubeling.characters.synthesis.gestures.learning import learn_gestures as le
 from cubeling.characters.synthesis.gestures.library import GestureLibrary as GestureLibrary
 from cubeling.characters.synthesis.gestures.plan import PlannedGesture as PlannedGesture
 from cubeling.characters.synthesis.graphs.building import (
-    DEFAULT_PROFILE as DEFAULT_PROFILE,
     analyse as analyse,
     check_choices as check_choices,
     connectivity_curves as connectivity_curves,
@@ -61,7 +64,6 @@ from cubeling.characters.synthesis.graphs.storage import (
     load_graph as load_graph,
     save_graph as save_graph,
 )
-from cubeling.characters.synthesis.idle.alignment import Alignment as Alignment
 from cubeling.characters.synthesis.idle.database import (
     IdleDatabase as IdleDatabase,
     RestingPosture as RestingPosture,

@@ -22,6 +22,7 @@ from cubeling.robot.network.roster import (
 )
 from cubeling.robot.network.topics import (
     ANY_NAME as ANY_NAME,
+    DEFAULT_SITE as DEFAULT_SITE,
     Member as Member,
     Pattern as Pattern,
     Role as Role,

@@ -20,6 +20,9 @@ MAX_NAME_BYTES = 32
 ANY_NAME = "*"
 """In a pattern: every site, or every member of a site."""
 
+DEFAULT_SITE = "home"
+"""The site of those who name none."""
+
 Role = Literal["player", "robot"]
 ROLES: tuple[Role, ...] = ("player", "robot")
 

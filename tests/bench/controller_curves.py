@@ -18,7 +18,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from cubeling.app.ui.video_file import VIDEO_FORMATS, VideoFile
+from cubeling.app.ui.output_formats import VIDEO_FORMATS
+from cubeling.app.ui.video_file import VideoFile
 from cubeling.characters import (
     CONTROLLER_CHOICES,
     ActionIntent,

@@ -23,10 +23,11 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from cubeling.app.pipeline.choices import REALISM_CHOICES, realism_of
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import RobotView, Step
-from cubeling.app.pipeline.surroundings import REALISM_CHOICES, Surroundings, realism_of
+from cubeling.app.pipeline.surroundings import Surroundings
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.scenarios import SCENARIOS
 from cubeling.app.session.bundled import bundled

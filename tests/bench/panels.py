@@ -23,8 +23,9 @@ from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.running.robots import RobotLine
 from cubeling.app.session import SessionOptions
 from cubeling.app.session.bundled import bundled
-from cubeling.app.ui.panels import PANELS, SessionMonitor
+from cubeling.app.ui.panels import PANELS
 from cubeling.app.ui.panels.drawing.layer import PanelLayer
+from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.window import Window
 from cubeling.tracking import open_source
 from tools.offscreen import no_display_needed

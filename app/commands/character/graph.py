@@ -1,7 +1,9 @@
 """`cubeling character graph`."""
 
+from __future__ import annotations
+
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
@@ -11,8 +13,9 @@ from rich.tree import Tree
 from cubeling.app.commands.output import OverwriteOption
 from cubeling.app.errors import AppError
 from cubeling.app.output_path import check_output, whole_file
-from cubeling.characters import Animator, Character, built_in_trees
-from cubeling.characters.motion import Node, Plan, Transition, to_dot
+
+if TYPE_CHECKING:
+    from cubeling.characters.motion import Node, Plan, Transition
 
 
 def graph(
@@ -36,6 +39,9 @@ def graph(
     """
     if output is not None:
         check_output(output, "graph", (".dot",), overwrite=overwrite)
+    from cubeling.characters import Animator, Character, built_in_trees
+    from cubeling.characters.motion import to_dot
+
     loaded = Character.load(character)
     plan = loaded.plan or built_in_trees(loaded)
     if loaded.plan is not None:

@@ -1,11 +1,13 @@
 """`cubeling character inspect`."""
 
+from __future__ import annotations
+
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.box import SIMPLE_HEAD
@@ -17,18 +19,10 @@ from rich.tree import Tree
 
 from cubeling.app.counted import counted
 from cubeling.app.errors import AppError
-from cubeling.app.ui.contact_sheets import CLIP_COLUMNS, TURNTABLE_COLUMNS, ContactSheets, save
-from cubeling.characters import Character, CharacterWarning, Skeleton, load_motion
-from cubeling.characters.model import (
-    ClipStats,
-    FootContactStats,
-    Inspection,
-    Performance,
-    inspect,
-    is_motion_only,
-    stick_figure,
-)
-from cubeling.characters.rendering import create_context
+
+if TYPE_CHECKING:
+    from cubeling.characters import Character, Skeleton
+    from cubeling.characters.model import ClipStats, FootContactStats, Inspection, Performance
 
 MIN_FOLDED_JOINTS = 4
 """Branches of at least this number of unrecognised joints are shown as one line."""
@@ -71,6 +65,8 @@ def inspect_command(
     folder = output or Path(f"{Path(character).stem}-pictures")
     if folder.exists() and not folder.is_dir():
         raise AppError(f"{folder} is a file: choose another folder with --output")
+    from cubeling.characters import load_motion
+
     read_motion = partial(load_motion, skeleton=skeleton, scale=scale, up=up)
     with _progress(f"Reading {Path(character).name}"):
         inspection, has_body = _load(character, read_motion)
@@ -83,6 +79,9 @@ def _load(
     name: str, read_motion: Callable[[str, str | None], Performance]
 ) -> tuple[Inspection, bool]:
     """Return the inspection of a character or motion, and whether it has a body."""
+    from cubeling.characters import Character, CharacterWarning
+    from cubeling.characters.model import inspect, is_motion_only, stick_figure
+
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         file, _, clip = name.partition("#")
@@ -109,6 +108,9 @@ def sentence(note: str, name: str) -> str:
 
 def _draw(character: Character, folder: Path, clips: bool) -> list[Path]:
     """Draw a character, and return the paths of the pictures."""
+    from cubeling.app.ui.contact_sheets import CLIP_COLUMNS, TURNTABLE_COLUMNS, ContactSheets, save
+    from cubeling.characters.rendering import create_context
+
     faces = character.anatomy.joint("head") is not None and bool(character.morphs)
     shown = list(character.clips.values()) if clips else []
     count = TURNTABLE_COLUMNS + faces * (1 + len(character.morphs)) + CLIP_COLUMNS * len(shown)

@@ -1,10 +1,12 @@
 """`cubeling character locomotion`."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.box import SIMPLE_HEAD
@@ -14,14 +16,9 @@ from rich.table import Table
 
 from cubeling.app.commands.output import OverwriteOption, chosen_output
 from cubeling.app.errors import AppError
-from cubeling.characters import Character
-from cubeling.characters.model import (
-    YAW_RATE_PER_ANGULAR,
-    GaitReport,
-    LocomotionResult,
-    load_recording,
-    make_locomotion,
-)
+
+if TYPE_CHECKING:
+    from cubeling.characters.model import GaitReport, LocomotionResult
 
 Files = Annotated[
     list[str] | None,
@@ -71,6 +68,9 @@ def locomotion(
     for given in (character, *walk, *(run or ()), idle or ""):
         if _same(target, Path(given.partition("#")[0])):
             raise AppError(f"'{target}' would overwrite one of its inputs: choose another -o")
+    from cubeling.characters import Character
+    from cubeling.characters.model import load_recording, make_locomotion
+
     original = Character.load(character)
     read = partial(load_recording, skeleton=skeleton, up=up, rest=rest)
     walks, runs = ([read(name) for name in names or ()] for names in (walk, run))
@@ -128,6 +128,8 @@ def table(title: str, gaits: Sequence[GaitReport], seams: bool = False) -> Table
 
 def _turn(angular: float) -> str:
     """Return a turn as text, from the parameter Angular."""
+    from cubeling.characters.model import YAW_RATE_PER_ANGULAR
+
     degrees = round(YAW_RATE_PER_ANGULAR * abs(angular))
     if degrees < 2:
         return "straight"

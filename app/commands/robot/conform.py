@@ -1,33 +1,21 @@
 """`cubeling robot conform`."""
 
+from __future__ import annotations
+
 import json
 import os
 import secrets
 import time
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 
-from cubeling.app.commands.robot.conformance_report import (
-    SVG_TEMPLATE,
-    as_json,
-    listing,
-    show,
-    verdict,
-)
 from cubeling.app.errors import AppError
-from cubeling.robot import RobotError, opener, protocol_of
-from cubeling.robot.conformance import (
-    Check,
-    ConformanceReport,
-    PortChannel,
-    all_checks,
-    run_checks,
-    select_checks,
-)
-from cubeling.tracking import write_whole
+
+if TYPE_CHECKING:
+    from cubeling.robot.conformance import Check, ConformanceReport
 
 PICTURE_COLUMNS = 100
 """Width of a picture of the output."""
@@ -59,6 +47,15 @@ def conform(
 
     Example: [cyan]cubeling robot conform sim[/]
     """
+    from cubeling.app.commands.robot.conformance_report import (
+        SVG_TEMPLATE,
+        as_json,
+        listing,
+        verdict,
+    )
+    from cubeling.robot.conformance import all_checks, select_checks
+    from cubeling.tracking import write_whole
+
     checks = select_checks(only) if only else all_checks()
     if list_:
         Console().print(listing(checks))
@@ -98,6 +95,10 @@ def _check_writable(path: Path) -> None:
 
 def _run_checks(port: str, checks: list[Check], console: Console) -> ConformanceReport:
     """Test the robot at a port, and print each result."""
+    from cubeling.app.commands.robot.conformance_report import show
+    from cubeling.robot import RobotError, opener, protocol_of
+    from cubeling.robot.conformance import PortChannel, run_checks
+
     opened = opener(protocol_of(port, "cubeling")[0])()
     try:
         return run_checks(

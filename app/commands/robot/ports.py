@@ -4,7 +4,6 @@ from rich.console import Console
 from rich.table import Table
 
 from cubeling.app.ui.literal_text import literal_text
-from cubeling.robot import serial_ports
 
 
 def list_() -> None:
@@ -12,6 +11,8 @@ def list_() -> None:
 
     Example: [cyan]cubeling robot list[/]
     """
+    from cubeling.robot import serial_ports
+
     ports = serial_ports()
     console = Console()
     if not ports:

@@ -1,15 +1,18 @@
 """`cubeling robot simulate`."""
 
+from __future__ import annotations
+
 import time
 from contextlib import suppress
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
-from cubeling.robot import RobotError, Simulated, SimulatedPort, simulator_of
+if TYPE_CHECKING:
+    from cubeling.robot import Simulated
 
 
 def simulate(
@@ -51,6 +54,8 @@ def simulate(
 
     The same options work in every URL: [cyan]--robot "sim:cubeling?drop=0.05"[/].
     """
+    from cubeling.robot import RobotError, SimulatedPort, simulator_of
+
     console = Console()
     if seconds is not None and not seconds >= 0:  # also refuses NaN
         raise RobotError(f"a robot can be simulated for 0 seconds or more, not for {seconds:g}")

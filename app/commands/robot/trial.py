@@ -1,10 +1,12 @@
 """`cubeling robot try`."""
 
+from __future__ import annotations
+
 import math
 import time
 from contextlib import suppress
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
@@ -13,10 +15,12 @@ from rich.table import Table
 from rich.text import Text
 
 from cubeling.affect import Emotion
-from cubeling.app.commands.robot.trials import Trial, trials_of
 from cubeling.app.counted import counted
 from cubeling.app.ui.literal_text import literal_text
-from cubeling.robot import Robot, RobotError, Telemetry, connect
+
+if TYPE_CHECKING:
+    from cubeling.app.commands.robot.trials import Trial
+    from cubeling.robot import Robot, Telemetry
 
 POLL_INTERVAL_S = 0.05
 """How often the telemetry is read."""
@@ -57,6 +61,9 @@ def try_(
 
     Example: [cyan]cubeling robot try sim:pleo --mood happy[/]
     """
+    from cubeling.app.commands.robot.trials import trials_of
+    from cubeling.robot import RobotError, connect
+
     console = Console(highlight=False)
     if not 0.1 <= seconds <= MAX_MOOD_S:
         raise RobotError(f"a mood is held for 0.1 to {MAX_MOOD_S:g} seconds, not {seconds:g}")

@@ -7,8 +7,6 @@ from tempfile import TemporaryDirectory
 
 from rich.console import Console
 
-from cubeling.app.session import has_channels, session_info
-
 
 @contextmanager
 def complete_session(path: Path, *, salvage: bool = False) -> Iterator[Path]:
@@ -23,6 +21,8 @@ def complete_session(path: Path, *, salvage: bool = False) -> Iterator[Path]:
     KeyboardInterrupt
         Ctrl-C ended the computation.
     """
+    from cubeling.app.session import has_channels, session_info
+
     duration = session_info(path, salvage=salvage).duration
     if has_channels(path):
         yield path

@@ -1,9 +1,11 @@
 """`cubeling demo`."""
 
+from __future__ import annotations
+
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
@@ -18,15 +20,15 @@ from cubeling.app.commands.session.play import (
     ScenarioArgument,
 )
 from cubeling.app.commands.session.preference_options import GivenPreferences, with_preferences
-from cubeling.app.commands.session.progress import play_session
 from cubeling.app.errors import AppError
-from cubeling.app.running.opening import check_output_paths
-from cubeling.app.scenarios import SCENARIOS, scenario_cube
-from cubeling.app.session import SessionOptions, session_info
+from cubeling.app.scenarios import SCENARIOS, check_scenario, scenario_cube
 from cubeling.app.session.bundled import bundled
 from cubeling.app.ui.display import has_display
-from cubeling.app.ui.playback.status import EndCard
-from cubeling.tracking import FrameSource, TrackingError, open_source
+
+if TYPE_CHECKING:
+    from cubeling.app.session import SessionOptions
+    from cubeling.app.ui.playback.status import EndCard
+    from cubeling.tracking import FrameSource
 
 DEFAULT_VIDEO = Path("demo.mp4")
 """The program's own output: it is overwritten without being asked."""
@@ -57,6 +59,9 @@ def demo(
 
     Example: [cyan]cubeling demo follow --recording[/]
     """
+    check_scenario(scenario)
+    from cubeling.app.session import SessionOptions
+
     console = Console()
     part = SessionOptions(
         scenario=scenario,
@@ -93,14 +98,21 @@ def demo(
             )
             options = replace(part, source=DEFAULT_CAMERA)
         options, kept = preferences.open(options)
+        from cubeling.app.commands.session.progress import play_session
+
         ending = end_card(scenario)
         play_session(options, scenario, source=camera, ending=ending, preferences=kept)
 
 
 def render(options: SessionOptions, console: Console) -> None:
     """Render the bundled recording of a scenario to a file, and print the summary."""
+    from cubeling.app.running.option_checks import check_output_paths
+
     assert options.output is not None
     check_output_paths(options)
+    from cubeling.app.commands.session.progress import play_session
+    from cubeling.app.session import session_info
+
     console.print(
         f"The bundled recording of [bold]{options.scenario}[/] "
         f"({session_info(Path(options.source)).duration:.0f} s) "
@@ -112,6 +124,8 @@ def render(options: SessionOptions, console: Console) -> None:
 
 def end_card(scenario: str) -> EndCard:
     """Return the card that says what to do after a demo."""
+    from cubeling.app.ui.playback.status import EndCard
+
     return EndCard(
         f"That was {scenario}",
         (
@@ -125,7 +139,6 @@ def end_card(scenario: str) -> EndCard:
 def _of_recording(options: SessionOptions) -> SessionOptions:
     """Return the options with the bundled recording of the scenario as the source."""
     scenario = options.scenario
-    scenario_cube(scenario)  # refuses a misspelt name
     if scenario not in SCENARIOS:
         raise AppError(
             f"there is no recording of '{scenario}', which a package adds: take a camera, "
@@ -136,6 +149,8 @@ def _of_recording(options: SessionOptions) -> SessionOptions:
 
 def _open_camera(closing: ExitStack, console: Console) -> FrameSource | None:
     """Open the first camera, or say in one line why the recording plays instead."""
+    from cubeling.tracking import TrackingError, open_source
+
     try:
         return closing.enter_context(open_source(DEFAULT_CAMERA))
     except TrackingError as error:

@@ -12,8 +12,6 @@ from rich.markup import escape
 
 from cubeling.app.commands.session.complete import complete_session
 from cubeling.app.errors import AppError
-from cubeling.app.exporting import ExportedSession, export as write_tables
-from cubeling.app.exporting.writing import EXPORT_FILES
 from cubeling.app.output_path import check_output_folder
 
 Labels = Annotated[
@@ -41,6 +39,9 @@ def export(
     Example: [cyan]cubeling export recordings/follow.mcap recordings/sketch.mcap -o study
     --participant P1 --participant P2[/]
     """
+    from cubeling.app.exporting import ExportedSession, export as write_tables
+    from cubeling.app.exporting.writing import EXPORT_FILES
+
     check_output_folder(output, EXPORT_FILES, "tables", overwrite=overwrite)
     people = labels(participant, len(sessions), "--participant")
     conditions = labels(condition, len(sessions), "--condition")

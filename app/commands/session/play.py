@@ -9,28 +9,31 @@ from rich.markup import escape
 from cubeling.app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
 from cubeling.app.commands.output import OverwriteOption
 from cubeling.app.commands.session.preference_options import GivenPreferences, with_preferences
-from cubeling.app.commands.session.progress import play_session
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.cube_window import INSIDE_CHOICES, inside_of
-from cubeling.app.pipeline.surroundings import NO_REALISM, REALISM_CHOICES, realism_of
-from cubeling.app.running.network import DEFAULT_SITE
+from cubeling.app.pipeline.choices import (
+    INSIDE_CHOICES,
+    NO_REALISM,
+    REALISM_CHOICES,
+    inside_of,
+    realism_of,
+)
 from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
-from cubeling.app.scenarios import find_scenario, scenario_names
-from cubeling.app.scenarios.roles import check_cubes
-from cubeling.app.session import SessionOptions
-from cubeling.app.speaking.voices import VOICE_VARIABLE
+from cubeling.app.scenarios import check_scenario, scenario_names, scenario_summary
 from cubeling.app.ui.display import has_display
-from cubeling.characters import CONTROLLER_CHOICES
+from cubeling.characters import CONTROLLER_CHOICES, check_controller
 from cubeling.characters.rendering import QUALITIES
-from cubeling.characters.speech import DEFAULT_PROFILE, SpeechProfile
+from cubeling.robot.network import DEFAULT_SITE
 
 DEFAULT_CAMERA = "camera:0"
+
+VOICE_VARIABLE = "CUBELING_VOICE"
+"""Environment variable of the option `--voice`."""
 
 
 def describe(scenario: str) -> str:
     """Return what a scenario is, or what is wrong with the package that adds it, as markup."""
     try:
-        text = f"{find_scenario(scenario).summary}."
+        text = f"{scenario_summary(scenario)}."
     except AppError as error:
         text = str(error)
     return f"[bold]{escape(scenario)}[/]: {escape(text)}"
@@ -232,6 +235,12 @@ def play(
 
     Example: [cyan]cubeling play companion --record today.mcap[/]
     """
+    check_scenario(scenario)
+    check_controller(controller)
+    from cubeling.app.running.option_checks import check_output_paths
+    from cubeling.app.session import SessionOptions
+    from cubeling.characters.speech import DEFAULT_PROFILE, SpeechProfile
+
     options = SessionOptions(
         scenario=scenario,
         source=source,
@@ -262,6 +271,11 @@ def play(
         sounds=sounds,
         folder=folder,
     )
+    check_output_paths(options)
+    # Nothing above needs numpy or OpenCV: what is misspelt is refused before they are loaded.
+    from cubeling.app.commands.session.progress import play_session
+    from cubeling.app.scenarios.roles import check_cubes
+
     check_cubes(scenario, options.cubes)  # before a display is missing
     if options.windowed and not has_display():
         raise AppError("there is no display here: write a video with --output FILE.mp4")

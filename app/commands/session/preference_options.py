@@ -1,19 +1,23 @@
 """The options of the commands that open a window: one for each preference."""
 
+from __future__ import annotations
+
 import functools
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from cubeling.affect import WORD_PLACES, Emotion
 from cubeling.app.errors import AppError
-from cubeling.app.preferences import PreferenceStore
-from cubeling.app.session import SessionOptions
 from cubeling.app.ui.panels import PANELS
+
+if TYPE_CHECKING:
+    from cubeling.affect import Emotion
+    from cubeling.app.preferences import PreferenceStore
+    from cubeling.app.session import SessionOptions
 
 DEFAULT_FILE = Path(typer.get_app_dir("cubeling")) / "preferences.toml"
 """Where the system keeps such files: in ~/.config, ~/Library/Application Support, or %APPDATA%."""
@@ -66,6 +70,8 @@ def size_of(text: str) -> tuple[int, int]:
 
 def emotion_of(word: str) -> Emotion | None:
     """Return the emotion of a word, None for ""; raises AppError."""
+    from cubeling.affect import WORD_PLACES, Emotion
+
     if not word:
         return None
     if word not in WORD_PLACES:
@@ -109,6 +115,8 @@ class GivenPreferences:
 
         Without a window, no file is read or written.
         """
+        from cubeling.app.preferences import PreferenceStore
+
         store = PreferenceStore(self.file if options.windowed else None, self.values)
         return replace(options, volume=store.now.volume, muted=store.now.muted), store
 
@@ -118,7 +126,7 @@ Command = Callable[..., None]
 
 def with_preferences(command: Command) -> Command:
     """Give a command the options of all preferences; it gets them as `preferences`."""
-    signature = inspect.signature(command)
+    signature = inspect.signature(command, eval_str=True)
     own = [each for each in signature.parameters.values() if each.name != "preferences"]
     added = [_parameter(name, flag) for name, flag in FLAGS.items()]
     where = [

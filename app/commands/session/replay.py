@@ -31,17 +31,13 @@ from cubeling.app.commands.session.play import (
     SoundsOption,
 )
 from cubeling.app.commands.session.preference_options import GivenPreferences, with_preferences
-from cubeling.app.commands.session.progress import ProgressLines, play_session
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.cube_window import inside_of
-from cubeling.app.pipeline.surroundings import realism_of
-from cubeling.app.running.network import DEFAULT_SITE
-from cubeling.app.running.opening import check_output_paths, check_part
+from cubeling.app.pipeline.choices import inside_of, realism_of
 from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
-from cubeling.app.running.replay_check import check_session
-from cubeling.app.session import session_info
-from cubeling.app.session.replay_inputs import check_stage
+from cubeling.app.scenarios import check_scenario
 from cubeling.app.ui.display import has_display
+from cubeling.characters import check_controller
+from cubeling.robot.network import DEFAULT_SITE
 
 
 @with_preferences
@@ -106,6 +102,33 @@ def replay(
 
     Example: [cyan]cubeling replay recordings/companion.mcap --output companion.mp4[/]
     """
+    from cubeling.app.running.option_checks import check_output_paths, check_part
+    from cubeling.app.session import SessionOptions, check_session_file
+
+    check_session_file(session)
+    if scenario:
+        check_scenario(scenario)
+    if controller:
+        check_controller(controller)
+    if inside:
+        inside_of(inside)
+    chosen_realism, chosen_quality = realism_of(realism), checked_quality(quality)
+    check_output_paths(
+        SessionOptions(
+            scenario=scenario or "",
+            source=str(session),
+            record=record,
+            codec=codec,
+            output=output,
+            overwrite=overwrite,
+        )
+    )
+    # Nothing above needs numpy or OpenCV: what is misspelt is refused before they are loaded.
+    from cubeling.app.commands.session.progress import ProgressLines, play_session
+    from cubeling.app.running.replay_check import check_session
+    from cubeling.app.session import session_info
+    from cubeling.app.session.replay_inputs import check_stage
+
     info = session_info(session, salvage=salvage)
     recorded = info.options
     options = replace(
@@ -123,9 +146,9 @@ def replay(
         output=output,
         overwrite=overwrite,
         pictures=pictures and not check and (output is not None or has_display()),
-        realism=realism_of(realism),
+        realism=chosen_realism,
         inside=inside_of(inside or recorded.inside),
-        quality=checked_quality(quality),
+        quality=chosen_quality,
         sounds=sounds,
         fast=fast,
         salvage=salvage,

@@ -1,21 +1,21 @@
-"""The panels of the window: what they show, apart from how it is drawn.
+"""The panels of the window: what they show, apart from how it is drawn."""
 
-A new panel is one module: list it in `PANELS`.
-"""
+from typing import TYPE_CHECKING
 
-from cubeling.app.ui.panels.content import Panel
-from cubeling.app.ui.panels.emotion import EMOTION
-from cubeling.app.ui.panels.frame_time import FRAME_TIME
-from cubeling.app.ui.panels.monitor import SessionMonitor
-from cubeling.app.ui.panels.scenario import SCENARIO
-from cubeling.app.ui.panels.serial import SERIAL
-from cubeling.app.ui.panels.sound import SOUND
-from cubeling.app.ui.panels.speech import SPEECH
-from cubeling.app.ui.panels.tracking import TRACKING
+from cubeling.registry import Registry
 
-PANELS: dict[str, Panel] = {
-    panel.name: panel for panel in (TRACKING, SCENARIO, EMOTION, SERIAL, FRAME_TIME, SOUND, SPEECH)
-}
-"""The panels by name, in the order in which the window lists them."""
+if TYPE_CHECKING:
+    from cubeling.app.ui.panels.content import Panel
 
-__all__ = ["PANELS", "Panel", "SessionMonitor"]
+PANELS: "Registry[Panel]" = Registry(
+    {
+        "tracking": "cubeling.app.ui.panels.tracking:TRACKING",
+        "scenario": "cubeling.app.ui.panels.scenario:SCENARIO",
+        "emotion": "cubeling.app.ui.panels.emotion:EMOTION",
+        "serial": "cubeling.app.ui.panels.serial:SERIAL",
+        "frame-time": "cubeling.app.ui.panels.frame_time:FRAME_TIME",
+        "sound": "cubeling.app.ui.panels.sound:SOUND",
+        "speech": "cubeling.app.ui.panels.speech:SPEECH",
+    }
+)
+"""The panels by name, in the order in which the window lists them; a new one is registered here."""

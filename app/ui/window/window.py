@@ -17,8 +17,8 @@ from cubeling.app.ui.cards.layout import CardLayout
 from cubeling.app.ui.cards.overlay import interrupted, overlay, virtual_robot_side
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
 from cubeling.app.ui.notice import Notice
-from cubeling.app.ui.panels import SessionMonitor
 from cubeling.app.ui.panels.drawing.layer import PanelLayer
+from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.layer import PlaybackLayer
 from cubeling.app.ui.playback.requests import SessionRequest, WindowRequest
 from cubeling.app.ui.playback.status import SessionStatus

@@ -1,11 +1,9 @@
-"""The controllers, a file each, and the names by which a user chooses one."""
+"""The controllers, a file each; `controller_choices` has the names by which a user chooses one."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
 
 from cubeling.characters.control.controllers.controller import CharacterController
 from cubeling.characters.control.controllers.walk import WalkController
-from cubeling.characters.errors import CharacterError
 from cubeling.characters.model.character import Character
 from cubeling.characters.motion.motion import RootDelta
 
@@ -18,20 +16,6 @@ ACTOR_HEIGHT_M = 0.15
 
 ControllerFactory = Callable[[Character, float, RootDelta | None], CharacterController]
 """Makes the controller of a character from it, the scale and the first place on the table."""
-
-
-@dataclass(frozen=True)
-class ControllerChoice:
-    """A controller that a user may choose."""
-
-    summary: str
-    """What it plays, for the help of the command line: one phrase, no full stop."""
-
-    prepare: Callable[[Character, Sequence[str]], ControllerFactory]
-    """Prepares it for a character from the motions that the user names; may take seconds.
-
-    It raises a CharacterError if the character or a motion does not suit.
-    """
 
 
 def first_suitable(
@@ -47,72 +31,6 @@ def first_suitable(
     from cubeling.characters.control.controllers.in_place import InPlaceController
 
     return InPlaceController(character, scale, place)
-
-
-def _tree(character: Character, motions: Sequence[str]) -> ControllerFactory:
-    if motions:
-        raise CharacterError(
-            f"{motions[0]}: the controller 'tree' plays the character's own clips; leave the "
-            "motions out, or choose a controller that takes them"
-        )
-    return first_suitable
-
-
-def _graph(character: Character, motions: Sequence[str]) -> ControllerFactory:
-    from cubeling.characters.control.controllers.graph import graph_factory
-
-    return graph_factory("graph", character, motions)
-
-
-def _parts(character: Character, motions: Sequence[str]) -> ControllerFactory:
-    from cubeling.characters.control.controllers.graph import graph_factory
-
-    return graph_factory("parts", character, motions)
-
-
-def _matching(character: Character, motions: Sequence[str]) -> ControllerFactory:
-    from cubeling.characters.control.controllers.matching import matching_factory
-
-    return matching_factory(character, motions)
-
-
-CONTROLLER_CHOICES: dict[str, ControllerChoice] = {
-    "tree": ControllerChoice("the character's own blend trees", _tree),
-    "graph": ControllerChoice(
-        "a motion graph, of a .graph file, of motions or of its own clips", _graph
-    ),
-    "parts": ControllerChoice("the same with a graph for each part of its body", _parts),
-    "matching": ControllerChoice(
-        "at each moment the frame of its motions that suits best", _matching
-    ),
-}
-"""What a user may choose, by name; a new controller is registered here."""
-
-
-def choose_controller(
-    name: str, character: Character, motions: Sequence[str] = ()
-) -> ControllerFactory:
-    """Prepare the controller of a name for a character.
-
-    Parameters
-    ----------
-    name
-        One of `CONTROLLER_CHOICES`.
-    character
-        Whom it is to play.
-    motions
-        Files that it takes its motions from; without any, the character's own clips.
-
-    Raises
-    ------
-    CharacterError
-        If no controller has that name, or the character or a motion does not suit it.
-    """
-    if name not in CONTROLLER_CHOICES:
-        raise CharacterError(
-            f"no controller is called {name!r}: choose one of {', '.join(CONTROLLER_CHOICES)}"
-        )
-    return CONTROLLER_CHOICES[name].prepare(character, motions)
 
 
 def default_height(character: Character) -> float:

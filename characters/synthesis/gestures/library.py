@@ -20,6 +20,7 @@ from cubeling.characters.synthesis.archive import (
     skeleton_content,
     skeleton_identity,
 )
+from cubeling.characters.synthesis.choices import Database
 
 GESTURE_FORMAT = ArchiveFormat("cubeling gestures", 1, "gesture library", "cubeling gestures learn")
 """The .gestures file."""
@@ -29,9 +30,6 @@ STEP_RAD = 1e-4
 
 Hand = Literal["left", "right", "both"]
 """Which hands make a stroke."""
-
-Database = Literal["aggressive", "neutral", "full"]
-"""Which phrases of a library are used: the stronger, the weaker, or all (M9, profiles)."""
 
 DATABASE_SHARE = 2 / 3
 """Share of the phrases, by strength, in the databases "aggressive" and "neutral"."""

@@ -11,9 +11,10 @@ import numpy as np
 
 from cubeling.characters.skeleton.pose import Array
 from cubeling.characters.speech.speech import Accent
+from cubeling.characters.synthesis.choices import Database
 from cubeling.characters.synthesis.gestures.alignment import INVALID_COST, CostModel, Timings
 from cubeling.characters.synthesis.gestures.graph import GestureGraph
-from cubeling.characters.synthesis.gestures.library import Database, GestureLibrary
+from cubeling.characters.synthesis.gestures.library import GestureLibrary
 from cubeling.characters.synthesis.gestures.plan import (
     GestureCosts,
     GesturePlan,

@@ -8,6 +8,7 @@ import numpy as np
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.skeleton.pose import Array
 from cubeling.characters.synthesis.body import default_body_plan
+from cubeling.characters.synthesis.choices import DEFAULT_PROFILE
 from cubeling.characters.synthesis.distances import DISTANCES, FrameDistance, JointAngles
 from cubeling.characters.synthesis.graphs.candidates import Candidates, find_candidates
 from cubeling.characters.synthesis.graphs.graph import EdgeCosts, MotionGraph, build_graph
@@ -19,9 +20,6 @@ from cubeling.characters.synthesis.graphs.parts import (
 )
 from cubeling.characters.synthesis.graphs.storage import WHOLE_BODY, StoredGraph
 from cubeling.characters.synthesis.library import MotionLibrary
-
-DEFAULT_PROFILE = "SP4b"
-"""The split profile of evaluation I of the thesis (erratum 4)."""
 
 USUAL_THRESHOLD = 0.165
 """Threshold at which the thesis' own clips are all joined; lower ones are rarely worth it."""

@@ -4,19 +4,11 @@ Source: Egges 2006, section 3.1.1 (S2). What is aligned is the first frame; the 
 was recorded.
 """
 
-from typing import Literal, get_args
-
 import numpy as np
 
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array
-
-Alignment = Literal["feet", "full", "turn", "place", "none"]
-"""What is taken from a recording: the mean place of the feet and where they face (our own way);
-place and orientation of the first frame; its place and heading; its place alone; nothing."""
-
-ALIGNMENTS: tuple[Alignment, ...] = get_args(Alignment)
-"""All of them."""
+from cubeling.characters.synthesis.choices import Alignment
 
 
 def align(places: Array, turns: Array, how: Alignment) -> tuple[Array, Array]:

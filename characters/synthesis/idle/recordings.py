@@ -17,7 +17,8 @@ from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.feet import find_feet
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 from cubeling.characters.smoothing import gaussian_smoothed
-from cubeling.characters.synthesis.idle.alignment import Alignment, align
+from cubeling.characters.synthesis.choices import Alignment
+from cubeling.characters.synthesis.idle.alignment import align
 from cubeling.characters.synthesis.idle.posture_space import PostureVectors
 
 BALANCES = ("left", "both", "right")

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from cubeling.app.commands import calibrate as command
+from cubeling import tracking
 from cubeling.app.ui.calibration.coach import REQUEST_SENTENCES, CoachView, words_of
 from cubeling.app.ui.calibration.session import Advice, CalibrationSession
 from cubeling.tracking import CubeModel, Frame, Intrinsics
@@ -55,7 +55,7 @@ def shown(monkeypatch, cubeling):
 
     def run(frames, *arguments, live=False):
         source = Kept(frames, live)
-        monkeypatch.setattr(command, "open_source", lambda uri: source)
+        monkeypatch.setattr(tracking, "open_source", lambda uri: source)
         return *cubeling("calibrate", *arguments), source
 
     return run

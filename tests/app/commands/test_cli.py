@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 
 from cubeling.app.cli import COMMANDS, load_command
-from cubeling.app.commands import doctor
-from cubeling.characters import Character, CharacterError
+from cubeling.characters import Character, CharacterError, rendering
 from cubeling.characters.errors import CharacterWarning
 from cubeling.tracking import TrackingError
 from tests.characters.formats.built_gltf import Builder
@@ -249,7 +248,7 @@ def test_the_doctor_names_a_missing_driver_and_its_remedy(cubeling, monkeypatch)
     def fail():
         raise CharacterError("cannot draw: the library libEGL is missing")
 
-    monkeypatch.setattr(doctor, "create_context", fail)
+    monkeypatch.setattr(rendering, "create_context", fail)
     monkeypatch.setattr("shutil.which", lambda tool: f"/usr/bin/{tool}")
     code, out, _ = cubeling("doctor", "--no-cameras")
     assert code == 2
@@ -265,7 +264,7 @@ def test_a_repaired_character_is_one_warning_line(cubeling, monkeypatch):
             warnings.warn("x.glb: weights\ndid not sum to one", CharacterWarning, stacklevel=1)
         raise CharacterError("cannot draw")
 
-    monkeypatch.setattr(doctor, "create_context", repaired)
+    monkeypatch.setattr(rendering, "create_context", repaired)
     _, _, err = cubeling("doctor", "--no-cameras")
     assert err == "cubeling: x.glb: weights did not sum to one\n"
 

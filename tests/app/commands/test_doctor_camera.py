@@ -1,6 +1,6 @@
 """What `cubeling doctor` reports about a camera."""
 
-from cubeling.app.commands import doctor
+from cubeling import tracking
 from cubeling.tracking import Frame
 from cubeling.tracking.sources.device import DeviceSetting, Health
 
@@ -47,7 +47,7 @@ class EndlessCamera:
 
 def test_the_doctor_reports_the_figures_of_a_camera(cubeling, monkeypatch):
     camera = EndlessCamera()
-    monkeypatch.setattr(doctor, "open_source", lambda uri: camera)
+    monkeypatch.setattr(tracking, "open_source", lambda uri: camera)
     code, out, err = cubeling("doctor")
     assert (code, err) == (0, "")
     assert "camera:0, 64x48, 30.0 pictures/s, 41 ms old (since exposure)" in out

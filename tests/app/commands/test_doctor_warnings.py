@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from cubeling.app.commands import doctor
+from cubeling.characters import rendering
 from cubeling.robot.link.ports import SerialPort
 
 BUILT_IN = SerialPort("/dev/ttyS0", "n/a", None, None, None)
@@ -28,7 +29,7 @@ def test_software_rendering_is_named_with_its_speed(monkeypatch, renderer, warne
     context = SimpleNamespace(
         info={"GL_RENDERER": renderer}, version_code=450, release=lambda: None
     )
-    monkeypatch.setattr(doctor, "create_context", lambda: context)
+    monkeypatch.setattr(rendering, "create_context", lambda: context)
     drawing = finding("drawing")
     assert renderer in drawing.found
     assert drawing.verdict == ("missing" if warned else "good")
@@ -37,7 +38,7 @@ def test_software_rendering_is_named_with_its_speed(monkeypatch, renderer, warne
 
 
 def test_a_built_in_port_is_no_robot(monkeypatch):
-    monkeypatch.setattr(doctor, "serial_ports", lambda: [BUILT_IN])
+    monkeypatch.setattr("cubeling.robot.serial_ports", lambda: [BUILT_IN])
     robot = finding("robot")
     assert robot.verdict == "missing"
     assert "/dev/ttyS0: built in, probably with nothing connected" in robot.found
@@ -45,6 +46,6 @@ def test_a_built_in_port_is_no_robot(monkeypatch):
 
 
 def test_a_port_on_usb_may_be_a_robot(monkeypatch):
-    monkeypatch.setattr(doctor, "serial_ports", lambda: [ON_USB, BUILT_IN])
+    monkeypatch.setattr("cubeling.robot.serial_ports", lambda: [ON_USB, BUILT_IN])
     robot = finding("robot")
     assert (robot.verdict, robot.found) == ("good", "/dev/ttyACM0")

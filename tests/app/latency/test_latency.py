@@ -79,8 +79,9 @@ def simulated(monkeypatch, cubeling):
     screen = SimulatedScreen(clock, lag=0.01)
     source = SimulatedCamera(clock, screen, delay=0.05)
     monkeypatch.setattr(command, "has_display", lambda: True)
-    monkeypatch.setattr(command, "open_source", lambda uri: source)
-    monkeypatch.setattr(command, "LatencySession", partial(LatencySession, clock=clock))
+    monkeypatch.setattr("cubeling.tracking.open_source", lambda uri: source)
+    timed = partial(LatencySession, clock=clock)
+    monkeypatch.setattr("cubeling.app.latency.session.LatencySession", timed)
     monkeypatch.setattr(window, "PatternWindow", lambda: screen)
     return partial(cubeling, "latency", "--scenario", "none"), screen, source
 

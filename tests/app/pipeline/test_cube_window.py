@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from cubeling.app.errors import AppError
+from cubeling.app.pipeline.choices import inside_of
 from cubeling.app.pipeline.cube_window import (
     DWELL_S,
     INVITATION_S,
     OPENING_S,
     CubeWindow,
-    inside_of,
 )
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs

@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 
 from cubeling.app.errors import AppError
+from cubeling.app.pipeline.choices import REALISM_CHOICES, realism_of
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.surroundings import (
     FOCUSING_S,
-    REALISM_CHOICES,
     Autofocus,
     Surroundings,
-    realism_of,
 )
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.tracking import CubeGestures, CubeTracker

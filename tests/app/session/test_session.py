@@ -7,7 +7,7 @@ import pytest
 
 from cubeling.app.errors import AppError
 from cubeling.app.session import Recorder, events, frame_encoder, messages, session_info
-from cubeling.app.session.frames import CODECS
+from cubeling.app.session.codecs import CODECS
 from cubeling.tracking import CubeTracker, Frame, Intrinsics
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.synthetic import open_synthetic

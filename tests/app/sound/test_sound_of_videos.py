@@ -8,7 +8,7 @@ import av
 import numpy as np
 import pytest
 
-from cubeling.app.commands.session import replay
+from cubeling.app.commands.session import progress
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.running.opening import intrinsics_for, open_sound
 from cubeling.app.session import Recorder, SessionOptions
@@ -131,7 +131,7 @@ def test_the_command_line_and_the_environment_of_a_lab_mute(
     cubeling, short_session, monkeypatch, arguments, muted, volume
 ):
     played = []
-    monkeypatch.setattr(replay, "play_session", lambda options, *_, **__: played.append(options))
+    monkeypatch.setattr(progress, "play_session", lambda options, *_, **__: played.append(options))
     for mute in ("0", "1"):
         monkeypatch.setenv("CUBELING_MUTE", mute)
         assert cubeling("replay", short_session, *arguments)[0] == 0

@@ -18,7 +18,8 @@ from cubeling.app.ui.canvas import Canvas, rounded_rectangle
 from cubeling.app.ui.cards.overlay import overlay
 from cubeling.app.ui.frame_sheet import MAX_FRAMES, FrameSheet
 from cubeling.app.ui.output_file import ENDING_RATE, ENDING_S
-from cubeling.app.ui.video_file import VIDEO_FORMATS, VideoFile
+from cubeling.app.ui.output_formats import VIDEO_FORMATS
+from cubeling.app.ui.video_file import VideoFile
 from cubeling.tracking import LensEstimate
 
 ROBOT = RobotView("ready", 0.4, "happy")

@@ -17,9 +17,10 @@ from cubeling.app.pipeline.step import RobotView
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.session import SessionOptions
-from cubeling.app.ui.panels import PANELS, SessionMonitor
+from cubeling.app.ui.panels import PANELS
 from cubeling.app.ui.panels.drawing.layer import PanelLayer
 from cubeling.app.ui.panels.drawing.places import Rect
+from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.requests import ChangeSetting, SessionRequest
 from cubeling.characters.rendering import create_context
 from cubeling.robot import Telemetry

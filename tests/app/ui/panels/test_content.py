@@ -14,8 +14,9 @@ from cubeling.app.pipeline.scenario import EmotionTarget, Outcome
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.scenarios import find_scenario, scenario_names
 from cubeling.app.session import SessionOptions
-from cubeling.app.ui.panels import PANELS, SessionMonitor
+from cubeling.app.ui.panels import PANELS
 from cubeling.app.ui.panels.content import Choice, Fact, Note, Plot, ShareBar, Slider
+from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.panels.tracking import REFUSALS, stated_error
 from cubeling.characters import CharacterCommand
 from cubeling.characters.rendering import QUALITIES

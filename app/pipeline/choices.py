@@ -1,0 +1,57 @@
+"""What a player may choose of the picture, by name; needs no numpy, as the command line checks it.
+
+`Surroundings` measures what the realism needs, and `CubeWindow` shows the character inside.
+"""
+
+from cubeling.app.errors import AppError
+
+REALISM_CHOICES = {
+    "hand": "the hand that holds the cube hides what is behind it",
+    "light": "light and shadow fall as on the cube",
+    "softness": "characters are as soft, as noisy and as hazy as the picture",
+    "focus": "what is much nearer or further than the cube is out of focus, in the quality rich",
+    "wrinkles": "skin wrinkles where a face moves",
+    "blush": "a face flushes and pales with its emotion",
+}
+"""What makes the drawing belong in the picture, and what that means."""
+
+NO_REALISM = "none"
+"""The name of none of `REALISM_CHOICES`."""
+
+INSIDE_CHOICES = {
+    "auto": "while a face without a role is shown, and by the key I",
+    "always": "from the beginning, until the key I",
+    "never": "not at all",
+}
+"""When the character is inside the cube, and what that means."""
+
+
+def realism_of(text: str) -> tuple[str, ...]:
+    """Return the choices in a text, separated by commas.
+
+    >>> realism_of("hand, light")
+    ('hand', 'light')
+    >>> realism_of("none")
+    ()
+
+    Raises
+    ------
+    AppError
+        One of them is none of `REALISM_CHOICES`.
+    """
+    names = tuple(part.strip() for part in text.split(","))
+    if names == (NO_REALISM,):
+        return ()
+    for name in names:
+        if name not in REALISM_CHOICES:
+            known = ", ".join(REALISM_CHOICES)
+            raise AppError(f"a picture cannot follow '{name}': choose of {known}, or {NO_REALISM}")
+    return names
+
+
+def inside_of(name: str) -> str:
+    """Return one of `INSIDE_CHOICES`; raise AppError for another name."""
+    if name not in INSIDE_CHOICES:
+        known = ", ".join(INSIDE_CHOICES)
+        raise AppError(f"the character cannot be inside '{name}': choose one of {known}")
+    return name
