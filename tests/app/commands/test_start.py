@@ -1,0 +1,102 @@
+"""Helps and wrong arguments: nothing heavy is loaded for them."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+HEAVY = ("numpy", "cv2", "av", "moderngl", "pydantic", "mcap", "paho", "serial", "scipy", "PIL")
+
+WRONG = {
+    "play nosuch": "no scenario is called 'nosuch'",
+    "play companion --realism x": "a picture cannot follow 'x'",
+    "play companion --inside x": "the character cannot be inside 'x'",
+    "play companion --quality x": "there is no quality 'x'",
+    "play companion --controller x": "no controller is called 'x'",
+    "play companion --record a.mcap --codec x": "a session cannot hold 'x' pictures",
+    "play companion --record a.avi": "a recording is written as .mcap",
+    "play companion -o x.abc": "a video is written as .mp4",
+    "play companion -o there.mp4": "exists already",
+    "play companion --profile missing.toml": "missing.toml",
+    "play companion --panels weather": "there is no panel 'weather'",
+    "replay missing.mcap": "cannot read the session 'missing.mcap'",
+    "replay there.mp4": "is not a session",
+    "replay begun.mcap --scenario nosuch": "no scenario is called 'nosuch'",
+    "replay begun.mcap --controller x": "no controller is called 'x'",
+    "replay begun.mcap --quality x": "there is no quality 'x'",
+    "replay begun.mcap -o there.mp4": "exists already",
+    "demo nosuch": "no scenario is called 'nosuch'",
+    "latency --scenario nosuch": "no scenario is called 'nosuch'",
+    "schedule any.xml -o x.abc": "a schedule is written as",
+    "idle learn any.bvh -o x.abc": "a idle motion is written as",
+    "robot nosuch": "No such command",
+}
+"""Command lines, and what is said of each."""
+
+RUN = """
+import contextlib, io, json, sys
+from cubeling.app import cli
+
+def run(arguments):
+    sys.argv = ["cubeling", *arguments]
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        try:
+            cli.main()
+        except SystemExit as end:
+            code = end.code
+    heavy = [name for name in json.loads(sys.argv_given[1]) if name in sys.modules]
+    return code, out.getvalue(), err.getvalue(), heavy
+
+sys.argv_given = sys.argv
+groups = [(name, list(getattr(cli.load_command(name), "commands", ()))) for name in cli.COMMANDS]
+lines = [[]] + [[name, *more] for name, ones in groups for more in ([], *([each] for each in ones))]
+helps = {" ".join(line): run([*line, "--help"]) for line in lines}
+wrong = {line: run(line.split()) for line in json.loads(sys.argv_given[2])}
+print(json.dumps([helps, wrong]))
+"""
+"""Runs every help and then every wrong line in one process, as starting one is what takes long."""
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory):
+    """What every help and every wrong line returned, printed and loaded."""
+    folder = tmp_path_factory.mktemp("start")
+    (folder / "there.mp4").write_bytes(b"no session")
+    (folder / "begun.mcap").write_bytes(b"\x89MCAP0\r\n")
+    command = [sys.executable, "-c", RUN, json.dumps(HEAVY), json.dumps(list(WRONG))]
+    environment = {**os.environ, "COLUMNS": "200"}
+    done = subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, check=True
+    )
+    return json.loads(done.stdout)
+
+
+def test_no_help_loads_what_only_the_work_needs(ran):
+    helps, _ = ran
+    assert len(helps) > 40
+    for line, (code, out, err, heavy) in helps.items():
+        assert (line, code, err, heavy) == (line, 0, "", [])
+        assert f"Usage: cubeling {line}".rstrip() in out
+
+
+@pytest.mark.parametrize("line", WRONG)
+def test_a_wrong_argument_is_refused_before_it_is_loaded(ran, line):
+    code, _, err, heavy = ran[1][line]
+    assert (code, heavy) == (2, [])
+    assert WRONG[line] in err
+    assert err.count("\n") == 1
+
+
+def test_what_is_left_out_of_the_help_can_still_be_imported():
+    script = (
+        "from cubeling.app.cli import load_help_drawing as load\n"
+        "load()\n"
+        "import typer.rich_utils\n"
+        "import rich.markdown, rich.traceback\n"
+        "assert rich.markdown.Markdown.__module__ == 'rich.markdown'\n"
+        "assert rich.traceback.Traceback.__module__ == 'rich.traceback'\n"
+    )
+    subprocess.run([sys.executable, "-c", script], check=True)
