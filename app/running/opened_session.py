@@ -16,7 +16,7 @@ from cubeling.app.running.robots import RobotLine
 from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.scenarios import Scenario, ScenarioSettings, find_scenario, make_scenario
 from cubeling.app.session import SessionOptions
-from cubeling.app.speaking.speaker import Speaker
+from cubeling.app.speaking.recorded import Speaker
 from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.status import EndCard
 from cubeling.app.ui.screen import Screen

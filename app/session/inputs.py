@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from foxglove_schemas_protobuf.RawAudio_pb2 import RawAudio
-
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.spoken_line import SpokenLine
@@ -97,6 +95,8 @@ def spoken_lines(path: Path) -> dict[float, SpokenLine]:
     lines: dict[float, SpokenLine] = {}
     for _, time, data in messages(path, LINE_TOPIC):
         if (speech := said.get(time)) is not None:
+            from foxglove_schemas_protobuf.RawAudio_pb2 import RawAudio
+
             audio = RawAudio.FromString(data)
             sound = decode_sound(audio.data)
             lines[time] = SpokenLine(speech.utterance, sound, audio.sample_rate, speech.profile)

@@ -4,11 +4,8 @@ from functools import lru_cache
 from pathlib import Path
 
 from cubeling.app.session import SessionOptions, spoken_lines
-from cubeling.app.speaking.lines import bundled_languages, bundled_lines, languages_in, read_lines
-from cubeling.app.speaking.speaker import SILENT, LiveSpeaker, RecordedSpeaker, Speaker
-from cubeling.app.speaking.voices import open_voice
+from cubeling.app.speaking.recorded import SILENT, RecordedSpeaker, Speaker
 from cubeling.characters import Character
-from cubeling.characters.speech import VoiceError
 
 DEFAULT_LANGUAGE = "en"
 """Language of what is said unless the user chooses one."""
@@ -39,6 +36,16 @@ def open_speaker(options: SessionOptions, character: Character, *, waits: bool) 
         return RecordedSpeaker(spoken_lines(Path(options.source)))
     if options.language == SILENT or not (asked or options.windowed):
         return RecordedSpeaker({})
+    from cubeling.app.speaking.lines import (
+        bundled_languages,
+        bundled_lines,
+        languages_in,
+        read_lines,
+    )
+    from cubeling.app.speaking.speaker import LiveSpeaker
+    from cubeling.app.speaking.voices import open_voice
+    from cubeling.characters.speech import VoiceError
+
     first = options.language or DEFAULT_LANGUAGE
     if options.lines is None:
         lines_of, languages = lru_cache(bundled_lines), bundled_languages(options.scenario)

@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
 from rich.console import Console
@@ -17,13 +18,15 @@ from cubeling.app.pipeline.step import Step
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.opening import open_session
-from cubeling.app.running.players import PlayerPublisher
 from cubeling.app.running.runner import run
 from cubeling.app.running.summary import Summary
 from cubeling.app.session import SessionOptions, session_info
 from cubeling.app.ui.notice import lens_notice
 from cubeling.app.ui.playback.status import EndCard
 from cubeling.tracking import FrameSource
+
+if TYPE_CHECKING:
+    from cubeling.app.running.players import PlayerPublisher
 
 LINE_INTERVAL_S = 5.0
 """Time between two lines of progress outside a terminal [s]."""
@@ -34,7 +37,7 @@ def play_session(
     title: str,
     *,
     source: FrameSource | None = None,
-    player: PlayerPublisher | None = None,
+    player: "PlayerPublisher | None" = None,
     ending: EndCard | None = None,
     preferences: PreferenceStore | None = None,
 ) -> None:

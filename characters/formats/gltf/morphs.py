@@ -100,14 +100,20 @@ def read_morphs(
     for name, target in zip(names, primitive.get("targets", ()), strict=True):
         shifts = read(target["POSITION"], name) if "POSITION" in target else np.zeros((vertices, 3))
         turns = read(target["NORMAL"], name) if "NORMAL" in target else None
-        moved = np.abs(shifts).max(axis=1, initial=0.0) > _MIN_DISPLACEMENT
+        moved = _largest(shifts) > _MIN_DISPLACEMENT
         if turns is not None:
-            moved |= np.abs(turns).max(axis=1, initial=0.0) > _MIN_DISPLACEMENT
+            moved |= _largest(turns) > _MIN_DISPLACEMENT
         where = np.flatnonzero(moved)
         displacements = shifts[where].astype(np.float32)
         normal_displacements = None if turns is None else turns[where].astype(np.float32)
         morphs.append(Morph(name, where.astype(np.uint32), displacements, normal_displacements))
     return tuple(morphs)
+
+
+def _largest(vectors: Array) -> Array:
+    """Return the largest component of each vector (n, 3) without its sign, (n,)."""
+    x, y, z = np.abs(vectors).T  # by columns: `max(axis=1)` goes through them one by one
+    return np.asarray(np.maximum(np.maximum(x, y), z))
 
 
 def renumbered_morph(morph: Morph, new_number: NDArray[np.int64]) -> Morph:

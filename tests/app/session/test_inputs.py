@@ -22,7 +22,7 @@ from cubeling.app.session import (
 )
 from cubeling.app.session.encoding import INPUTS_TOPIC
 from cubeling.app.session.inputs import recorded_inputs
-from cubeling.app.speaking.speaker import RecordedSpeaker
+from cubeling.app.speaking.recorded import RecordedSpeaker
 from cubeling.app.ui.screen import NullScreen
 from tools.session_copy import INPUT_TOPICS, keep_inputs
 

@@ -1,0 +1,64 @@
+"""What a character speaks with, and lines from a recording."""
+
+from collections.abc import Mapping
+from typing import Protocol
+
+from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.step import Step
+from cubeling.characters.speech import DEFAULT_PROFILE, SpeechProfile
+
+SILENT = "none"
+"""The language in which nothing is said."""
+
+
+class Speaker(Protocol):
+    """Says what the character says in a session. Whoever opens it closes it."""
+
+    problem: str
+    """Why it is silent; "" while all is well."""
+
+    profile: SpeechProfile
+    """How the next lines are said with the body; may be changed at any time."""
+
+    language: str
+    """Code of the language; may be changed to another one of `languages`, or to `SILENT`."""
+
+    languages: tuple[str, ...]
+    """The languages that can be chosen."""
+
+    live: bool
+    """Whether profile and language change what is said next."""
+
+    def line(self, timestamp: float) -> SpokenLine | None:
+        """Return the line that begins with the frame of a timestamp [s], if one does."""
+        ...
+
+    def hear(self, step: Step) -> None:
+        """Take a step, to say something about it."""
+        ...
+
+    def close(self) -> None:
+        """End; a second call does nothing."""
+        ...
+
+
+class RecordedSpeaker:
+    """Says again what a recorded session has, by the frame in which it begins [s]."""
+
+    live = False
+    languages: tuple[str, ...] = ()
+
+    def __init__(self, lines: Mapping[float, SpokenLine], problem: str = "") -> None:
+        self.problem, self.language = problem, ""
+        self.profile = DEFAULT_PROFILE
+        self._lines = lines
+
+    def line(self, timestamp: float) -> SpokenLine | None:
+        """Return the line that begins with the frame of a timestamp [s], if one does."""
+        return self._lines.get(timestamp)
+
+    def hear(self, step: Step) -> None:
+        """Do nothing."""
+
+    def close(self) -> None:
+        """Do nothing."""
