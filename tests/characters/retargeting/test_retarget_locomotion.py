@@ -25,7 +25,7 @@ from cubeling.characters.retargeting.root import clip_with_root, with_root_joint
 from cubeling.characters.retargeting.transfer import turns_from_rest
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
-from tests.examples import examples
+from tests.examples import examples, some
 
 SHARED = Path(__file__).parents[4] / "shared" / "data"
 
@@ -126,8 +126,12 @@ def test_left_and_right_are_mirror_images(taught):
         assert (ours.x, ours.z, ours.yaw) == pytest.approx((-theirs.x, theirs.z, -theirs.yaw))
 
 
-@pytest.mark.slow(reason="a whole tree of walking is made")
-def test_mirrored_bones_keep_their_lengths_on_an_uneven_body_in_a_file_that_rounds(human):
+@pytest.mark.slow(reason="a recording is retargeted to a walk and its curves")
+@pytest.mark.parametrize("curves", some(["one_curve", "human"]))  # the latter makes all
+def test_mirrored_bones_keep_their_lengths_on_an_uneven_body_in_a_file_that_rounds(
+    human, curves, request
+):
+    request.getfixturevalue(curves)
     skeleton, walk = human.skeleton, human.clips["Walk"]
     longer = np.zeros((len(skeleton), 3))
     longer[skeleton.index("LeftLeg"), 1] = -0.01
@@ -152,7 +156,8 @@ def test_it_goes_where_it_is_sent(taught):
     assert math.hypot(x - 0.25, z + 0.2) < 0.07
 
 
-@pytest.mark.slow(reason="a whole tree of walking is made")
+@pytest.mark.slow(reason="two recordings are retargeted to a walk and its curves")
+@pytest.mark.usefixtures("one_curve")
 def test_a_recorded_curve_is_used_for_its_side_and_mirrored_for_the_other(human):
     made = make_locomotion(
         replace(human, clips={}),
@@ -231,8 +236,10 @@ def load(path):
     return load_recording(str(path))
 
 
-@pytest.mark.slow(reason="whole trees of walking and running are made")
-def test_motion_capture_makes_locomotion_clips_without_sliding(tmp_path):
+@pytest.mark.slow(reason="recordings are retargeted to a walk, a run, and their curves")
+@pytest.mark.parametrize("curves", some(["one_curve", "human"]))  # the latter makes all
+def test_motion_capture_makes_locomotion_clips_without_sliding(tmp_path, curves, request):
+    request.getfixturevalue(curves)
     walk, run = captured("16/16_15"), captured("16/16_35")
     made = make_locomotion(Character.load(SHARED / "gltf" / "CesiumMan.glb"), [walk], [run])
     assert max(found.slide for found in made.clips) < 0.01
@@ -255,7 +262,7 @@ def test_a_walk_with_standing_and_turning_around_it_is_found():
 
 
 @pytest.mark.usefixtures("straight_only")
-@pytest.mark.parametrize("size", [1.0, 1.3])
+@pytest.mark.parametrize("size", some([1.3, 1.0]))
 def test_a_made_idle_faces_ahead_and_stands_over_its_root(human, taught, size):
     """Whatever the person faced and wherever she stood in the recording."""
     idle, skeleton = human.clips["idle"], human.skeleton
