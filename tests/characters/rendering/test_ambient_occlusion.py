@@ -22,6 +22,7 @@ from tests.bench.ambient_occlusion.product import product_quality
 from tests.bench.ambient_occlusion.quality import matched_score
 from tests.bench.ambient_occlusion.scenes import load
 from tests.bench.ambient_occlusion.scoring import THESIS, GBuffer, TracedScene, drawn, score
+from tests.examples import some
 from tools.ray_tracing import VisibleSurfaces
 
 SIZE = (192, 144)
@@ -159,7 +160,7 @@ def balls():
     return TracedScene(load("balls"), SIZE, 16)
 
 
-@pytest.mark.parametrize("estimator", ESTIMATORS)
+@pytest.mark.parametrize("estimator", some(ESTIMATORS, 2))
 def test_two_lines_miss_less_of_the_full_form_than_one_with_as_many_samples(
     ctx, programs, balls, estimator
 ):
@@ -177,7 +178,7 @@ def test_two_lines_miss_less_of_the_full_form_than_one_with_as_many_samples(
     buffer.release()
 
 
-@pytest.mark.parametrize("samples", [11, 21])
+@pytest.mark.parametrize("samples", some([11, 21]))
 def test_two_lines_are_closer_to_a_dense_disc_than_one_with_as_many_samples(
     ctx, programs, balls, samples
 ):
@@ -193,7 +194,7 @@ def test_two_lines_are_closer_to_a_dense_disc_than_one_with_as_many_samples(
     assert error <= 0.6 * matched_score(one_line, dense, seen).rmse
 
 
-@pytest.mark.parametrize("samples", [5, 11, 21])
+@pytest.mark.parametrize("samples", some([11, 5, 21]))
 @pytest.mark.parametrize("estimator", ESTIMATORS)
 def test_the_separable_form_is_close_to_the_full_form(ctx, programs, balls, estimator, samples):
     buffer = GBuffer.of(ctx, balls)
@@ -208,9 +209,14 @@ def test_the_separable_form_is_close_to_the_full_form(ctx, programs, balls, esti
     assert result.correlation >= 0.98
 
 
-@pytest.mark.parametrize("name", ["corner", "human", "vleo"])
-def test_the_default_settings_are_close_to_ray_traced_pictures(ctx, programs, name):
-    traced = TracedScene(load(name), (320, 240), 32)
+@pytest.fixture(scope="module")
+def corner():
+    return TracedScene(load("corner"), (319, 241), 32)
+
+
+@pytest.mark.parametrize("name", some(["corner", "human", "vleo"]))
+def test_the_default_settings_are_close_to_ray_traced_pictures(ctx, programs, corner, name):
+    traced = corner if name == "corner" else TracedScene(load(name), (320, 240), 32)
     buffer = GBuffer.of(ctx, traced)
     found = drawn(ctx, programs, buffer, AmbientOcclusionSettings(radius_m=traced.scene.radius_m))
     buffer.release()
@@ -246,7 +252,7 @@ def test_what_ends_soon_behind_its_front_hides_less_of_a_wall(ctx, programs):
     assert deep + 0.05 < thin < thinner < 0.99, (deep, thin, thinner)
 
 
-@pytest.mark.slow(reason="rays are traced from every texel of a character")
+@pytest.mark.full
 def test_the_programs_own_picture_of_a_character_is_close_to_rays(ctx):
     found = product_quality(ctx, "robot", 32)
     assert found.misplaced_mm < 1e-3
@@ -261,12 +267,7 @@ def test_normals_for_shading_bring_no_darkness_from_below_the_triangle(draw):
     assert draw(seen, 64.0, radius_m=0.15)[16:-16, 16:-16].min() > 0.999
 
 
-@pytest.fixture(scope="module")
-def corner():
-    return TracedScene(load("corner"), (319, 241), 32)
-
-
-@pytest.mark.parametrize("stride", [2, 3])
+@pytest.mark.parametrize("stride", some([3, 2]))
 def test_cells_of_several_texels_are_close_to_ray_traced_pictures_too(
     ctx, programs, corner, stride
 ):

@@ -20,6 +20,7 @@ from cubeling.characters.rendering import (
 from cubeling.characters.rendering.passes.hand_occlusion import HAND_DEPTH_M
 from cubeling.characters.rendering.passes.render_pass import RenderPass
 from tests.characters.rendering.shapes import LOOP
+from tests.examples import some
 
 GOLDEN = Path(__file__).parent / "golden"
 
@@ -251,7 +252,8 @@ def test_a_size_that_cannot_be_drawn_is_refused(ctx, size):
 
 
 @pytest.mark.slow(reason="a small leak shows after hundreds of pictures")
-def test_five_hundred_pictures_leak_no_memory(ctx, view, pawn, cube):
+@pytest.mark.parametrize("pictures", some([150, 500]))
+def test_hundreds_of_pictures_leak_no_memory(ctx, view, pawn, cube, pictures):
     stage = Stage(ctx, (320, 180))
     small = replace(view, occluders=(cube,))
 
@@ -264,7 +266,7 @@ def test_five_hundred_pictures_leak_no_memory(ctx, view, pawn, cube):
 
     draw(50)
     before = resident()
-    draw(500)
+    draw(pictures)
     assert resident() - before < 12e6
     stage.release()
 
