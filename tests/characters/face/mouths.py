@@ -1,6 +1,7 @@
 """Measuring the mouths of the bundled characters on their meshes."""
 
 from dataclasses import dataclass
+from unittest import mock
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,15 +19,20 @@ RIM_FROM_END = 6
 
 
 def _pieces(name: str) -> tuple[Mesh, Mesh, int]:
-    """Return the mouth and the upper teeth of a character, and how many points a ring has."""
+    """Return the mouth and the upper teeth of a character, and how many points a ring has.
+
+    They are at rest: their morphs take seconds to make, and the character has them.
+    """
     if name == "human":
         bound = build_human_skeleton()
-        return (
-            human_mouth.mouth(bound),
-            human_teeth.teeth_and_tongue(bound)[0],
-            human_mouth.POINTS_PER_RING,
-        )
-    mouth, teeth, _ = vleo_mouth.mouth(vleo_skeleton())
+        with (
+            mock.patch.object(human_mouth, "EXPRESSIONS", {}),
+            mock.patch.object(human_teeth, "EXPRESSIONS", {}),
+        ):
+            mouth, (teeth, *_) = human_mouth.mouth(bound), human_teeth.teeth_and_tongue(bound)
+        return mouth, teeth, human_mouth.POINTS_PER_RING
+    with mock.patch.object(vleo_mouth, "EXPRESSIONS", {}):
+        mouth, teeth, _ = vleo_mouth.mouth(vleo_skeleton())
     return mouth, teeth, vleo_mouth.POINTS_PER_RING
 
 

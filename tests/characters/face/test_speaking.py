@@ -16,6 +16,7 @@ from cubeling.characters.model.character import Character
 from cubeling.characters.speech.speech import Accent, Phone, Utterance
 from tests.characters.face.mouths import MeasuredMouth
 from tests.characters.face.test_coarticulation import spoken
+from tests.examples import some
 
 RATE = 30.0
 HAPPY = Emotion(0.7, 0.6, "happy")
@@ -62,7 +63,7 @@ def smallest(gaps: np.ndarray, symbols: str) -> float:
     return float(max(found))
 
 
-@pytest.mark.parametrize("emotion", FELT)
+@pytest.mark.parametrize("emotion", some(FELT, 2))
 def test_lips_close_and_teeth_touch_at_eight_phones_a_second_whatever_is_felt(
     speaker, mouth, emotion
 ):
