@@ -8,6 +8,7 @@ import pytest
 
 from cubeling.robot.errors import RobotError
 from cubeling.robot.network import Address, Credentials
+from cubeling.robot.network.mqtt import access
 
 
 def test_a_url_has_host_port_user_and_password():
@@ -71,7 +72,8 @@ def test_an_empty_password_file_and_an_invalid_certificate_are_refused(tmp_path)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no named pipes")
-def test_a_password_may_come_from_a_pipe_with_a_timeout(tmp_path):
+def test_a_password_may_come_from_a_pipe_with_a_timeout(tmp_path, monkeypatch):
+    monkeypatch.setattr(access, "PASSWORD_TIMEOUT_S", 0.2)
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     given = Credentials(user="ann", password_file=pipe)
