@@ -41,6 +41,13 @@ def played(character, speech_at, seconds=7.0, action=None, layers=None):
     return poses
 
 
+@pytest.fixture(scope="module")
+def silent(human):
+    """Return what the human does for so long without a word; it is played once."""
+    poses = played(human, lambda _: None, 9.0)
+    return lambda seconds: poses[: round(seconds * RATE)]
+
+
 def always(speech):
     return lambda now: speech if now < speech.end else None
 
@@ -53,9 +60,9 @@ def turned(one, other, joint=None):
     return angles.max(axis=1) if joint is None else angles[:, joint]
 
 
-def test_hands_beat_with_a_speech_and_rest_before_and_after_it(human):
+def test_hands_beat_with_a_speech_and_rest_before_and_after_it(human, silent):
     speech = SpeechIntent(SAID, 1.0)
-    quiet, spoken = played(human, lambda _: None, 9.0), played(human, always(speech), 9.0)
+    quiet, spoken = silent(9.0), played(human, always(speech), 9.0)
     arm = turned(quiet, spoken, human.anatomy.joint("rightUpperArm"))
     other = turned(quiet, spoken, human.anatomy.joint("leftUpperArm"))
     moved = np.maximum(arm, other)
@@ -64,10 +71,8 @@ def test_hands_beat_with_a_speech_and_rest_before_and_after_it(human):
     assert moved[-RATE // 2 :].max() < 0.5
 
 
-def test_legs_are_left_alone(human):
-    quiet, spoken = (
-        played(human, said) for said in (lambda _: None, always(SpeechIntent(SAID, 0.5)))
-    )
+def test_legs_are_left_alone(human, silent):
+    quiet, spoken = silent(7.0), played(human, always(SpeechIntent(SAID, 0.5)))
     for part in ("leftUpperLeg", "rightLowerLeg", "leftFoot"):
         assert turned(quiet, spoken, human.anatomy.joint(part)).max() < 1e-6
 
@@ -102,20 +107,20 @@ def test_a_speech_that_is_cut_off_leaves_no_jump(human):
     assert max(turned(quiet, poses, arm)[cut + 12 :].max() for arm in arms) < 0.5
 
 
-def test_a_new_speech_takes_over_from_an_old_one(human):
+def test_a_new_speech_takes_over_from_an_old_one(human, silent):
     first, second = SpeechIntent(SAID, 0.2), SpeechIntent(replace(SAID, text="Four"), 1.5)
     poses = played(human, lambda now: first if now < 1.5 else always(second)(now), 8.0)
-    quiet = played(human, lambda _: None, 8.0)
+    quiet = silent(8.0)
     arms = [human.anatomy.joint(f"{side}UpperArm") for side in ("left", "right")]
     moved = np.max([turned(quiet, poses, arm) for arm in arms], axis=0)
     assert moved[round(2.0 * RATE) : round(5.5 * RATE)].max() > 15.0
     assert moved[-10:].max() < 0.5
 
 
-def test_a_text_asks_for_a_clip_and_it_plays_in_its_span(human):
+def test_a_text_asks_for_a_clip_and_it_plays_in_its_span(human, silent):
     said = replace(SAID, accents=(), gestures=(GestureSpan("wave", 1.0, 2.5),))
     speech = SpeechIntent(said, 0.5)
-    quiet, spoken = played(human, lambda _: None, 5.0), played(human, always(speech), 5.0)
+    quiet, spoken = silent(5.0), played(human, always(speech), 5.0)
     arm = turned(quiet, spoken, human.anatomy.joint("rightUpperArm"))
     inside = slice(round(1.9 * RATE), round(2.6 * RATE))
     assert arm[inside].max() > 20.0
