@@ -8,12 +8,22 @@ from cubeling.characters.control.controllers.feet_in_transition import FeetInTra
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.feet import find_feet
 from tests.bench.cast import Soles, film
+from tests.examples import some
 
 LENGTH_S = 0.25
 
 
-@pytest.mark.parametrize(("name", "action"), [("vleo", "kiss"), ("robot", "angry")])
-@pytest.mark.parametrize(("suffix", "weight"), [("head", -1.0), ("tail", 1.0)])
+@pytest.mark.parametrize(
+    ("name", "action", "suffix", "weight"),
+    some(
+        [
+            ("vleo", "kiss", "head", -1.0),
+            ("robot", "angry", "tail", 1.0),
+            ("vleo", "kiss", "tail", 1.0),
+            ("robot", "angry", "head", -1.0),
+        ]
+    ),
+)
 def test_paws_do_not_skid_when_an_action_begins_and_ends(
     name: str, action: str, suffix: str, weight: float
 ) -> None:

@@ -17,7 +17,7 @@ from cubeling.characters.face.lids import Lids
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
 from tests.characters.layers import AppliedLayers
-from tests.examples import examples
+from tests.examples import examples, some
 
 STEP_S = 1 / 60
 NAMES = ("hips", "spine", "chest", "neck", "head", "LeftEye", "RightEye", "LeftFoot")
@@ -198,18 +198,21 @@ def test_lids_move_smoothly(time):
 
 @pytest.mark.parametrize(
     "names",
-    [
-        ["blink"],
-        ["Blink"],
-        ["eyesClosed", "eyeBlinkLeft", "eyeBlinkRight"],
-        ["eyeBlinkLeft", "eyeBlinkRight"],
-        ["eyeBlink_R", "eyeBlink_L"],
-        ["Facial_Blends.Blink_Left", "Facial_Blends.Blink_Right"],
-        ["Fcl_EYE_Close_R", "Fcl_EYE_Close_L", "Fcl_EYE_Close"],
-        ["vrc.blink"],
-        ["Eye Blink.L", "Eye Blink.R"],
-        ["まばたき"],
-    ],
+    some(
+        [
+            ["まばたき"],
+            ["Fcl_EYE_Close_R", "Fcl_EYE_Close_L", "Fcl_EYE_Close"],
+            ["eyeBlinkLeft", "eyeBlinkRight"],
+            ["blink"],
+            ["Blink"],
+            ["eyesClosed", "eyeBlinkLeft", "eyeBlinkRight"],
+            ["eyeBlink_R", "eyeBlink_L"],
+            ["Facial_Blends.Blink_Left", "Facial_Blends.Blink_Right"],
+            ["vrc.blink"],
+            ["Eye Blink.L", "Eye Blink.R"],
+        ],
+        3,
+    ),
 )
 def test_eyes_blink_whatever_their_morphs_are_called(names):
     morphs = ("jawOpen", *names, "eyeSquintLeft")

@@ -9,6 +9,7 @@ from cubeling.characters.formats import load_motion
 from cubeling.characters.model.character import skin
 from cubeling.characters.skeleton import rotations
 from tests.characters.formats.built_gltf import SAMPLES, build_arm, glb
+from tests.examples import some
 
 
 @pytest.fixture
@@ -220,7 +221,7 @@ def test_a_node_that_is_its_own_ancestor_is_refused(tmp_path, arm):
         load(tmp_path, arm.bytes())
 
 
-@pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", some(SAMPLES, 3), ids=lambda path: path.stem)
 def test_characters_made_elsewhere_load_and_play(path):
     character = Character.load(path)
     assert character.height > 0

@@ -9,6 +9,7 @@ from cubeling.characters import Character
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.facing import common_from_skeleton
+from tests.examples import some
 
 
 @pytest.fixture(scope="module")
@@ -53,8 +54,11 @@ def under_a_turned_node(character, yaw, name):
     )
 
 
-@pytest.mark.parametrize("yaw", [np.pi, np.pi / 2, -np.pi / 2])
-@pytest.mark.parametrize("name", ["scene", "root"])
+TURNED = [("scene", np.pi), ("root", np.pi / 2)]
+TURNED += [(name, np.pi * turn) for name in ("scene", "root") for turn in (1.0, 0.5, -0.5)]
+
+
+@pytest.mark.parametrize(("name", "yaw"), some(dict.fromkeys(TURNED), 2))
 def test_a_character_that_faces_elsewhere_is_turned_once_when_it_is_loaded(
     human, tmp_path, yaw, name
 ):
