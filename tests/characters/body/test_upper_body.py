@@ -36,7 +36,7 @@ def body(human: Character) -> CapsuleBody:
 
 @pytest.fixture(scope="module")
 def ranges(human: Character, kind: PostureVectors, body: CapsuleBody) -> SafeRanges:
-    wide = [wide_arms(human, kind, seed) for seed in (1, 2, 3)]
+    wide = [wide_arms(human, kind, seed)[::3] for seed in (1, 2, 3)]
     return SafeRanges.of(wide, kind, body, human.clips["idle"].poses[:1])
 
 
@@ -79,15 +79,15 @@ def test_clear_poses_do_not_collide_and_crossed_arms_do(human, body, kind) -> No
 
 @pytest.mark.slow(reason="a share of frames needs many of them")
 def test_few_frames_collide_in_the_ranges_and_legs_stay(human, body, kind, ranges) -> None:
-    wide = wide_arms(human, kind, 9)
+    wide = wide_arms(human, kind, 9)[::3]
     kept = ranges.keep(wide)
     before, after = (body.collides(each, human.skeleton).sum() for each in (wide, kept))
     assert after <= 0.2 * before
     legs = [joint for joint in range(len(human.skeleton)) if joint not in kind.joints]
     assert np.array_equal(kept.rotations[:, legs], wide.rotations[:, legs])
     assert kept.translations is wide.translations
-    single = ranges.keep(wide[700])
-    assert single.rotations == pytest.approx(kept.rotations[700], abs=1e-9)
+    single = ranges.keep(wide[233])
+    assert single.rotations == pytest.approx(kept.rotations[233], abs=1e-9)
     at = ranges.space.project(kind.vectors(kept), len(ranges.high))
     assert (at <= ranges.high + 1e-9).all()
     assert (at >= ranges.low - 1e-9).all()
@@ -145,6 +145,7 @@ def test_the_later_it_fades_the_nearer_is_the_gesture(human, kind) -> None:
     assert all(a > b for a, b in itertools.pairwise(found))
 
 
+@pytest.mark.slow(reason="what its arms may do without touching its body is found")
 def test_a_file_beside_the_character_asks_for_the_layers(human: Character) -> None:
     asking = replace(human, body_layers=tuple(BODY_LAYERS))
     assert set(BODY_LAYERS) == set(KNOWN_TO_SIDECARS)
