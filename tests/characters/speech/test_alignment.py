@@ -16,6 +16,7 @@ from cubeling.characters.speech.closures import with_closures
 from cubeling.characters.speech.speech import SILENCE, Phone, Speech, Word
 from cubeling.characters.speech.voices import Manner
 from cubeling.characters.speech.words import with_every_word
+from tests.examples import some
 
 TEXT = "He turned sharply, and faced Gregson across the table."
 
@@ -28,11 +29,13 @@ def word_errors(truth, made):
 
 @pytest.mark.parametrize(
     ("text", "language", "speaker"),
-    [
-        (TEXT, "en-us", "en-us+m5"),
-        ("Bon dia, nens. Avui anirem a la platja.", "ca", "ca+f4"),
-        ("Schöne Züge fahren langsam.", "de", "de+m1"),
-    ],
+    some(
+        [
+            ("Schöne Züge fahren langsam.", "de", "de+m1"),
+            (TEXT, "en-us", "en-us+m5"),
+            ("Bon dia, nens. Avui anirem a la platja.", "ca", "ca+f4"),
+        ]
+    ),
 )
 def test_another_speaker_is_aligned(spoken_voice, text, language, speaker):
     truth = with_every_word(spoken_voice.say(text, speaker, Manner(rate=0.85)))
@@ -56,7 +59,7 @@ def test_a_pause_that_the_voice_lacks_lies_between_words(spoken_voice):
     assert len(pauses) == 2
 
 
-@pytest.mark.parametrize("rate", [8000, 96_000])
+@pytest.mark.parametrize("rate", some([8000, 96_000]))
 def test_other_sample_rates_are_aligned(spoken_voice, rate):
     truth = spoken_voice.say(TEXT, "en-us+m5")
     samples = resampled(truth.samples, truth.rate, rate)
@@ -87,7 +90,7 @@ def test_an_hour_is_refused_before_work_begins(spoken_voice):
         align(hour, TEXT, spoken_voice)
 
 
-@pytest.mark.parametrize("kind", ["noise", "music", "emoji", "another text"])
+@pytest.mark.parametrize("kind", some(["noise", "emoji", "music", "another text"], 2))
 def test_what_does_not_fit_gets_the_honest_best(spoken_voice, kind):
     random = np.random.default_rng(3)
     t = np.arange(48_000) / 16_000
@@ -141,12 +144,12 @@ def test_a_warped_path_never_falls_and_ends_at_the_end(seed, count):
 
 def test_the_banded_path_of_a_long_sequence_is_that_of_the_whole(monkeypatch):
     random = np.random.default_rng(1)
-    template = (np.cumsum(random.normal(0, 1, (3000, 6)), 0) / 5).astype(np.float32)
-    at = np.interp(np.linspace(0, 1, 3000), [0, 0.4, 1], [0, 0.5, 1]) * 2999
+    template = (np.cumsum(random.normal(0, 1, (1500, 6)), 0) / 5).astype(np.float32)
+    at = np.interp(np.linspace(0, 1, 1500), [0, 0.4, 1], [0, 0.5, 1]) * 1499
     features = template[at.astype(int)]
     whole = warp(features, template)
-    monkeypatch.setattr("cubeling.characters.speech.alignment.warping.MAX_CELLS", 1_000_000)
-    monkeypatch.setattr("cubeling.characters.speech.alignment.warping.BAND", 200)
+    monkeypatch.setattr("cubeling.characters.speech.alignment.warping.MAX_CELLS", 250_000)
+    monkeypatch.setattr("cubeling.characters.speech.alignment.warping.BAND", 100)
     banded = warp(features, template)
     assert np.mean(np.abs(banded - whole) <= 2) > 0.99
 
