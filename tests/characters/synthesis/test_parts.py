@@ -145,7 +145,7 @@ def test_a_part_stays_in_a_clip_for_the_least_run(graphs: PartGraphs, stored: St
         settings = SearchSettings(min_run=least)
         planner = TransitionPlanner(graphs, standard_graph(stored), settings)
         own = runs.setdefault(least, [])
-        for frame, goals in _requests(graphs, 30):
+        for frame, goals in _requests(graphs, 12):
             plan = planner.plan(frame, goals)
             moves = plan.moves[1:] if plan.fallback != "standard" else ()
             for move in moves:
