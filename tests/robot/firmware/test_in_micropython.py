@@ -19,6 +19,7 @@ import cubeling.robot.firmware
 import cubeling.robot.protocol
 from cubeling.affect import Emotion
 from cubeling.robot.conformance import SimulatedChannel, all_checks, run_checks
+from tests.examples import some
 
 FOLDER = Path(cubeling.robot.firmware.__file__).parent
 FILES = [FOLDER / "main.py", *sorted((FOLDER / "dino").glob("*.py"))]
@@ -150,10 +151,13 @@ def test_micropython_reads_and_writes_every_vector(tmp_path):
                                    for text in pair]  # fmt: skip
 
 
-def test_in_micropython_memory_does_not_grow_in_a_long_session(tmp_path):
+@pytest.mark.parametrize("steps", some([100, 300]))
+def test_in_micropython_memory_does_not_grow_in_a_long_session(tmp_path, steps):
     script = tmp_path / "session.py"
     parts = [HERE / "virtual_board.py", HERE / "long_session.py"]
-    script.write_text("".join(part.read_text("utf-8") for part in parts))
+    lines = "".join(part.read_text("utf-8") for part in parts)
+    assert "range(300)" in lines
+    script.write_text(lines.replace("range(300)", f"range({steps})"))
     used = [int(word) for word in run(script).split()]
     assert len(used) == 4
     # The interpreter and what the script itself keeps are in it; a Pico has 190 kB for all.
@@ -161,8 +165,10 @@ def test_in_micropython_memory_does_not_grow_in_a_long_session(tmp_path):
     assert max(used[1:]) <= used[0] + 2_000
 
 
-def test_in_micropython_it_conforms(in_micropython):
-    report = run_checks(SimulatedChannel(in_micropython), all_checks(), host=77)
+@pytest.mark.slow(reason="another process is asked for every millisecond of the checks")
+@pytest.mark.parametrize("one_of", some([5, 1]))
+def test_in_micropython_it_conforms(in_micropython, one_of):
+    report = run_checks(SimulatedChannel(in_micropython), all_checks()[::one_of], host=77)
     assert [one.check.name for one in report.results if one.verdict != "ok"] == []
     assert report.conforms
 

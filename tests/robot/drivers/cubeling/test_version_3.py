@@ -13,6 +13,7 @@ from cubeling.robot.protocol.schema import pack
 from cubeling.robot.protocol.wire import encode_frame
 from cubeling.robot.simulators.cubeling.dinosaur import CATALOGUE
 from cubeling.robot.simulators.cubeling.simulator import Simulator
+from tests.examples import some
 
 TORSO = [joint.name for joint in CATALOGUE.joints].index("torso")
 
@@ -248,7 +249,7 @@ class Drifting(Simulator):
         super().receive(data, now * (1 + self.drift))
 
 
-@pytest.mark.parametrize("drift", [200e-6, -200e-6])
+@pytest.mark.parametrize("drift", some([200e-6, -200e-6]))
 def test_telemetry_is_in_session_time_over_a_line_with_jitter(world, drift):
     """A line that delays by 2 to 22 ms each way: within 8 ms, and always within the bound."""
     w = world(seed=3, delay=0.012, jitter=0.010, step=0.001)

@@ -10,6 +10,7 @@ from cubeling.robot.drivers.pleo.driver import PleoDriver
 from cubeling.robot.drivers.pleo.settings import load_settings
 from cubeling.robot.protocol import messages as m
 from cubeling.robot.simulators.memory import simulator_of
+from tests.examples import some
 
 MOODS = ("neutral", "happy", "angry")
 
@@ -44,7 +45,7 @@ def wander(world, random, chance: float = 0.004):
     return each
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", some(range(4)))
 def test_nothing_is_typed_before_the_prompt_and_only_what_is_allowed(pleo_world, allowed, seed):
     world = pleo_world(seed, cut_reads=True)
     random = np.random.default_rng(seed)
@@ -54,7 +55,7 @@ def test_nothing_is_typed_before_the_prompt_and_only_what_is_allowed(pleo_world,
     assert all(allowed.fullmatch(line) for _, line in world.sent)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", some(range(6)))
 def test_the_last_mood_asked_is_the_one_that_ends_up_playing(pleo_world, seed):
     world = pleo_world(seed)
     world.robot.slow_probability = world.robot.error_probability = 0.1
@@ -70,7 +71,7 @@ def test_the_last_mood_asked_is_the_one_that_ends_up_playing(pleo_world, seed):
     assert list(world.robot.violations) == []
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", some(range(8)))
 def test_after_a_reboot_the_mood_is_back_and_the_application_is_not(pleo_world, seed):
     world = pleo_world(seed)
     world.robot.slow_probability = 0.0
@@ -86,7 +87,7 @@ def test_after_a_reboot_the_mood_is_back_and_the_application_is_not(pleo_world, 
     assert list(world.robot.violations) == []
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", some(range(4)))
 def test_after_an_unplugging_the_mood_is_back(pleo_world, seed):
     world = pleo_world(seed)
     world.express("happy")
@@ -103,7 +104,7 @@ def test_after_an_unplugging_the_mood_is_back(pleo_world, seed):
     assert world.playing("happy")
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", some(range(6)))
 def test_a_silent_console_is_never_called_ready_and_found_again(pleo_world, seed):
     world = pleo_world(seed)
     world.robot.slow_probability = 0.0
@@ -187,7 +188,10 @@ def test_garbage_raises_nothing_and_the_link_works_afterwards(chunks):
     assert driver.telemetry(now).acknowledged is not None
 
 
-@pytest.mark.parametrize("faults", ["drop=0.1", "reboot=20s", "stall=2s/10s&dup=0.05&delay=20ms"])
+FAULTS = "drop=0.1", "reboot=20s", "stall=2s/10s&dup=0.05&delay=20ms"
+
+
+@pytest.mark.parametrize("faults", some(FAULTS))
 def test_moods_are_acknowledged_despite_faults_of_the_line(faults):
     robot, driver, now = simulator_of(f"sim:pleo?{faults}"), PleoDriver(load_settings()), 10.0
     driver.port_opened(now)
