@@ -3,6 +3,7 @@
 The whole suite runs on it in virtual time; what a real line adds is tried on a pseudo-terminal.
 """
 
+import functools
 import shutil
 import struct
 import subprocess
@@ -44,6 +45,7 @@ def build(tmp_path_factory):
     """Compile the robot, with whatever gives it its time and its line."""
     folder = tmp_path_factory.mktemp("robot")
 
+    @functools.cache
     def built(main: str, source: Path = HERE / "robot.c") -> Path:
         program: Path = folder / f"{main}_{source.parent.name}"
         assert COMPILER is not None

@@ -10,6 +10,7 @@ import pytest
 from cubeling.app import cli
 from cubeling.robot import SimulatedPort, Simulator
 from cubeling.robot.conformance import all_checks
+from cubeling.robot.conformance.checks import recorded
 from cubeling.robot.simulators import SIMULATORS
 
 FAST = ("wrong bit", "frames in one", "hello answered", "repeat acknowledged", "beat answered")
@@ -126,6 +127,8 @@ class Wild(Simulator):
 
 def test_what_a_robot_sends_is_neither_markup_nor_control_codes(conform, monkeypatch):
     monkeypatch.setitem(SIMULATORS, "cubeling", Wild)
+    monkeypatch.setattr(recorded, "MOVING_TIME_S", 0.1)
+    monkeypatch.setattr(recorded, "MIN_MOTION_TIME_S", 0.05)
     code, out, _ = conform("sim", *only("hello answered", "joint limits sensible", "within limits"))
     assert code == 1
     assert "\x1b" not in out

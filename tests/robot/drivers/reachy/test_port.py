@@ -18,6 +18,7 @@ import serial
 from cubeling import robot
 from cubeling.affect import Emotion
 from cubeling.robot.drivers import DRIVERS
+from cubeling.robot.drivers.reachy import driver, port
 from cubeling.robot.drivers.reachy.port import ReachyPort, open_reachy
 from cubeling.robot.drivers.reachy.sdk import head_angles, head_pose
 from cubeling.robot.errors import RobotError
@@ -92,7 +93,9 @@ def test_a_mood_reaches_the_robot_and_what_it_measures_comes_back(connected, soo
     assert mini.calls == ["go 1", "go 1"]  # slowly to where it begins, and back there at the end
 
 
-def test_a_hanging_robot_delays_nothing(connected, soon):
+def test_a_hanging_robot_delays_nothing(connected, soon, monkeypatch):
+    monkeypatch.setattr(driver, "LOST_AFTER_S", 0.6)
+    monkeypatch.setattr(port, "LEAVE_TIMEOUT_S", 0.1)
     mini = StandIn()
     mini.hangs = threading.Event()
     with connected(mini) as reachy:
