@@ -13,6 +13,7 @@ from cubeling.affect.errors import AffectError
 from cubeling.affect.personality_file import bundled
 from cubeling.affect.traits import AffectImpulse
 from cubeling.affect.words import closest_word
+from tests.examples import some
 
 FRAME_S = 1 / 30
 
@@ -252,7 +253,7 @@ def test_no_label_is_left_before_its_time(who, done):
 
 
 @pytest.mark.parametrize("name", bundled())
-@pytest.mark.parametrize(("action", "mood"), [("kiss", "happy"), ("shout", "angry")])
+@pytest.mark.parametrize(("action", "mood"), some([("kiss", "happy"), ("shout", "angry")]))
 def test_everyone_can_be_pleased_and_angered_and_comes_home(name, action, mood):
     feelings = Feelings(name)
     reached = None

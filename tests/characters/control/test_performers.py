@@ -16,9 +16,10 @@ from cubeling.characters import (
 from cubeling.characters.control.layers import FOOT_LAYERS
 from cubeling.characters.skeleton import rotations
 from tests.characters.control.played import RATE_HZ, heading, place, play, velocities
+from tests.examples import some
 
 
-@pytest.fixture(scope="module", params=["actor", "vleo"])
+@pytest.fixture(scope="module", params=some(["actor", "vleo"]))
 def performer(request, actor):
     return actor if request.param == "actor" else Character.load("vleo")
 

@@ -10,6 +10,7 @@ from cubeling.characters.control.command import LocomotionIntent
 from cubeling.characters.control.layers import layers_of
 from cubeling.characters.control.layers.springs import SpringLayer
 from cubeling.characters.model.springs import REFERENCE_HEIGHT_M
+from tests.examples import some
 
 
 @pytest.fixture
@@ -112,24 +113,33 @@ def test_the_same_numbers_swing_alike_in_any_unit_of_length(beside, tmp_path):
 
 @pytest.mark.parametrize(
     ("text", "reason"),
-    [
-        ("springs = 1", "springs: write tables such as"),
-        ("[springs]\njoints = ['tail1']", "springs: write tables such as"),
-        ("[springs.tail]", r"springs\.tail\.joints: write joints = "),
-        ("[springs.tail]\njoints = ['tail9']", "no joint 'tail9'; did you mean 'tail[1-5]'"),
-        ("[springs.tail]\njoints = ['tail1']\nstifness = 1", r"stifness is not known; there are"),
-        ("[springs.tail]\njoints = ['tail1']\ndrag = 2", r"drag: 2 is not a number of 0 to 1"),
-        ("[springs.tail]\njoints = ['tail1']\ndrag = nan", "drag: nan is not a number of 0 to 1"),
-        (
-            "[springs.tail]\njoints = ['tail1']\ncolliders = [{joint = 'hips'}]",
-            r"colliders\[0\]\.radius: None is not a number",
-        ),
-        (
-            "[springs.tail]\njoints = ['tail1']\ncolliders = [{joint = 'hip', radius = 1}]",
-            "no joint 'hip'; did you mean 'hips'",
-        ),
-        ("[spring.tail]\njoints = ['tail1']", r"\[spring\] is not a known table; .*springs"),
-    ],
+    some(
+        [
+            ("springs = 1", "springs: write tables such as"),
+            ("[springs]\njoints = ['tail1']", "springs: write tables such as"),
+            ("[springs.tail]", r"springs\.tail\.joints: write joints = "),
+            ("[springs.tail]\njoints = ['tail9']", "no joint 'tail9'; did you mean 'tail[1-5]'"),
+            (
+                "[springs.tail]\njoints = ['tail1']\nstifness = 1",
+                r"stifness is not known; there are",
+            ),
+            ("[springs.tail]\njoints = ['tail1']\ndrag = 2", r"drag: 2 is not a number of 0 to 1"),
+            (
+                "[springs.tail]\njoints = ['tail1']\ndrag = nan",
+                "drag: nan is not a number of 0 to 1",
+            ),
+            (
+                "[springs.tail]\njoints = ['tail1']\ncolliders = [{joint = 'hips'}]",
+                r"colliders\[0\]\.radius: None is not a number",
+            ),
+            (
+                "[springs.tail]\njoints = ['tail1']\ncolliders = [{joint = 'hip', radius = 1}]",
+                "no joint 'hip'; did you mean 'hips'",
+            ),
+            ("[spring.tail]\njoints = ['tail1']", r"\[spring\] is not a known table; .*springs"),
+        ],
+        3,
+    ),
 )
 def test_a_wrong_table_is_refused_in_one_line(beside, text, reason):
     with pytest.raises(CharacterError, match=reason) as error:

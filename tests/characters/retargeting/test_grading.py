@@ -16,6 +16,7 @@ from cubeling.characters.retargeting.rig import Rig
 from cubeling.characters.retargeting.root import moved_to_trajectory
 from cubeling.characters.skeleton import rotations
 from tests.characters.retargeting.test_retarget_locomotion import exported
+from tests.examples import some
 
 GOOD = GaitReport("walk", "walk", 1.0, 1.4, 0.0, 0.01, 0.0, 0.0, 0.0, 0.0, 0.0, 0.92)
 
@@ -37,10 +38,10 @@ def moving(human, way):
 
 
 @pytest.mark.usefixtures("straight_only")
-def test_our_own_walk_and_run_have_no_fault(human):
-    for name in ("Walk", "Run"):
-        (report,) = made(human, exported(human, name, 3.2)).recordings
-        assert not report.warnings
+@pytest.mark.parametrize("name", some(["Walk", "Run"]))
+def test_our_own_walk_and_run_have_no_fault(human, name):
+    (report,) = made(human, exported(human, name, 3.2)).recordings
+    assert not report.warnings
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from cubeling.characters.skeleton.anatomy import BODY_PARTS, Anatomy
 from cubeling.characters.skeleton.body_parts.joint_names import read_name
 from tests.characters.skeleton.bodies import DOG, PERSON, named_body, skeleton_of
 from tests.characters.skeleton.test_naming import ANIMALS, PEOPLE
-from tests.examples import examples
+from tests.examples import examples, some
 
 DATA = Path(__file__).parents[4] / "shared" / "data" / "gltf"
 
@@ -196,11 +196,16 @@ def turned(axis, angle):
 
 @pytest.mark.parametrize(
     ("pose", "kinds"),
-    [
-        *((along(axis), [PEOPLE]) for axis in (0, 1, 2)),
-        (turned("x", np.pi / 2), [PEOPLE]),
-        *((turned("y", quarters * np.pi / 2), [PEOPLE, ANIMALS]) for quarters in (1, 2, 3)),
-    ],
+    some(
+        [
+            (along(0), [PEOPLE]),
+            (turned("y", np.pi / 2), [PEOPLE, ANIMALS]),
+            *((along(axis), [PEOPLE]) for axis in (1, 2)),
+            (turned("x", np.pi / 2), [PEOPLE]),
+            *((turned("y", quarters * np.pi / 2), [PEOPLE, ANIMALS]) for quarters in (2, 3)),
+        ],
+        2,
+    ),
 )
 def test_names_are_read_in_any_pose(pose, kinds):
     silent = ("no names at all", "German", "French", "Rigify wolf")  # places tell some parts
