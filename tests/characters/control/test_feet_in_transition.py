@@ -13,6 +13,7 @@ from tests.examples import some
 LENGTH_S = 0.25
 
 
+@pytest.mark.slow(reason="the soles of a body are measured in every frame of an action")
 @pytest.mark.parametrize(
     ("name", "action", "suffix", "weight"),
     some(

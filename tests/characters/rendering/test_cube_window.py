@@ -168,6 +168,7 @@ def test_a_point_inside_is_seen_where_a_pinhole_camera_sees_it(
         assert np.abs(places.max(axis=0) - expected.max(axis=0)).max() < 1.3
 
 
+@pytest.mark.slow(reason="three pictures of 1280 by 720 pixels are drawn")
 def test_in_a_hole_a_character_has_the_pixels_that_it_has_without_a_cube(
     hd_stage, hd_view, cube, pawn
 ):

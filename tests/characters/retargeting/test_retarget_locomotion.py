@@ -253,6 +253,7 @@ def test_motion_capture_makes_locomotion_clips_without_sliding(tmp_path, curves,
     assert posed.table_from_character[2, 3] > 0.1
 
 
+@pytest.mark.slow(reason="the walk is looked for in a recording of many seconds")
 @pytest.mark.usefixtures("straight_only")
 def test_a_walk_with_standing_and_turning_around_it_is_found():
     recording = load(SHARED / "bvh" / "131_01.bvh")
@@ -283,6 +284,7 @@ def test_a_made_idle_faces_ahead_and_stands_over_its_root(human, taught, size):
     assert np.abs(at[[0, 2]]).max() < 0.05
 
 
+@pytest.mark.slow(reason="two walks are made of recordings")
 @pytest.mark.usefixtures("straight_only")
 def test_made_clips_look_ahead_though_the_neck_was_recorded_straight(human):
     """Motion capture has straight necks at rest, so people who look ahead seem to look down."""

@@ -87,6 +87,7 @@ def found(human, recording):
     return make_locomotion(replace(human, clips={}), [recording])
 
 
+@pytest.mark.slow(reason="a walk is written, read twice and retargeted")
 def test_bones_that_lie_along_one_axis_rest_in_a_frame_that_stands(
     human, walk, gait_of_walk, tmp_path
 ):
@@ -167,6 +168,7 @@ def without_mesh(character, path, bones=None):
     return path
 
 
+@pytest.mark.slow(reason="a walk is written, read and retargeted")
 def test_a_motion_without_a_mesh_is_a_source(human, tmp_path):
     path = without_mesh(human, tmp_path / "library.glb")
     assert is_motion_only(path)

@@ -106,6 +106,7 @@ def failures(program: Path, one_of: int = 1) -> list[str]:
     return [one.check.name for one in report.results if one.verdict != "ok"]
 
 
+@pytest.mark.slow(reason="another process is asked for every millisecond of the checks")
 @pytest.mark.parametrize("one_of", some([4, 1]))
 def test_it_conforms_in_every_check(build, one_of):
     assert failures(build("steps"), one_of) == []

@@ -63,6 +63,7 @@ class BabblingRobot(Mutant):
             self.write(b"\0oh so much to say" * 5)
 
 
+@pytest.mark.slow(reason="all checks are run")
 def test_a_robot_that_sends_noise_between_frames_fails_in_bounded_time():
     line = SimulatedChannel(BabblingRobot())
     begin = line.now()
@@ -122,6 +123,7 @@ def test_when_time_is_up_the_other_checks_are_skipped_and_the_robot_does_not_con
     assert not report.conforms
 
 
+@pytest.mark.slow(reason="all checks are run")
 def test_a_robot_that_takes_five_seconds_for_an_emotion_has_time_enough(monkeypatch):
     monkeypatch.setattr(body, "MAX_EMOTION_SPEED", 0.31)
     report = run_checks(SimulatedChannel(Simulator()), all_checks(), 1)
@@ -210,6 +212,7 @@ class HasAJointOfSpeedZero(Mutant):
         super().send_message(session, message)
 
 
+@pytest.mark.slow(reason="all checks are run")
 def test_a_joint_of_speed_zero_is_a_failed_check():
     report = run_checks(SimulatedChannel(HasAJointOfSpeedZero()), all_checks(), 1)
     failed = {one.check.name: one.received for one in report.results if one.verdict == "failed"}
@@ -251,6 +254,7 @@ NEW_IN_VERSION_3 = {
 }
 
 
+@pytest.mark.slow(reason="all checks are run")
 @pytest.mark.parametrize(
     ("robot", "skipped"),
     some([(Version1, NEW_IN_VERSION_2 | NEW_IN_VERSION_3), (Version2, NEW_IN_VERSION_3)]),
@@ -262,6 +266,7 @@ def test_a_robot_of_an_earlier_version_conforms(robot, skipped):
     assert {one.check.name for one in report.results if one.verdict == "skipped"} == skipped
 
 
+@pytest.mark.slow(reason="all checks are run")
 def test_our_simulated_robot_conforms():
     report = run_checks(SimulatedChannel(Simulator(7)), all_checks(), 2**32 - 1)
     assert verdicts(report) == {"ok"}

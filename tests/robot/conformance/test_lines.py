@@ -61,6 +61,7 @@ class SlowLine:
                 return data
 
 
+@pytest.mark.slow(reason="all checks are run over a line of 115 200 baud")
 @pytest.mark.parametrize(
     ("late", "looks_every"),
     some([(0.016, 0.02), (0.0, 0.001), (0.016, 0.001), (0.002, 0.02)]),
@@ -84,6 +85,7 @@ class BusyComputer(SlowLine):
         return super().read(until)
 
 
+@pytest.mark.slow(reason="all checks are run over a line of 115 200 baud")
 def test_a_check_that_fails_on_a_busy_computer_is_retried():
     report = run_checks(BusyComputer(0.0, 0.001), all_checks(), 1)
     assert report.conforms

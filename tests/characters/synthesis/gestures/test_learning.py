@@ -97,6 +97,7 @@ def test_who_never_leaves_rest_or_never_rests_is_refused_in_one_line(human, beat
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.slow(reason="two recordings of people are retargeted and analysed")
 @pytest.mark.skipif(not (SHARED_DATA / "bvh").is_dir(), reason="no shared data")
 def test_people_who_gesture_are_learned_and_walkers_are_not(human):
     (clip,) = read_motions([str(SHARED_DATA / "bvh" / "131_03.bvh")], human)
