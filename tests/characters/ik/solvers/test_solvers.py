@@ -55,7 +55,7 @@ def test_method_alone_reaches_nearly_all_targets(method: str, problem: Problem) 
     assert (ends[found.solved] <= 1e-3 * problem.free.reach).all()
 
 
-@pytest.mark.parametrize("limits", ["propagate", "clamp"])
+@pytest.mark.parametrize("limits", some(["propagate", "clamp"]))
 @pytest.mark.parametrize("method", SOLVERS)
 def test_every_method_made_sure_reaches_all_within_limits(
     method: str, limits: str, problem: Problem
