@@ -19,6 +19,7 @@ from cubeling.app.pipeline.step import Step
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.session import Recorder
 from cubeling.tracking import CubeControls, open_source
+from tests.app.scripted import play_script
 from tests.bundled_characters import (
     bundled_characters_are_read_once as bundled_characters_are_read_once,
 )
@@ -112,6 +113,20 @@ def cubeling(monkeypatch, capsys, tmp_path):
         return caught.value.code, captured.out, captured.err
 
     return run
+
+
+@pytest.fixture(scope="session")
+def scripted_session(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """Return a session of the script of a bundled recording, with every channel."""
+    folder = tmp_path_factory.mktemp("scripts")
+
+    def find(name: str) -> Path:
+        path = folder / f"{name}.mcap"
+        if not path.exists():
+            play_script(name, record=path)
+        return path
+
+    return find
 
 
 @pytest.fixture(scope="session")

@@ -61,9 +61,9 @@ def test_an_action_is_published_when_it_begins_and_only_if_visible():
 
 
 @pytest.fixture(scope="module")
-def companion(computed_session: Callable[[str], Path]) -> Path:
-    """The recording with every channel."""
-    return computed_session("companion")
+def companion(scripted_session: Callable[[str], Path]) -> Path:
+    """A session with every channel."""
+    return scripted_session("companion")
 
 
 def test_a_recorded_session_drives_robots_without_a_broker(companion):

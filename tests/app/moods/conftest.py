@@ -17,9 +17,9 @@ FRAME = 1 / 30
 
 
 @pytest.fixture(scope="module")
-def companion(computed_session):
+def companion(scripted_session):
     """A whole session with every channel."""
-    return computed_session("companion")
+    return scripted_session("companion")
 
 
 @pytest.fixture(scope="module")

@@ -14,6 +14,7 @@ from cubeling.app.session import messages
 from cubeling.app.session.encoding import decode
 from cubeling.characters import CharacterCommand
 from cubeling.tracking.synthetic import open_synthetic
+from tests.examples import some
 
 SMALL = "width=640&height=360&rate=12&clutter=0&shadow=0&hand=0"
 
@@ -65,10 +66,10 @@ def test_a_new_face_starts_at_zero_and_two_turns_span_the_intensity(two_turns):
     assert turned == pytest.approx(2.0, abs=0.05)
 
 
-@pytest.fixture(scope="module")
-def companion_session(computed_session):
-    """Commands and emotions of the bundled recording."""
-    path = computed_session("companion")
+@pytest.fixture(scope="module", params=some(["scripted_session", "computed_session"]))
+def companion_session(request):
+    """Commands and emotions of the bundled recording, or of the script that it was drawn from."""
+    path = request.getfixturevalue(request.param)("companion")
     commands = (data for _, _, data in messages(path, "/character/command"))
     emotions = (data for _, _, data in messages(path, "/robot/emotion"))
     return [

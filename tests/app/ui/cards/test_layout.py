@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 
 from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.step import Step
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.session.replay_inputs import read_replay_inputs
 from cubeling.app.ui.cards.layout import MIN_STAY_S, CardLayout, Corner, card_box
 from cubeling.tracking import open_source
+from tests.app.scripted import PICTURE_WIDTH, play_script
+from tests.examples import some
 
 CARDS: dict[Corner, tuple[float, float]] = {
     "bottom right": (196.0, 298.0),
@@ -69,22 +72,40 @@ def overlaps(corner, size, subjects):
     )
 
 
-@pytest.fixture(scope="module")
-def sketch(computed_session):
-    """The recording with every channel."""
-    return str(computed_session("sketch"))
-
-
-@pytest.mark.slow(reason="most of a recording is played")
-def test_in_the_bundled_sketch_cube_and_character_are_seldom_behind_a_card(sketch):
-    layout, hidden, at_home = CardLayout(), [], []
-    with open_source(sketch) as source:
+def subjects_of_recording(computed_session):
+    """Return times and subjects of most of the bundled sketch."""
+    path = str(computed_session("sketch"))
+    with open_source(path) as source:
         playground = Playground("sketch", intrinsics_for(source.intrinsics, source.size))
-        recorded = read_replay_inputs(sketch, "command")
-        for frame, replay in itertools.islice(zip(source, recorded, strict=True), 700):
-            subjects = playground.step(frame, replay=replay).subjects
-            corners = layout.update(CARDS, subjects, WIDTH, frame.timestamp)
-            hidden.append([overlaps(corners[home], CARDS[home], subjects) for home in CARDS])
-            at_home.append([overlaps(home, CARDS[home], subjects) for home in CARDS])
+        recorded = read_replay_inputs(path, "command")
+        return [
+            (frame.timestamp, playground.step(frame, replay=replay).subjects)
+            for frame, replay in itertools.islice(zip(source, recorded, strict=True), 700)
+        ]
+
+
+def subjects_of_script(_):
+    """Return times and subjects of the script of the bundled sketch, in pictures as large."""
+    steps: list[Step] = []
+    play_script("sketch", progress=steps.append, seconds=700 / 30)
+    return [
+        (
+            step.frame.timestamp,
+            [tuple(WIDTH / PICTURE_WIDTH * edge for edge in subject) for subject in step.subjects],
+        )
+        for step in steps
+    ]
+
+
+@pytest.mark.slow(reason="most of a session is played")
+@pytest.mark.parametrize("subjects_of", some([subjects_of_script, subjects_of_recording]))
+def test_in_the_bundled_sketch_cube_and_character_are_seldom_behind_a_card(
+    computed_session, subjects_of
+):
+    layout, hidden, at_home = CardLayout(), [], []
+    for time, subjects in subjects_of(computed_session):
+        corners = layout.update(CARDS, subjects, WIDTH, time)
+        hidden.append([overlaps(corners[home], CARDS[home], subjects) for home in CARDS])
+        at_home.append([overlaps(home, CARDS[home], subjects) for home in CARDS])
     assert np.any(at_home, axis=1).mean() > 0.3  # cards that stay would hide something
     assert np.any(hidden, axis=1).mean() < 0.1
