@@ -4,8 +4,9 @@ import gc
 import os
 import sys
 import time
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from pathlib import Path
+from typing import Protocol
 
 import pytest
 from hypothesis import settings, strategies as st
@@ -65,28 +66,45 @@ COMPUTING_S = 300.0
 """A process waits so long for a recording that another one computes [s]."""
 
 
+FIRST_S = 5.0
+"""What `make test` computes of a bundled recording [s]: in it the cube is put down, and turned or
+tipped. Whole recordings take ten times as long; `make test-all` computes them."""
+
+
+class ComputedSession(Protocol):
+    """Returns a bundled recording with every channel, or its first seconds."""
+
+    def __call__(self, name: str, seconds: float | None = None) -> Path:
+        """Return the file; the first process that asks computes it."""
+
+
 @pytest.fixture(scope="session")
-def computed_session(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+def computed_session(tmp_path_factory: pytest.TempPathFactory) -> ComputedSession:
     """Return a bundled recording with every channel; the first process that asks computes it."""
     from cubeling.app.running.computing import compute_channels
     from cubeling.app.session.bundled import bundled
+    from tools.session_copy import copy_session
 
     folder = tmp_path_factory.getbasetemp()
     if "PYTEST_XDIST_WORKER" in os.environ:
         folder = folder.parent  # of all processes
 
-    def find(name: str) -> Path:
-        path, begun = folder / f"{name}.mcap", folder / f"{name}.begun"
+    def find(name: str, seconds: float | None = None) -> Path:
+        part = name if seconds is None else f"{name}-{seconds:g}s"
+        path, begun = folder / f"{part}.mcap", folder / f"{part}.begun"
         try:
             begun.touch(exist_ok=False)
         except FileExistsError:
             end = time.monotonic() + COMPUTING_S
             while not path.exists():
-                assert time.monotonic() < end, f"another process did not compute {name}"
+                assert time.monotonic() < end, f"another process did not compute {part}"
                 time.sleep(0.1)
             return path
-        partial = folder / f"{name}-partial.mcap"
-        compute_channels(bundled(name), partial)
+        source, partial = bundled(name), folder / f"{part}-partial.mcap"
+        if seconds is not None:
+            recording, source = source, folder / f"{part}-source.mcap"
+            copy_session(recording, source, lambda _, time, data: data if time < seconds else None)
+        compute_channels(source, partial)
         return partial.rename(path)
 
     return find

@@ -3,21 +3,35 @@
 import pytest
 
 from cubeling.app.scenarios import SCENARIOS
-from tests.golden import FOLDER, agrees, describe, differences, renewed
+from tests.conftest import FIRST_S
+from tests.examples import some
+from tests.golden import EVERY, FOLDER, agrees, describe, differences, renewed
 
 
-@pytest.fixture(scope="module", params=SCENARIOS)
-def recording(request, computed_session):
-    """The name of a bundled recording, and its file with every channel."""
-    return request.param, computed_session(request.param)
+@pytest.mark.slow(reason="five seconds of a recording are computed")
+@pytest.mark.parametrize("name", some(sorted(SCENARIOS), 2))
+def test_the_first_seconds_lead_to_what_is_written_down(computed_session, name):
+    now = describe(computed_session(name, FIRST_S))
+    assert now.count("frame ") == FIRST_S * 30 / EVERY
+    golden = (FOLDER / f"{name}.txt").read_text("utf-8").splitlines()
+    assert_agrees(name, "\n".join(golden[: now.count("\n")]), now)
 
 
-def test_a_recording_leads_to_what_is_written_down(recording):
-    name, session = recording
-    path = FOLDER / f"{name}.txt"
-    assert path.stat().st_size <= 60_000
-    found = differences(path.read_text("utf-8"), describe(session))
+@pytest.mark.full
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_a_recording_leads_to_what_is_written_down(computed_session, name):
+    golden = (FOLDER / f"{name}.txt").read_text("utf-8")
+    assert_agrees(name, golden, describe(computed_session(name)))
+
+
+def assert_agrees(name, golden, now):
+    found = differences(golden, now)
     assert not found, f"python -m tests.golden {name} --renew\n" + "\n".join(found[:5])
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_what_is_written_down_of_a_recording_is_small(name):
+    assert (FOLDER / f"{name}.txt").stat().st_size <= 60_000
 
 
 @pytest.mark.parametrize(

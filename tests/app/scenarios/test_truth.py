@@ -8,12 +8,17 @@ from cubeling.app.session import messages
 from cubeling.app.session.encoding import decode
 from cubeling.tracking import CubeControls, CubeState
 from cubeling.tracking.synthetic import open_synthetic
+from tests.conftest import FIRST_S
+from tests.examples import some
+
+PARTS = [("companion", FIRST_S), *((name, None) for name in SCENARIOS)]
 
 
-@pytest.fixture(scope="module", params=SCENARIOS)
+@pytest.fixture(scope="module", params=some([[part] for part in PARTS]), ids=str)
 def recording(request, computed_session):
-    """The name of a bundled recording, and its file with every channel."""
-    return request.param, computed_session(request.param)
+    """The name of a bundled recording, and its file with every channel, or its first seconds."""
+    ((name, seconds),) = request.param
+    return name, computed_session(name, seconds)
 
 
 def computed(path, topic, kind):
