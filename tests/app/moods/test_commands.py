@@ -13,9 +13,10 @@ from cubeling.affect import Personality
 from cubeling.app.errors import AppError
 from cubeling.app.moods import read_history, read_robot_traces
 from tests.app.moods.talking import words_of
+from tests.examples import some
 
 
-@pytest.mark.parametrize("suffix", ["svg", "pdf", "png"])
+@pytest.mark.parametrize("suffix", some(["svg", "pdf", "png"]))
 def test_plot_draws_a_session(cubeling, talking_session, tmp_path, suffix):
     code, out, _ = cubeling("mood", "plot", talking_session, "-o", f"m.{suffix}")
     assert (code, out) == (0, f"Plotted: m.{suffix}\n")

@@ -13,6 +13,7 @@ from cubeling.app.moods import read_robot_traces, replay_with
 from cubeling.app.moods.plot import save_plot
 from cubeling.app.moods.regions import regions, runs
 from tests.app.moods.talking import words_of
+from tests.examples import some
 
 THESIS = LABEL_SETS["thesis"]
 
@@ -40,13 +41,18 @@ def test_the_plot_names_who_feels_again_and_in_whose_words(history, companion, t
     assert "observed on the robot" not in words
 
 
-@pytest.mark.slow(reason="three formats are written twice")
-def test_the_same_plot_as_svg_pdf_and_png(history, companion, tmp_path):
-    for suffix in ("svg", "pdf", "png"):
-        paths = tmp_path / f"m.{suffix}", tmp_path / f"again.{suffix}"
-        for path in paths:
-            save_plot(path, history, (), read_robot_traces(companion), THESIS)
-        assert paths[0].read_bytes() == paths[1].read_bytes()
+@pytest.mark.parametrize("suffix", some(["svg", "pdf", "png"]))
+def test_the_same_session_gives_the_same_plot_byte_for_byte(history, companion, tmp_path, suffix):
+    paths = tmp_path / f"m.{suffix}", tmp_path / f"again.{suffix}"
+    for path in paths:
+        save_plot(path, history, (), read_robot_traces(companion), THESIS)
+    assert paths[0].read_bytes() == paths[1].read_bytes()
+
+
+@pytest.mark.slow(reason="a plot is written twice, and the page is drawn")
+def test_the_same_plot_as_pdf_and_png(history, companion, tmp_path):
+    for suffix in ("pdf", "png"):
+        save_plot(tmp_path / f"m.{suffix}", history, (), read_robot_traces(companion), THESIS)
     page = pypdfium2.PdfDocument(tmp_path / "m.pdf")[0]
     assert "valence [1]" in page.get_textpage().get_text_range()
     printed = np.asarray(page.render(scale=1).to_pil().convert("L"), float)
