@@ -13,7 +13,6 @@ from cubeling.app.pipeline.registry import added_scenarios
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.scenarios import make_scenario, scenario_names
 from cubeling.app.session import messages, session_info
-from cubeling.app.session.bundled import bundled
 from cubeling.app.session.encoding import decode
 from cubeling.characters import CharacterCommand
 
@@ -136,12 +135,12 @@ FAILING = {
 
 @pytest.mark.parametrize("case", FAILING)
 def test_an_error_of_an_added_scenario_names_its_place_and_keeps_the_recording(
-    install, cubeling, case
+    install, cubeling, lifting_session, case
 ):
     before, failing, reason = FAILING[case]
     source = PYTHON.replace(before, failing + before, 1)
     install(TOML, source)
-    session = ["-s", bundled("companion"), "--record", "kept.mcap", "--robot", "none"]
+    session = ["-s", lifting_session, "--record", "kept.mcap", "--robot", "none"]
     code, out, err = cubeling("play", "greet", *session, "--no-pictures")
     assert code == 2
     assert err.startswith("cubeling: the scenario 'greet' failed in ")

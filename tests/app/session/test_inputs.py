@@ -24,7 +24,7 @@ from cubeling.app.session.encoding import INPUTS_TOPIC
 from cubeling.app.session.inputs import recorded_inputs
 from cubeling.app.speaking.recorded import RecordedSpeaker
 from cubeling.app.ui.screen import NullScreen
-from tools.session_copy import INPUT_TOPICS, keep_inputs
+from tools.session_copy import INPUT_TOPICS, copy_session, keep_inputs
 
 SPOKEN = Path(tests.sessions.__path__[0]) / "spoken.mcap"
 
@@ -124,13 +124,15 @@ def test_inputs_that_no_recorder_wrote_are_refused_in_one_line(tmp_path, monkeyp
 def test_a_command_computes_the_channels_that_it_reads(
     cubeling, short_session, tmp_path, arguments, writes, monkeypatch
 ):
-    keep_inputs(short_session, tmp_path / "bare.mcap")
+    begin = tmp_path / "begin.mcap"
+    copy_session(short_session, begin, lambda _, time, data: data if time < 0.45 else None)
+    keep_inputs(begin, tmp_path / "bare.mcap")
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     monkeypatch.setattr("tempfile.tempdir", None)
     code, _, err = cubeling(*arguments)
     assert (code, err) == (0, "")
     if writes is not None and writes.endswith(".csv"):
-        assert len((tmp_path / writes).read_text("utf-8").splitlines()) == 61
+        assert len((tmp_path / writes).read_text("utf-8").splitlines()) == 1 + 14
     elif writes is not None:
         assert has_channels(tmp_path / writes)
     assert not list(tmp_path.glob("cubeling-*"))

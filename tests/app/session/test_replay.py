@@ -34,7 +34,7 @@ FRAMES = 120
 
 
 @pytest.mark.slow(reason="seconds of a recording are computed twice")
-@pytest.mark.parametrize("name", some(sorted(SCENARIOS), 2))
+@pytest.mark.parametrize("name", some(sorted(SCENARIOS)))
 def test_a_recording_replayed_twice_gives_identical_channels(computed_session, name):
     path = computed_session(name, FIRST_S)
     with open_source(str(bundled(name))) as source:

@@ -12,7 +12,6 @@ from cubeling.app.running.replay_check import check_session
 from cubeling.app.running.runner import run
 from cubeling.app.running.summary import Summary
 from cubeling.app.session import SessionOptions, messages, spoken_lines
-from cubeling.app.session.bundled import bundled
 from cubeling.app.session.encoding import decode
 from cubeling.app.speaking import opening, voices
 from cubeling.characters import Character, CharacterCommand, CharacterError
@@ -35,20 +34,20 @@ for line in sys.stdin.buffer:
 
 
 @pytest.fixture(scope="module")
-def spoken(tmp_path_factory) -> Path:
+def spoken(tmp_path_factory, lifting_session) -> Path:
     """A session in which a voice is installed that buzzes."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(voices, "espeak", lambda: Voice((sys.executable, "-S", "-c", BUZZ)))
-        return recording_of(tmp_path_factory.mktemp("spoken"))
+        return recording_of(lifting_session, tmp_path_factory.mktemp("spoken"))
 
 
-def recording_of(tmp_path: Path, **changes) -> Path:
+def recording_of(source: Path, tmp_path: Path) -> Path:
     path = tmp_path / "spoken.mcap"
     options = SessionOptions(
-        scenario="companion", source=str(bundled("companion")), robot="none", pictures=False,
-        language="en", record=path, end_s=5.0,
+        scenario="companion", source=str(source), robot="none", pictures=False,
+        language="en", record=path,
     )  # fmt: skip
-    with open_session(replace(options, **changes)) as session:
+    with open_session(options) as session:
         run(session)
     return path
 
@@ -90,10 +89,12 @@ def test_without_a_voice_a_character_is_silent_unless_it_was_asked_to_speak(tmp_
         opening.open_speaker(replace(windowed, language="en"), Character.load("vleo"), waits=False)
 
 
-def test_a_voice_that_always_dies_is_given_up_and_the_session_goes_on(tmp_path, monkeypatch):
+def test_a_voice_that_always_dies_is_given_up_and_the_session_goes_on(
+    tmp_path, lifting_session, monkeypatch
+):
     dying = (sys.executable, "-S", "-c", "import sys; sys.stdin.readline()")
     monkeypatch.setattr(voices, "espeak", lambda: Voice(dying))
-    assert said_in(recording_of(tmp_path)) == []
+    assert said_in(recording_of(lifting_session, tmp_path)) == []
 
 
 def test_a_line_that_begins_in_a_frame_that_is_left_out_begins_in_the_next(spoken):

@@ -189,7 +189,7 @@ def test_the_demo_without_a_display_renders_a_video_and_says_what_happened(
     assert len(pictures) == 60 + ENDING_S * ENDING_RATE
     assert pictures[-1].time == pytest.approx(59 / 30 + ENDING_S, abs=0.01)
     before, last = (pictures[index].to_ndarray(format="gray") for index in (59, -1))
-    middle = np.s_[250:500, 420:860]
+    middle = np.s_[125:250, 210:430]
     assert last[middle].mean() > before[middle].mean() + 50, "no card lies over the last picture"
 
 

@@ -39,17 +39,19 @@ def on_screen(tmp_path):
         yield run
 
 
-def test_the_window_shows_the_picture_and_handles_keys(on_screen, short_session):
-    done = on_screen(SCRIPT, short_session)
+@pytest.mark.slow(reason="a window is opened")
+def test_the_window_shows_the_picture_and_handles_keys(on_screen, bundled_session):
+    done = on_screen(SCRIPT, bundled_session)
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.slow(reason="a window is opened for two seconds and more")
 def test_a_replay_opens_the_window_and_waits_for_the_user_at_the_end(
     on_screen, short_session, tmp_path
 ):
     done = on_screen(REPLAY_SCRIPT, "replay", short_session)
     assert done.returncode == 0, done.stderr
-    counted = re.findall(r"(?:played|left out) +(\d+) frames", done.stdout)
+    counted = re.findall(r"(?:played|left out) +(\d+) frames?\b", done.stdout)
     assert sum(map(int, counted)) == 60
     assert "waited 5 times" in done.stderr
     kept = PreferenceStore(next(tmp_path.rglob("preferences.toml"))).now
