@@ -124,7 +124,7 @@ def test_the_label_of_a_robot_without_feedback_is_its_closest_mood():
 @pytest.mark.parametrize(
     ("name", "personality"),
     some([("companion", None), ("follow", "shy"), ("sketch", None), ("companion", "lively"),
-          ("follow", None)], 3),
+          ("follow", None)]),
 )  # fmt: skip
 def test_character_likeness_and_robot_show_one_mood(name, personality, hand, virtual_robot):
     pair, words, labels, since = Pair(), list[str](), set[str](), -math.inf
@@ -160,8 +160,9 @@ def follow(hand, *parts):
     known = Inputs(actions=animator.actions if animator else ())
     felt = []
     for seconds, first in parts:
-        for number in range(round(seconds * 30)):
+        for number in range(round(seconds * 10)):
             controls = hand.frame(**(first if number == 0 else {}))
+            hand.frames += 2  # a camera of ten frames a second
             outcome = scenario.update(controls, posed, known)
             posed = animator.update(outcome.command) if animator else None
         felt.append(outcome.emotion)

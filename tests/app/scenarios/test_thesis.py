@@ -16,7 +16,7 @@ from cubeling.characters import CharacterCommand
 from cubeling.tracking.synthetic import open_synthetic
 from tests.examples import some
 
-SMALL = "width=640&height=360&rate=12&clutter=0&shadow=0&hand=0"
+SMALL = "width=480&height=270&rate=12&clutter=0&shadow=0&hand=0"
 
 
 @pytest.fixture(scope="module")

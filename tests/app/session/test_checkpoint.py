@@ -18,7 +18,7 @@ from cubeling.app.session.encoding import encode
 from cubeling.characters.rendering import create_context
 from cubeling.tracking import StoredFrames, open_source
 
-SKIPPED, BEFORE, AFTER = 150, 12, 5
+SKIPPED, BEFORE, AFTER = 30, 12, 5
 
 
 def messages(playground, frames):
