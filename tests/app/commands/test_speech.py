@@ -14,6 +14,7 @@ from cubeling.characters import CharacterError
 from cubeling.characters.speech.speech import Phone, Speech, Word
 from cubeling.characters.speech.textgrid import read_textgrid, textgrid_of, write_textgrid
 from cubeling.characters.speech.voices.espeak import espeak_installed
+from tests.examples import some
 
 needs_espeak = pytest.mark.skipif(not espeak_installed(), reason="eSpeak NG is not installed")
 RATE = 16_000
@@ -60,7 +61,7 @@ def test_the_table_names_the_word_of_an_accent(recording):
     assert row.split()[-1] == "ma"
 
 
-@pytest.mark.parametrize("suffix", [".png", ".svg", ".pdf"])
+@pytest.mark.parametrize("suffix", some([".svg", ".png", ".pdf"]))
 def test_a_plot_is_written(recording, tmp_path, suffix):
     target = tmp_path / f"plot{suffix}"
     grid = recording.with_suffix(".TextGrid")

@@ -18,6 +18,7 @@ from cubeling.characters import Animator, Character
 from cubeling.characters.control.layers import FootLockLayer
 from cubeling.tracking import open_source
 from tests.characters.commands import command
+from tests.examples import some
 
 TICK = np.full(480, 0.8) * np.sin(np.arange(480) * 2 * np.pi / 24)
 """10 ms of 2 kHz."""
@@ -45,7 +46,7 @@ def flashes(path):
         return [f.time for f in file.decode(video=0) if f.to_ndarray(format="gray").mean() > 128]
 
 
-@pytest.mark.parametrize("suffix", [".mp4", ".mkv", ".webm"])
+@pytest.mark.parametrize("suffix", some([".mp4", ".webm", ".mkv"], 2))
 @pytest.mark.parametrize("live", [False, True])
 def test_a_sound_is_heard_with_its_picture(tmp_path, suffix, live):
     gaps = np.random.default_rng(5).choice([0.02, 0.033, 0.05, 0.3], 60) if live else [1 / 30] * 60

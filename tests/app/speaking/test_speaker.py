@@ -34,11 +34,11 @@ for line in sys.stdin.buffer:
 
 
 @pytest.fixture(scope="module")
-def spoken(tmp_path_factory, lifting_session) -> Path:
+def spoken(tmp_path_factory, short_session) -> Path:
     """A session in which a voice is installed that buzzes."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(voices, "espeak", lambda: Voice((sys.executable, "-S", "-c", BUZZ)))
-        return recording_of(lifting_session, tmp_path_factory.mktemp("spoken"))
+        return recording_of(short_session, tmp_path_factory.mktemp("spoken"))
 
 
 def recording_of(source: Path, tmp_path: Path) -> Path:
@@ -90,11 +90,11 @@ def test_without_a_voice_a_character_is_silent_unless_it_was_asked_to_speak(tmp_
 
 
 def test_a_voice_that_always_dies_is_given_up_and_the_session_goes_on(
-    tmp_path, lifting_session, monkeypatch
+    tmp_path, short_session, monkeypatch
 ):
     dying = (sys.executable, "-S", "-c", "import sys; sys.stdin.readline()")
     monkeypatch.setattr(voices, "espeak", lambda: Voice(dying))
-    assert said_in(recording_of(lifting_session, tmp_path)) == []
+    assert said_in(recording_of(short_session, tmp_path)) == []
 
 
 def test_a_line_that_begins_in_a_frame_that_is_left_out_begins_in_the_next(spoken):
