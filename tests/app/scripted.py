@@ -15,7 +15,7 @@ from cubeling.tracking.synthetic import SyntheticSource, open_synthetic
 PICTURE_WIDTH, PICTURE_HEIGHT = 320, 180
 """Size of the pictures [px]."""
 
-RATE = 10.0
+RATE = 6.0
 """Frames per second."""
 
 VARIANCE = np.diag([1e-4**2] * 3 + [1e-3**2] * 3)
@@ -53,12 +53,13 @@ def play_script(
     record: Path | None = None,
     progress: Progress | None = None,
     seconds: float | None = None,
+    script: str = "",
 ) -> None:
-    """Play the script of a bundled recording, with the true pose of the cube in every frame."""
-    script = open_synthetic(f"{name}?rate={RATE:g}&size={PICTURE_WIDTH}x{PICTURE_HEIGHT}")
+    """Play a script, that of a bundled recording, with the true pose of the cube in every frame."""
+    source = open_synthetic(f"{script or name}?rate={RATE:g}&size={PICTURE_WIDTH}x{PICTURE_HEIGHT}")
 
     def track(frame: Frame) -> CubeState:
-        pose = script.truth(frame.index)
+        pose = source.truth(frame.index)
         still = np.zeros(6)
         return CubeState(True, pose, still, VARIANCE, "markers", (), 0.1, frame.timestamp)
 
@@ -67,7 +68,7 @@ def play_script(
     )
     with (
         pytest.MonkeyPatch.context() as patch,
-        open_session(options, source=Blank(script)) as session,
+        open_session(options, source=Blank(source)) as session,
     ):
         patch.setattr(session.playground, "track", track)
         run(session, progress)

@@ -94,7 +94,7 @@ def test_a_character_stands_as_the_person(anna: Path) -> None:
     for animator, least, most in ((lively, 0.5, 1.0), (still, 0.0, 0.2)):
         aside = np.array([
             animator.update(CharacterCommand(t)).pose.translations[hips, 0]
-            for t in np.arange(0.0, 30.0, 1 / 12)
+            for t in np.arange(0.0, 30.0, 1 / 6)
         ])  # fmt: skip
         assert least <= np.mean(np.abs(aside) > 0.045) <= most
 
@@ -107,7 +107,7 @@ def test_a_smaller_character_stands_so_too(anna: Path) -> None:
     hips = human.anatomy.joints["hips"]
     motions = [standing_as(each, anna).standing for each in (human, child)]
     ways = [
-        np.ptp([motion.sample(t).translations[hips, 0] for t in np.arange(0.0, 12.0, 0.1)])
+        np.ptp([motion.sample(t).translations[hips, 0] for t in np.arange(0.0, 12.0, 0.2)])
         for motion in (make(0) for make in motions if make is not None)
     ]
     assert ways[1] / ways[0] == pytest.approx(0.8, abs=0.08)

@@ -13,7 +13,8 @@ from cubeling.characters.ik.solvers.solving import SOLVERS
 def test_bench_prints_table_7_1_beside_what_we_measure(monkeypatch: pytest.MonkeyPatch) -> None:
     some = {name: SOLVERS[name] for name in ("springs", "damped")}
     monkeypatch.setattr("cubeling.characters.motion.SOLVERS", some)
-    monkeypatch.setattr("cubeling.app.commands.ik_figures._PATH_FRAMES", 5)
+    for name, few in (("_PATH_FRAMES", 5), ("_REPEATS", 1), ("_SINGLES", 3), ("_FOLLOWED", 3)):
+        monkeypatch.setattr(f"cubeling.app.commands.ik_figures.{name}", few)
     run = CliRunner(env={"COLUMNS": "150"}).invoke(app, ["bench", "--targets", "10"])
     assert run.exit_code == 0, run.output
     for method in some:

@@ -12,6 +12,7 @@ SCRIPT = Path(__file__).with_name("window_script.py")
 ROOT = SCRIPT.parents[3]
 
 
+@pytest.mark.slow(reason="a window is opened")
 def test_a_gesture_is_made_and_saved_in_the_window(tmp_path):
     if not VirtualScreen.installed():
         pytest.skip("Xvfb is not installed")

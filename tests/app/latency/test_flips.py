@@ -8,6 +8,7 @@ from cubeling.app.latency.flips import FlipDetector, picture_age
 from cubeling.app.latency.session import PATIENCE_S, LatencySession
 from cubeling.tracking import LiveFrames
 from tests.app.latency.simulated import SimulatedCamera, SimulatedClock, SimulatedScreen
+from tests.examples import some
 
 
 def opened(lag=0.0, **camera):
@@ -25,13 +26,16 @@ def measured(count=16, lag=0.0, seed=1, **camera):
 
 @pytest.mark.parametrize(
     ("lag", "camera"),
-    [
-        (0.0, {"exposure": 0.004, "readout": 0.0, "delay": 0.02}),
-        (0.012, {"exposure": 0.033, "readout": 0.025, "delay": 0.05}),
-        (0.03, {"exposure": 0.016, "delay": 0.4, "noise": 8.0, "mirror": True}),
-        (0.02, {"rate": 15.0, "exposure": 0.06, "delay": 0.03}),
-        (0.01, {"rate": 60.0, "delay": 0.06, "jitter": 0.006}),
-    ],
+    some(
+        [
+            (0.03, {"exposure": 0.016, "delay": 0.4, "noise": 8.0, "mirror": True}),
+            (0.012, {"exposure": 0.033, "readout": 0.025, "delay": 0.05}),
+            (0.0, {"exposure": 0.004, "readout": 0.0, "delay": 0.02}),
+            (0.02, {"rate": 15.0, "exposure": 0.06, "delay": 0.03}),
+            (0.01, {"rate": 60.0, "delay": 0.06, "jitter": 0.006}),
+        ],
+        2,
+    ),
 )
 def test_the_age_of_a_picture_is_right_within_two_milliseconds(lag, camera):
     session, source = measured(lag=lag, **camera)

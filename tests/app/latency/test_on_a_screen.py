@@ -22,6 +22,7 @@ def screen():
         yield opened
 
 
+@pytest.mark.slow(reason="a window is opened, and filmed")
 def test_the_camera_sees_the_flips_of_the_window(screen, tmp_path):
     camera = ScreenCamera(screen.pixels(), DELAY_S, RATE)
     asked = ("--flips", str(FLIPS), "--scenario", "none", "--json", "l.json")

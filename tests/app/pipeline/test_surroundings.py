@@ -22,7 +22,7 @@ FRAMES = 12
 
 @pytest.fixture(scope="module")
 def source():
-    return open_synthetic("static")
+    return open_synthetic("static?clutter=0")
 
 
 @pytest.fixture(scope="module")

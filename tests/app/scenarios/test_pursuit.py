@@ -1,15 +1,16 @@
 """What a character that goes after the cube feels about, and where it stops."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import tests.sessions
 from cubeling.affect import Personality
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.scenarios import make_scenario
 from cubeling.app.scenarios.pursuit import IGNORED_S, Pursuit
-from cubeling.app.session.bundled import bundled
 from cubeling.characters import Animator, Character, RootDelta
 from tests.bundled_characters import bundled_character
 from tests.characters.commands import command
@@ -91,9 +92,9 @@ def test_the_character_stops_before_it_stands_in_the_cube(hand, name):
     assert max(moods) > moods[0] + 0.2  # it is glad to have come
 
 
-@pytest.mark.slow(reason="the character hops after some seconds of tracking")
 def test_a_character_that_hops_is_told_with_the_command_that_gives_it_a_walk(cubeling):
-    part = (bundled("follow"), "--end", "8", "--no-pictures")
+    session = Path(tests.sessions.__path__[0]) / "intents.mcap"  # in which it goes all the time
+    part = (session, "--from", "controls", "--no-pictures")
     code, out, _ = cubeling("replay", *part, "--character", "vleo")
     assert code == 0
     said = " ".join(out.split())

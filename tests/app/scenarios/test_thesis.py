@@ -8,12 +8,14 @@ import pytest
 
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import EmotionTarget
+from cubeling.app.pipeline.step import Step
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.scenarios.speed import SPEED_MAPS
 from cubeling.app.session import messages
 from cubeling.app.session.encoding import decode
 from cubeling.characters import CharacterCommand
 from cubeling.tracking.synthetic import open_synthetic
+from tests.app.scripted import play_script
 from tests.examples import some
 
 SMALL = "width=480&height=270&rate=12&clutter=0&shadow=0&hand=0"
@@ -44,12 +46,24 @@ def test_speed_is_the_same_either_way_round(whole_turn):
         assert angle == pytest.approx(np.pi * abs((2 * turn + 1) % 2 - 1), abs=0.02)
 
 
-@pytest.fixture(scope="module")
-def two_turns():
-    """A kiss face put down, two turns up, four down, two up: the commands of every frame."""
+def from_script():
+    """Return the steps with the true pose of the cube in every frame."""
+    steps: list[Step] = []
+    play_script("companion", script="turns", progress=steps.append)
+    return steps
+
+
+def from_pictures():
+    """Return the steps with the cube tracked."""
     with open_synthetic(f"turns?{SMALL}") as source:
         playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
-        steps = [playground.step(frame) for frame in source]
+        return [playground.step(frame) for frame in source]
+
+
+@pytest.fixture(scope="module", params=some([from_script, from_pictures]))
+def two_turns(request):
+    """A kiss face put down, two turns up, four down, two up: the commands of every frame."""
+    steps = request.param()
     return [(step.command, step.controls) for step in steps if step.command.activity == "kiss"]
 
 

@@ -11,6 +11,7 @@ from tests.app.ui.panels.panels_script import NO_WINDOW
 SCRIPT = Path(__file__).with_name("panels_script.py")
 
 
+@pytest.mark.slow(reason="a window is opened")
 def test_panels_are_drawn_moved_opened_closed_and_change_settings(short_session, tmp_path):
     done = subprocess.run(
         [sys.executable, SCRIPT, short_session, tmp_path],
