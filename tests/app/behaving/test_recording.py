@@ -68,6 +68,7 @@ def test_a_way_is_in_the_root_of_the_motion():
     assert ended == pytest.approx(3.0, abs=1.5)
 
 
+@pytest.mark.slow(reason="seven seconds are performed")
 def test_a_voice_that_is_late_does_not_make_the_body_jump():
     behaviours = """<speech id="s" start="0"><text>One <sync id="m"/>two three four</text></speech>
         <head lexeme="NOD" stroke="s:m"/><gaze target="cube" end="s:end" influence="WAIST"/>"""

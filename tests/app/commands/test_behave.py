@@ -32,6 +32,7 @@ def document(tmp_path):
     return path
 
 
+@pytest.mark.slow(reason="a video is drawn")
 def test_a_file_becomes_a_video_with_sound_and_its_feedback_a_file(
     buzz, document, tmp_path, capsys
 ):

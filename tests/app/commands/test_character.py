@@ -62,6 +62,7 @@ def paper(picture):
     return np.abs(picture.astype(int) - PAPER_BGR).max(axis=2) <= 6
 
 
+@pytest.mark.slow(reason="a character is drawn from all sides")
 def test_inspect_describes_and_draws_a_bundled_character(cubeling):
     code, out, err = cubeling("character", "inspect", "human", "-o", "seen")
     assert (code, err) == (0, "")
@@ -74,6 +75,7 @@ def test_inspect_describes_and_draws_a_bundled_character(cubeling):
     assert "seen/turntable.png" in out
 
 
+@pytest.mark.slow(reason="a character is written, read and drawn")
 def test_long_names_of_clips_are_shown_whole(cubeling, monkeypatch):
     name = "Armature|" + "".join(chr(97 + number % 26) for number in range(71))
     monkeypatch.setenv("COLUMNS", "80")

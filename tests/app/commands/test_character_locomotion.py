@@ -9,6 +9,7 @@ from cubeling.characters.locomotion.gaits import WALK_CLIPS
 from tests.characters.retargeting.conftest import straight_only as straight_only
 
 
+@pytest.mark.slow(reason="clips are made and written")
 def test_one_command_makes_a_character_that_walks(cubeling, tmp_path):
     target = tmp_path / "mine.glb"
     code, out, _ = cubeling(

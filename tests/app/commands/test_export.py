@@ -39,6 +39,7 @@ def exported(cubeling, short_session):
     }
 
 
+@pytest.mark.slow(reason="two sessions are exported")
 def test_every_message_is_a_row_with_its_session_and_labels(exported):
     for name, topic in (("poses", "/cube/state"), ("emotions", "/robot/emotion")):
         for rows in (table(name), lines(name)):

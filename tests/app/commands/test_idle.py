@@ -86,6 +86,7 @@ def test_shows_how_a_bundled_character_stands(cubeling) -> None:
     assert "with 44 balance shifts" in out
 
 
+@pytest.mark.slow(reason="a character stands for a minute")
 def test_a_character_stands_as_the_person(anna: Path) -> None:
     human = Character.load("human")
     lively = Animator(standing_as(human, anna), scale=1.0)

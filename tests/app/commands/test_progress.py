@@ -66,6 +66,7 @@ def test_ctrl_c_before_the_first_picture_leaves_nothing(cubeling, short_session,
     assert not list(Path().iterdir())
 
 
+@pytest.mark.slow(reason="pictures are drawn")
 def test_a_second_ctrl_c_leaves_no_broken_file(
     cubeling, short_session, interrupt_after, monkeypatch
 ):
@@ -111,6 +112,7 @@ def test_ctrl_c_within_a_frame_waits_for_its_end(short_session, tmp_path):
     assert len(list(messages(path, *MESSAGE_TYPES))) == 5 * len(MESSAGE_TYPES)
 
 
+@pytest.mark.slow(reason="a session is computed twice")
 def test_progress_outside_a_terminal_is_plain_lines_on_standard_error(
     cubeling, short_session, monkeypatch
 ):

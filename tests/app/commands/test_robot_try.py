@@ -102,11 +102,11 @@ def test_the_names_of_a_robot_are_neither_markup_nor_control_codes(cubeling, sim
 
 
 def test_a_joint_is_turned_to_its_angle(cubeling):
-    joints = ("--joint", "neck up=-20 deg", "--joint", "torso=0.1rad")
-    code, out, _ = cubeling("robot", "try", "sim", *joints, "--seconds", "1.3")
+    joints = ("--joint", "neck up=-5 deg", "--joint", "torso=0.1rad")
+    code, out, _ = cubeling("robot", "try", "sim", *joints, "--seconds", "0.8")
     assert code == 0
     neck, torso = without_log(out)[1:]
-    assert neck.startswith("neck up=-20 deg reached ")
+    assert neck.startswith("neck up=-5 deg reached ")
     assert torso.startswith("torso=0.1rad reached ")
 
 

@@ -25,6 +25,7 @@ def test_the_examples_become_motions(cubeling, tmp_path, name, rate, frames) -> 
     assert len(load_motion(tmp_path / "a.bvh", scale=1.0).clip) == frames
 
 
+@pytest.mark.slow(reason="a character is written, and a film")
 def test_it_writes_characters_and_films(cubeling, tmp_path) -> None:
     schedule = str(EXAMPLES / "fade.xml")
     assert cubeling("schedule", schedule, "-o", "fade.glb")[0] == 0
@@ -46,6 +47,7 @@ def test_motions_are_found_beside_the_schedule(cubeling, tmp_path) -> None:
     assert "126 frames, 5.00 s" in out
 
 
+@pytest.mark.slow(reason="three characters are written")
 def test_a_gesture_moves_what_depends_on_it(cubeling, tmp_path) -> None:
     plain = (EXAMPLES / "copy.xml").read_text().replace("idle", "wave")
     own = '<blendableobject type="keyframebodyanimation">human#wave</blendableobject>'

@@ -74,6 +74,7 @@ def ran(tmp_path_factory):
     return json.loads(done.stdout)
 
 
+@pytest.mark.slow(reason="a program prints every help")
 def test_no_help_loads_what_only_the_work_needs(ran):
     helps, _ = ran
     assert len(helps) > 40

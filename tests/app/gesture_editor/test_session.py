@@ -27,6 +27,7 @@ def hand_height(preview: Preview, performance: Performance, time: float) -> floa
     return float(placed[1, 3])
 
 
+@pytest.mark.slow(reason="each change is drawn")
 def test_a_gesture_is_made_from_empty_to_saved(opened, tmp_path):
     pictures = draw_tour(tmp_path, tmp_path / "gestures")
     assert len(pictures) == 7

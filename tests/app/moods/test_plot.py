@@ -18,6 +18,7 @@ from tests.examples import some
 THESIS = LABEL_SETS["thesis"]
 
 
+@pytest.mark.slow(reason="the first plot loads fonts")
 def test_the_plot_says_what_it_shows_and_in_which_units(history, companion, tmp_path):
     save_plot(tmp_path / "m.svg", history, (), read_robot_traces(companion), THESIS)
     words = words_of(tmp_path / "m.svg")

@@ -242,6 +242,7 @@ def playground(source, **settings):
     return Playground("companion", intrinsics, cube=source.cube, **settings)
 
 
+@pytest.mark.slow(reason="two sessions are computed")
 def test_an_open_cube_changes_no_message_of_a_session(source, frames):
     steps = [
         [playing.step(frame) for frame in frames[:25]]

@@ -41,6 +41,7 @@ def last_view(source, seen, chosen):
     return [surroundings.view(*each) for each in seen][-1]
 
 
+@pytest.mark.slow(reason="all is measured")
 def test_only_what_was_chosen_is_measured(source, seen):
     plain = last_view(source, seen, ())
     assert plain.cover is None

@@ -41,6 +41,7 @@ def guessed(picture):
     return Intrinsics.guess((width, height))
 
 
+@pytest.mark.slow(reason="two seconds are searched for every cube")
 def test_the_wrong_cube_is_named_within_a_second_or_two(pictures):
     seen = hints(Playground("follow", guessed(pictures[0])), pictures)
     first = seen.index(ADVICE)

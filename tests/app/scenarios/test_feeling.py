@@ -121,6 +121,7 @@ def test_the_label_of_a_robot_without_feedback_is_its_closest_mood():
     assert line.view().label == "neutral"
 
 
+@pytest.mark.slow(reason="a session of many seconds is played")
 @pytest.mark.parametrize(
     ("name", "personality"),
     some([("companion", None), ("follow", "shy"), ("sketch", None), ("companion", "lively"),

@@ -95,6 +95,7 @@ def straight_and_after_a_seek():
     context.release()
 
 
+@pytest.mark.slow(reason="pictures are measured and drawn")
 def test_after_a_seek_what_is_measured_is_as_in_a_straight_run(
     straight_and_after_a_seek, monkeypatch
 ):
@@ -106,6 +107,7 @@ def test_after_a_seek_what_is_measured_is_as_in_a_straight_run(
     np.testing.assert_equal(after_a_seek, straight)
 
 
+@pytest.mark.slow(reason="pictures are drawn")
 def test_after_a_seek_the_pictures_are_as_in_a_straight_run(straight_and_after_a_seek):
     straight, after_a_seek = straight_and_after_a_seek(realism=())
     np.testing.assert_array_equal(after_a_seek, straight)

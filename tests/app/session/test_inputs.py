@@ -62,6 +62,7 @@ def full(tmp_path_factory, short_session):
     return path
 
 
+@pytest.mark.slow(reason="a session is computed twice")
 def test_a_session_with_inputs_of_every_kind_replays_bit_for_bit(full):
     times = [time for _, time, _ in messages(full, "/camera/image")]
     assert start_over_times(full) == {times[START_OVER]}
@@ -72,6 +73,7 @@ def test_a_session_with_inputs_of_every_kind_replays_bit_for_bit(full):
     assert set(result.counts.values()) == {60}
 
 
+@pytest.mark.slow(reason="a session is computed again")
 def test_from_what_came_in_the_same_session_is_computed(full, tmp_path, capsys):
     bare = tmp_path / "full.mcap"
     keep_inputs(full, bare)

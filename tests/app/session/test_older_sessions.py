@@ -78,6 +78,7 @@ def test_an_older_session_is_played_from_what_it_recorded(name, start):
     assert any(step.posed.visible for step in steps)
 
 
+@pytest.mark.slow(reason="two seconds are tracked")
 def test_an_older_session_whose_character_speaks_is_replayed():
     """Bit for bit where processors round alike: its pictures are those that its program saw."""
     path = FOLDER / "spoken.mcap"

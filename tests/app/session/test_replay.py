@@ -69,6 +69,7 @@ def test_an_unknown_start_is_refused(short_session):
         read_replay_inputs(str(short_session), "middle")
 
 
+@pytest.mark.slow(reason="a session is played and checked")
 def test_a_player_who_starts_over_does_so_in_the_replay(tmp_path, short_session):
     class Presses(NullScreen):
         """Presses C after 20 frames."""
@@ -89,6 +90,7 @@ def test_a_player_who_starts_over_does_so_in_the_replay(tmp_path, short_session)
     assert check_session(path, replace(options, source=str(path))).identical
 
 
+@pytest.mark.slow(reason="a session is played and replayed")
 def test_a_player_who_looks_into_the_cube_does_so_in_the_replay(tmp_path, short_session):
     class Looks(NullScreen):
         """Presses I after 10 and after 40 frames, and keeps what was seen."""
@@ -141,6 +143,7 @@ def test_bundled_recordings_are_small_and_hold_what_came_in(name):
     assert bundled(name).stat().st_size < 1.02 * sizes["/camera/image"]
 
 
+@pytest.mark.slow(reason="a session is recorded and checked")
 def test_a_replay_takes_the_character_that_was_recorded(cubeling, short_session, tmp_path):
     code, _, err = cubeling(
         "replay", short_session, "--character", "human", "--no-pictures", "--record", "human.mcap"

@@ -42,6 +42,7 @@ def test_an_encoded_frame_is_not_encoded_again(codec):
     assert frame_encoder(codec, SIZE, 30)(once) is once
 
 
+@pytest.mark.slow(reason="pictures are encoded twice and tracked")
 def test_pictures_that_are_no_jpeg_take_a_tenth_of_it_and_show_the_cube_as_well():
     source = open_synthetic("static?size=640x360&hand=0")
     assert source.intrinsics is not None

@@ -1,6 +1,5 @@
 """The sound of a video: in time with its pictures, to the millisecond."""
 
-import itertools
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -9,14 +8,12 @@ import numpy as np
 import pytest
 
 from cubeling.app.commands.session import progress
-from cubeling.app.pipeline.playground import Playground
-from cubeling.app.running.opening import intrinsics_for, open_sound
-from cubeling.app.session import Recorder, SessionOptions
+from cubeling.app.running.opening import open_sound
+from cubeling.app.session import SessionOptions
 from cubeling.app.sound import Cue, Mixer, SessionSound, SoundBank, SoundCues
 from cubeling.app.ui.video_file import VideoFile
 from cubeling.characters import Animator, Character
 from cubeling.characters.control.layers import FootLockLayer
-from cubeling.tracking import open_source
 from tests.characters.commands import command
 from tests.examples import some
 
@@ -110,17 +107,8 @@ def test_the_end_of_a_video_fades_out(tmp_path):
     assert np.abs(samples[:12_000]).max() > 0.3
 
 
-def test_a_rendered_session_is_heard(cubeling, bundled_session, tmp_path):
-    about = {"scenario": "companion", "cube": "companion"}
-    with (
-        open_source(str(bundled_session)) as source,
-        Recorder(tmp_path / "short.mcap", about) as recorder,
-    ):
-        playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
-        recorder.camera(playground.intrinsics, 0.0)
-        for frame in itertools.islice(source, 13):
-            recorder.write(playground.step(frame))
-    assert cubeling("replay", "short.mcap", "-o", "short.mp4")[0] == 0
+def test_a_rendered_session_is_heard(cubeling, short_session):
+    assert cubeling("replay", short_session, "--end", "0.41", "-o", "short.mp4")[0] == 0
     assert onsets("short.mp4", level=0.02) == pytest.approx([0.3], abs=0.01)  # the cube is put down
 
 

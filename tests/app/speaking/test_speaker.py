@@ -58,6 +58,7 @@ def said_in(path: Path) -> list[str]:
     return list(dict.fromkeys(texts))
 
 
+@pytest.mark.slow(reason="a session is recorded and checked")
 def test_a_session_with_speech_replays_byte_for_byte_without_a_voice(spoken, monkeypatch):
     assert said_in(spoken)
     assert [line.utterance.text for line in spoken_lines(spoken).values()] == said_in(spoken)

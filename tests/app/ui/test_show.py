@@ -204,6 +204,7 @@ def test_the_demo_writes_over_its_own_video_and_over_others_only_when_asked(
         assert Path(name).stat().st_size > 1000
 
 
+@pytest.mark.slow(reason="a session is recorded and checked")
 def test_a_replay_can_be_recorded_again_and_checked(cubeling, short_session):
     code, out, err = cubeling("replay", short_session, "--no-pictures", "--record", "again.mcap")
     assert (code, err) == (0, "")
@@ -223,6 +224,7 @@ def test_what_is_whole_of_a_cut_session_can_be_played(cubeling, short_session):
     assert "cube found" in out
 
 
+@pytest.mark.slow(reason="a session is replayed twice")
 def test_a_lens_that_is_not_as_it_claims_is_named_once_in_play_and_in_the_summary(
     cubeling, short_session, monkeypatch
 ):

@@ -53,6 +53,7 @@ def lit(picture: np.ndarray, color: tuple[int, int, int], by: int) -> int:
     return int((picture[:, :, strongest] - others > by).sum())
 
 
+@pytest.mark.slow(reason="portraits are drawn twice")
 def test_the_same_session_gives_the_same_pictures(context):
     moods = [(0.0, "neutral"), (0.5, "happy"), (0.9, "happy"), (-0.6, "angry")] * 2
     for one, other in zip(played(context, moods), played(context, moods), strict=True):
