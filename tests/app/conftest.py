@@ -153,7 +153,8 @@ def _first_frames(session: Path, count: int, path: Path) -> Path:
         playground = Playground("companion", intrinsics_for(source.intrinsics, SMALL))
         recorder.camera(playground.intrinsics, 0.0)
         for frame in itertools.islice(source, count):
-            image = np.asarray(cv2.resize(frame.image, SMALL, interpolation=cv2.INTER_AREA))
+            small_image = cv2.resize(frame.image, SMALL, interpolation=cv2.INTER_AREA)
+            image = np.asarray(small_image, np.uint8)
             small = dataclasses.replace(frame, image=image, encoded=None, encoding="")
             recorder.write(playground.step(encode(small)))
     return path
