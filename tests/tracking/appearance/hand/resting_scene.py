@@ -1,4 +1,4 @@
-"""Scenes of a hand in which few pictures are drawn before it comes."""
+"""Scenes of a hand in small pictures, of which few are drawn before it comes."""
 
 import functools
 from dataclasses import replace
@@ -8,17 +8,50 @@ import numpy as np
 from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.geometry.arrays import Floats, Image
 from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.synthetic import SyntheticOptions
 from tests.bench.hand_scenes import RATE_HZ, HandScene, HandView
 
 AT_REST = 5
 """Pictures of the desk at rest: they are shown to and fro, and differ by noise and shadow."""
 
+Size = tuple[int, int]
 
-class RestingScene(HandScene):
-    """A cube that a hand takes, turns and slides; the desk before that is drawn five times."""
+SMALL: Size = 640, 360
+"""Of pictures that are drawn in a third of the time of a webcam's, (width, height) [px]. Cube and
+hand are looked for at the same resolution in both."""
 
-    def __init__(self, view: HandView, cube: CubeModel, rate_hz: float = RATE_HZ) -> None:
+FULL: Size = 1280, 720
+"""Of the pictures of a webcam, (width, height) [px]."""
+
+
+class SizedScene(HandScene):
+    """A cube that a hand takes, turns and slides, in pictures of some size."""
+
+    def __init__(
+        self, view: HandView, cube: CubeModel, rate_hz: float = RATE_HZ, size: Size = SMALL
+    ) -> None:
+        self.size = size
+        """Of the pictures, (width, height) [px]."""
         super().__init__(view, cube, rate_hz)
+
+    @property
+    def options(self) -> SyntheticOptions:
+        """How the camera sees."""
+        return self._options
+
+    @options.setter
+    def options(self, options: SyntheticOptions) -> None:
+        width, height = self.size
+        self._options = replace(options, width=width, height=height)
+
+
+class RestingScene(SizedScene):
+    """Such a scene of which the desk at rest is drawn five times."""
+
+    def __init__(
+        self, view: HandView, cube: CubeModel, rate_hz: float = RATE_HZ, size: Size = SMALL
+    ) -> None:
+        super().__init__(view, cube, rate_hz, size)
         held = (index for index in range(self.count) if self.state(index).grip > 0)
         self.first_held = next(held, self.count)
         """Number of the first frame with the hand."""
@@ -30,18 +63,18 @@ class RestingScene(HandScene):
         shown = AT_REST - 1 - abs(index % (2 * AT_REST - 2) - (AT_REST - 1))
         # The hand that will come is not in these pictures.
         view = replace(self.view, skin="000000", azimuth_deg=0.0, exposure=0.0, warmth=0.0)
-        image = _desk_at_rest(view, self.cube.name, self.rate_hz, shown)
+        image = _desk_at_rest(view, self.cube.name, self.rate_hz, self.size, shown)
         nothing = np.zeros(image.shape[:2], np.float32)
         return Frame(image, index / self.rate_hz, index), nothing
 
 
 @functools.lru_cache(6 * AT_REST)
-def _desk_at_rest(view: HandView, cube: str, rate_hz: float, index: int) -> Image:
-    image = _scene(view, cube, rate_hz).frame(index)[0].image
+def _desk_at_rest(view: HandView, cube: str, rate_hz: float, size: Size, index: int) -> Image:
+    image = _scene(view, cube, rate_hz, size).frame(index)[0].image
     image.setflags(write=False)
     return image
 
 
 @functools.lru_cache(1)
-def _scene(view: HandView, cube: str, rate_hz: float) -> HandScene:
-    return HandScene(view, CubeModel.load(cube), rate_hz)
+def _scene(view: HandView, cube: str, rate_hz: float, size: Size) -> SizedScene:
+    return SizedScene(view, CubeModel.load(cube), rate_hz, size)

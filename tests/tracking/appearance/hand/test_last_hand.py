@@ -25,9 +25,6 @@ from tests.tracking.drawn import WIDE, held
 
 CUBE = CubeModel.load("locomotion")
 
-SHAPE = 720, 1280
-"""Of the pictures, (height, width) [px]."""
-
 POSE = held()
 
 EDGE_PX = CUBE.edge * WIDE.matrix[0, 0] / POSE[2, 3]
@@ -124,7 +121,7 @@ def test_a_carried_hand_covers_the_same_as_one_that_is_looked_at():
         if made.state(index).grip > 0.99:
             region = finder.region(made.truth(index))
             shares.append(None if found is None else found.share)
-            cover = covered(found, SHAPE)[region]
+            cover = covered(found, truth.shape)[region]
             scores.append(overlap(cover, truth[region]))
             missed.append(missed_share(cover, truth[region]))
     carried = [now is before for before, now in itertools.pairwise(shares)]
