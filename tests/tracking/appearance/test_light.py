@@ -1,5 +1,6 @@
 """The light that a cube's paper tells."""
 
+import functools
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -21,6 +22,7 @@ from cubeling.tracking.synthetic.paper_cube import PaperCube
 from tests.tracking.drawn import WIDE, held
 
 CUBE = CubeModel.load("locomotion")
+PLANES = FacePlanes(CUBE)
 TO_LIGHT = np.array([-0.5, -0.7, -0.6]) / np.linalg.norm([-0.5, -0.7, -0.6])
 KEY, AMBIENT = np.array([0.5, 0.45, 0.35]), np.array([0.3, 0.32, 0.4])
 UP = np.array([0.0, -1.0, 0.0])
@@ -40,10 +42,8 @@ def lit_one(normal: Array) -> Array:
 
 def picture(pose: Array, shade: Shade = lit_one, gain: float = 1.0) -> Image:
     """Draw the faces as bare paper, (H, W, 3) BGR: ink is where no sample is taken."""
-    seen = np.empty((WIDE.size[1], WIDE.size[0], 3), np.uint8)
-    seen[:] = _encoded(np.full(3, 0.2 * gain))
-    planes = FacePlanes(CUBE)
-    for number in planes.facing(pose, 0.0):
+    seen = _desk(gain).copy()
+    for number in PLANES.facing(pose, 0.0):
         face = CUBE.faces[number]
         right, up = (np.array(axis, float) for axis in FACE_AXES[face.name])
         outline = np.array([(-1, 1), (1, 1), (1, -1), (-1, -1)]) * CUBE.edge / 2
@@ -51,6 +51,13 @@ def picture(pose: Array, shade: Shade = lit_one, gain: float = 1.0) -> Image:
         value = PAPER_ALBEDO * shade(pose[:3, :3] @ face.normal)
         cv2.fillConvexPoly(seen, _pixels(corners, pose), _encoded(value[::-1] * gain).tolist())
     return seen
+
+
+@functools.cache
+def _desk(gain: float) -> Image:
+    """Draw the picture without a cube: filling one takes longer than copying it and all else."""
+    grey = int(_encoded(np.array([0.2 * gain]))[0])
+    return np.full((WIDE.size[1], WIDE.size[0], 3), grey, np.uint8)
 
 
 def _encoded(light: Array) -> Image:
@@ -184,12 +191,12 @@ def test_a_finger_over_a_part_of_a_face_does_not_change_its_patch():
 
 def test_a_face_in_shadow_does_not_turn_the_light():
     pose = held()
-    shaded = int((FacePlanes(CUBE).normals @ pose[:3, :3].T @ TO_LIGHT).argmax())
+    shaded = int((PLANES.normals @ pose[:3, :3].T @ TO_LIGHT).argmax())
     dark_until = 0.4
 
     def shadow(seconds: float) -> Shade:
         def shade(normal: Array) -> Array:
-            face = turned(seconds)[:3, :3] @ FacePlanes(CUBE).normals[shaded]
+            face = turned(seconds)[:3, :3] @ PLANES.normals[shaded]
             dark = seconds > 4 - dark_until and normal @ face > 0.99
             return lit_one(normal) * (0.5 if dark else 1.0)
 
