@@ -1,5 +1,6 @@
 """A cube shown all over the picture tells how the lens bends it; an honest lens is believed."""
 
+import functools
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -33,8 +34,13 @@ def bent(picture: NDArray[np.float32], k1: float) -> NDArray[np.float32]:
     )
 
 
-def shown(k1: float, count: int) -> Iterator[Frame]:
+@functools.lru_cache(1)
+def shown(k1: float, count: int) -> tuple[Frame, ...]:
     """Frames of a cube at rest in many places; each twice, so that the second one is followed."""
+    return tuple(drawn(k1, count))
+
+
+def drawn(k1: float, count: int) -> Iterator[Frame]:
     random = np.random.default_rng(3)
     for index in range(count):
         turn = random.uniform((0.4, 0.4, -0.5), (0.8, 0.8, 0.5))
@@ -43,6 +49,7 @@ def shown(k1: float, count: int) -> Iterator[Frame]:
         x, y, z = turn.tolist()
         pose = held(x, y, z, at=(float(sides[0]), float(sides[1]), depth))
         picture = photograph(bent(scene((CUBE, pose)), k1), seed=index)
+        picture.setflags(write=False)
         for again in range(2):
             yield Frame(picture, 2.0 * index + again / 30, 2 * index + again)
 
@@ -73,7 +80,7 @@ def test_an_honest_lens_is_believed(k1: float) -> None:
 
 
 def test_a_cube_at_rest_counts_once() -> None:
-    tracker, still = CubeTracker(CUBE, CAMERA), next(shown(K1, 1))
+    tracker, still = CubeTracker(CUBE, CAMERA), next(drawn(K1, 1))
     deviations = set()
     for index in range(8):
         tracker.update(replace(still, timestamp=index / 30, index=index))

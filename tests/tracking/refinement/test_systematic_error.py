@@ -67,7 +67,9 @@ def solved_with_k1(points: Array, pixels: Array, start: Array) -> Array:
         off = (seen - pixels).ravel() / corner_error_px(start)
         return np.append(off, change[6] / CLAIMED_LENS[0])
 
-    return np.asarray(least_squares(residuals, np.zeros(7), x_scale="jac").x[:6], np.float64)
+    return np.asarray(
+        least_squares(residuals, np.zeros(7), x_scale="jac", method="lm").x[:6], np.float64
+    )
 
 
 CLAIMED_LENS, MEASURED_LENS = (0.1, CLAIMED_FOCAL), (0.005, MEASURED_FOCAL)

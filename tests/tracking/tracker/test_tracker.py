@@ -205,7 +205,7 @@ def test_the_top_face_is_right_in_every_resting_frame(name: str) -> None:
 
 
 def test_the_first_frames_of_a_scene_give_the_right_top_face() -> None:
-    source = open_synthetic("static")
+    source = open_synthetic("static?size=640x360")
     assert source.intrinsics is not None
     tracker, gestures = CubeTracker(source.cube, source.intrinsics), CubeGestures(source.cube)
     for index in range(18):
