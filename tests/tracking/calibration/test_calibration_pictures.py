@@ -162,13 +162,17 @@ def test_one_photograph_of_a_board_fits_its_camera_but_does_not_determine_it():
         calibrate([view] * 8, target).check()
 
 
-def board_picture(board, camera, pose):
-    """The board as a camera sees it, (H, W): each pixel's ray meets the board's plane."""
+def rays_of(camera):
+    """The direction that each pixel sees, (H, W, 3)."""
     width, height = camera.size
     x, y = np.meshgrid(np.arange(width), np.arange(height))
     straight = camera.undistorted(np.stack([x, y], axis=-1).astype(np.float64))
     rays = np.concatenate([straight, np.ones((height, width, 1))], axis=-1)
-    rays = rays @ np.linalg.inv(camera.matrix).T
+    return rays @ np.linalg.inv(camera.matrix).T
+
+
+def board_picture(board, rays, pose):
+    """The board as a camera sees it, (H, W): each pixel's ray meets the board's plane."""
     turn, origin = pose[:3, :3], pose[:3, 3]
     reach = (origin @ turn[:, 2]) / (rays @ turn[:, 2])
     places = (reach[..., None] * rays - origin) @ turn
@@ -193,14 +197,14 @@ def test_waving_a_board_determines_the_lens():
     board = Board()
     finder = BoardFinder(board)
     collector = ViewCollector(finder, camera.size)
-    random = np.random.default_rng(3)
+    random, rays = np.random.default_rng(3), rays_of(camera)
     for stop in range(15):
         way = 2 * np.pi * stop / 4
         tilt = np.deg2rad(random.uniform(20, 40)) * np.array([np.cos(way), np.sin(way), 0])
         turn = se3.rotation(tilt) @ se3.rotation(np.array([0, 0, random.uniform(-0.5, 0.5)]))
         middle = np.array([*random.uniform(-0.09, 0.09, 2), random.uniform(0.30, 0.42)])
         pose = se3.pose(turn, middle - turn @ board.points.mean(axis=0))
-        picture = board_picture(board, camera, pose)
+        picture = board_picture(board, rays, pose)
         for shift in (0.0, 0.05):
             collector.update(Frame(picture, stop + shift, 0))
     found = calibrate(collector.views, finder.target(camera.size))

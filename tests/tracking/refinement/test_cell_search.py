@@ -12,6 +12,7 @@ from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.projection import Projection
 from cubeling.tracking.refinement.cell_search import CellMatch, CellSearch
+from tests.examples import some
 from tests.tracking.drawn import held
 from tests.tracking.refinement.seen_softly import CAMERA, Cover, corners_off, drawn, patch
 
@@ -45,8 +46,11 @@ def mirrored(pose: Array) -> Array:
     return planes.mirrored(pose, planes.names.index("front"))
 
 
-@pytest.mark.parametrize("lean", [0.3, 0.5, 0.8])
-@pytest.mark.parametrize("distance", [0.6, 1.5, 2.2])
+TILTS = [(lean, distance) for distance in (2.2, 0.6, 1.5) for lean in (0.3, 0.5, 0.8)]
+"""Lean [rad] and distance [m]."""
+
+
+@pytest.mark.parametrize(("lean", "distance"), some(TILTS, 2))
 def test_the_true_lean_has_more_evidence_than_the_mirrored_one(
     lean: float, distance: float
 ) -> None:
@@ -66,7 +70,7 @@ def test_a_lone_face_near_by_tells_its_lean_by_perspective(lean: float) -> None:
     assert right.evidence.clearly_exceeds(wrong.evidence)
 
 
-@pytest.mark.parametrize("distance", [0.9, 1.5, 2.2])
+@pytest.mark.parametrize("distance", some([0.9, 1.5, 2.2]))
 def test_the_mirrored_lean_of_a_lone_face_is_never_clearly_better(distance: float) -> None:
     for lean in (0.3, 0.5, 0.8):
         pose = held(lean, 0.1, 0.2, at=(0.02, 0.01, distance))

@@ -19,6 +19,7 @@ from cubeling.tracking.refinement.photometry.motion_blur_alignment import Motion
 from cubeling.tracking.refinement.photometry.photometric_fit import Alignment
 from cubeling.tracking.tracker.local_search import LocalTracker
 from cubeling.tracking.tracker.prediction import Track, TrackedPose
+from tests.examples import some
 from tests.tracking.drawn import CAMERA, held, off, photograph, scene
 
 Array = NDArray[np.float64]
@@ -80,10 +81,13 @@ def shots() -> list[Shot]:
     return shots
 
 
-@pytest.fixture(scope="module")
-def alignments(shots: list[Shot]) -> list[tuple[Shot, Alignment | None]]:
+@pytest.fixture(scope="module", params=some([1, 4]), ids="{} starts".format)
+def alignments(
+    shots: list[Shot], request: pytest.FixtureRequest
+) -> list[tuple[Shot, Alignment | None]]:
     random = np.random.default_rng(2)
-    return [(each, each.align(offset_pose(each.pose, random))) for each in shots for _ in range(4)]
+    starts = range(request.param)
+    return [(each, each.align(offset_pose(each.pose, random))) for each in shots for _ in starts]
 
 
 def test_the_pose_is_found_from_three_millimetres_and_two_degrees_off(

@@ -17,6 +17,7 @@ from cubeling.tracking.gestures.gestures import CubeGestures
 from cubeling.tracking.gestures.table import SIDE_NORMALS
 from cubeling.tracking.synthetic import open_synthetic
 from cubeling.tracking.tracker.tracker import CubeTracker
+from tests.examples import some
 from tests.tracking.drawn import CAMERA, held, off, photograph, scene
 
 Array = NDArray[np.float64]
@@ -55,7 +56,7 @@ def test_a_sharp_cube_is_found_to_a_tenth_of_a_millimetre() -> None:
     assert np.mean(inside) > 0.8
 
 
-@pytest.mark.parametrize("name", ["fingers", "companion"])
+@pytest.mark.parametrize("name", some(["fingers", "companion"]))
 def test_the_covariance_holds_where_edges_are_parallel_to_rows_of_pixels(name: str) -> None:
     source = open_synthetic(name)
     assert source.intrinsics is not None
@@ -192,7 +193,7 @@ def true_states(name: str) -> Iterator[tuple[CubeState, str]]:
         )
 
 
-@pytest.mark.parametrize("name", ["tip", "companion"])
+@pytest.mark.parametrize("name", some(["tip", "companion"]))
 def test_the_top_face_is_right_in_every_resting_frame(name: str) -> None:
     gestures = CubeGestures(open_synthetic(name).cube)
     tops = []
