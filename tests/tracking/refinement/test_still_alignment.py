@@ -15,7 +15,7 @@ from cubeling.tracking.geometry.image_region import Patch
 from cubeling.tracking.geometry.projection import Projection
 from cubeling.tracking.refinement.evidence import Evidence
 from cubeling.tracking.refinement.photometry.still_alignment import StillAligner, StillAlignment
-from tests.examples import examples
+from tests.examples import examples, some
 from tests.tracking.drawn import held
 from tests.tracking.refinement.seen_softly import CAMERA, corners_off, drawn, patch
 
@@ -80,7 +80,7 @@ def test_the_pose_is_found_from_half_a_cell_off_in_any_focus_and_light(
     assert min(found.correlations.values()) > 0.85
 
 
-@pytest.mark.parametrize("blur", [0.6, 1.2, 2.5])
+@pytest.mark.parametrize("blur", some([1.2, 0.6, 2.5]))
 def test_the_blur_is_measured(blur: float) -> None:
     pose = held(at=(0.004, -0.006, distance_of(8)))
     for bloom in (0.0, 0.4):
@@ -89,7 +89,7 @@ def test_the_blur_is_measured(blur: float) -> None:
         assert off_px(found, pose) < 0.3
 
 
-@pytest.mark.parametrize("bloom", [0.0, 0.2, 0.4])
+@pytest.mark.parametrize("bloom", some([0.4, 0.0, 0.2]))
 @pytest.mark.parametrize("cell_px", [3.2, 5.6])
 def test_the_bloom_is_measured(bloom: float, cell_px: float) -> None:
     pose = held(at=(0.004, -0.006, distance_of(cell_px)))
@@ -106,7 +106,7 @@ def test_cells_of_two_pixels_are_enough() -> None:
 
 
 @pytest.mark.parametrize("cell_px", [3.2, 7.5])
-@pytest.mark.parametrize("skin", [0.05, 0.35, 0.6])
+@pytest.mark.parametrize("skin", some([0.35, 0.05, 0.6]))
 def test_a_finger_over_a_third_of_a_marker_leaves_the_pose(cell_px: float, skin: float) -> None:
     pose = held(at=(0.004, -0.006, distance_of(cell_px)))
     covers = {"front": (-0.1, -0.1, 1 / 3, 1.1)}

@@ -10,6 +10,7 @@ from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.tracker.several import CubesTracker
 from cubeling.tracking.tracker.tracker import CubeTracker
+from tests.examples import some
 from tests.tracking.drawn import CAMERA, held, off, photograph, scene
 
 Array = NDArray[np.float64]
@@ -32,7 +33,9 @@ def frame(number: int, *cubes: CubeModel) -> Frame:
     return Frame(picture, number / RATE, number)
 
 
-@pytest.mark.parametrize("cubes", [(LEFT, RIGHT), (RIGHT, LEFT)], ids=lambda c: c[0].name)
+@pytest.mark.parametrize(
+    "cubes", some([((LEFT, RIGHT),), ((RIGHT, LEFT),)]), ids=lambda c: c[0].name
+)
 def test_two_cubes_are_followed_in_the_order_given(cubes: tuple[CubeModel, ...]) -> None:
     tracker = CubesTracker(cubes, CAMERA)
     assert tuple(each.cube for each in tracker.trackers) == cubes
