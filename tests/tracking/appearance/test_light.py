@@ -221,7 +221,6 @@ def test_the_light_is_still_on_a_still_picture():
     np.testing.assert_allclose(last.key, before.key, rtol=0.02)
 
 
-@pytest.mark.slow(reason="light is measured over seconds")
 def test_the_light_does_not_depend_on_the_frame_rate():
     slow, fast = shown(15, 3.0), shown(45, 3.0)
     assert degrees(slow, fast.to_light) < 3
@@ -254,7 +253,6 @@ def test_a_recording_that_is_wound_back_is_measured_on():
     np.testing.assert_allclose(after.key, 0.7 * before.key, rtol=0.06)
 
 
-@pytest.mark.slow(reason="light is measured over seconds")
 def test_a_lamp_that_moves_is_followed():
     other = TO_LIGHT * (-1, 1, 1)
 

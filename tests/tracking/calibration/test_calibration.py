@@ -48,6 +48,7 @@ def test_focal_length_to_half_a_percent_and_folds_to_a_fifth_of_a_millimetre(see
     assert after.max() < 0.0002
 
 
+@pytest.mark.slow(reason="all views are adjusted together, in four stages")
 @pytest.mark.parametrize("focal", some([560.0, 1500.0]))
 def test_wide_and_long_lenses_are_found_without_a_hint(focal):
     camera = np.array([focal, focal, *TRUE[2:]])
@@ -56,6 +57,7 @@ def test_wide_and_long_lenses_are_found_without_a_hint(focal):
     assert abs(found.intrinsics.matrix[0, 0] / focal - 1) < max(0.005, 3 * found.focal_spread)
 
 
+@pytest.mark.slow(reason="all views are adjusted together, in four stages")
 def test_frontal_views_of_one_side_are_refused():
     views, _ = views_of(4, count=20, tilt=5.0, only_main=True)
     with pytest.raises(TrackingError, match="tilted more, in every direction") as caught:
@@ -69,6 +71,7 @@ def test_too_few_views_are_refused():
         calibrate(views, TARGET)
 
 
+@pytest.mark.slow(reason="all views are adjusted together, in four stages")
 def test_outlier_views_are_dropped():
     views, _ = views_of(6, count=24)
     random = np.random.default_rng(0)
@@ -107,6 +110,7 @@ def test_derivatives_match_finite_differences():
         np.testing.assert_allclose(own[:, number], slope, rtol=1e-3, atol=0.2)
 
 
+@pytest.mark.slow(reason="all views are adjusted together, in four stages")
 @pytest.mark.parametrize(
     ("change", "degraded"),
     some(
@@ -126,6 +130,7 @@ def test_a_saved_camera_is_ok_until_it_has_changed(change, degraded):
     assert verdict.focal_change == pytest.approx(-change[0] / (900 + change[0]), abs=0.004)
 
 
+@pytest.mark.slow(reason="all views are adjusted together, in four stages")
 def test_a_saved_camera_of_the_rational_model_can_be_checked():
     views, _ = views_of(9, count=18, noise=0.05)
     plain = camera_vector.to_intrinsics(TRUE, SIZE)

@@ -37,7 +37,7 @@ def photograph(*names):
     return np.asarray(grey, np.uint8)
 
 
-@pytest.mark.slow(reason="a camera is calibrated from 54 drawn pictures")
+@pytest.mark.slow(reason="a camera is calibrated from 27 drawn pictures")
 def test_waving_a_cube_determines_lens_and_folding_errors():
     source = open_synthetic("wave?fold=0.8&seed=4&clutter=0&noise=3&size=960x540")
     cube = CubeModel.load("locomotion")
@@ -109,6 +109,7 @@ def test_unknown_paper_and_unwritable_paths_are_refused(tmp_path):
         write_board(tmp_path / "none" / "board.pdf")
 
 
+@pytest.mark.slow(reason="a camera is calibrated twice, by OpenCV too")
 @needs_photographs
 def test_photographs_of_a_chessboard_give_the_camera_that_opencv_finds():
     points = np.array([(x * 0.025, y * 0.025, 0) for y in range(6) for x in range(9)])

@@ -13,6 +13,7 @@ from cubeling.tracking.synthetic import SCRIPTS, SyntheticOptions, SyntheticSour
 from cubeling.tracking.synthetic.camera_rays import CameraRays
 from cubeling.tracking.synthetic.paper_cube import PaperCube
 from cubeling.tracking.synthetic.source import webcam
+from tests.examples import some
 
 Array = NDArray[np.float64]
 
@@ -38,7 +39,7 @@ def edge_crossing(profile: Array, middle: float) -> float:
     return middle - (len(profile) - 1) / 2 + len(profile) - 0.5 - float(share.sum())
 
 
-@pytest.mark.parametrize("shift", [0.0, 0.25, 0.5, 0.8])
+@pytest.mark.parametrize("shift", some([0.25, 0.8, 0.0, 0.5], 2))
 def test_pixel_centres_are_at_integers(shift: float) -> None:
     """The borders of a large marker that looks at the camera lie where they are projected to."""
     options = SyntheticOptions(noise=0, defocus=0.7, distortion=0, clutter=False, shadow=False)
@@ -64,6 +65,7 @@ def test_pixel_centres_are_at_integers(shift: float) -> None:
         assert edge_crossing(profiles.mean(axis=1), middle) == pytest.approx(truth, abs=0.03)
 
 
+@pytest.mark.slow(reason="ten pictures are drawn in full size, as corners are measured")
 def test_marker_corners_are_rendered_at_their_true_projection() -> None:
     """Through perspective and distortion: what OpenCV finds has no common offset."""
     source = open_synthetic(f"poses?{CLEAN}")

@@ -38,6 +38,7 @@ def show(picture: Picture, time: float = 0.0, tracker: CubeTracker | None = None
     return tracker.update(Frame(picture, time, 0))
 
 
+@pytest.mark.slow(reason="ten cubes are drawn and looked for in full size")
 def test_a_sharp_cube_is_found_to_a_tenth_of_a_millimetre() -> None:
     source = open_synthetic("poses")
     assert source.intrinsics is not None
@@ -205,6 +206,7 @@ def test_the_top_face_is_right_in_every_resting_frame(name: str) -> None:
     assert all(found == truth for found, truth in tops)
 
 
+@pytest.mark.slow(reason="a scene is drawn and tracked until the cube rests")
 def test_the_first_frames_of_a_scene_give_the_right_top_face() -> None:
     source = open_synthetic("static?size=640x360")
     assert source.intrinsics is not None

@@ -55,7 +55,7 @@ def at(row: int, column: int) -> tuple[int, int]:
     return SCALE * row, SCALE * column
 
 
-@pytest.mark.slow(reason="each frame of the film is drawn in full size")
+@pytest.mark.slow(reason="the frames of a film are drawn")
 @pytest.mark.parametrize(
     ("azimuth", "skin"), some([(-60, "Monk 09"), (10, "Monk 03"), (-165, "Monk 03")])
 )
@@ -68,7 +68,7 @@ def test_an_arm_is_covered_to_the_border_of_the_picture(azimuth, skin):
     assert overlap(covered(mask, truth.shape), truth) > 0.93
 
 
-@pytest.mark.slow(reason="each frame of the film is drawn in full size")
+@pytest.mark.slow(reason="the frames of a film are drawn")
 def test_an_arm_that_was_there_from_the_beginning_leaves_no_ghost():
     made = RestingScene(HandView("3f6fc4", azimuth_deg=10, seed=1), CUBE)
     finder = HandFinder(CUBE, made.intrinsics)

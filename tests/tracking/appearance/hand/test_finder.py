@@ -66,13 +66,13 @@ def film() -> tuple[Intrinsics, list[tuple[np.ndarray, np.ndarray]]]:
     return made.intrinsics, [(made.frame(i)[0].image, made.truth(i)) for i in range(25)]
 
 
-@pytest.mark.slow(reason="each frame of the film is drawn in full size")
+@pytest.mark.slow(reason="the frames of a film are drawn")
 @pytest.mark.parametrize("skin", some(["604134", "3f6fc4", "f3e7db"]))
 def test_hands_of_any_colour_are_found(skin):
     assert overlap_in(HandView(skin, azimuth_deg=-120, seed=3), 25) > 0.8
 
 
-@pytest.mark.slow(reason="each frame of the film is drawn in full size")
+@pytest.mark.slow(reason="the frames of a film are drawn")
 @pytest.mark.parametrize("desk", some(["white", "checked"]))
 def test_a_hand_is_found_on_any_desk(desk):
     view = HandView(SKINS["Monk 05"], azimuth_deg=-120, seed=3, desk=desk)
@@ -94,7 +94,7 @@ def test_what_a_hand_hides_is_on_the_near_side_of_the_cube(film):
     assert np.linalg.norm(behind, axis=1).max() < 0.87 * CUBE.edge
 
 
-@pytest.mark.slow(reason="each frame of the film is drawn in full size")
+@pytest.mark.slow(reason="the frames of a film are drawn")
 def test_a_cube_without_a_hand_is_not_covered():
     made = RestingScene(HandView("000000", hand=False), CUBE)
     finder = HandFinder(CUBE, made.intrinsics)
@@ -103,7 +103,7 @@ def test_a_cube_without_a_hand_is_not_covered():
         assert finder.update(frame.image, state_at(made.truth(index))) is None
 
 
-@pytest.mark.slow(reason="each frame of the film is drawn in full size")
+@pytest.mark.slow(reason="the frames of a film are drawn")
 def test_a_hand_of_another_colour_is_found_after_the_first():
     skins = GLOVES["yellow rubber"], SKINS["Monk 06"]  # the second is as the desk
     views = [HandView(skin, -120, seed=3, defocus=1.2) for skin in skins]
@@ -118,7 +118,7 @@ def test_a_hand_of_another_colour_is_found_after_the_first():
     assert np.median(scores[-10:]) > 0.65
 
 
-@pytest.mark.slow(reason="each frame of the film is drawn in full size")
+@pytest.mark.slow(reason="the frames of a film are drawn")
 def test_fingers_on_the_cube_from_the_beginning_are_not_taken_for_its_paper():
     view = HandView(SKINS["Monk 03"], azimuth_deg=-165, seed=4, gradient=0.5, defocus=0.8)
     assert overlap_in(view, 26, begin=22) > 0.8
@@ -129,23 +129,23 @@ def test_a_finger_on_the_cube_shows_the_hand_that_rested_beside_it_from_the_begi
     assert overlap_in(HandView(skin, azimuth_deg=10, seed=1), 31, begin=25) > 0.85
 
 
+@pytest.mark.slow(reason="a desk is drawn in full size")
 def test_a_hand_from_the_beginning_stays_when_it_hides_no_face_any_more():
     view = HandView(SKINS["Monk 03"], azimuth_deg=10, seed=1)
     assert overlap_in(view, 49, begin=46, size=FULL) > 0.85  # no smaller
 
 
-@pytest.mark.slow(reason="each frame of the film is drawn in full size")
+@pytest.mark.slow(reason="the frames of a film are drawn")
 def test_a_wall_in_the_colours_of_a_hand_from_the_beginning_is_no_part_of_it():
     assert overlap_in(HandView(SKINS["Monk 03"], azimuth_deg=-60, seed=2), 38, begin=25) > 0.8
 
 
-@pytest.mark.slow(reason="each frame of the film is drawn in full size")
+@pytest.mark.slow(reason="the frames of a film are drawn")
 def test_the_sleeve_of_a_hand_that_is_there_from_the_beginning_is_found_when_it_moves():
     view = HandView(SKINS["Monk 09"], azimuth_deg=-120, seed=3, defocus=1.2)
     assert overlap_in(view, 42, begin=22) > 0.8
 
 
-@pytest.mark.slow(reason="each frame of the film is drawn in full size")
 @pytest.mark.parametrize(("exposure", "warmth"), some([(-0.5, 0.0), (-0.2, 0.08), (0.4, 0.0)]))
 def test_a_camera_that_reacts_to_the_hand_does_not_hide_it(exposure, warmth):
     view = HandView(SKINS["Monk 02"], azimuth_deg=-60, seed=2, exposure=exposure, warmth=warmth)
@@ -168,7 +168,7 @@ def test_a_cube_that_is_not_seen_has_no_hand(pose):
     assert HandFinder(CUBE, WIDE).update(picture, state_at(pose, visible=False)) is None
 
 
-@pytest.mark.slow(reason="each frame of the film is drawn in full size")
+@pytest.mark.slow(reason="noise is drawn for pictures of three looks")
 def test_a_still_picture_with_noise_does_not_flicker(film):
     intrinsics, pictures = film
     finder, random = HandFinder(CUBE, intrinsics), np.random.default_rng(1)
@@ -275,7 +275,6 @@ def test_fingers_in_the_colours_of_print_are_found(skin):
     assert overlap_in(view, 26) > 0.86
 
 
-@pytest.mark.slow(reason="each frame of the film is drawn in full size")
 def test_a_hand_that_was_there_from_the_beginning_leaves_no_ghost():
     view = HandView("eadaba", azimuth_deg=-60, seed=2, gradient=0.3)
     mask, truth, region = shown(view, frames=45, begin=30)
@@ -351,7 +350,7 @@ def test_a_hand_is_found_again_at_once_after_a_pose_at_the_lens(film):
     assert finder.update(picture, state_at(pose)) is not None
 
 
-@pytest.mark.slow(reason="each frame of the film is drawn in full size")
+@pytest.mark.slow(reason="the frames of a film are drawn")
 def test_a_hand_that_lets_go_is_in_front_until_it_has_left_the_surroundings():
     made = RestingScene(HandView(SKINS["Monk 03"], azimuth_deg=-120, seed=3), CUBE)
     finder, scores = HandFinder(CUBE, made.intrinsics), []
