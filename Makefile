@@ -54,7 +54,7 @@ package: .venv/ready-dev  ## build what is published, and try it in a fresh envi
 	$(BIN)/python -m tools.package_check
 
 bench: .venv/ready-dev  ## measure every figure that the documents name
-	$(BIN)/python -m tests.bench.start
+	-$(BIN)/python -m tests.bench.start
 	$(BIN)/python -m tests.bench.line
 	$(BIN)/python -m tests.bench.accuracy
 	$(BIN)/python -m tests.bench.codecs
