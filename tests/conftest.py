@@ -13,6 +13,7 @@ from hypothesis import settings, strategies as st
 
 from tests.cost import CostCheck
 from tests.examples import register_profiles
+from tools.package_links import ROOMS
 
 register_profiles()
 settings.load_profile("quick")  # `make test-all` takes another: --hypothesis-profile full
@@ -43,8 +44,7 @@ def pytest_configure(config: pytest.Config) -> None:
 def _one_copy_of_each_room() -> Generator[None, None, None]:
     """Fail if a test imported `tracking` for `cubeling.tracking`: its classes would be others."""
     yield
-    rooms = {"affect", "tracking", "characters", "robot", "app", "recordings"}
-    assert not rooms & sys.modules.keys(), "import it from cubeling"
+    assert not {*ROOMS} & sys.modules.keys(), "import it from cubeling"
 
 
 @pytest.hookimpl(wrapper=True)

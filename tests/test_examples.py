@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
+from tools.package_links import ROOMS
+
 ROOT = Path(__file__).parents[1]
 
-ROOMS = "affect", "app", "characters", "robot", "tools", "tracking"
-
 MODULES = [
-    ("" if room == "tools" else "cubeling.")
+    ("cubeling." if room in ROOMS else "")
     + ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
-    for room in ROOMS
+    for room in (*ROOMS, "cubeling", "tools")
     for path in sorted((ROOT / room).rglob("*.py"))
     if ">>> " in path.read_text(encoding="utf-8")
 ]

@@ -7,11 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from tools.package_links import ROOMS
+
 ROOT = Path(__file__).parents[1]
 
 FACES = [
     ".".join(("cubeling", *stub.relative_to(ROOT).parent.parts))
-    for room in ("affect", "tracking", "characters", "robot", "app")
+    for room in ROOMS
     for stub in sorted((ROOT / room).rglob("__init__.pyi"))
 ]
 

@@ -16,14 +16,13 @@ from pathlib import Path
 
 from rich.console import Console
 
+from tools.package_links import ROOMS
+
 ROOT = Path(__file__).parents[1]
 
 OUT = Console(highlight=False)
 
 PACKAGE = "cubeling"
-INFO = ".dist-info"
-
-ROOMS = {"affect", "tracking", "characters", "robot", "app", "recordings"}
 
 
 def main() -> int:
@@ -53,9 +52,9 @@ def problems_of(wheel: Path) -> list[str]:
     tops = {name.parts[0] for name in names}
     inside = {name.parts[1] for name in names if name.parts[0] == PACKAGE and len(name.parts) > 2}
     OUT.out(f"the wheel holds {len(names)} files in {', '.join(sorted(tops))}: {sorted(inside)}")
-    problems = [f"it puts {each} beside {PACKAGE}" for each in tops if each != PACKAGE]
-    problems = [each for each in problems if INFO not in each]
-    problems += [f"the room {each} is missing" for each in ROOMS - inside]
+    beside = {each for each in tops if not each.endswith(".dist-info")} - {PACKAGE}
+    problems = [f"it puts {each} beside {PACKAGE}" for each in beside]
+    problems += [f"the room {each} is missing" for each in {*ROOMS} - inside]
     tracked = subprocess.run(
         ["git", "ls-files", *ROOMS], cwd=ROOT, capture_output=True, text=True, check=True
     ).stdout

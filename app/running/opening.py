@@ -18,7 +18,8 @@ from cubeling.app.running.option_checks import check_output_paths, check_part
 from cubeling.app.running.robots import RobotLine, is_real_robot
 from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.scenarios import scenario_cube
-from cubeling.app.session import SessionOptions, opening_times, start_over_times
+from cubeling.app.session import SessionOptions
+from cubeling.app.session.inputs import recorded_inputs
 from cubeling.app.session.replay_inputs import read_replay_inputs
 from cubeling.app.speaking.opening import open_speaker
 from cubeling.app.ui.panels.monitor import SessionMonitor
@@ -125,8 +126,7 @@ def open_session(
         )
         closing.callback(playground.close)
         is_session = options.source.endswith(".mcap")
-        start_overs = start_over_times(Path(options.source)) if is_session else frozenset[float]()
-        openings = opening_times(Path(options.source)) if is_session else frozenset[float]()
+        came_in = recorded_inputs(Path(options.source)) if is_session else {}
         replay_inputs = None
         if options.stage != "camera":
             replay_inputs = read_replay_inputs(options.source, options.stage)
@@ -165,14 +165,14 @@ def open_session(
             clock=clock,
             player=player,
             pace=pace,
-            start_overs=start_overs,
+            start_overs=frozenset(time for time, each in came_in.items() if each.clear),
             replay_inputs=replay_inputs,
             preferences=preferences,
             monitor=monitor,
             ending=ending,
             first_source=source,
             recording=recording,
-            openings=openings,
+            openings=frozenset(time for time, each in came_in.items() if each.inside),
         )
         closing.callback(session.close)
         closing.callback(clock.release)  # the robot's connection is closed in real time

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from cubeling.characters.errors import CharacterError
@@ -38,16 +39,10 @@ def _tree(character: Character, motions: Sequence[str]) -> ControllerFactory:
     return first_suitable
 
 
-def _graph(character: Character, motions: Sequence[str]) -> ControllerFactory:
+def _graph(kind: str, character: Character, motions: Sequence[str]) -> ControllerFactory:
     from cubeling.characters.control.controllers.graph import graph_factory
 
-    return graph_factory("graph", character, motions)
-
-
-def _parts(character: Character, motions: Sequence[str]) -> ControllerFactory:
-    from cubeling.characters.control.controllers.graph import graph_factory
-
-    return graph_factory("parts", character, motions)
+    return graph_factory(kind, character, motions)
 
 
 def _matching(character: Character, motions: Sequence[str]) -> ControllerFactory:
@@ -59,9 +54,12 @@ def _matching(character: Character, motions: Sequence[str]) -> ControllerFactory
 CONTROLLER_CHOICES: dict[str, ControllerChoice] = {
     "tree": ControllerChoice("the character's own blend trees", _tree),
     "graph": ControllerChoice(
-        "a motion graph, of a .graph file, of motions or of its own clips", _graph
+        "a motion graph, of a .graph file, of motions or of its own clips",
+        partial(_graph, "graph"),
     ),
-    "parts": ControllerChoice("the same with a graph for each part of its body", _parts),
+    "parts": ControllerChoice(
+        "the same with a graph for each part of its body", partial(_graph, "parts")
+    ),
     "matching": ControllerChoice(
         "at each moment the frame of its motions that suits best", _matching
     ),
