@@ -24,7 +24,10 @@ from cubeling.characters.control.layers import (
     DEFAULT_LAYERS as DEFAULT_LAYERS,
     layers_of as layers_of,
 )
-from cubeling.characters.control.layers.gestures import GestureLayer as GestureLayer
+from cubeling.characters.control.layers.gestures import (
+    GestureLayer as GestureLayer,
+    prepare_gestures as prepare_gestures,
+)
 from cubeling.characters.control.layers.layer import (
     FrameContext as FrameContext,
     LayerFactory as LayerFactory,

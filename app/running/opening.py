@@ -25,7 +25,7 @@ from cubeling.app.speaking.opening import open_speaker
 from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.status import EndCard
 from cubeling.app.ui.screen import NullScreen, Screen
-from cubeling.characters import Character, choose_controller
+from cubeling.characters import Character, choose_controller, prepare_gestures
 from cubeling.tracking import (
     CubeModel,
     FrameSource,
@@ -125,6 +125,8 @@ def open_session(
             inside=options.inside,
         )
         closing.callback(playground.close)
+        if options.windowed or source.live:  # else nobody waits for a frame
+            prepare_gestures(character)
         is_session = options.source.endswith(".mcap")
         came_in = recorded_inputs(Path(options.source)) if is_session else {}
         replay_inputs = None

@@ -88,6 +88,14 @@ class GestureLayer:
         )
 
 
+def prepare_gestures(character: Character) -> None:
+    """Load what plans gestures and measure a body, so that its first gesture delays no frame."""
+    import cubeling.characters.control.layers.performed_gesture  # noqa: F401
+    from cubeling.characters.behaviour.gestures.planning import Performer
+
+    Performer.of(character)
+
+
 def _free_hand(others: "Sequence[PerformedGesture]", asked: BehaviourIntent) -> Hand:
     """Return the right hand, unless it is taken and the left one is not."""
     taken = {each.hand for each in others} | {each.hand for each in asked.reaches}
