@@ -11,7 +11,7 @@ from cubeling.app.ui.screen import NullScreen
 def test_the_first_gesture_delays_no_frame_that_somebody_waits_for(
     watched, short_session, monkeypatch
 ):
-    prepared = []
+    prepared: list[object] = []
     monkeypatch.setattr(module, "prepare_gestures", prepared.append)
     options = SessionOptions(
         scenario="follow", source=str(short_session), pictures=watched, robot="none"
