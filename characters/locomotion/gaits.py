@@ -99,7 +99,7 @@ class Gaits:
     def contacts(self, clip: Clip) -> list[list[bool]]:
         """Return which feet of the legs are on the ground in each frame of a clip.
 
-        They are found once for each clip, which takes some hundredths of a second.
+        They are found when a clip is first asked for, which takes some milliseconds.
         """
         if id(clip) not in self._contacts:
             feet = () if self.legs is None else self.legs.feet

@@ -69,9 +69,6 @@ class WalkController:
         self._time = 0.0
         self._weight = 0.0
         self._feet = 0 if self.gaits.legs is None else len(self.gaits.legs.feet)
-        self._contacts = {
-            name: self.gaits.contacts(action.clip) for name, action in self._actions.items()
-        }
 
     @property
     def actions(self) -> tuple[str, ...]:
@@ -143,7 +140,8 @@ class WalkController:
             return None
         state, spent = self._machine.state, self._time - self._machine.entered
         if state in self._actions:
-            contacts, phase = self._contacts[state], self._actions[state].phase(spent)
+            action = self._actions[state]
+            contacts, phase = self.gaits.contacts(action.clip), action.phase(spent)
             frame = int((phase if phase == 1.0 else phase % 1.0) * (len(contacts) - 1))
             return contacts[frame]
         if state == "idle":
