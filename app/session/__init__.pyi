@@ -9,7 +9,10 @@ from cubeling.app.session.inputs import (
     spoken_lines as spoken_lines,
     start_over_times as start_over_times,
 )
-from cubeling.app.session.options import SessionOptions as SessionOptions
+from cubeling.app.session.options import (
+    SessionOptions as SessionOptions,
+    check_stage as check_stage,
+)
 from cubeling.app.session.reading import (
     INSIDE_EVENT as INSIDE_EVENT,
     START_OVER_EVENT as START_OVER_EVENT,

@@ -5,8 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
 
+from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import REALISM_CHOICES
 from cubeling.characters.speech import DEFAULT_PROFILE, SpeechProfile
+
+START_STAGES = ("camera", "state", "controls", "command", "pose")
+"""The stages that a replay can start from; each takes one channel more as recorded."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -178,4 +182,12 @@ class SessionOptions:
             personality=metadata.get("personality") or None,
             look=metadata.get("look", "auto"),
             inside=metadata.get("inside", "auto"),
+        )
+
+
+def check_stage(start: str) -> None:
+    """Raise AppError if a replay cannot start from a stage."""
+    if start not in START_STAGES:
+        raise AppError(
+            f"a replay cannot start from '{start}': choose one of {', '.join(START_STAGES)}"
         )

@@ -8,9 +8,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.step import ReplayInputs
 from cubeling.app.session import messages
 from cubeling.app.session.encoding import MESSAGE_TYPES, decode
-
-START_STAGES = ("camera", "state", "controls", "command", "pose")
-"""The stages that a replay can start from; each takes one channel more as recorded."""
+from cubeling.app.session.options import START_STAGES, check_stage
 
 FIELD_OF_TOPIC = {
     "/cube/state": "state",
@@ -19,14 +17,6 @@ FIELD_OF_TOPIC = {
     "/character/pose": "posed",
 }
 """The field of `ReplayInputs` for each channel, in the order of the stages after the camera."""
-
-
-def check_stage(start: str) -> None:
-    """Raise AppError if a replay cannot start from a stage."""
-    if start not in START_STAGES:
-        raise AppError(
-            f"a replay cannot start from '{start}': choose one of {', '.join(START_STAGES)}"
-        )
 
 
 def read_replay_inputs(source: str, start: str) -> Iterator[ReplayInputs]:

@@ -103,13 +103,14 @@ def replay(
     Example: [cyan]cubeling replay recordings/companion.mcap --output companion.mp4[/]
     """
     from cubeling.app.running.option_checks import check_output_paths, check_part
-    from cubeling.app.session import SessionOptions, check_session_file
+    from cubeling.app.session import SessionOptions, check_session_file, check_stage
 
     check_session_file(session)
     if scenario:
         check_scenario(scenario)
     if controller:
         check_controller(controller)
+    check_stage(stage)
     if inside:
         inside_of(inside)
     chosen_realism, chosen_quality = realism_of(realism), checked_quality(quality)
@@ -127,7 +128,6 @@ def replay(
     from cubeling.app.commands.session.progress import ProgressLines, play_session
     from cubeling.app.running.replay_check import check_session
     from cubeling.app.session import session_info
-    from cubeling.app.session.replay_inputs import check_stage
 
     info = session_info(session, salvage=salvage)
     recorded = info.options
@@ -158,7 +158,6 @@ def replay(
         loop=loop,
         folder=folder,
     )
-    check_stage(stage)
     if check and (start or end is not None):
         raise AppError("--check compares a whole session: leave out --start and --end")
     check_output_paths(options)

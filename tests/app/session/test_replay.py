@@ -23,7 +23,8 @@ from cubeling.app.session import (
 )
 from cubeling.app.session.bundled import bundled
 from cubeling.app.session.encoding import MESSAGE_TYPES, encode
-from cubeling.app.session.replay_inputs import START_STAGES, read_replay_inputs
+from cubeling.app.session.options import START_STAGES
+from cubeling.app.session.replay_inputs import read_replay_inputs
 from cubeling.app.ui.screen import NullScreen
 from cubeling.tracking import open_source
 from tests.conftest import FIRST_S
