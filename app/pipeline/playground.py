@@ -22,9 +22,10 @@ from cubeling.app.pipeline.scenario import (
     Outcome,
     Scenario,
     ScenarioSettings,
+    Situation,
 )
 from cubeling.app.pipeline.scenario_errors import checked, scenario_errors
-from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.speaking import Speaking
 from cubeling.app.pipeline.step import ReplayInputs, Step
 from cubeling.app.pipeline.step_renderer import StepRenderer
 from cubeling.app.pipeline.subjects import subjects
@@ -36,7 +37,6 @@ from cubeling.characters import (
     ControllerFactory,
     PosedCharacter,
     RootDelta,
-    SpeechIntent,
     first_suitable,
 )
 from cubeling.characters.rendering import Quality
@@ -55,9 +55,6 @@ from cubeling.tracking import (
 if TYPE_CHECKING:
     import moderngl
 
-SUBTITLE_S = 1.2
-"""A line stays in the command for so long after its end [s], for those who read it."""
-
 LOOK_INSIDE = "Look into the cube: turn it, or tip it"
 """What the player is told when the cube has opened."""
 
@@ -71,8 +68,7 @@ STATE_NAMES = (
     "_attention",
     "_other_cube",
     "other_cube",
-    "_line",
-    "_speech",
+    "_speaking",
     "_complexion",
     "_window",
 )
@@ -172,8 +168,7 @@ class Playground:
         self._other_cube = OtherCube(cube, self.known_cubes)
         self.other_cube: CubeModel | None = None
         """Another cube than the one in play, if one is in view."""
-        self._line: SpokenLine | None = None
-        self._speech: SpeechIntent | None = None
+        self._speaking = Speaking()
         self._complexion = Complexion()
 
     def cast(self, character: Character) -> None:
@@ -275,31 +270,24 @@ class Playground:
         controls = replay.controls or self.gesture(state)
         self._lap("gestures")
         inputs = inputs or Inputs()
-        inputs = replace(inputs, cube=_table_from_cube(state, controls))
-        outcome = self.attend(state, controls, self.decide(controls, inputs))
-        outcome = self.speak(inputs, outcome)
-        self.other_cube = self._other_cube.update(frame, state)
-        if self.other_cube is not None:
-            hint = advice(self.other_cube, self.scenario.name, self.cube.name, self.fixed)
-            outcome = replace(outcome, hint=hint)
+        decision = self.decide(state, controls, inputs)
+        command = self.command(state, controls, decision, inputs)
         if replay.command is not None:
-            outcome = replace(outcome, command=replay.command)
+            command = replay.command
+        self.other_cube = self._other_cube.update(frame, state)
         self._lap("scenario")
-        posed = (
-            self.animate(outcome.command) if replay.posed is None else self._fitted(replay.posed)
-        )
+        posed = self.animate(command) if replay.posed is None else self._fitted(replay.posed)
         self._posed, self._body = posed, Body(self.character, self._parts, posed)
-        self._complexion.update(outcome.command.timestamp, outcome.command.emotion)
-        interior = self._window.update(state, controls, outcome.command, inputs.inside)
-        if self._window.invites and self.other_cube is None:
-            outcome = replace(outcome, hint=LOOK_INSIDE)
+        self._complexion.update(command.timestamp, command.emotion)
+        interior = self._window.update(state, controls, command, inputs.inside)
+        outcome = replace(decision, command=command, hint=self._hint(decision))
         self._lap("animation")
         picture = self.draw(frame, state, controls, outcome, posed, interior) if drawn else None
         matrix = self.intrinsics.matrix
         seen = subjects(state, controls, self.cube, self.character, posed, interior, matrix)
         self._lap("drawing")
         name = self.scenario.name
-        line = self._line if outcome.command.speech is not None else None
+        line = self._speaking.line if command.speech is not None else None
         return Step(frame, state, controls, outcome, posed, picture, seen, name, line, interior)
 
     @property
@@ -319,42 +307,41 @@ class Playground:
         """Compute what the hand does with the cube."""
         return self._gestures.update(state)
 
-    def decide(self, controls: CubeControls, inputs: Inputs) -> Outcome:
+    def decide(self, state: CubeState, controls: CubeControls, inputs: Inputs) -> Outcome:
         """Let the scenario decide."""
         animator = self._animator
-        inputs = replace(
-            inputs,
-            body=self._body,
-            actions=animator.actions,
-            walks=animator.walks,
-            body_length=animator.length,
+        situation = Situation(
+            self._posed,
+            self._body,
+            animator.actions,
+            animator.walks,
+            animator.length,
+            _table_from_cube(state, controls),
         )
         scenario = type(self.scenario)
         with scenario_errors(scenario):
-            return checked(self.scenario.update(controls, self._posed, inputs), scenario)
+            return checked(self.scenario.update(controls, situation, inputs), scenario)
 
-    def attend(self, state: CubeState, controls: CubeControls, outcome: Outcome) -> Outcome:
-        """Add gaze and emotion to the command.
+    def command(
+        self, state: CubeState, controls: CubeControls, decision: Outcome, inputs: Inputs
+    ) -> CharacterCommand:
+        """Return the command of a decision with gaze, emotion and speech.
 
-        Only this method does so: character, virtual robot and robot show one emotion.
+        Only this method adds the emotion: character, virtual robot and robot show one.
         """
-        gaze = self._attention.update(state, controls, outcome.command)
-        command = replace(outcome.command, gaze=gaze, emotion=outcome.emotion.emotion)
-        return replace(outcome, command=command)
+        command = decision.command
+        return replace(
+            command,
+            gaze=self._attention.update(state, controls, command),
+            emotion=decision.emotion.emotion,
+            speech=self._speaking.update(inputs, command),
+        )
 
-    def speak(self, inputs: Inputs, outcome: Outcome) -> Outcome:
-        """Add what the character says to the command: a new line takes the place of an old one.
-
-        A character that is hidden falls silent.
-        """
-        now = outcome.command.timestamp
-        line = inputs.line
-        if line is not None:
-            self._line, self._speech = line, SpeechIntent(line.utterance, now, line.profile)
-        over = self._speech is not None and now > self._speech.end + SUBTITLE_S
-        if over or inputs.clear or not outcome.command.visible:
-            self._line = self._speech = None
-        return replace(outcome, command=replace(outcome.command, speech=self._speech))
+    def _hint(self, decision: Outcome) -> str:
+        """Return what the player can do now; what the cube in view is comes first."""
+        if self.other_cube is not None:
+            return advice(self.other_cube, self.scenario.name, self.cube.name, self.fixed)
+        return LOOK_INSIDE if self._window.invites else decision.hint
 
     def animate(self, command: CharacterCommand) -> PosedCharacter:
         """Animate the character."""

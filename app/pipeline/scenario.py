@@ -17,13 +17,35 @@ from cubeling.tracking import CubeControls, CubeModel
 
 @dataclass(frozen=True)
 class Inputs:
-    """The inputs of a frame next to the camera's picture."""
+    """What the player asked for in a frame, besides what the cube tells."""
 
     clear: bool = False
     """Whether the player asked to start over: forget the path, the mood …"""
 
     scenario: str = ""
     """Name of the scenario that the player asked for, "" for the present one."""
+
+    line: SpokenLine | None = None
+    """What the character begins to say in this frame; None for nothing new."""
+
+    inside: bool = False
+    """Whether the player asked to open the cube, with the character in it, or to close it."""
+
+    @property
+    def events(self) -> tuple[str, ...]:
+        """What happens besides gestures; personalities say what it means to the robot."""
+        return () if self.line is None else ("spoken",)
+
+
+@dataclass(frozen=True)
+class Situation:
+    """Who and what is on the table, and what the character can do."""
+
+    character: PosedCharacter | None = None
+    """The character as after the previous frame; None in the first."""
+
+    body: Body | None = None
+    """Its body then, which tells how hard a place is to reach; None in the first frame."""
 
     actions: tuple[str, ...] = ()
     """Names of the actions that the character can perform."""
@@ -36,20 +58,6 @@ class Inputs:
 
     cube: NDArray[np.float64] | None = None
     """`table_from_cube`, (4, 4) [m]; None where the cube is not seen."""
-
-    body: Body | None = None
-    """The character's body as after the previous frame; None in the first."""
-
-    line: SpokenLine | None = None
-    """What the character begins to say in this frame; None for nothing new."""
-
-    inside: bool = False
-    """Whether the player asked to open the cube, with the character in it, or to close it."""
-
-    @property
-    def events(self) -> tuple[str, ...]:
-        """What happens besides gestures; personalities say what it means to the robot."""
-        return () if self.line is None else ("spoken",)
 
 
 @dataclass(frozen=True)
@@ -143,10 +151,8 @@ class Scenario(Protocol):
 
     def __init__(self, cube: CubeModel, settings: ScenarioSettings) -> None: ...
 
-    def update(
-        self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
-    ) -> Outcome:
-        """Decide on one frame; `character` is as after the previous frame, None in the first."""
+    def update(self, controls: CubeControls, situation: Situation, inputs: Inputs) -> Outcome:
+        """Decide on one frame."""
         ...
 
 

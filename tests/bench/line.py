@@ -90,7 +90,7 @@ def measure(
             state = playground.track(frame)
             marks.append(time.perf_counter())
             controls = playground.gesture(state)
-            outcome = playground.decide(controls, Inputs())
+            outcome = playground.decide(state, controls, Inputs())
             marks.append(time.perf_counter())
             posed = playground.animate(outcome.command)
             marks.append(time.perf_counter())

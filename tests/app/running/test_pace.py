@@ -129,10 +129,10 @@ def test_a_player_who_started_over_in_a_frame_that_is_left_out_does_so_in_the_ne
     cleared = []
     decide = Playground.decide
 
-    def note(self, controls, inputs):
+    def note(self, state, controls, inputs):
         if inputs.clear:
             cleared.append(controls.timestamp)
-        return decide(self, controls, inputs)
+        return decide(self, state, controls, inputs)
 
     monkeypatch.setattr(Playground, "decide", note)
     steps, _ = play_slowly()
