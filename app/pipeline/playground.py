@@ -12,7 +12,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.attention import Attention
 from cubeling.app.pipeline.checkpoint import Checkpoint
 from cubeling.app.pipeline.choices import REALISM_CHOICES
-from cubeling.app.pipeline.cube_window import CubeWindow, Interior
+from cubeling.app.pipeline.cube_window import CubeWindow
 from cubeling.app.pipeline.frame_times import Lap
 from cubeling.app.pipeline.other_cube import OtherCube, advice
 from cubeling.app.pipeline.registry import make_scenario
@@ -22,9 +22,9 @@ from cubeling.app.pipeline.scenario import (
     Outcome,
     Scenario,
     ScenarioSettings,
-    Situation,
 )
 from cubeling.app.pipeline.scenario_errors import checked, scenario_errors
+from cubeling.app.pipeline.situation import Situation, table_from_cube
 from cubeling.app.pipeline.speaking import Speaking
 from cubeling.app.pipeline.step import ReplayInputs, Step
 from cubeling.app.pipeline.step_renderer import StepRenderer
@@ -51,6 +51,7 @@ from cubeling.tracking import (
     Intrinsics,
     LensEstimate,
 )
+from cubeling.tracking.appearance import APPEARANCE_PARTS, Appearance, AppearanceMeter
 
 if TYPE_CHECKING:
     import moderngl
@@ -107,6 +108,8 @@ class Playground:
         What makes the characters look real, of `REALISM_CHOICES`.
     inside
         When the character is in the cube, one of `INSIDE_CHOICES`.
+    measured
+        Whether the appearance of the pictures is measured although none is drawn.
 
     Raises
     ------
@@ -131,6 +134,7 @@ class Playground:
         controller: ControllerFactory = first_suitable,
         realism: Sequence[str] = tuple(REALISM_CHOICES),
         inside: str = "auto",
+        measured: bool = False,
     ) -> None:
         if isinstance(scenario, str):
             scenario = make_scenario(scenario, cube)
@@ -140,6 +144,8 @@ class Playground:
         self._controller, self._inside = controller, inside
         self.fixed = fixed
         """Whether the scenario cannot be changed now, so that the player is not told how."""
+        parts = tuple(each for each in APPEARANCE_PARTS if each in realism)
+        self._measured = parts if measured or context is not None else ()
         self._renderer = StepRenderer(context, intrinsics, realism)
         self.play(scenario, cube, character)
 
@@ -159,7 +165,7 @@ class Playground:
         self.scenario, self.cube, self.character = scenario, cube, character
         self._tracker = CubeTracker(cube, self.intrinsics)
         self._gestures = CubeGestures(cube)
-        self._renderer.play(cube)
+        self._begin_to_see(cube)
         self._animator, self._parts = animator, BodyParts.of(character, animator.scale)
         self._posed: PosedCharacter | None = None
         self._body: Body | None = None
@@ -222,11 +228,16 @@ class Playground:
         """Go on as after the frame at which a checkpoint was made.
 
         The scenario, the cube and the character must be the same as then. What the drawing follows
-        is measured again: light, hand and softness of a later time are not those of this one.
+        is measured again: the appearance of a later time is not that of this one.
         """
         for name, value in checkpoint.content().items():
             setattr(self, name, value)
-        self._renderer.play(self.cube)
+        self._begin_to_see(self.cube)
+
+    def _begin_to_see(self, cube: CubeModel) -> None:
+        """Forget what the pictures have shown so far beside the cube's pose."""
+        self._renderer.play(cube)
+        self._appearance = AppearanceMeter(cube, self.intrinsics, self._measured)
 
     def adjust(self, settings: ScenarioSettings, look: str) -> None:
         """Play on with other settings, as far as the scenario can be adjusted."""
@@ -255,7 +266,7 @@ class Playground:
         replay
             Recorded messages to use instead of computing them; None to compute all.
         drawn
-            Whether to draw the picture; the other results are the same without it.
+            Whether to measure the picture's appearance and to draw it; all else is the same.
 
         Returns
         -------
@@ -269,6 +280,10 @@ class Playground:
         self._lap("tracking")
         controls = replay.controls or self.gesture(state)
         self._lap("gestures")
+        appearance = replay.appearance
+        if appearance is None and drawn:
+            appearance = self.see(frame, state, controls)
+        self._lap("appearance")
         inputs = inputs or Inputs()
         decision = self.decide(state, controls, inputs)
         command = self.command(state, controls, decision, inputs)
@@ -276,19 +291,30 @@ class Playground:
             command = replay.command
         self.other_cube = self._other_cube.update(frame, state)
         self._lap("scenario")
-        posed = self.animate(command) if replay.posed is None else self._fitted(replay.posed)
+        posed = replay.posed_for(self.character) or self.animate(command)
         self._posed, self._body = posed, Body(self.character, self._parts, posed)
         self._complexion.update(command.timestamp, command.emotion)
         interior = self._window.update(state, controls, command, inputs.inside)
         outcome = replace(decision, command=command, hint=self._hint(decision))
         self._lap("animation")
-        picture = self.draw(frame, state, controls, outcome, posed, interior) if drawn else None
         matrix = self.intrinsics.matrix
-        seen = subjects(state, controls, self.cube, self.character, posed, interior, matrix)
+        step = Step(
+            frame,
+            state,
+            controls,
+            outcome,
+            posed,
+            picture=None,
+            subjects=subjects(state, controls, self.cube, self.character, posed, interior, matrix),
+            scenario=self.scenario.name,
+            line=self._speaking.line if command.speech is not None else None,
+            interior=interior,
+            appearance=appearance,
+        )
+        if drawn:
+            step = replace(step, picture=self.draw(step))
         self._lap("drawing")
-        name = self.scenario.name
-        line = self._speaking.line if command.speech is not None else None
-        return Step(frame, state, controls, outcome, posed, picture, seen, name, line, interior)
+        return step
 
     @property
     def lens(self) -> LensEstimate:
@@ -307,6 +333,11 @@ class Playground:
         """Compute what the hand does with the cube."""
         return self._gestures.update(state)
 
+    def see(self, frame: Frame, state: CubeState, controls: CubeControls) -> Appearance | None:
+        """Measure what the picture tells beside the cube's pose; None where nothing needs it."""
+        table = controls.camera_from_table
+        return self._appearance.update(frame, state, table) if self._measured else None
+
     def decide(self, state: CubeState, controls: CubeControls, inputs: Inputs) -> Outcome:
         """Let the scenario decide."""
         animator = self._animator
@@ -316,7 +347,7 @@ class Playground:
             animator.actions,
             animator.walks,
             animator.length,
-            _table_from_cube(state, controls),
+            table_from_cube(state, controls),
         )
         scenario = type(self.scenario)
         with scenario_errors(scenario):
@@ -347,42 +378,17 @@ class Playground:
         """Animate the character."""
         return self._animator.update(command)
 
-    def draw(
-        self,
-        frame: Frame,
-        state: CubeState,
-        controls: CubeControls,
-        outcome: Outcome,
-        posed: PosedCharacter,
-        interior: Interior | None = None,
-    ) -> NDArray[np.uint8] | None:
-        """Draw the picture; return None without a graphics context."""
-        body, blood = Body(self.character, self._parts, posed), self._complexion.blood
-        return self._renderer.draw(frame, state, controls, outcome, body, interior, blood)
+    def draw(self, step: Step) -> NDArray[np.uint8] | None:
+        """Draw the picture of a step; return None without a graphics context."""
+        body = Body(self.character, self._parts, step.posed)
+        return self._renderer.draw(step, body, self._complexion.blood)
 
     def drawn(self, step: Step) -> Step:
         """Return a step with its picture, which `step` left out."""
-        picture = self.draw(
-            step.frame, step.state, step.controls, step.outcome, step.posed, step.interior
-        )
-        return replace(step, picture=picture)
-
-    def _fitted(self, posed: PosedCharacter) -> PosedCharacter:
-        """Return a recorded pose for today's character, which may have got more morphs."""
-        morphs, count = posed.pose.morphs, len(self.character.morphs)
-        if morphs is None or len(morphs) >= count:
-            return posed
-        padded = np.concatenate([morphs, np.zeros(count - len(morphs))])
-        return replace(posed, pose=replace(posed.pose, morphs=padded))
+        appearance = step.appearance or self.see(step.frame, step.state, step.controls)
+        step = replace(step, appearance=appearance)
+        return replace(step, picture=self.draw(step))
 
     def close(self) -> None:
         """Release the graphics; a second call does nothing."""
         self._renderer.close()
-
-
-def _table_from_cube(state: CubeState, controls: CubeControls) -> NDArray[np.float64] | None:
-    """Return where a cube that is seen is on the table, (4, 4) [m]."""
-    table, cube = controls.camera_from_table, state.camera_from_cube
-    if table is None or cube is None or not controls.visible:
-        return None
-    return np.asarray(np.linalg.inv(table) @ cube)

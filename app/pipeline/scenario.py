@@ -3,14 +3,12 @@
 from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
-import numpy as np
-from numpy.typing import NDArray
-
 from cubeling.affect import Emotion, Personality
 from cubeling.app.errors import AppError
+from cubeling.app.pipeline.situation import Situation
 from cubeling.app.pipeline.spoken_line import SpokenLine
-from cubeling.app.pipeline.things import Body, Thing
-from cubeling.characters import CharacterCommand, PosedCharacter, RootDelta
+from cubeling.app.pipeline.things import Thing
+from cubeling.characters import CharacterCommand, RootDelta
 from cubeling.characters.rendering import FloorPath
 from cubeling.tracking import CubeControls, CubeModel
 
@@ -35,29 +33,6 @@ class Inputs:
     def events(self) -> tuple[str, ...]:
         """What happens besides gestures; personalities say what it means to the robot."""
         return () if self.line is None else ("spoken",)
-
-
-@dataclass(frozen=True)
-class Situation:
-    """Who and what is on the table, and what the character can do."""
-
-    character: PosedCharacter | None = None
-    """The character as after the previous frame; None in the first."""
-
-    body: Body | None = None
-    """Its body then, which tells how hard a place is to reach; None in the first frame."""
-
-    actions: tuple[str, ...] = ()
-    """Names of the actions that the character can perform."""
-
-    walks: bool = True
-    """Whether the character walks and runs; else it hops."""
-
-    body_length: float = 0.0
-    """Length of the character on the table, from front to back [m]."""
-
-    cube: NDArray[np.float64] | None = None
-    """`table_from_cube`, (4, 4) [m]; None where the cube is not seen."""
 
 
 @dataclass(frozen=True)

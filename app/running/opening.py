@@ -123,6 +123,7 @@ def open_session(
             controller=controller,
             realism=options.realism,
             inside=options.inside,
+            measured=options.appearance,
         )
         closing.callback(playground.close)
         if options.windowed or source.live:  # else nobody waits for a frame

@@ -14,7 +14,7 @@ from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import Progress
 from cubeling.app.session import SessionOptions, messages
-from cubeling.app.session.encoding import MESSAGE_TYPES, encode, upgraded
+from cubeling.app.session.encoding import APPEARANCE_TOPIC, CHANNEL_TYPES, encode, upgraded
 
 
 @dataclass
@@ -37,7 +37,9 @@ class ComparisonResult:
 
     def __rich__(self) -> Table:
         table = Table("channel", "messages", "different", "first at")
-        for topic in MESSAGE_TYPES:
+        for topic in CHANNEL_TYPES:
+            if not self.counts[topic]:
+                continue
             first = self.first.get(topic)
             first_at = "" if first is None else f"{first:.3f} s"
             table.add_row(topic, str(self.counts[topic]), str(self.different[topic]), first_at)
@@ -49,9 +51,12 @@ def check_session(
 ) -> ComparisonResult:
     """Process a session's frames again and compare every message with the recorded one."""
     result = ComparisonResult()
-    options = replace(options, pictures=False, robot="none", record=None, output=None)
+    seen = next(messages(path, APPEARANCE_TOPIC), None) is not None
+    options = replace(
+        options, pictures=False, appearance=seen, robot="none", record=None, output=None
+    )
     recorded = (
-        (topic, time, upgraded(topic, data)) for topic, time, data in messages(path, *MESSAGE_TYPES)
+        (topic, time, upgraded(topic, data)) for topic, time, data in messages(path, *CHANNEL_TYPES)
     )
     with open_session(options) as session:
         made = (

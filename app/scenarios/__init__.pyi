@@ -14,8 +14,8 @@ from cubeling.app.pipeline.scenario import (
     Outcome as Outcome,
     Scenario as Scenario,
     ScenarioSettings as ScenarioSettings,
-    Situation as Situation,
 )
+from cubeling.app.pipeline.situation import Situation as Situation
 from cubeling.app.scenarios.companion import Companion as Companion
 from cubeling.app.scenarios.follow import Follow as Follow
 from cubeling.app.scenarios.mood import MoodController as MoodController

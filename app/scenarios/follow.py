@@ -5,7 +5,8 @@ from numpy.typing import NDArray
 
 from cubeling.affect import Personality
 from cubeling.app.pipeline.registry import SUMMARIES
-from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings, Situation
+from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
+from cubeling.app.pipeline.situation import Situation
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
 from cubeling.app.scenarios.pursuit import Pursuit

@@ -21,12 +21,12 @@ from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.pipeline.step import Step
 from cubeling.app.session.encoding import (
+    CHANNEL_TYPES,
     CLOCK_RECORD,
     CLOCK_ZERO,
     IMAGE_TOPIC,
     INPUTS_TOPIC,
     LINE_TOPIC,
-    MESSAGE_TYPES,
     encode,
     encode_sound,
     schema,
@@ -42,7 +42,7 @@ MAX_QUEUED_WRITES = 256
 """Writes that may wait for a slow disk; with more, recording stops instead of delaying frames."""
 
 JSON_SCHEMAS = {
-    **{topic: (f"cubeling.{kind.__name__}", schema(kind)) for topic, kind in MESSAGE_TYPES.items()},
+    **{topic: (f"cubeling.{kind.__name__}", schema(kind)) for topic, kind in CHANNEL_TYPES.items()},
     INPUTS_TOPIC: ("cubeling.RecordedInputs", schema(RecordedInputs)),
     "/robot/wire": (
         "cubeling.Wire",

@@ -71,7 +71,7 @@ def replay(
         typer.Option(
             "--from",
             help="Take the recorded channels up to this one, and compute the others: camera "
-            "(compute all), state, controls, command or pose.",
+            "(compute all), state, controls, appearance, command or pose.",
         ),
     ] = "camera",
     fast: Annotated[
@@ -146,7 +146,7 @@ def replay(
         output=output,
         overwrite=overwrite,
         pictures=pictures and not check and (output is not None or has_display()),
-        realism=chosen_realism,
+        realism=recorded.realism if check else chosen_realism,
         inside=inside_of(inside or recorded.inside),
         quality=chosen_quality,
         sounds=sounds,

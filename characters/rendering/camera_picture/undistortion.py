@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.rendering.camera_picture.hand_cover import Maps, PictureCover, cropped
+from cubeling.characters.rendering.camera_picture.hand_cover import Maps, PictureCover, covered_area
 from cubeling.characters.rendering.projection import Rectangle, is_pinhole, usable_distortion
-from cubeling.characters.rendering.scene import Cover, View
+from cubeling.characters.rendering.scene import HandInFront, View
 from cubeling.characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
@@ -118,19 +118,16 @@ class Undistorter:
             return self._fitted(image, (image.shape[1], image.shape[0]))
         return image.copy() if maps is None else self._remapped(image, *maps)
 
-    def cover_in_picture(self, cover: Cover) -> PictureCover | None:
-        """Return the cover of the last view's frame as it is in the picture, or None outside of it.
+    def cover_in_picture(self, hand: HandInFront) -> PictureCover | None:
+        """Return the hand in the last view's frame as it is in the picture, or None outside of it.
 
         It has an empty rim, so that it ends softly.
         """
-        cover = cropped(cover)
-        if not cover.share.size:
+        covered = covered_area(hand)
+        if not covered.width:
             return None
-        around = self._area_in_picture(cover.area)
-        area = around.intersection(Rectangle(0, 0, *self._size))
-        if area is None:
-            return None
-        return PictureCover(area, cover, self._maps)
+        area = self._area_in_picture(covered).intersection(Rectangle(0, 0, *self._size))
+        return None if area is None else PictureCover(area, hand, self._maps)
 
     def _area_in_picture(self, part: Rectangle) -> Rectangle:
         """Return the area of the picture around a rectangle of the last view's frame."""

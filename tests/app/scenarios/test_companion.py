@@ -2,7 +2,8 @@
 
 import pytest
 
-from cubeling.app.pipeline.scenario import Inputs, Situation
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.situation import Situation
 from cubeling.app.scenarios import make_scenario
 from cubeling.tracking import CubeModel
 

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cubeling.app.pipeline.scenario import Inputs, ScenarioSettings, Situation
+from cubeling.app.pipeline.scenario import Inputs, ScenarioSettings
+from cubeling.app.pipeline.situation import Situation
 from cubeling.app.pipeline.things import GRIP, Body, BodyParts, Thing
 from cubeling.app.scenarios.reach import HINTS, Reach
 from cubeling.app.scenarios.reach_behaviour import GESTURES

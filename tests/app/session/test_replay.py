@@ -22,11 +22,12 @@ from cubeling.app.session import (
     start_over_times,
 )
 from cubeling.app.session.bundled import bundled
-from cubeling.app.session.encoding import MESSAGE_TYPES, encode
+from cubeling.app.session.encoding import APPEARANCE_TOPIC, MESSAGE_TYPES, decode, encode
 from cubeling.app.session.options import START_STAGES
 from cubeling.app.session.replay_inputs import read_replay_inputs
 from cubeling.app.ui.screen import NullScreen
 from cubeling.tracking import open_source
+from cubeling.tracking.appearance import Appearance
 from tests.conftest import FIRST_S
 from tests.examples import some
 
@@ -50,7 +51,7 @@ def test_a_recording_replayed_twice_gives_identical_channels(computed_session, n
     assert again == list(itertools.islice(once, FRAMES * len(MESSAGE_TYPES)))
 
 
-@pytest.mark.parametrize("start", START_STAGES)
+@pytest.mark.parametrize("start", [each for each in START_STAGES if each != "appearance"])
 def test_a_replay_may_start_from_any_stage(short_session, start):
     """What comes after the start is computed again, and is the same."""
     with open_source(str(short_session)) as source:
@@ -63,6 +64,31 @@ def test_a_replay_may_start_from_any_stage(short_session, start):
             for topic, message in step.messages().items()
         ]
     assert made == list(messages(short_session, *MESSAGE_TYPES))
+
+
+@pytest.mark.slow(reason="pictures are measured and drawn, twice")
+def test_what_the_pictures_told_is_recorded_and_replayed(tmp_path, short_session):
+    path, video = tmp_path / "seen.mcap", tmp_path / "seen.mp4"
+    options = SessionOptions(
+        scenario="companion", source=str(short_session), robot="none", record=path, output=video
+    )
+    with open_session(replace(options, end_s=0.6)) as session:
+        run(session)
+    result = check_session(path, session_info(path).options)
+    assert result.identical
+    assert result.counts[APPEARANCE_TOPIC] == result.counts["/cube/state"] > 10
+    recorded = list(read_replay_inputs(str(path), "appearance"))
+    assert [type(each.appearance) for each in recorded] == [Appearance] * len(recorded)
+    assert recorded[-1].command is None
+    last = recorded[-1].appearance
+    assert last is not None
+    assert last.light is not None
+    assert decode(Appearance, encode(last)).light is not None
+
+
+def test_a_session_without_pictures_cannot_start_from_what_they_told(short_session):
+    with pytest.raises(AppError, match="no recorded channels to start from 'appearance'"):
+        read_replay_inputs(str(short_session), "appearance")
 
 
 def test_an_unknown_start_is_refused(short_session):

@@ -1,5 +1,7 @@
 """The arm behind a hand, beyond the window in which the hand is looked for: in coarse samples."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 
@@ -83,7 +85,7 @@ def with_arm(hand: HandMask, changed: Flags, samples: Box, window: Window) -> Ha
         GRID_PX * hand.scale * (side.start + first.start)
         for side, first in zip(samples, part, strict=True)
     )
-    return HandMask(x, y, np.asarray(soft, np.uint8), hand.scale, hand.behind)
+    return replace(hand, x=x, y=y, share=np.asarray(soft, np.uint8))
 
 
 def _around(arm: Image, inside: Box) -> Box:

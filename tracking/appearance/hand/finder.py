@@ -19,7 +19,7 @@ from cubeling.tracking.appearance.hand.colour_model import (
 from cubeling.tracking.appearance.hand.components import holding
 from cubeling.tracking.appearance.hand.edge import soft_cover
 from cubeling.tracking.appearance.hand.last_hand import LastHand
-from cubeling.tracking.appearance.hand.mask import HandMask
+from cubeling.tracking.appearance.hand.mask import EDGE_SLOPE, HandMask
 from cubeling.tracking.appearance.hand.odds import hand_odds
 from cubeling.tracking.appearance.hand.on_cube.cube_part import CubeCheck, CubePart
 from cubeling.tracking.appearance.hand.on_cube.face_pattern import FacePattern
@@ -210,7 +210,7 @@ class HandFinder:
             return None
         left, top, share = soft_cover(hand, odds, place.difference, window)
         x, y = (window.left + left) * window.scale, (window.top + top) * window.scale
-        return HandMask(x, y, share, window.scale, cube.behind)
+        return HandMask(x, y, share, cube.behind, window.scale, EDGE_SLOPE)
 
     def _without(self, mistaken: Flags, place: Place, window: Window) -> Place:
         """Forget the background where it was `mistaken`, (h, w), for the desk."""

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cubeling.tracking.appearance.hand.edge import ODDS_RANGE, soft_cover
-from cubeling.tracking.appearance.hand.mask import HandMask
+from cubeling.tracking.appearance.hand.mask import EDGE_SLOPE, HandMask
 from cubeling.tracking.appearance.hand.window import Window
 from tests.bench.hand_mask import covered
 
@@ -32,7 +32,7 @@ def test_the_edge_is_where_the_hand_ends(hand, light, grown):
     mask[5:35, : 20 + grown] = 1
     odds = np.where(mask, np.float32(ODDS_RANGE), np.float32(-ODDS_RANGE))
     left, top, share = soft_cover(mask, odds, difference(hand, (160, 8, 30), light), window)
-    found = HandMask(SCALE * left, SCALE * top, share, SCALE, np.zeros(3))
+    found = HandMask(SCALE * left, SCALE * top, share, np.zeros(3), SCALE, EDGE_SLOPE)
     row = 255 * covered(found, (SCALE * SIDE, SCALE * SIDE))[20 * SCALE]
     assert abs(np.count_nonzero(row > 127) - EDGE * SCALE) < 2
     assert np.count_nonzero((row > 10) & (row < 245)) <= 2 * SCALE
