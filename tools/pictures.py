@@ -25,7 +25,7 @@ from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.opening import intrinsics_for, open_session
 from cubeling.app.running.runner import run
-from cubeling.app.session import SessionOptions, events
+from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.session.bundled import bundled
 from cubeling.app.ui.calibration.coach import ANIMATION_PERIOD_S, CoachView
 from cubeling.app.ui.calibration.coach_lines import write_coverage
@@ -91,7 +91,8 @@ def draw(scenario: str, moments: dict[str, float]) -> None:
 def in_window(picture: Picture, scenario: str, now: float, length: float) -> Picture:
     """Return a picture of a replay as the window shows it, paused."""
     layer = PlaybackLayer((scenario,), Path(), {})
-    marks = tuple(Mark(time, event) for time, event in events(bundled(scenario)))
+    with SessionFile(bundled(scenario)) as session:
+        marks = tuple(Mark(time, event) for time, event in session.events)
     position = Position(now, length, 0.0, length, marks=marks)
     layer.report(SessionStatus(scenario, paused=True, position=position))
     return layer.draw(picture)

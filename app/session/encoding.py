@@ -19,6 +19,12 @@ from cubeling.tracking.appearance import Appearance
 
 T = TypeVar("T")
 
+SESSION_RECORD, FORMAT_KEY = "cubeling", "format"
+"""Name of a session's metadata, and the key of the version of its format."""
+
+SESSION_FORMAT = 1
+"""The version of the format that is written: all that changed it stands in `_upgraded`."""
+
 CLOCK_RECORD, CLOCK_ZERO = "cubeling clock", "zero_utc"
 """Name of a live session's metadata, and their key: when its timestamps were 0, by ISO 8601."""
 
@@ -106,8 +112,8 @@ def _upgraded(kind: type[Any], content: Any) -> Any:
 
     Before `affect.Emotion` held its word, an emotion had a label next to it, and the intents of a
     command were single fields, of which the oldest sessions lack some. A shake was a field of its
-    own among the controls. Sessions do not hold the version of the program that recorded them:
-    these fields tell the versions apart.
+    own among the controls. All that was before sessions held the version of their format: these
+    fields tell the versions apart.
     """
     if kind is CubeControls and "shaken" in content:
         controls = {key: value for key, value in content.items() if key != "shaken"}

@@ -24,9 +24,12 @@ from cubeling.app.session.encoding import (
     CHANNEL_TYPES,
     CLOCK_RECORD,
     CLOCK_ZERO,
+    FORMAT_KEY,
     IMAGE_TOPIC,
     INPUTS_TOPIC,
     LINE_TOPIC,
+    SESSION_FORMAT,
+    SESSION_RECORD,
     encode,
     encode_sound,
     schema,
@@ -176,7 +179,9 @@ class Recorder(Closeable):
 
     def _start(self) -> None:
         self._writer.start(profile="", library="cubeling")
-        self._writer.add_metadata("cubeling", self._metadata)
+        self._writer.add_metadata(
+            SESSION_RECORD, {FORMAT_KEY: f"{SESSION_FORMAT}", **self._metadata}
+        )
 
     def _frame(self, frame: Frame) -> None:
         if frame.encoded is None:

@@ -91,7 +91,9 @@ def play_slowly(short_session):
         )
         with open_session(options, screen=screen) as session:
             pace = session.pace and Pace(session.pace.max_late, time, time.sleep)
-            summary = run(replace(session, pace=pace, start_overs=STARTED_OVER))
+            played = replace(session, pace=pace)
+            played.start_overs = STARTED_OVER
+            summary = run(played)
         return screen.steps, summary
 
     return run_session
