@@ -13,7 +13,7 @@ from cubeling.characters.control.controllers import (
     default_height,
     first_suitable,
 )
-from cubeling.characters.control.layers import FrameContext, LayerFactory, layers_of
+from cubeling.characters.control.layers import FrameContext, LayerFactory, apply_layers, layers_of
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.model.character import Character
 from cubeling.characters.motion.motion import RootDelta
@@ -120,9 +120,7 @@ class Animator:
             self._expressivity.update(elapsed, command.emotion),
             self._rest,
         )
-        pose = frame.pose
-        for layer in self._layers:
-            pose = layer.update(pose, context)
+        pose, _ = apply_layers(self._layers, frame.pose, context)
         return PosedCharacter(
             pose=pose,
             table_from_character=context.table_from_character,

@@ -55,7 +55,8 @@ class SpeechDisplay:
         self._brows = AccentBrows(morphs, seed)
         self._numbers: list[int] = self._mouth.numbers.tolist()
         self._clips: list[int] = ExpressionMorphs.of(morphs).speech.tolist()
-        self._said: tuple[Utterance, float] | None = None
+        self._utterance: Utterance | None = None
+        self._start = 0.0
         self._track: MouthTrack | None = None
         self._shapes = self._before = _CLOSED
         self._since = self._length = CLOSING_S
@@ -65,7 +66,7 @@ class SpeechDisplay:
     def active(self) -> bool:
         """Whether the face speaks, or still closes its mouth."""
         moving = self._presence > 0.0 or self._raised > 0.0 or self._since < self._length
-        return self._said is not None or moving
+        return self._utterance is not None or moving
 
     @property
     def has_morphs(self) -> bool:
@@ -78,38 +79,44 @@ class SpeechDisplay:
         return jaw_opening(self._shapes)
 
     def update(
-        self, elapsed: float, said: tuple[Utterance, float] | None, now: float, emphasis: float
+        self,
+        elapsed: float,
+        utterance: Utterance | None,
+        start: float,
+        now: float,
+        emphasis: float,
     ) -> None:
         """Advance by a time [s] to `now` [s].
 
-        `said` is an utterance and when its sound begins [s], or None. `emphasis`, −1…1, is added to
-        the strength of its accents.
+        The sound of the utterance, None for silence, begins at `start` [s]. `emphasis`, −1…1, is
+        added to the strength of its accents.
         """
-        if said is not None and not said[0].phones:
-            said = None  # the mouth is moved by somebody else, or nobody
-        if said is not None and not -PAUSE_BESIDE_S <= now - said[1] < said[0].duration:
-            said = None
+        # Without phones the mouth is moved by somebody else, or nobody.
+        if utterance is not None and (
+            not utterance.phones or not -PAUSE_BESIDE_S <= now - start < utterance.duration
+        ):
+            utterance = None
         self._since += elapsed
-        if said != self._said:
-            self._begin(said)
+        if utterance != self._utterance or (utterance is not None and start != self._start):
+            self._begin(utterance, start)
         step = elapsed / ONSET_S
-        self._presence = min(max(self._presence + (-step if said is None else step), 0.0), 1.0)
+        self._presence = min(max(self._presence + (-step if utterance is None else step), 0.0), 1.0)
         target, raised = _CLOSED, 0.0
-        if said is not None and self._track is not None:
-            time = now - said[1] + LEAD_S
+        if utterance is not None and self._track is not None:
+            time = now - start + LEAD_S
             target, raised = self._track.at(time, emphasis), self._brows.raised(time)
         self._raised = max(raised, self._raised - elapsed / FALLING_S)  # also after a cut
         left = 1.0 - ease(min(self._since / self._length, 1.0), "cubic")
         self._shapes = target + left * (self._before - target)
 
-    def _begin(self, said: tuple[Utterance, float] | None) -> None:
+    def _begin(self, utterance: Utterance | None, start: float) -> None:
         """Take another utterance, or silence; the mouth goes over to it from where it is."""
-        self._said = said
+        self._utterance, self._start = utterance, start
         settings = replace(self._settings, visemes=self.visemes)
-        self._track = None if said is None else MouthTrack(said[0], settings)
-        self._brows.plan(() if said is None else said[0].accents)
+        self._track = None if utterance is None else MouthTrack(utterance, settings)
+        self._brows.plan(() if utterance is None else utterance.accents)
         self._before = self._shapes
-        self._since, self._length = 0.0, CLOSING_S if said is None else SWITCH_S
+        self._since, self._length = 0.0, CLOSING_S if utterance is None else SWITCH_S
 
     def apply(self, weights: Array, closed: float) -> None:
         """Lay the speech over morph weights (morphs,) with an expression on them, in place.

@@ -105,7 +105,7 @@ def plain_weights(character: Character, said: Utterance, times: Array) -> Array:
     display = SpeechDisplay(character.morphs, 0, Coarticulation(sharpness=1.0, contacts=False))
     rows = []
     for now in times.tolist():
-        display.update(1 / FRAME_RATE, (said, 0.0), now, 0.0)
+        display.update(1 / FRAME_RATE, said, 0.0, now, 0.0)
         row = np.zeros(len(character.morphs))
         display.apply(row, 0.0)
         rows.append(row)
@@ -169,8 +169,8 @@ def jaw_openings(said: Sequence[tuple[Utterance, float]], times: Array) -> Array
     display = SpeechDisplay([f"viseme_{shape}" for shape in MOUTH_SHAPES], 0)
     rows = []
     for now in times.tolist():
-        current = next((each for each in reversed(said) if each[1] <= now), None)
-        display.update(float(times[1] - times[0]), current, now, 0.0)
+        utterance, start = next((each for each in reversed(said) if each[1] <= now), (None, 0.0))
+        display.update(float(times[1] - times[0]), utterance, start, now, 0.0)
         rows.append(display.opening)
     return np.array(rows)
 

@@ -6,7 +6,7 @@ from cubeling.affect import Emotion
 from cubeling.characters import Character, CharacterCommand, Pose, RootDelta
 from cubeling.characters.body.posture import ExpressivityFilter
 from cubeling.characters.control.controllers.controller import ControllerFrame
-from cubeling.characters.control.layers import LIVELINESS_LAYERS, FrameContext
+from cubeling.characters.control.layers import LIVELINESS_LAYERS, FrameContext, apply_layers
 from cubeling.characters.locomotion.gaits import TOP_SPEED
 
 
@@ -31,7 +31,6 @@ class AppliedLayers:
         command = CharacterCommand(0.0, gaze=target, emotion=emotion)
         frame = ControllerFrame(pose, "idle", RootDelta(), speed=effort * TOP_SPEED)
         expressivity = self._expressivity.update(elapsed, emotion)
-        self.context = FrameContext(elapsed, command, frame, 1.0, np.eye(4), expressivity, 1.0)
-        for layer in self._layers:
-            pose = layer.update(pose, self.context)
-        return pose
+        context = FrameContext(elapsed, command, frame, 1.0, np.eye(4), expressivity, 1.0)
+        moved, self.context = apply_layers(self._layers, pose, context)
+        return moved

@@ -6,7 +6,7 @@ from cubeling.characters.control.layers.face import FaceLayer
 from cubeling.characters.control.layers.foot_lock import FootLockLayer
 from cubeling.characters.control.layers.gaze import GazeLayer
 from cubeling.characters.control.layers.gestures import GestureLayer
-from cubeling.characters.control.layers.layer import FrameContext, LayerFactory
+from cubeling.characters.control.layers.layer import FrameContext, LayerFactory, apply_layers
 from cubeling.characters.control.layers.posture import PostureLayer
 from cubeling.characters.control.layers.reach import ReachLayer
 from cubeling.characters.control.layers.sitting_up import SittingUpLayer
@@ -74,5 +74,6 @@ __all__ = [
     "FrameContext",
     "LayerFactory",
     "SpeechLayer",
+    "apply_layers",
     "layers_of",
 ]

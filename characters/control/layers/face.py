@@ -63,12 +63,15 @@ class FaceLayer:
 
     def _update_speech(self, context: FrameContext) -> None:
         """Bring the mouth to the time of the frame."""
-        speech = context.command.speech
-        said = None if speech is None else (speech.utterance, speech.start)
-        if speech is not None:
-            self._speech.visemes = speech.profile.visemes
-        emphasis = 0.0 if speech is None else speech.profile.face_emphasis
-        self._speech.update(context.elapsed, said, context.command.timestamp, emphasis)
+        speech, now = context.command.speech, context.command.timestamp
+        if speech is None:
+            self._speech.update(context.elapsed, None, 0.0, now, 0.0)
+            return
+        profile = speech.profile
+        self._speech.visemes = profile.visemes
+        self._speech.update(
+            context.elapsed, speech.utterance, speech.start, now, profile.face_emphasis
+        )
 
 
 def _is_finer(emotion: Emotion | None, action: str) -> bool:

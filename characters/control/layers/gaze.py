@@ -1,12 +1,14 @@
 """Gaze: head and eyes that follow a point, and movements of the head besides."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from cubeling.characters.behaviour.performing.head_movements import turned_head
 from cubeling.characters.behaviour.performing.planned_values import PlannedValues
 from cubeling.characters.body.gaze import HEAD_LAG_S, Gaze
 from cubeling.characters.control.layers.behaviour import lag_of, looked_at
-from cubeling.characters.control.layers.layer import FrameContext
+from cubeling.characters.control.layers.layer import Found, FrameContext
 from cubeling.characters.control.layers.posture import posture_share
 from cubeling.characters.model.character import Character
 from cubeling.characters.skeleton.pose import Array, Pose
@@ -24,8 +26,8 @@ class GazeLayer:
         )
         self._movements = PlannedValues(3)
 
-    def update(self, pose: Pose, context: FrameContext) -> Pose:
-        """Return the pose with its gaze on the point."""
+    def update(self, pose: Pose, context: FrameContext) -> Found:
+        """Return the pose with its gaze on the point, and how far that has moved."""
         looked = looked_at(context)
         target, tempo = context.gaze_target, context.expressivity.tempo
         share = 1.0 - (1.0 - HEAD_SHARE_IN_ACTION) * float(context.frame.acting)
@@ -41,8 +43,7 @@ class GazeLayer:
             head_drop=context.expressivity.head_drop * posture_share(context),
             head_turn=self._head_turn(context),
         )
-        context.gaze_shift = self._gaze.shift
-        return pose
+        return Found(pose, replace(context, gaze_shift=self._gaze.shift))
 
     def _head_turn(self, context: FrameContext) -> Array:
         """Return how the head moves besides: a rotation vector about the body's axes, (3,)."""

@@ -1,6 +1,6 @@
 """What every pose layer is: it takes a pose and returns one, once a frame."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -14,7 +14,7 @@ from cubeling.characters.model.character import Character
 from cubeling.characters.skeleton.pose import Array, Pose
 
 
-@dataclass
+@dataclass(frozen=True)
 class FrameContext:
     """What the layers of one frame take besides the pose."""
 
@@ -40,10 +40,10 @@ class FrameContext:
     """1 standing still … 0 running or in the midst of an action; smoothed."""
 
     gaze_shift: float = 0.0
-    """Set by the gaze layer for those after it: angle by which the gaze target moved [rad]."""
+    """Angle by which the gaze target moved, as the gaze layer found it [rad]."""
 
     breath: float = 0.0
-    """Set by the posture layer for those after it: filling of the lungs, 0…1."""
+    """Filling of the lungs, as the posture layer found it, 0…1."""
 
     @property
     def emotion(self) -> Emotion | None:
@@ -63,12 +63,33 @@ class FrameContext:
         return inside
 
 
+@dataclass(frozen=True)
+class Found:
+    """What a layer returns that has found something for those after it."""
+
+    pose: Pose
+    """The pose with the layer applied."""
+
+    context: FrameContext
+    """What the layers after it take."""
+
+
 class PoseLayer(Protocol):
     """Changes the poses of one character, in the order of time."""
 
-    def update(self, pose: Pose, context: FrameContext) -> Pose:
+    def update(self, pose: Pose, context: FrameContext) -> Pose | Found:
         """Return the pose with this layer applied."""
         ...
+
+
+def apply_layers(
+    layers: Iterable[PoseLayer], pose: Pose, context: FrameContext
+) -> tuple[Pose, FrameContext]:
+    """Return a pose with layers applied in their order, and all that they found."""
+    for layer in layers:
+        made = layer.update(pose, context)
+        pose, context = (made.pose, made.context) if isinstance(made, Found) else (made, context)
+    return pose, context
 
 
 LayerFactory = Callable[[Character, int], PoseLayer]

@@ -1,8 +1,10 @@
 """Posture, breath and sway of the body."""
 
+from dataclasses import replace
+
 from cubeling.characters.body.posture import NEUTRAL_EXPRESSIVITY, Posture
 from cubeling.characters.body.sway import BodySway
-from cubeling.characters.control.layers.layer import FrameContext
+from cubeling.characters.control.layers.layer import Found, FrameContext
 from cubeling.characters.model.character import Character
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Pose
@@ -23,8 +25,8 @@ class PostureLayer:
         self._sway = BodySway(character.skeleton, character.anatomy, seed)
         self._posture = Posture(character.skeleton, character.anatomy, self._sway.joints)
 
-    def update(self, pose: Pose, context: FrameContext) -> Pose:
-        """Return the pose with posture, breath and sway."""
+    def update(self, pose: Pose, context: FrameContext) -> Found:
+        """Return the pose with posture, breath and sway, and how full the lungs are."""
         expressivity, joints, posture = context.expressivity, self._sway.joints, None
         if expressivity is not NEUTRAL_EXPRESSIVITY:
             joints = self._posture.joints
@@ -32,7 +34,7 @@ class PostureLayer:
         turns = self._sway.update(
             context.elapsed, context.frame.effort, context.rest, expressivity, posture
         )
-        context.breath = self._sway.breath
         local = pose.rotations.copy()
         local[joints] = rotations.multiply(local[joints], turns)
-        return Pose(pose.translations, local, pose.scales, pose.morphs)
+        moved = Pose(pose.translations, local, pose.scales, pose.morphs)
+        return Found(moved, replace(context, breath=self._sway.breath))
