@@ -5,16 +5,16 @@ Source: Fernández-Baena, PhD thesis, La Salle – URL, 2015, section 4.5 (M9).
 
 from __future__ import annotations
 
-import tomllib
-from dataclasses import asdict, dataclass, fields, replace
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.face.visemes.sets import viseme_sets
-from cubeling.characters.model.files import read_file
 from cubeling.characters.synthesis.choices import Database
+from cubeling.toml_file import TomlTable, read
 
 if TYPE_CHECKING:  # a profile is read and checked before anything that plays it is loaded
     from cubeling.characters.speech.accents import AccentSettings
@@ -23,9 +23,6 @@ if TYPE_CHECKING:  # a profile is read and checked before anything that plays it
 
 DATABASES: tuple[str, ...] = get_args(Database)
 """Parts of a gesture library: the stronger gestures, the weaker ones, or all."""
-
-MAX_BYTES = 100_000
-"""Larger files are no profiles."""
 
 MAX_DISTANCE_S = 5.0
 """Greatest time between two accents that can be asked for [s]."""
@@ -78,8 +75,6 @@ class SpeechProfile:
                 raise CharacterError(f"{name} {getattr(self, name)!r}: choose one of {known}")
         for name, (low, high) in RANGES.items():
             value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int | float):
-                raise CharacterError(f"{name} {value!r}: give a number")
             if not low <= value <= high:
                 raise CharacterError(f"{name} {value:g}: give {low:g} to {high:g}")
 
@@ -109,14 +104,12 @@ class SpeechProfile:
         CharacterError
             If it cannot be read, or has other keys or values.
         """
-        try:
-            content: dict[str, Any] = tomllib.loads(read_file(path, MAX_BYTES).decode())
-            unknown = set(content) - {field.name for field in fields(SpeechProfile)}
-            if unknown:
-                raise CharacterError(f"no setting is called {', '.join(sorted(unknown))}")
-            return SpeechProfile(**content)
-        except (ValueError, CharacterError) as error:  # no TOML, or no UTF-8
-            raise CharacterError(f"{path}: {error}") from None
+        return SpeechProfile.of(read(path, CharacterError), str(path))
+
+    @staticmethod
+    def of(values: Mapping[str, Any], source: str) -> SpeechProfile:
+        """Return a profile by its fields; errors, CharacterError, name `source` as their origin."""
+        return TomlTable(values, source, error=CharacterError).fill(SpeechProfile)
 
     def save(self, path: Path) -> None:
         """Write it as a .toml file."""

@@ -7,12 +7,12 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
-from cubeling.affect.settings import TomlTable, read, shown
 from cubeling.affect.words import WORD_PLACES
 from cubeling.robot.contract.catalogue import MAX_NAME_BYTES, Catalogue
 from cubeling.robot.drivers.opencat import tokens
 from cubeling.robot.drivers.opencat.models import MODELS
 from cubeling.robot.errors import RobotError
+from cubeling.toml_file import TomlTable, read, shown
 
 BUNDLED_SETTINGS = Path(__file__).with_name("opencat.toml")
 """The bundled settings; a person's own file overrides parts of them."""

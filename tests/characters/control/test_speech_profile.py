@@ -25,12 +25,12 @@ def test_a_profile_comes_back_from_its_file(tmp_path_factory, profile):
 @pytest.mark.parametrize(
     ("text", "problem"),
     [
-        ("database = 'loud'", "choose one of aggressive, neutral, full"),
+        ("database = 'loud'", "must be one of aggressive, neutral, full, not 'loud'"),
         ("visemes = 'none'", "choose one of"),
         ("gesture_emphasis = 2", "give -1 to 1"),
-        ("face_emphasis = 'much'", "give a number"),
-        ("accent_threshold = true", "give a number"),
-        ("volume = 3", "no setting is called volume"),
+        ("face_emphasis = 'much'", "must be a number, not 'much'"),
+        ("accent_threshold = true", "must be a number, not True"),
+        ("volume = 3", "volume means nothing here; there are database, "),
         ("database", "my.toml"),
     ],
 )
