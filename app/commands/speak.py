@@ -86,7 +86,7 @@ def speak(
         Path | None, typer.Option(help="Write the profile with the options below to this file.")
     ] = None,
     gestures: Annotated[
-        Path | None, typer.Option(help="A file of [cyan]cubeling gestures learn[/].")
+        Path | None, typer.Option(help="A file of [cyan]cubeling gesture learn[/].")
     ] = None,
     database: DatabaseOption = None,
     threshold: Annotated[
