@@ -5,7 +5,7 @@ Source: Fernández-Baena, PhD thesis, La Salle – URL, 2015, section 4.5 (M9).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -70,13 +70,12 @@ class SpeechProfile:
 
     def __post_init__(self) -> None:
         for name, choices in (("database", DATABASES), ("visemes", tuple(viseme_sets()))):
-            if getattr(self, name) not in choices:
-                known = ", ".join(choices)
-                raise CharacterError(f"{name} {getattr(self, name)!r}: choose one of {known}")
+            if (value := getattr(self, name)) not in choices:
+                raise CharacterError(f"{name} must be one of {', '.join(choices)}, not {value!r}")
         for name, (low, high) in RANGES.items():
             value = getattr(self, name)
             if not low <= value <= high:
-                raise CharacterError(f"{name} {value:g}: give {low:g} to {high:g}")
+                raise CharacterError(f"{name} must be from {low:g} to {high:g}, not {value:g}")
 
     @property
     def accents(self) -> AccentSettings:
@@ -96,20 +95,42 @@ class SpeechProfile:
         return _planner(library, self.database, self.threshold or None, weights)
 
     @staticmethod
-    def load(path: Path) -> SpeechProfile:
-        """Read a .toml file; what it leaves out is usual.
+    def load(name: str) -> SpeechProfile:
+        """Return the bundled profile of a name, or read a .toml file; what that lacks is usual.
 
         Raises
         ------
         CharacterError
-            If it cannot be read, or has other keys or values.
+            If there is none, it cannot be read, or has other fields or values.
         """
-        return SpeechProfile.of(read(path, CharacterError), str(path))
+        if name in PROFILES:
+            return PROFILES[name]
+        if not name.endswith(".toml"):
+            raise CharacterError(
+                f"there is no profile {name!r}: choose one of {', '.join(PROFILES)}, "
+                "or give a .toml file"
+            )
+        content = read(Path(name), CharacterError)
+        return TomlTable(content, name, error=CharacterError).fill(SpeechProfile)
 
-    @staticmethod
-    def of(values: Mapping[str, Any], source: str) -> SpeechProfile:
-        """Return a profile by its fields; errors, CharacterError, name `source` as their origin."""
-        return TomlTable(values, source, error=CharacterError).fill(SpeechProfile)
+    def with_settings(self, settings: Iterable[str]) -> SpeechProfile:
+        """Return the profile with other values of fields, each "name=value".
+
+        Raises
+        ------
+        CharacterError
+            If a field or its value is unknown; it says what there is.
+        """
+        values: dict[str, Any] = asdict(self)
+        for setting in settings:
+            name, equals, text = setting.partition("=")
+            if not equals:
+                raise CharacterError(f"--set {setting}: write {name}=VALUE")
+            try:
+                values[name] = float(text) if name in RANGES else text
+            except ValueError:
+                values[name] = text  # the table says what it must be
+        return TomlTable(values, "--set", error=CharacterError).fill(SpeechProfile)
 
     def save(self, path: Path) -> None:
         """Write it as a .toml file."""
@@ -139,6 +160,13 @@ RANGES: dict[str, tuple[float, float]] = {
 
 DEFAULT_PROFILE = SpeechProfile()
 """How the bundled characters speak."""
+
+PROFILES: Mapping[str, SpeechProfile] = {
+    "usual": DEFAULT_PROFILE,
+    "lively": SpeechProfile("aggressive", gesture_emphasis=0.5, face_emphasis=0.5),
+    "calm": SpeechProfile("neutral", gesture_emphasis=-0.5, face_emphasis=-0.3),
+}
+"""The bundled profiles."""
 
 
 @lru_cache(maxsize=8)
