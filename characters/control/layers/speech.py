@@ -13,9 +13,9 @@ from cubeling.characters.control.layers.layer import FrameContext
 from cubeling.characters.face.expressions import EXPRESSIONS
 from cubeling.characters.model.character import Character
 from cubeling.characters.motion.curves import Curve, FadeCurve, ease
+from cubeling.characters.motion.layers import lay_over
 from cubeling.characters.motion.modifiers import Stretch
 from cubeling.characters.motion.motion import Motion
-from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array, Pose
 from cubeling.characters.smoothing import low_pass
 from cubeling.characters.speech.speech import GestureSpan
@@ -62,13 +62,8 @@ class OverlaidMotion:
         weight = share * self.weight.at(own, self.motion.duration)
         if weight <= 0.0:
             return pose
-        joints, turns = [*self.joints], pose.rotations.copy()
-        shown = self.motion.sample(own).rotations[joints]
-        before = turns[joints]
-        turns[joints] = rotations.normalize(
-            before + (rotations.align(shown, before) - before) * weight
-        )
-        return replace(pose, rotations=turns)
+        joints = np.array(self.joints)
+        return lay_over(pose, joints, self.motion.sample(own).rotations.take(joints, 0), weight)
 
 
 class SpeechGestures:
