@@ -14,9 +14,8 @@ from cubeling.app.speaking.performance import (
     sound_blocks,
 )
 from cubeling.app.speaking.view import View
-from cubeling.app.ui.video_file import VideoFile
+from cubeling.app.ui.clip_video import write_clip
 from cubeling.characters import Character, SpeechIntent
-from cubeling.characters.rendering import PortraitRenderer, create_context
 
 
 def write_video(
@@ -38,32 +37,21 @@ def write_video(
     AppError
         The file cannot be written.
     """
-    clip = recording.clip
-    context = create_context()
-    renderer = PortraitRenderer(context, size)
-    camera = FollowingCamera(character, view)
-    try:
-        with VideoFile(path, size, clip.rate, sound_blocks(recording.sound())) as video:
-            for number in range(len(clip)):
-                now = number / clip.rate
-                pose = clip.poses[number]
-                picture = renderer.portrait(
-                    character,
-                    pose,
-                    azimuth=AZIMUTH_RAD,
-                    elevation=ELEVATION_RAD,
-                    focus=camera.focus(pose, now),
-                    blood=blood,
-                )
-                if subtitles:
-                    _subtitle(picture, recording, now)
-                video.write(picture, now)
-    finally:
-        renderer.release()
-        context.release()
 
+    def subtitle_over(picture: NDArray[np.uint8], now: float) -> None:
+        for speech in recording.speeches.values():
+            if speech.start <= now <= speech.heard_until:
+                put_subtitle(picture, SpeechIntent(speech.line.utterance, speech.start), now)
 
-def _subtitle(picture: NDArray[np.uint8], recording: BehaviourRecording, now: float) -> None:
-    for speech in recording.speeches.values():
-        if speech.start <= now <= speech.heard_until:
-            put_subtitle(picture, SpeechIntent(speech.line.utterance, speech.start), now)
+    write_clip(
+        path,
+        character,
+        recording.clip,
+        size,
+        azimuth=AZIMUTH_RAD,
+        elevation=ELEVATION_RAD,
+        focus=FollowingCamera(character, view).focus,
+        blood=blood,
+        sound=sound_blocks(recording.sound()),
+        draw_over=subtitle_over if subtitles else None,
+    )
