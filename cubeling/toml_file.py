@@ -5,7 +5,6 @@ its own: messages between programs are msgspec structs, glTF has its own checker
 """
 
 import dataclasses
-import difflib
 import stat
 import sys
 import tomllib
@@ -350,7 +349,11 @@ def _range(low: float, high: float) -> str:
 
 def _nearest(value: object, choices: Collection[str]) -> str:
     """Return the question after the choice that a wrong value looks like; "" if there is none."""
-    near = difflib.get_close_matches(str(value), choices, 1) if isinstance(value, str) else []
+    if not isinstance(value, str):
+        return ""
+    from difflib import get_close_matches  # only for a message: every start loads this module
+
+    near = get_close_matches(value, choices, 1)
     return f"did you mean {near[0]!r}?" if near else ""
 
 

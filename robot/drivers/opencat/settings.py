@@ -122,9 +122,7 @@ def parse_settings(document: Mapping[str, Any], source: str) -> OpenCatSettings:
     top.only("opencat", *MODELS)
     common = top.table("opencat")
     common.only("baud", "model", "commands_per_s", "dwell_s", "ask_every_s", "rest_after_s")
-    model = common.text("model")
-    if model and model not in MODELS:
-        raise common.unlike("model", f"one of {', '.join(MODELS)}")
+    model = common.choice("model", ("", *MODELS))
     baud = common.whole("baud", min(BAUDS), max(BAUDS))
     if baud not in BAUDS:
         raise common.unlike("baud", f"one of {', '.join(map(str, BAUDS))}")
