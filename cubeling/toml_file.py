@@ -316,11 +316,11 @@ class TomlTable:
         return table
 
     def _error(self, key: str, text: str) -> Exception:
-        key = printable(key if len(key) <= MAX_SHOWN_CHARS else f"{key[:MAX_SHOWN_CHARS]}…")
         return self._error_class(f"{self.source}: {self.at(key) or 'the file'}{text}")
 
     def at(self, key: str) -> str:
-        """Return the keys of a value in the file, "moods.happy.posture"."""
+        """Return the keys of a value in the file, "moods.happy.posture", for messages."""
+        key = printable(key if len(key) <= MAX_SHOWN_CHARS else f"{key[:MAX_SHOWN_CHARS]}…")
         return ".".join(part for part in (self.place, key) if part)
 
 

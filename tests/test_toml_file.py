@@ -189,6 +189,11 @@ def test_a_value_of_any_kind_is_given_or_refused_in_one_short_line(kind, value):
     assert line is None or line.startswith("my.toml: moods.key")
 
 
+def test_a_message_is_one_line_whatever_keys_lead_to_its_place():
+    inner = table(**{"a\nb": {"c": {}}}).table("a\nb").table("c")
+    assert refusal(inner.number, "d").startswith("my.toml: moods.'a\\nb'.c.d is missing")
+
+
 def test_lists_of_tables_of_numbers_and_choices_are_given_or_refused_with_their_place():
     one = table(rows=[{"at": [1, 2.5], "mode": "slow"}, {"at": [], "mode": "slo"}, {"mod": 1}])
     first, second, third = one.rows("rows")
