@@ -11,8 +11,8 @@ from cubeling.affect.emotion import Emotion
 from cubeling.affect.errors import AffectError
 from cubeling.affect.labels import LabelSet, label_set
 from cubeling.affect.personality_file import bundled_text, fields_of
-from cubeling.affect.settings import parse, read
 from cubeling.affect.traits import AffectImpulse, Ocean
+from cubeling.toml_file import parse, read
 
 MAX_GAIN_PER_S = 10.0
 """Largest gain of an action [1/s]: it crosses the whole plane in 0.2 s."""
@@ -129,7 +129,7 @@ class Personality:
             In one line: which file, which key, and what it may be.
         """
         if name.endswith(".toml"):
-            return cls._of(read(Path(name)), name)
+            return cls._of(read(Path(name), AffectError), name)
         return cls.parse(bundled_text(name), f"{name}.toml")
 
     @classmethod
@@ -148,7 +148,7 @@ class Personality:
         AffectError
             In one line: which file, which key, and what it may be.
         """
-        return cls._of(parse(text, source), source)
+        return cls._of(parse(text, source, AffectError), source)
 
     @classmethod
     def _of(cls, document: dict[str, Any], source: str) -> "Personality":

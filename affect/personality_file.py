@@ -1,13 +1,14 @@
 """Reads the TOML files of personalities; refuses unknown keys and numbers out of range."""
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from cubeling.affect.emotion import Emotion
 from cubeling.affect.errors import AffectError
-from cubeling.affect.settings import TomlTable
 from cubeling.affect.traits import AffectImpulse, Ocean
+from cubeling.toml_file import TomlTable
 
 BUNDLED_FOLDER = Path(__file__).parent / "personalities"
 """Folder of the bundled personalities."""
@@ -36,7 +37,7 @@ def bundled_text(name: str) -> str:
 
 def fields_of(document: Mapping[str, Any], source: str) -> dict[str, Any]:
     """Return the fields of `Personality` in a TOML document; errors name it as `source`."""
-    table = TomlTable(document, source)
+    table = TomlTable(document, source, error=AffectError)
     table.only(*_TEXT_KEYS, *_NUMBER_FIELDS, *_TABLE_KEYS)
     fields: dict[str, Any] = {"name": Path(source).stem}
     fields |= {key: table.text(key) for key in _TEXT_KEYS if key in table}
@@ -50,7 +51,8 @@ def fields_of(document: Mapping[str, Any], source: str) -> dict[str, Any]:
         valence, arousal = (home.number(axis, -1.0, 1.0, 0.0) for axis in _AXES)
         fields["temperament"] = Emotion(valence, arousal)
     half_lives = table.table("half_life_s", *_AXES)
-    fields |= {f"{axis}_half_life": half_lives.number(axis) for axis in half_lives.names()}
+    for axis in half_lives.names():  # infinite: no decay; `Personality` checks the range
+        fields[f"{axis}_half_life"] = half_lives.number(axis, -math.inf, math.inf)
     for key in ("gains", "events"):
         fields[key] = {name: _impulse(push) for name, push in table.tables(key, *_AXES).items()}
     fields["movement"] = table.table("movement", "arousal").number("arousal", default=0.0)

@@ -37,11 +37,11 @@ COMMANDS = {
     "character": "Inspect characters and motions, and make clips to walk with.",
     "motions": "Make motion graphs of your own recordings: where one clip can follow another.",
     "idle": "Learn how a person stands, from recordings, and let a character stand so.",
-    "gestures": "Learn how a person's hands beat the rhythm of speech, from recordings.",
     "speech": "Look at recorded speech: its pitch, accents, words and phones.",
     "speak": "Let a character say something, with its mouth, face and hands.",
     "behave": "Let a character perform blocks of BML: speech, gestures, gaze, postures, walking.",
-    "gesture": "Make gestures that every character can perform, look at them, and edit them.",
+    "gesture": "Make gestures that every character can perform, look at them, edit them, and learn "
+    "those that beat the rhythm of speech.",
     "ik": "Measure the solvers of inverse kinematics.",
     "schedule": "Render a blending schedule in XML to a motion file or a video.",
     "robot": "Simulate, try out and test robots, and list the serial ports.",
@@ -50,6 +50,9 @@ COMMANDS = {
     "doctor": "Check what this computer has, and show the commands that install what is missing.",
 }
 """The commands with the first sentence of their help. A new command is registered here."""
+
+RENAMED = {"gestures": "cubeling gesture, and its show cubeling gesture library"}
+"""What commands of old versions are called now."""
 
 SESSION_COMMANDS = ("demo", "play", "replay", "export")
 """The commands whose modules are in the folder `session`."""
@@ -90,6 +93,8 @@ class LazyGroup(typer.core.TyperGroup):
 
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
         """Return the name, the command and the arguments that are left for it."""
+        if args[0] in RENAMED:
+            ctx.fail(f"'{args[0]}' is now {RENAMED[args[0]]}")
         name, command, rest = super().resolve_command(ctx, args)
         return name, load_command(name) if name in COMMANDS else command, rest
 

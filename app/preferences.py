@@ -11,15 +11,13 @@ To add one, write a field of `Preferences` and a line of `FLAGS` in
 import contextlib
 import json
 import os
-import tomllib
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from cubeling.app.errors import AppError
+from cubeling.toml_file import TomlTable, read
 
 PROGRAM = "cubeling"
 """Value of the key `program` in every file of preferences; no other file is overwritten."""
@@ -106,17 +104,17 @@ class PreferenceStore:
 
 def _read(path: Path | None) -> tuple[Preferences, str | None]:
     """Return the preferences in a file, and why they are the default ones if it is of no use."""
-    try:
-        return Preferences() if path is None else _parse(path.read_text(encoding="utf-8")), None
-    except FileNotFoundError:
+    if path is None or not path.exists():
         return Preferences(), None
-    except OSError as error:
-        reason = error.strerror or "it cannot be read"
-    except UnicodeDecodeError:
-        reason = "it is no text"
-    except (ValueError, AppError) as error:  # of tomllib, msgspec and `Preferences`
-        reason = str(error)
-    return Preferences(), f"the preferences in '{path}' are ignored: {reason}"
+    try:
+        content = read(path, AppError)
+        if content and content.get("program") != PROGRAM:
+            raise AppError(f'{path}: it has no line program = "{PROGRAM}"')
+        known = {field.name for field in fields(Preferences)}  # a newer program may have more
+        values = {name: value for name, value in content.items() if name in known}
+        return TomlTable(values, str(path), error=AppError).fill(Preferences), None
+    except AppError as error:
+        return Preferences(), f"the preferences are ignored: {error}"
 
 
 def _write(path: Path, preferences: Preferences) -> str | None:
@@ -132,14 +130,6 @@ def _write(path: Path, preferences: Preferences) -> str | None:
             draft.unlink()
         return f"the preferences are not kept in '{path}': {error.strerror}"
     return None
-
-
-def _parse(text: str) -> Preferences:
-    """Return the preferences of a file; raises ValueError or AppError if it is not one of ours."""
-    document = tomllib.loads(text)
-    if document and document.pop("program", None) != PROGRAM:
-        raise AppError(f'it has no line program = "{PROGRAM}"')
-    return msgspec.convert(document, Preferences)
 
 
 def _document(preferences: Preferences) -> str:

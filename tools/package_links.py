@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[1]
 
 ROOMS = ("affect", "tracking", "characters", "robot", "app", "recordings")
 
-LINKED = (*ROOMS, *(f"cubeling/{name}" for name in ("__init__.py", "py.typed")))
+LINKED = (*ROOMS, *(f"cubeling/{path.name}" for path in (ROOT / "cubeling").glob("*.py*")))
 
 
 def main() -> None:

@@ -1,14 +1,11 @@
 """What the camera sees of a character that goes here and there."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cubeling.app.speaking.performance import framed
 from cubeling.app.speaking.view import View
+from cubeling.app.ui.clip_video import Focus
 from cubeling.characters import Character, Pose
-
-Focus = tuple[NDArray[np.float64], float]
-"""What is seen: a centre (3,) and a radius in the character frame [m]."""
 
 FOLLOW_LAG_S = 0.4
 """Lag with which a camera follows a character [s]."""

@@ -1,18 +1,28 @@
-"""A performance of blocks for a file: its frames, its sound and its feedback."""
+"""A performance of blocks for a file: its frames, its sound, its feedback, and a video of it."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cubeling.app.behaving.camera import FollowingCamera
 from cubeling.app.behaving.player import BehaviourFrame, BehaviourPlayer
 from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.sound import SAMPLE_RATE
 from cubeling.app.sound.mixer import FADE_OUT, limited
 from cubeling.app.sound.session_sound import SPEECH_GAIN, at_sample_rate
-from cubeling.characters import Clip, Pose, PosedCharacter
+from cubeling.app.speaking.performance import (
+    AZIMUTH_RAD,
+    ELEVATION_RAD,
+    put_subtitle,
+    sound_blocks,
+)
+from cubeling.app.speaking.view import View
+from cubeling.app.ui.clip_video import write_clip
+from cubeling.characters import Character, Clip, Pose, PosedCharacter, SpeechIntent
 from cubeling.characters.behaviour import Feedback
 from cubeling.characters.motion import rotations, stacked
 
@@ -120,6 +130,45 @@ def _hear(player: BehaviourPlayer, frame: BehaviourFrame, speeches: dict[str, Sp
         line = player.line_of(saying)
         if line is not None:
             speeches[saying.key] = SpokenPart(line, saying.start, frame.performed.now)
+
+
+def write_video(
+    path: Path,
+    character: Character,
+    recording: BehaviourRecording,
+    *,
+    size: tuple[int, int],
+    view: View,
+    subtitles: bool,
+    blood: float = 0.0,
+) -> None:
+    """Write a performance as a video with sound.
+
+    `blood` is that in the skin of the face, as in `SceneCharacter`.
+
+    Raises
+    ------
+    AppError
+        The file cannot be written.
+    """
+
+    def subtitle_over(picture: NDArray[np.uint8], now: float) -> None:
+        for speech in recording.speeches.values():
+            if speech.start <= now <= speech.heard_until:
+                put_subtitle(picture, SpeechIntent(speech.line.utterance, speech.start), now)
+
+    write_clip(
+        path,
+        character,
+        recording.clip,
+        size,
+        azimuth=AZIMUTH_RAD,
+        elevation=ELEVATION_RAD,
+        focus=FollowingCamera(character, view).focus,
+        blood=blood,
+        sound=sound_blocks(recording.sound()),
+        draw_over=subtitle_over if subtitles else None,
+    )
 
 
 def placed_pose(posed: PosedCharacter) -> Pose:

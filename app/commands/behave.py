@@ -194,7 +194,7 @@ def _write(
     subtitles: bool,
     blood: float,
 ) -> None:
-    from cubeling.app.behaving.video import write_video
+    from cubeling.app.behaving.recording import write_video
     from cubeling.characters.model import save_bap, save_bvh
 
     match path.suffix.lower():

@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from cubeling.app.commands.gesture_library import learn, library
 from cubeling.app.commands.output import OverwriteOption, chosen_output
 from cubeling.app.errors import AppError
 from cubeling.app.ui.display import has_display
@@ -26,11 +27,14 @@ GESTURE_FOLDER = Path(typer.get_app_dir("cubeling")) / "gestures"
 """Where the user's own gestures are; each goes before a bundled one of its name."""
 
 app = typer.Typer(
-    help="Make gestures that every character can perform, look at them, and edit them.",
+    help="Make gestures that every character can perform, look at them, edit them, and learn those "
+    "that beat the rhythm of speech.",
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode="rich",
 )
+app.command()(learn)
+app.command()(library)
 
 FolderOption = Annotated[
     Path, typer.Option("--folder", help="Where your own gestures are.", show_default=False)

@@ -144,19 +144,6 @@ def _write_glb(clip: Clip, body: Character, target: Path) -> None:
 
 
 def _write_video(clip: Clip, body: Character, target: Path) -> None:
-    import numpy as np
+    from cubeling.app.ui.clip_video import write_clip
 
-    from cubeling.app.ui.video_file import VideoFile
-    from cubeling.characters.rendering import PortraitRenderer, create_context
-
-    context = create_context()
-    renderer = PortraitRenderer(context, VIDEO_SIZE)
-    some = [clip.poses[n] for n in np.linspace(0, len(clip) - 1, 24).astype(int).tolist()]
-    try:
-        with VideoFile(target, VIDEO_SIZE, clip.rate) as video:
-            for number in range(len(clip)):
-                picture = renderer.portrait(body, clip.poses[number], extent=some)
-                video.write(picture, number / clip.rate)
-    finally:
-        renderer.release()
-        context.release()
+    write_clip(target, body, clip, VIDEO_SIZE)

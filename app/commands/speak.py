@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
@@ -14,13 +14,13 @@ from cubeling.affect import Emotion
 from cubeling.app.commands.output import OverwriteOption, chosen_output
 from cubeling.app.commands.session.play import VoiceOption
 from cubeling.app.commands.session.preference_options import emotion_of, size_of
+from cubeling.app.commands.speech_options import ProfileOption, SettingsOption, profile_of
 from cubeling.app.counted import counted
 from cubeling.app.errors import AppError
 from cubeling.app.output_path import check_output
 from cubeling.app.speaking.view import View
 from cubeling.app.ui.display import has_display
 from cubeling.app.ui.output_formats import VIDEO_FORMATS
-from cubeling.characters.speech import DATABASES, DEFAULT_PROFILE, viseme_sets
 
 if TYPE_CHECKING:
     from cubeling.characters import Character
@@ -28,25 +28,6 @@ if TYPE_CHECKING:
 
 MAX_TEXT_BYTES = 100_000
 """Larger files are no speeches."""
-
-PROFILE_PANEL = "How the body speaks"
-
-
-def _profile_option(name: str, words: str) -> Any:
-    """Return an option that changes the profile."""
-    return typer.Option(name, help=words, rich_help_panel=PROFILE_PANEL, show_default=False)
-
-
-ProfileOption = Annotated[
-    Path | None,
-    _profile_option("--profile", "A profile of --save-profile; the options here change it."),
-]
-DatabaseOption = Annotated[
-    str | None, _profile_option("--database", f"Which gestures: {', '.join(DATABASES)}.")
-]
-VisemesOption = Annotated[
-    str | None, _profile_option("--visemes", f"The set of visemes: {', '.join(viseme_sets())}.")
-]
 
 OUTPUT_SUFFIXES = (".wav", ".bvh", *VIDEO_FORMATS)
 
@@ -81,47 +62,13 @@ def speak(
     subtitles: Annotated[
         bool, typer.Option("--subtitles/--no-subtitles", help="Show what is being said.")
     ] = False,
-    profile: ProfileOption = None,
+    profile: ProfileOption = "usual",
+    settings: SettingsOption = None,
     save_profile: Annotated[
-        Path | None, typer.Option(help="Write the profile with the options below to this file.")
+        Path | None, typer.Option(help="Write the profile, as changed by --set, to this file.")
     ] = None,
     gestures: Annotated[
-        Path | None, typer.Option(help="A file of [cyan]cubeling gestures learn[/].")
-    ] = None,
-    database: DatabaseOption = None,
-    threshold: Annotated[
-        float | None,
-        _profile_option("--threshold", "How alike gestures are that follow each other; 0: enough."),
-    ] = None,
-    neck_weight: Annotated[
-        float | None,
-        _profile_option("--neck-weight", "Weight of the neck where postures are compared."),
-    ] = None,
-    spine_weight: Annotated[
-        float | None,
-        _profile_option("--spine-weight", "Weight of the spine where postures are compared."),
-    ] = None,
-    arm_weight: Annotated[
-        float | None,
-        _profile_option("--arm-weight", "Weight of the upper arms where postures are compared."),
-    ] = None,
-    forearm_weight: Annotated[
-        float | None,
-        _profile_option("--forearm-weight", "Weight of the forearms where postures are compared."),
-    ] = None,
-    gesture_emphasis: Annotated[
-        float | None, _profile_option("--gesture-emphasis", "Stronger or weaker gestures, -1 to 1.")
-    ] = None,
-    face_emphasis: Annotated[
-        float | None, _profile_option("--face-emphasis", "A livelier or a calmer mouth, -1 to 1.")
-    ] = None,
-    visemes: VisemesOption = None,
-    accent_threshold: Annotated[
-        float | None,
-        _profile_option("--accent-threshold", "Least strength of an accent, of the strongest."),
-    ] = None,
-    accent_distance: Annotated[
-        float | None, _profile_option("--accent-distance", "Least time between accents [s].")
+        Path | None, typer.Option(help="A file of [cyan]cubeling gesture learn[/].")
     ] = None,
     size: Annotated[str, typer.Option(help="Size of the video.")] = "640x480",
     rate: Annotated[float, typer.Option(help="Frames a second.", min=1.0, max=120.0)] = 25.0,
@@ -138,25 +85,9 @@ def speak(
     from cubeling.app.speaking.performance import Direction, performed, write_video
     from cubeling.characters import Character
     from cubeling.characters.model import gestures_for, read_text, save_bvh, with_root_joint
-    from cubeling.characters.speech import SpeechProfile, TaggedText, blood_of, utterance_of
+    from cubeling.characters.speech import TaggedText, blood_of, utterance_of
 
-    given = {
-        "database": database,
-        "threshold": threshold,
-        "neck_weight": neck_weight,
-        "spine_weight": spine_weight,
-        "arm_weight": arm_weight,
-        "forearm_weight": forearm_weight,
-        "gesture_emphasis": gesture_emphasis,
-        "face_emphasis": face_emphasis,
-        "visemes": visemes,
-        "accent_threshold": accent_threshold,
-        "accent_distance": accent_distance,
-    }
-    how = replace(
-        DEFAULT_PROFILE if profile is None else SpeechProfile.load(profile),
-        **{name: value for name, value in given.items() if value is not None},  # type: ignore[arg-type]
-    )
+    how = profile_of(profile, settings)
     if save_profile is not None:
         check_output(save_profile, "profile", (".toml",), overwrite=overwrite)
         how.save(save_profile)

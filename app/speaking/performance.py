@@ -14,7 +14,7 @@ from cubeling.app.sound.session_sound import at_sample_rate
 from cubeling.app.speaking.view import View
 from cubeling.app.ui.canvas import PICTURE_HEIGHT
 from cubeling.app.ui.cards.subtitles import draw_subtitle, subtitle, subtitle_place
-from cubeling.app.ui.video_file import VideoFile
+from cubeling.app.ui.clip_video import Focus, write_clip
 from cubeling.characters import (
     Animator,
     Character,
@@ -27,8 +27,6 @@ from cubeling.characters import (
 from cubeling.characters.motion import stacked
 from cubeling.characters.rendering import (
     CharacterExtent,
-    PortraitRenderer,
-    create_context,
     joints_below,
 )
 
@@ -136,31 +134,28 @@ def write_video(
     AppError
         The file cannot be written.
     """
-    context = create_context()
-    renderer = PortraitRenderer(context, size)
-    focus = framed(character, clip.poses[0], view)
+    seen = framed(character, clip.poses[0], view)
     speech = SpeechIntent(line.utterance, LEAD_S)
-    try:
-        with VideoFile(path, size, clip.rate, sound_track(line)) as video:
-            for number in range(len(clip)):
-                now = number / clip.rate
-                picture = renderer.portrait(
-                    character,
-                    clip.poses[number],
-                    azimuth=AZIMUTH_RAD,
-                    elevation=ELEVATION_RAD,
-                    focus=focus,
-                    blood=blood,
-                )
-                if subtitles and now >= LEAD_S:
-                    put_subtitle(picture, speech, now)
-                video.write(picture, now)
-    finally:
-        renderer.release()
-        context.release()
+
+    def subtitle_over(picture: NDArray[np.uint8], now: float) -> None:
+        if now >= LEAD_S:
+            put_subtitle(picture, speech, now)
+
+    write_clip(
+        path,
+        character,
+        clip,
+        size,
+        azimuth=AZIMUTH_RAD,
+        elevation=ELEVATION_RAD,
+        focus=lambda _pose, _now: seen,
+        blood=blood,
+        sound=sound_track(line),
+        draw_over=subtitle_over if subtitles else None,
+    )
 
 
-def framed(character: Character, pose: Pose, view: View) -> tuple[NDArray[np.float64], float]:
+def framed(character: Character, pose: Pose, view: View) -> Focus:
     """Return what is seen of a character: a centre (3,) and a radius in its frame [m]."""
     joints = joints_below(character, "head") if view == "face" else None
     points = CharacterExtent(character).points(pose, joints)

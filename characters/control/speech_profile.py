@@ -5,16 +5,16 @@ Source: Fernández-Baena, PhD thesis, La Salle – URL, 2015, section 4.5 (M9).
 
 from __future__ import annotations
 
-import tomllib
-from dataclasses import asdict, dataclass, fields, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.face.visemes.sets import viseme_sets
-from cubeling.characters.model.files import read_file
 from cubeling.characters.synthesis.choices import Database
+from cubeling.toml_file import TomlTable, read
 
 if TYPE_CHECKING:  # a profile is read and checked before anything that plays it is loaded
     from cubeling.characters.speech.accents import AccentSettings
@@ -23,9 +23,6 @@ if TYPE_CHECKING:  # a profile is read and checked before anything that plays it
 
 DATABASES: tuple[str, ...] = get_args(Database)
 """Parts of a gesture library: the stronger gestures, the weaker ones, or all."""
-
-MAX_BYTES = 100_000
-"""Larger files are no profiles."""
 
 MAX_DISTANCE_S = 5.0
 """Greatest time between two accents that can be asked for [s]."""
@@ -73,15 +70,12 @@ class SpeechProfile:
 
     def __post_init__(self) -> None:
         for name, choices in (("database", DATABASES), ("visemes", tuple(viseme_sets()))):
-            if getattr(self, name) not in choices:
-                known = ", ".join(choices)
-                raise CharacterError(f"{name} {getattr(self, name)!r}: choose one of {known}")
+            if (value := getattr(self, name)) not in choices:
+                raise CharacterError(f"{name} must be one of {', '.join(choices)}, not {value!r}")
         for name, (low, high) in RANGES.items():
             value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int | float):
-                raise CharacterError(f"{name} {value!r}: give a number")
             if not low <= value <= high:
-                raise CharacterError(f"{name} {value:g}: give {low:g} to {high:g}")
+                raise CharacterError(f"{name} must be from {low:g} to {high:g}, not {value:g}")
 
     @property
     def accents(self) -> AccentSettings:
@@ -101,22 +95,42 @@ class SpeechProfile:
         return _planner(library, self.database, self.threshold or None, weights)
 
     @staticmethod
-    def load(path: Path) -> SpeechProfile:
-        """Read a .toml file; what it leaves out is usual.
+    def load(name: str) -> SpeechProfile:
+        """Return the bundled profile of a name, or read a .toml file; what that lacks is usual.
 
         Raises
         ------
         CharacterError
-            If it cannot be read, or has other keys or values.
+            If there is none, it cannot be read, or has other fields or values.
         """
-        try:
-            content: dict[str, Any] = tomllib.loads(read_file(path, MAX_BYTES).decode())
-            unknown = set(content) - {field.name for field in fields(SpeechProfile)}
-            if unknown:
-                raise CharacterError(f"no setting is called {', '.join(sorted(unknown))}")
-            return SpeechProfile(**content)
-        except (ValueError, CharacterError) as error:  # no TOML, or no UTF-8
-            raise CharacterError(f"{path}: {error}") from None
+        if name in PROFILES:
+            return PROFILES[name]
+        if not name.endswith(".toml"):
+            raise CharacterError(
+                f"there is no profile {name!r}: choose one of {', '.join(PROFILES)}, "
+                "or give a .toml file"
+            )
+        content = read(Path(name), CharacterError)
+        return TomlTable(content, name, error=CharacterError).fill(SpeechProfile)
+
+    def with_settings(self, settings: Iterable[str]) -> SpeechProfile:
+        """Return the profile with other values of fields, each "name=value".
+
+        Raises
+        ------
+        CharacterError
+            If a field or its value is unknown; it says what there is.
+        """
+        values: dict[str, Any] = asdict(self)
+        for setting in settings:
+            name, equals, text = setting.partition("=")
+            if not equals:
+                raise CharacterError(f"--set {setting}: write {name}=VALUE")
+            try:
+                values[name] = float(text) if name in RANGES else text
+            except ValueError:
+                values[name] = text  # the table says what it must be
+        return TomlTable(values, "--set", error=CharacterError).fill(SpeechProfile)
 
     def save(self, path: Path) -> None:
         """Write it as a .toml file."""
@@ -146,6 +160,13 @@ RANGES: dict[str, tuple[float, float]] = {
 
 DEFAULT_PROFILE = SpeechProfile()
 """How the bundled characters speak."""
+
+PROFILES: Mapping[str, SpeechProfile] = {
+    "usual": DEFAULT_PROFILE,
+    "lively": SpeechProfile("aggressive", gesture_emphasis=0.5, face_emphasis=0.5),
+    "calm": SpeechProfile("neutral", gesture_emphasis=-0.5, face_emphasis=-0.3),
+}
+"""The bundled profiles."""
 
 
 @lru_cache(maxsize=8)

@@ -8,11 +8,9 @@ A text file begins with the version, a name, the frame rate and the number of fr
 a line of 68 flags, which say what is given, and a line with its number and the given values.
 """
 
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +20,7 @@ from cubeling.characters.errors import CharacterError
 from cubeling.characters.face.lids import numbers_by_name
 from cubeling.characters.face.visemes.mouth_morphs import arkit_parts
 from cubeling.characters.skeleton.pose import Array
+from cubeling.toml_file import read
 
 FAP_COUNT = 68
 """How many parameters there are."""
@@ -169,7 +168,7 @@ def _known_morphs(parts: Mapping[str, Array]) -> Iterator[tuple[str, Mapping[str
 @cache
 def _table() -> tuple[Array, dict[str, Array]]:
     """Return the limits of the parameters, (68, 2), and the parameters of parts, (68,) each."""
-    data = tomllib.loads((files(__package__) / "faps.toml").read_text("utf-8"))
+    data = read(Path(__file__).with_name("faps.toml"))
     limits = np.zeros((FAP_COUNT, 2))
     for number, (least, greatest) in data["limits"].items():
         limits[int(number) - 1] = least, greatest

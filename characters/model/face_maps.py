@@ -16,7 +16,6 @@ white is where skin flushes most. A picture that is left out is empty.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import cv2
 import numpy as np
@@ -25,6 +24,7 @@ from numpy.typing import NDArray
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.model.files import read_file
 from cubeling.characters.model.mesh import FaceMaps, Mesh
+from cubeling.toml_file import TomlTable
 
 WRINKLE_LAYERS: Mapping[int, tuple[int, ...]] = {
     1: (0,),
@@ -57,7 +57,6 @@ MAX_SIDE_PX = 4096
 """Pictures may be this large [px]."""
 
 _MAX_BYTES = 64_000_000
-_KEYS = ("maps", "depth_mm", "meshes", "scattering")
 _REST_SHARE = 128 / 255  # the grey of skin at rest
 
 
@@ -102,35 +101,23 @@ class FaceTable:
         )
 
 
-def read_face_table(document: Mapping[str, Any], path: Path) -> FaceTable | None:
-    """Return the table [face] of a sidecar file at `path`; None if it has none.
+def read_face_table(file: TomlTable, folder: Path) -> FaceTable | None:
+    """Return the table [face] of a sidecar file in a folder; None if it has none.
 
     Raises
     ------
     CharacterError
         It has another key or value than those above, or a picture cannot be read.
     """
-    table = document.get("face")
-    if table is None:
+    if "face" not in file:
         return None
-    if not isinstance(table, dict) or not isinstance(table.get("maps"), str):
-        raise CharacterError(f'{path}: face: write maps = "name of the folder of the pictures"')
-    for key in table:
-        if key not in _KEYS:
-            raise CharacterError(f"{path}: face.{key}: the table [face] may have {_KEYS}")
-    depth = table.get("depth_mm", DEPTH_MM)
-    if isinstance(depth, bool) or not isinstance(depth, int | float) or not 0.0 < depth < 1e3:
-        raise CharacterError(f"{path}: face.depth_mm: {depth!r} is not a height above 0 [mm]")
-    scattering = table.get("scattering", 0.0)
-    if isinstance(scattering, bool) or not isinstance(scattering, int | float) or scattering < 0.0:
-        raise CharacterError(
-            f"{path}: face.scattering: {scattering!r} is not a number of 0 or more"
-        )
-    meshes = table.get("meshes", [])
-    if not isinstance(meshes, list) or not all(isinstance(name, str) for name in meshes):
-        raise CharacterError(f'{path}: face.meshes: write ["name of a mesh", …]')
-    maps = read_face_maps(path.parent / table["maps"], 1e-3 * depth)
-    return FaceTable(maps, tuple(meshes), float(scattering))
+    table = file.table("face", "maps", "depth_mm", "meshes", "scattering")
+    depth_m = 1e-3 * table.number("depth_mm", 0.001, 1000.0, DEPTH_MM)
+    return FaceTable(
+        read_face_maps(folder / table.text("maps"), depth_m),
+        table.texts("meshes"),
+        table.number("scattering", 0.0, default=0.0),
+    )
 
 
 def read_face_maps(folder: Path, depth_m: float) -> FaceMaps:

@@ -1,23 +1,19 @@
 """The sidecar file of a character, `fox.toml` for `fox.glb`: parts, motions, springs, face."""
 
-import difflib
 import os
-import tomllib
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.model.face_maps import FaceTable, read_face_table
-from cubeling.characters.model.files import read_file
 from cubeling.characters.model.springs import SpringGroup, read_spring_groups
 from cubeling.characters.motion.trees.plan import Plan
 from cubeling.characters.motion.trees.reading import PLAN_TABLES, read_plan
 from cubeling.characters.skeleton.anatomy import BODY_PARTS
+from cubeling.toml_file import MAX_LONG_FILE_BYTES, TomlTable, read
 
-_MAX_BYTES = 1_000_000  # larger files are not written by hand
-
+_MAX_ENTRIES = 1000  # a character has hundreds of joints
 
 _TABLES = ("joints", "body", "springs", "face", *PLAN_TABLES)
 
@@ -50,34 +46,14 @@ def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
 
     `clips` are the names of the character's clips.
     """
-    document = _document(path)
-    for key in document:
-        if key not in _TABLES:
-            tables = ", ".join(_TABLES)
-            raise CharacterError(f"{path}: [{key}] is not a known table; there are {tables}")
-    joints = document.get("joints", {})
-    if not isinstance(joints, dict) or not all(isinstance(j, str) for j in joints.values()):
-        raise CharacterError(f'{path}: joints: write part = "name of a joint"')
-    for part in joints:
-        if part not in BODY_PARTS:
-            near = difflib.get_close_matches(part, BODY_PARTS, 1)
-            hint = f"; did you mean {near[0]!r}?" if near else ""
-            raise CharacterError(f"{path}: joints.{part}: not a body part{hint}")
-    body = document.get("body", {})
-    for name, value in body.items() if isinstance(body, dict) else [("", None)]:
-        if name not in BODY_LAYERS or not isinstance(value, bool):
-            known = " and ".join(f"{each} = true" for each in BODY_LAYERS)
-            raise CharacterError(f"{path}: body.{name}: the table [body] may have {known}")
-    layers = tuple(name for name in BODY_LAYERS if body.get(name))
-    plan = read_plan(document, str(path), clips)
-    springs = read_spring_groups(document, str(path))
-    return Sidecar(joints, plan, layers, springs, read_face_table(document, path))
-
-
-def _document(path: Path) -> dict[str, Any]:
-    if not os.path.exists(path):
-        return {}
-    try:
-        return tomllib.loads(read_file(path, _MAX_BYTES).decode("utf-8-sig"))
-    except (ValueError, RecursionError) as error:  # not TOML, not UTF-8, or nested too deeply
-        raise CharacterError(f"{path}: not TOML ({error}); correct that line") from None
+    content = read(path, CharacterError, MAX_LONG_FILE_BYTES) if os.path.exists(path) else {}
+    file = TomlTable(content, str(path), error=CharacterError, most=_MAX_ENTRIES)
+    file.only(*_TABLES)
+    joints, body = file.table("joints", *BODY_PARTS), file.table("body", *BODY_LAYERS)
+    return Sidecar(
+        {part: joints.text(part) for part in joints},
+        read_plan(file, clips),
+        tuple(name for name in BODY_LAYERS if body.truth(name, False)),
+        read_spring_groups(file),
+        read_face_table(file, path.parent),
+    )

@@ -37,6 +37,6 @@ def gestures_for(file: Path, skeleton: Skeleton, name: str) -> "GestureLibrary":
     if library.skeleton_identity != skeleton_identity(skeleton):
         raise CharacterError(
             f"{file}: made for another skeleton than that of {name}; make it again with "
-            f"cubeling gestures learn --character {name}"
+            f"cubeling gesture learn --character {name}"
         )
     return library

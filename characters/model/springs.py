@@ -6,13 +6,13 @@ They are stated by VRM files, or by the table [springs] of the sidecar file of a
 import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.model.mesh import Mesh
 from cubeling.characters.skeleton.pose import Array, Skeleton
+from cubeling.toml_file import TomlTable
 
 Point = tuple[float, float, float]
 """A position or direction [m]."""
@@ -188,74 +188,46 @@ def _middle_of_vertices(joint: int, meshes: Sequence[Mesh]) -> list[Array]:
     return [total / weight] if weight > 0 else []
 
 
-def read_spring_groups(document: Mapping[str, Any], source: str) -> tuple[SpringGroup, ...]:
-    """Return the groups in the table [springs] of a parsed sidecar file.
+def read_spring_groups(file: TomlTable) -> tuple[SpringGroup, ...]:
+    """Return the groups in the table [springs] of a sidecar file.
 
     Raises
     ------
     CharacterError
-        If a part of it is invalid; `source` names the file in the message.
+        If a part of it is invalid.
     """
-    tables = document.get("springs", {})
-    if not isinstance(tables, dict) or not all(isinstance(t, dict) for t in tables.values()):
-        raise CharacterError(f"{source}: springs: write tables such as [springs.hair]")
-    return tuple(_group(table, f"{source}: springs.{name}") for name, table in tables.items())
+    return tuple(_group(table) for table in file.tables("springs").values())
 
 
 _NUMBERS = {
-    "stiffness": (1.0, 0.0, 1000.0),
-    "drag": (0.4, 0.0, 1.0),
-    "gravity": (0.0, -1000.0, 1000.0),
-    "radius": (0.0, 0.0, 1000.0),
-    "wind": (SIDECAR_WIND, 0.0, 1.0),
+    "stiffness": (0.0, 1000.0, 1.0),
+    "drag": (0.0, 1.0, 0.4),
+    "gravity": (-1000.0, 1000.0, 0.0),
+    "radius": (0.0, 1000.0, 0.0),
+    "wind": (0.0, 1.0, SIDECAR_WIND),
 }
-"""Default, least and greatest value of the numbers of a group."""
+"""Least, greatest and default value of the numbers of a group."""
 
 
-def _group(table: Mapping[str, Any], place: str) -> SpringGroup:
-    _check_keys(table, ("joints", "colliders", *_NUMBERS), place)
-    joints = table.get("joints")
-    if not isinstance(joints, list) or not joints or not all(isinstance(j, str) for j in joints):
-        raise CharacterError(f'{place}.joints: write joints = ["name of a joint", …]')
-    colliders = table.get("colliders", [])
-    if not isinstance(colliders, list) or not all(isinstance(c, dict) for c in colliders):
-        raise CharacterError(f"{place}.colliders: write a list of tables")
-    numbers = {
-        name: _number(table.get(name, default), low, high, f"{place}.{name}")
-        for name, (default, low, high) in _NUMBERS.items()
-    }
-    read = tuple(_collider(each, f"{place}.colliders[{n}]") for n, each in enumerate(colliders))
-    return SpringGroup(place, tuple(joints), **numbers, colliders=read)
+def _group(table: TomlTable) -> SpringGroup:
+    table.only("joints", "colliders", *_NUMBERS)
+    joints = table.texts("joints")
+    if not joints:
+        raise table.unlike("joints", 'a list ["name of a joint", …]')
+    return SpringGroup(
+        f"{table.source}: {table.place}",
+        joints,
+        **{name: table.number(name, *limits) for name, limits in _NUMBERS.items()},
+        colliders=tuple(_collider(row) for row in table.rows("colliders")),
+    )
 
 
-def _collider(table: Mapping[str, Any], place: str) -> tuple[str, Point, Point, float]:
-    _check_keys(table, ("joint", "offset", "tail", "radius"), place)
-    joint = table.get("joint")
-    if not isinstance(joint, str):
-        raise CharacterError(f'{place}.joint: write joint = "name of a joint"')
-    start = _vector(table.get("offset", [0.0, 0.0, 0.0]), f"{place}.offset")
-    end = _vector(table.get("tail", list(start)), f"{place}.tail")
-    return joint, start, end, _number(table.get("radius"), 0.0, 1000.0, f"{place}.radius")
-
-
-def _check_keys(table: Mapping[str, Any], known: Sequence[str], place: str) -> None:
-    for key in table:
-        if key not in known:
-            raise CharacterError(f"{place}.{key} is not known; there are {', '.join(known)}")
-
-
-def _number(value: object, low: float, high: float, place: str) -> float:
-    valid = isinstance(value, int | float) and not isinstance(value, bool)
-    if not valid or not low <= value <= high:  # type: ignore[operator]
-        raise CharacterError(f"{place}: {value!r:.40} is not a number of {low:g} to {high:g}")
-    return float(value)  # type: ignore[arg-type]
-
-
-def _vector(value: object, place: str) -> Point:
-    if not isinstance(value, list) or len(value) != 3:
-        raise CharacterError(f"{place}: {value!r:.40} is not a list of three numbers")
-    x, y, z = (_number(each, -1000.0, 1000.0, place) for each in value)
-    return x, y, z
+def _collider(table: TomlTable) -> tuple[str, Point, Point, float]:
+    table.only("joint", "offset", "tail", "radius")
+    joint = table.text("joint")
+    start = table.numbers("offset", 3, -1000.0, 1000.0, (0.0, 0.0, 0.0))
+    end = table.numbers("tail", 3, -1000.0, 1000.0, start)
+    return joint, _point(start), _point(end), table.number("radius", 0.0, 1000.0)
 
 
 def _joint(skeleton: Skeleton, name: str, place: str) -> int:
@@ -266,6 +238,6 @@ def _joint(skeleton: Skeleton, name: str, place: str) -> int:
     raise CharacterError(f"{place}: no joint {name!r}{hint}")
 
 
-def _point(vector: Array) -> Point:
+def _point(vector: Array | Sequence[float]) -> Point:
     x, y, z = (float(value) for value in vector)
     return x, y, z

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.motion.curves import Weight, value
@@ -111,6 +112,22 @@ class AdditiveLayer(_Layer):
     @cached_property
     def _reference(self) -> Pose:
         return self.over.sample(0.0) if self.reference is None else self.reference
+
+
+def lay_over(pose: Pose, joints: NDArray[np.intp], turns: Array, weight: float) -> Pose:
+    """Return a pose with some joints, (n,), turned to the rotations `turns`, (n, 4), by a weight.
+
+    The way is the shorter one; a weight a little over 1 overshoots. `turns` need not be normalised,
+    and are overwritten: what lays gestures over a body does so in every frame.
+    """
+    if weight != 1.0:
+        below = pose.rotations.take(joints, 0)
+        turns *= np.copysign(weight, np.vecdot(turns, below))[:, None]
+        turns += below * (1.0 - weight)
+    turns /= np.sqrt(np.vecdot(turns, turns))[:, None]
+    local = pose.rotations.copy()
+    local[joints] = turns
+    return Pose(pose.translations, local, pose.scales, pose.morphs)
 
 
 def overlaid(base: Pose, over: Pose, shares: Array, morphs: float) -> Pose:

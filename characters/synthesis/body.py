@@ -3,7 +3,6 @@
 Source: Fernández-Baena, PhD thesis, La Salle – URL, 2015, chapter 3.3 (M2.1 and M2.2).
 """
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -13,6 +12,7 @@ from pathlib import Path
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.skeleton.anatomy import BODY_PARTS, Anatomy
 from cubeling.characters.skeleton.pose import Skeleton
+from cubeling.toml_file import TomlTable, read
 
 LOWER_CHAINS = ("HC5", "HC6")
 """The chains of the legs: they are always in one part, whose timing the others follow."""
@@ -115,25 +115,23 @@ def read_body_plan(path: Path) -> BodyPlan:
     CharacterError
         If the file cannot be read, names unknown body parts, or splits the body wrongly.
     """
-    try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-        weights = {str(part): float(weight) for part, weight in content["weights"].items()}
-        chains = {str(name): tuple(parts) for name, parts in content["chains"].items()}
-        profiles = {str(name): tuple(parts) for name, parts in content["profiles"].items()}
-    except OSError as error:
-        raise CharacterError(f"{path}: {error.strerror}") from None
-    except (ValueError, KeyError, AttributeError, TypeError) as error:
-        raise CharacterError(
-            f"{path}: not a body plan ({error}); it has the tables weights, chains and profiles"
-        ) from None
-    unknown = {*weights, *(part for parts in chains.values() for part in parts)} - {*BODY_PARTS}
+    file = TomlTable(read(path, CharacterError), str(path), error=CharacterError)
+    file.only("weights", "chains", "profiles")
+    weights, chains, profiles = (file.table(key) for key in ("weights", "chains", "profiles"))
+    plan = BodyPlan(
+        {part: weights.number(part, 0.0) for part in weights},
+        {name: chains.texts(name) for name in chains},
+        {name: profiles.texts(name) for name in profiles},
+    )
+    chained = (part for parts in plan.chains.values() for part in parts)
+    unknown = {*plan.weights, *chained} - {*BODY_PARTS}
     if unknown:
         raise CharacterError(f"{path}: no body part is named {sorted(unknown)[0]!r}")
     every = sorted(name.removeprefix("HC") for name in chains)
-    for name, parts in profiles.items():
+    for name, parts in plan.profiles.items():
         if sorted("".join(parts)) != every or not any("5" in p and "6" in p for p in parts):
             raise CharacterError(
                 f"{path}: profile {name} must have each of the chains {', '.join(every)} once, "
                 "with 5 and 6 in one part"
             )
-    return BodyPlan(weights, chains, profiles)
+    return plan

@@ -61,7 +61,7 @@ def test_without_a_change_or_a_file_nothing_is_written(tmp_path):
 @pytest.mark.parametrize(
     ("content", "reason"),
     [
-        (b"# Cubeling\n\x00\xff", "it is no text"),
+        (b"# Cubeling\n\x00\xff", "not UTF-8 (byte 12)"),
         (b"panels = [", "Invalid value"),
         (b'[project]\nname = "mine"\n', 'it has no line program = "cubeling"'),
         (b'program = "cubeling"\nfull_screen = "perhaps"\n', "full_screen"),

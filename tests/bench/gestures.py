@@ -20,7 +20,7 @@ jump
     Greatest step of a joint between two frames at a join, over the greatest in the recordings.
 
 Then: the intensity rule on and off, the gesture slider, Table 4.2, hands that meet the body, and
-how many authored strokes are found again by `cubeling gestures learn`. Exits with 1 if a bar of
+how many authored strokes are found again by `cubeling gesture learn`. Exits with 1 if a bar of
 issue 16 is missed.
 """
 

@@ -1,6 +1,5 @@
 """The model of a cube: its TOML file, and its markers in space."""
 
-import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Self
@@ -8,9 +7,8 @@ from typing import Any, Self
 import cv2
 import numpy as np
 
+from cubeling.toml_file import TomlTable, read
 from cubeling.tracking.cube.icons import ICON_COLOURS
-from cubeling.tracking.cube.measured_corners import measured_corners
-from cubeling.tracking.cube.values import check_each_once, check_keys, length, text
 from cubeling.tracking.errors import TrackingError
 from cubeling.tracking.geometry.arrays import Array
 
@@ -109,45 +107,36 @@ class CubeModel:
                 raise TrackingError(
                     f"no cube is called '{name_or_path}': choose {known}, or give a .toml file"
                 )
-        try:
-            document = tomllib.loads(path.read_text(encoding="utf-8"))
-        except OSError as error:
-            raise TrackingError(f"cannot read the cube '{path}': {error.strerror}") from error
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise TrackingError(f"the cube '{path}' is not TOML: {error}") from error
-        return cls.from_document(document, str(path), path.stem)
+        return cls.from_document(read(path, TrackingError), str(path), path.stem)
 
     @classmethod
     def from_document(cls, document: dict[str, Any], where: str, name: str) -> Self:
         """Make a cube from the tables of its TOML file. `where` names the file in errors."""
-        check_keys(document, FILE_KEYS, where)
-        edge_mm, marker_mm = (length(document, key, where) for key in ("edge_mm", "marker_mm"))
+        table = TomlTable(document, where, error=TrackingError)
+        table.only(*FILE_KEYS)
+        edge_mm, marker_mm = (table.number(key, 1, 1000) for key in ("edge_mm", "marker_mm"))
         if marker_mm >= edge_mm:
-            raise TrackingError(
-                f"{where}: the marker ({marker_mm:g} mm) does not fit its face ({edge_mm:g} mm); "
-                "leave a white border of at least one marker cell"
+            raise table.wrong(
+                "marker_mm",
+                f"the marker ({marker_mm:g} mm) does not fit its face ({edge_mm:g} mm); "
+                "leave a white border of at least one marker cell",
             )
-        dictionary = document.get("dictionary")
-        capacity = _capacity(dictionary, where)
-        tables = document.get("face")
-        if not isinstance(tables, list) or not tables:
-            raise TrackingError(f"{where}: a cube needs at least one [[face]] table")
-        faces = tuple(_face(table, marker_mm / 1000, edge_mm / 1000, where) for table in tables)
-        check_each_once([face.name for face in faces], "name", where)
-        check_each_once([face.marker_id for face in faces], "marker_id", where)
-        for face in faces:
-            if not 0 <= face.marker_id < capacity:
-                raise TrackingError(
-                    f"{where}: face '{face.name}' has marker_id {face.marker_id}, "
-                    f"but {dictionary} holds 0 to {capacity - 1}"
-                )
+        capacity = _capacity(table)
+        rows = table.rows("face")
+        if not rows:
+            raise table.wrong("face", "a cube needs at least one [[face]] table")
+        faces = tuple(_face(row, capacity, marker_mm / 1000, edge_mm / 1000) for row in rows)
+        for key in ("name", "marker_id"):
+            values = [getattr(face, key) for face in faces]
+            if twice := [value for value in values if values.count(value) > 1]:
+                raise table.wrong("face", f"two have the {key} {twice[0]!r}; each must differ")
         return cls(
-            text(document, "name", where) or name,
-            str(dictionary),
+            table.line("name", "") or name,
+            table.text("dictionary"),
             edge_mm / 1000,
             marker_mm / 1000,
             faces,
-            text(document, "hint", where),
+            table.line("hint", ""),
         )
 
     @property
@@ -223,33 +212,59 @@ def face_corners(name: str, roll_deg: int, marker: float, edge: float) -> Array:
     return np.asarray(corners, np.float64)
 
 
-def _capacity(dictionary: object, where: str) -> int:
-    if not isinstance(dictionary, str) or not dictionary.startswith("DICT_"):
-        wanted = "a name such as DICT_4X4_50"
-        raise TrackingError(f"{where}: 'dictionary' must be {wanted}, not {dictionary!r}")
-    if not isinstance(getattr(cv2.aruco, dictionary, None), int):
-        raise TrackingError(f"{where}: OpenCV has no dictionary {dictionary}; try DICT_4X4_50")
-    return len(aruco_dictionary(dictionary).bytesList)
+def _capacity(table: TomlTable) -> int:
+    """Return how many markers a cube's dictionary has."""
+    name = table.text("dictionary")
+    if not name.startswith("DICT_") or not isinstance(getattr(cv2.aruco, name, None), int):
+        raise table.unlike("dictionary", "one of OpenCV's, such as DICT_4X4_50")
+    return len(aruco_dictionary(name).bytesList)
 
 
-def _face(table: object, marker: float, edge: float, where: str) -> Face:
-    if not isinstance(table, dict):
-        raise TrackingError(f"{where}: [[face]] must be a table")
-    name, marker_id, roll = table.get("name"), table.get("marker_id"), table.get("roll_deg", 0)
-    if not isinstance(name, str) or name not in FACE_AXES:
-        known = ", ".join(FACE_AXES)
-        raise TrackingError(f"{where}: a face is called {name!r}; use one of {known}")
-    of_face = f"{where}: face '{name}'"
-    check_keys(table, FACE_KEYS, of_face)
-    if not isinstance(marker_id, int) or isinstance(marker_id, bool):
-        raise TrackingError(f"{of_face} needs a whole number as marker_id, not {marker_id!r}")
-    if isinstance(roll, bool) or roll not in (0, 90, 180, 270):
-        raise TrackingError(f"{of_face} has roll_deg {roll!r}; use 0, 90, 180 or 270")
-    role, icon = (text(table, key, where, f"face '{name}': ") for key in ("role", "icon"))
-    if icon and icon not in ICON_COLOURS:
-        known = ", ".join(ICON_COLOURS)
-        raise TrackingError(f"{of_face} has the icon '{icon}'; use one of {known}")
-    corners = face_corners(name, int(roll), marker, edge)
+def _face(table: TomlTable, capacity: int, marker: float, edge: float) -> Face:
+    table.only(*FACE_KEYS)
+    name, icon = table.choice("name", FACE_AXES), table.choice("icon", ("", *ICON_COLOURS), "")
+    roll = int(table.number("roll_deg", default=0))
+    if roll not in (0, 90, 180, 270):
+        raise table.unlike("roll_deg", "0, 90, 180 or 270")
+    corners = face_corners(name, roll, marker, edge)
     if "corners_mm" in table:
-        corners = measured_corners(table["corners_mm"], corners, marker, of_face)
-    return Face(name, marker_id, corners, role, icon, int(roll))
+        corners = measured_corners(table, corners, marker)
+    marker_id = table.whole("marker_id", 0, capacity - 1)
+    return Face(name, marker_id, corners, table.line("role", ""), icon, roll)
+
+
+MAX_DISTORTION = 0.02
+"""A marker is a square to this share of its side."""
+
+MAX_DISPLACEMENT = 0.15
+"""No corner is displaced by more than this share of the marker's side."""
+
+
+def measured_corners(table: TomlTable, ideal: Array, marker: float) -> Array:
+    """Return the corners of a face's table in the cube frame, 4 of 3 numbers [mm] → (4, 3) [m].
+
+    They must be those of a square with the side `marker` [m] near the `ideal` ones, (4, 3) [m].
+
+    Raises
+    ------
+    TrackingError
+        If they are not; it names file and key.
+    """
+    try:
+        corners = np.array(table.value("corners_mm"), np.float64) / 1000
+    except (TypeError, ValueError, OverflowError):
+        corners = np.empty(0)
+    if corners.shape != (4, 3) or not np.isfinite(corners).all():
+        raise table.unlike("corners_mm", "4 corners of 3 numbers each")
+    spans, right = (np.linalg.norm(c[:, None] - c, axis=2) for c in (corners, ideal))
+    warp = np.linalg.norm(corners[0] - corners[1] + corners[2] - corners[3])
+    if max(np.abs(spans - right).max(), warp) > MAX_DISTORTION * marker:
+        raise table.wrong("corners_mm", f"no square of {marker * 1000:g} mm, the marker_mm")
+    away = float(np.linalg.norm(corners - ideal, axis=1).max())
+    if away > MAX_DISPLACEMENT * marker:
+        raise table.wrong(
+            "corners_mm",
+            f"{away * 1000:.1f} mm from where the marker should be; "
+            "check their order (top-left, top-right, bottom-right, bottom-left) and roll_deg",
+        )
+    return corners

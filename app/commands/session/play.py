@@ -9,6 +9,7 @@ from rich.markup import escape
 from cubeling.app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
 from cubeling.app.commands.output import OverwriteOption
 from cubeling.app.commands.session.preference_options import GivenPreferences, with_preferences
+from cubeling.app.commands.speech_options import ProfileOption, SettingsOption, profile_of
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import (
     INSIDE_CHOICES,
@@ -98,10 +99,6 @@ LanguageOption = Annotated[
 LinesOption = Annotated[
     Path | None,
     typer.Option(help="What the character says: a .toml file; see docs/speaking.md."),
-]
-ProfileOption = Annotated[
-    Path | None,
-    typer.Option(help="How it says it with its body: a profile of [cyan]cubeling speak[/]."),
 ]
 VoiceOption = Annotated[
     str | None,
@@ -212,7 +209,8 @@ def play(
     personality: PersonalityOption = None,
     language: LanguageOption = None,
     lines: LinesOption = None,
-    profile: ProfileOption = None,
+    profile: ProfileOption = "usual",
+    settings: SettingsOption = None,
     voice: VoiceOption = None,
     look: Annotated[
         str, typer.Option(help="Where the character looks: auto, cube, hand, camera or none.")
@@ -239,7 +237,6 @@ def play(
     check_controller(controller)
     from cubeling.app.running.option_checks import check_output_paths
     from cubeling.app.session import SessionOptions
-    from cubeling.characters.speech import DEFAULT_PROFILE, SpeechProfile
 
     options = SessionOptions(
         scenario=scenario,
@@ -256,7 +253,7 @@ def play(
         language=language,
         lines=lines,
         voice=voice,
-        profile=DEFAULT_PROFILE if profile is None else SpeechProfile.load(profile),
+        profile=profile_of(profile, settings),
         look=look,
         realism=realism_of(realism),
         inside=inside_of(inside),

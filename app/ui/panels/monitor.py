@@ -1,13 +1,14 @@
 """What the panels show of a session: its last steps, its robot, its times."""
 
+from collections import deque
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cubeling.app.pipeline.frame_times import FrameTimes
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.session import SessionOptions
-from cubeling.app.ui.panels.trace import Trace
 from cubeling.app.ui.panels.wire_log import WireLog
 from cubeling.characters.rendering import FULL
 from cubeling.characters.speech import DEFAULT_PROFILE
@@ -114,3 +115,48 @@ class SessionMonitor:
         self.speech.add(now, min(loudness / FULL_LOUDNESS, 1.0), max(accents, default=0.0))
         gestures = playground.character.gestures
         self.gesture_graph = None if gestures is None else speech.profile.planner(gestures).graph
+
+
+class Trace:
+    """Keeps rows of values for a time; time that goes back, as after a seek, empties it first.
+
+    Parameters
+    ----------
+    columns
+        How many values a row has.
+    span
+        How long a row is kept [s].
+    interval
+        Rows that come sooner after the last one are left out [s].
+    """
+
+    def __init__(self, columns: int, span: float, interval: float = 0.0) -> None:
+        self.span = span
+        """How long a row is kept [s]."""
+        self._columns, self._interval = columns, interval
+        self._rows: deque[tuple[float, ...]] = deque()
+
+    def add(self, timestamp: float, *values: float) -> None:
+        """Add a row, and forget those that are too old."""
+        rows = self._rows
+        if rows and timestamp < rows[-1][0]:
+            rows.clear()
+        if rows and timestamp - rows[-1][0] < self._interval:
+            return
+        rows.append((timestamp, *values))
+        while timestamp - rows[0][0] > self.span:
+            rows.popleft()
+
+    def table(self) -> NDArray[np.float64]:
+        """Return the rows (n, 1 + columns): time before the last row, −span…0 [s], and values.
+
+        >>> trace = Trace(1, span=2.0)
+        >>> for second in range(5):
+        ...     trace.add(second, 10.0 * second)
+        >>> trace.table().tolist()
+        [[-2.0, 20.0], [-1.0, 30.0], [0.0, 40.0]]
+        """
+        table = np.array(self._rows, float).reshape(-1, 1 + self._columns)
+        if len(table):
+            table[:, 0] -= table[-1, 0]
+        return table

@@ -18,20 +18,18 @@ by how important or intense the intention is. "{target}" stands for what it is a
 with it is left out if that is not said.
 """
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from cubeling.characters.behaviour.bml.document import SYNC_NAMES, SYNCS
 from cubeling.characters.behaviour.bml.parser import SECONDS
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.model.files import read_text
+from cubeling.toml_file import MAX_LONG_FILE_BYTES, TomlTable, read
 
-MAX_BYTES = 1_000_000
-"""Larger files are no lexicons."""
+MAX_ENTRIES = 1000
+"""Most types of a kind of intention."""
 
 
 @dataclass(frozen=True)
@@ -73,67 +71,53 @@ class Lexicon:
         CharacterError
             If it cannot be read, or is no lexicon.
         """
-        if path is None:
-            return Lexicon.parse((files(__package__) / "lexicon.toml").read_text("utf-8"))
-        return Lexicon.parse(read_text(path, MAX_BYTES), str(path))
+        path = Path(__file__).with_name("lexicon.toml") if path is None else path
+        return Lexicon.of(read(path, CharacterError, MAX_LONG_FILE_BYTES), str(path))
 
     @staticmethod
-    def parse(text: str, origin: str = "lexicon.toml") -> "Lexicon":
-        """Return what the text of a lexicon says.
+    def of(document: Mapping[str, Any], source: str = "lexicon.toml") -> "Lexicon":
+        """Return what the document of a lexicon says; `source` names it in messages.
 
         Raises
         ------
         CharacterError
             If it is no lexicon.
         """
-        try:
-            document = tomllib.loads(text)
-        except (tomllib.TOMLDecodeError, RecursionError) as error:
-            raise CharacterError(f"{origin}: {error}") from None
-        entries = {}
-        for kind, types in document.items():
-            if not isinstance(types, dict):
-                raise CharacterError(f"{origin}: {kind} is no table; write [[{kind}.TYPE]]")
-            for name, tables in types.items():
-                where = f"{origin}: {kind}.{name}"
-                if not isinstance(tables, list) or not all(isinstance(t, dict) for t in tables):
-                    raise CharacterError(f"{where} is no list of tables; write [[{kind}.{name}]]")
-                entries[kind, name] = tuple(_shown(table, where) for table in tables)
-        return Lexicon(entries)
-
-
-def _shown(table: dict[str, Any], where: str) -> Shown:
-    given = dict(table)
-    behaviour = given.pop("behaviour", None)
-    if behaviour not in SYNCS:
-        raise CharacterError(
-            f"{where}: behaviour is {behaviour!r}; choose one of {', '.join(SYNCS)}"
+        file = TomlTable(document, source, error=CharacterError, most=MAX_ENTRIES)
+        return Lexicon(
+            {
+                (kind, name): tuple(_shown(row) for row in types.rows(name))
+                for kind, types in ((kind, file.table(kind)) for kind in file)
+                for name in types
+            }
         )
-    scaled, least = given.pop("scaled", []), given.pop("least", 0.0)
-    syncs = {key: _moment(given.pop(key), where) for key in [*given] if key in SYNC_NAMES}
-    unknown = [key for key in syncs if key not in SYNCS[behaviour]]
-    if unknown:
-        raise CharacterError(f"{where}: a {behaviour} has no sync point {unknown[0]}")
-    for key, value in given.items():
-        if isinstance(value, bool) or not isinstance(value, str | int | float):
-            raise CharacterError(f"{where}: {key} is {value!r}; give a text or a number")
-    if not isinstance(scaled, list) or any(not _is_number(given.get(key)) for key in scaled):
-        raise CharacterError(f"{where}: scaled is {scaled!r}; name attributes that are numbers")
-    if not _is_number(least) or not 0.0 <= least <= 1.0:
-        raise CharacterError(f"{where}: least is {least!r}; give 0 to 1")
-    return Shown(behaviour, syncs, given, frozenset(scaled), least)
 
 
-def _moment(text: object, where: str) -> tuple[str, float]:
+def _shown(table: TomlTable) -> Shown:
+    behaviour = table.choice("behaviour", SYNCS)
+    named = [key for key in table if key not in ("behaviour", "scaled", "least")]
+    points = [key for key in named if key in SYNC_NAMES]
+    for key in points:
+        if key not in SYNCS[behaviour]:
+            raise table.wrong(key, f"a {behaviour} has no such sync point")
+    attributes = {key: table.value(key) for key in named if key not in points}
+    for key, value in attributes.items():
+        if not isinstance(value, str):
+            table.number(key)
+    scaled = table.texts("scaled")
+    if any(isinstance(attributes.get(key, ""), str) for key in scaled):
+        raise table.unlike("scaled", "names of attributes that are numbers")
+    least = table.number("least", 0.0, 1.0, 0.0)
+    syncs = {key: _moment(table, key) for key in points}
+    return Shown(behaviour, syncs, attributes, frozenset(scaled), least)
+
+
+def _moment(table: TomlTable, key: str) -> tuple[str, float]:
+    text = table.text(key)
     for end in ("start", "end"):
-        if isinstance(text, str) and text.startswith(end):
-            offset = text[len(end) :]
-            if not offset:
-                return end, 0.0
-            if offset[0] in "+-" and SECONDS.fullmatch(offset):
-                return end, float(offset)
-    raise CharacterError(f"{where}: {text!r} is no moment; write start, end or start+0.5")
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+        offset = text.removeprefix(end)
+        if text == end:
+            return end, 0.0
+        if offset != text and offset[0] in "+-" and SECONDS.fullmatch(offset):
+            return end, float(offset)
+    raise table.unlike(key, "start, end, or seconds after one of them, start+0.5")

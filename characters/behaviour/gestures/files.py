@@ -15,28 +15,21 @@ What a file leaves out is as in `SymbolicGesture`, `HandKey`, `BodyKey` and `Pla
 
 import json
 import os
-import tomllib
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
-from cubeling.characters.behaviour.expressivity import GestureExpressivity
-from cubeling.characters.behaviour.gestures.checking import check_gesture, check_known
-from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
+from cubeling.characters.behaviour.gestures.checking import MAX_KEYS, check_gesture
+from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.model.files import read_text
+from cubeling.toml_file import MAX_LONG_FILE_BYTES, TomlTable, read
 
 GESTURE_SUFFIX = ".toml"
 """Suffix of files of gestures."""
 
-MAX_BYTES = 1_000_000
-"""Larger files are no gestures."""
-
-_KEY_KINDS = {"right": HandKey, "left": HandKey, "body": BodyKey}
+_KEY_LISTS = ("right", "left", "body")
 
 
 def load_gesture(path: Path) -> SymbolicGesture:
@@ -47,13 +40,13 @@ def load_gesture(path: Path) -> SymbolicGesture:
     CharacterError
         If it cannot be read, or is no gesture.
     """
-    text = read_text(path, MAX_BYTES)
+    content = {"name": path.stem.upper(), **read(path, CharacterError, MAX_LONG_FILE_BYTES)}
+    gesture = TomlTable(content, str(path), error=CharacterError, most=MAX_KEYS).fill(
+        SymbolicGesture
+    )
     try:
-        document = {"name": path.stem.upper(), **tomllib.loads(text)}
-        _check_fields(document)
-        gesture = msgspec.convert(document, SymbolicGesture)
         check_gesture(gesture)
-    except (ValueError, RecursionError, CharacterError) as error:
+    except CharacterError as error:
         raise CharacterError(f"{path}: {error}") from None
     return gesture
 
@@ -80,27 +73,11 @@ def save_gesture(gesture: SymbolicGesture, path: Path) -> None:
         ) from None
 
 
-def _check_fields(document: dict[str, Any]) -> None:
-    """Refuse fields that nothing has: a misspelt one would be as if left out."""
-    check_known("a gesture has", document, [field.name for field in fields(SymbolicGesture)])
-    style = document.get("expressivity", {})
-    if isinstance(style, dict):
-        check_known("expressivity has", style, [f.name for f in fields(GestureExpressivity)])
-    for kind, key_kind in _KEY_KINDS.items():
-        keys = document.get(kind, [])
-        for key in keys if isinstance(keys, list) else []:
-            if isinstance(key, dict):
-                check_known(f"[[{kind}]] has", key, [field.name for field in fields(key_kind)])
-                place = key.get("place")
-                if isinstance(place, dict):
-                    check_known("a place has", place, [field.name for field in fields(Place)])
-
-
 def _lines(gesture: SymbolicGesture) -> Iterator[str]:
     """Yield the lines of a file: only what is not as by default."""
     yield f"name = {_value(gesture.name)}"
-    yield from _fields(gesture, SymbolicGesture(""), ("name", *_KEY_KINDS))
-    for kind in _KEY_KINDS:
+    yield from _fields(gesture, SymbolicGesture(""), ("name", *_KEY_LISTS))
+    for kind in _KEY_LISTS:
         for key in getattr(gesture, kind):
             yield from ("", f"[[{kind}]]", f"at = {_value(key.at)}")
             yield from _fields(key, type(key)(0.0), ("at",))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.behaviour.gestures.timing import Repeats
+from cubeling.characters.motion.layers import lay_over
 from cubeling.characters.motion.motion import RootDelta
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array, Pose
@@ -70,17 +71,10 @@ class GestureMotion:
         if weight <= 0.0:
             return pose
         moved, arms = self._moved, len(self.arms)
-        below, turns = pose.rotations.take(moved, 0), self.turns(share)
+        turns = self.turns(share)
         if arms < len(moved):
-            turns[arms:] = rotations.multiply(below[arms:], turns[arms:])
-        if weight != 1.0:
-            nearer = np.copysign(weight, np.vecdot(turns, below))
-            turns *= nearer[:, None]
-            turns += below * (1.0 - weight)
-        turns /= np.sqrt(np.vecdot(turns, turns))[:, None]
-        local = pose.rotations.copy()
-        local[moved] = turns
-        return Pose(pose.translations, local, pose.scales, pose.morphs)
+            turns[arms:] = rotations.multiply(pose.rotations.take(self.trunk, 0), turns[arms:])
+        return lay_over(pose, moved, turns, weight)
 
     def sample(self, time: float) -> Pose:
         """Return the posture at a time of the strokes [s]."""

@@ -6,19 +6,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cubeling.characters.body.head_beats import HeadBeats
 from cubeling.characters.body.head_joints import HeadJoints
 from cubeling.characters.control.command import SpeechIntent
 from cubeling.characters.control.layers.layer import FrameContext
 from cubeling.characters.face.expressions import EXPRESSIONS
 from cubeling.characters.model.character import Character
-from cubeling.characters.motion.curves import Curve, FadeCurve, ease
+from cubeling.characters.motion.curves import Curve, FadeCurve, Keyed, ease
+from cubeling.characters.motion.layers import lay_over
 from cubeling.characters.motion.modifiers import Stretch
 from cubeling.characters.motion.motion import Motion
-from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array, Pose
 from cubeling.characters.smoothing import low_pass
-from cubeling.characters.speech.speech import GestureSpan
+from cubeling.characters.speech.speech import Accent, GestureSpan
 from cubeling.characters.synthesis.gestures.library import gesture_joints
 
 CUT_S = 0.3
@@ -62,13 +61,8 @@ class OverlaidMotion:
         weight = share * self.weight.at(own, self.motion.duration)
         if weight <= 0.0:
             return pose
-        joints, turns = [*self.joints], pose.rotations.copy()
-        shown = self.motion.sample(own).rotations[joints]
-        before = turns[joints]
-        turns[joints] = rotations.normalize(
-            before + (rotations.align(shown, before) - before) * weight
-        )
-        return replace(pose, rotations=turns)
+        joints = np.array(self.joints)
+        return lay_over(pose, joints, self.motion.sample(own).rotations.take(joints, 0), weight)
 
 
 class SpeechGestures:
@@ -203,3 +197,55 @@ def known_gestures(character: Character) -> tuple[str, ...]:
     """Return the names that a text may ask a character for."""
     expressions = [name for name in EXPRESSIONS if name in character.morphs]
     return (*character.clips, *expressions)
+
+
+WEAK_RAD, STRONG_RAD = np.deg2rad(1.5), np.deg2rad(6.5)
+"""How far the head goes down for the weakest and the strongest accent [rad]."""
+
+TILT_SHARE = 0.35
+"""How far it tilts and turns to a side meanwhile, at most, as a share of that."""
+
+LIFT_SHARE = 0.4
+"""How far it is lifted before, as a share."""
+
+LIFT_S, DOWN_S, BACK_S = -0.22, 0.03, 0.42
+"""When it is lifted, down and back again, from the accent [s]."""
+
+START_S = LIFT_S - 0.2
+"""When a beat begins, from the accent [s]."""
+
+
+class HeadBeats:
+    """The head beats of one speech: small nods with which a head stresses what is said.
+
+    That heads move with stressed syllables: Munhall et al., "Visual prosody and speech
+    intelligibility", 2004; sizes and times are ours.
+    """
+
+    def __init__(self, accents: Sequence[Accent], seed: int) -> None:
+        rng = np.random.default_rng(seed)
+        self._beats = [
+            (each.time, WEAK_RAD + (STRONG_RAD - WEAK_RAD) * each.strength, rng.uniform(-1, 1, 2))
+            for each in accents
+        ]
+
+    def at(self, time: float) -> Array:
+        """Return how the head is turned at a time of the speech [s]: a rotation vector (3,).
+
+        Its axes are those of the body: x nods, y turns, z tilts.
+        """
+        turned = np.zeros(3)
+        for accent, size, (turn, tilt) in self._beats:
+            own = time - accent
+            if START_S < own < BACK_S:
+                nod = _NOD.at(own - START_S, BACK_S - START_S)
+                aside = TILT_SHARE * abs(nod)
+                turned += size * np.array([nod, aside * turn, aside * tilt])
+        return turned
+
+
+_NOD = Keyed(
+    tuple(each - START_S for each in (START_S, LIFT_S, DOWN_S, BACK_S)),
+    (0.0, -LIFT_SHARE, 1.0, 0.0),
+    "gonio",
+)

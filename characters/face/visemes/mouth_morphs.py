@@ -6,11 +6,10 @@ emphasis of Edwards et al., "JALI: an animator-centric viseme model", 2016: who 
 jaw hang less than he lets the lips rest.
 """
 
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
-from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 from cubeling.characters.face.lids import numbers_by_name
 from cubeling.characters.face.visemes.sets import MOUTH_SHAPES, VOWEL_SHAPES
 from cubeling.characters.skeleton.pose import Array
+from cubeling.toml_file import read
 
 LEVEL_GAINS: Mapping[str, tuple[float, float, float]] = {
     "jaw": (0.45, 0.75, 1.0),
@@ -106,7 +106,7 @@ _JAW_OPENING = np.array(
 
 @cache
 def _families() -> tuple[Mapping[str, Any], ...]:
-    data = tomllib.loads((files(__package__) / "families.toml").read_text("utf-8"))
+    data = read(Path(__file__).with_name("families.toml"))
     return tuple(data["family"])
 
 

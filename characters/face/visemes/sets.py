@@ -4,15 +4,15 @@ Sources of the sets are in `sets.toml`. A sound that a set does not name has the
 that looks most like it (`ipa.py`).
 """
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.face.visemes.ipa import SEGMENTS, most_alike, parts_of
+from cubeling.toml_file import read
 
 MOUTH_SHAPES = (
     "sil",
@@ -136,7 +136,7 @@ class VisemeSet:
 @cache
 def viseme_sets() -> Mapping[str, VisemeSet]:
     """Return every set by its name."""
-    data = tomllib.loads((files(__package__) / "sets.toml").read_text("utf-8"))
+    data = read(Path(__file__).with_name("sets.toml"))
     return {
         each["name"]: VisemeSet(each["name"], tuple(_viseme(row) for row in each["visemes"]))
         for each in data["set"]

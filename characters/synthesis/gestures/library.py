@@ -22,7 +22,7 @@ from cubeling.characters.synthesis.archive import (
 )
 from cubeling.characters.synthesis.choices import Database
 
-GESTURE_FORMAT = ArchiveFormat("cubeling gestures", 1, "gesture library", "cubeling gestures learn")
+GESTURE_FORMAT = ArchiveFormat("cubeling gestures", 1, "gesture library", "cubeling gesture learn")
 """The .gestures file."""
 
 STEP_RAD = 1e-4

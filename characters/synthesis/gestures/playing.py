@@ -99,8 +99,8 @@ def bridge(start: float, length: float, leaving: Ends, arriving: Ends, rate: flo
 class GestureMotion:
     """Gestures from rest to rest; a `Motion` of the upper body.
 
-    What is not of `mask` is at rest in its poses. To lay it over a character's own motion, blend
-    the rotations of these joints towards its pose by `weight`.
+    What is not of `mask` is at rest in its poses. `motion.layers.lay_over` lays it over a
+    character's own motion, by `weight`.
     """
 
     library: GestureLibrary

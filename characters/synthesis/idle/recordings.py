@@ -18,7 +18,6 @@ from cubeling.characters.skeleton.feet import find_feet
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 from cubeling.characters.smoothing import gaussian_smoothed
 from cubeling.characters.synthesis.choices import Alignment
-from cubeling.characters.synthesis.idle.alignment import align
 from cubeling.characters.synthesis.idle.posture_space import PostureVectors
 
 BALANCES = ("left", "both", "right")
@@ -203,3 +202,28 @@ def find_rests(balance: Array, rate: float) -> tuple[Rest, ...]:
         if (rest.first > 0 and rest.end < len(smooth)) or rest.end - rest.first > _MIN_EDGE_S * rate
     ]
     return tuple(inner or rests)
+
+
+def align(places: Array, turns: Array, how: Alignment) -> tuple[Array, Array]:
+    """Return hips (frames, 3), and their orientations (frames, 4), with the first frame aligned.
+
+    The height stays as it was recorded. Source: Egges 2006, section 3.1.1 (S2).
+
+    >>> at = np.array([[1.0, 0.9, 2.0], [1.0, 0.8, 3.0]])
+    >>> facing = rotations.about("y", np.array([0.5, 0.5]))
+    >>> moved, turned = align(at, facing, "turn")
+    >>> moved.round(3).tolist()
+    [[0.0, 0.9, 0.0], [-0.479, 0.8, 0.878]]
+    """
+    if how == "none":
+        return places, turns
+    ahead = rotations.rotate(turns[0], np.array([0.0, 0.0, 1.0]))
+    back = rotations.about("y", -np.arctan2(ahead[0], ahead[2]))
+    if how == "place":
+        back = rotations.IDENTITY
+    # Printed, the path is turned by the whole orientation, which would tip it over.
+    moved = rotations.rotate(back, places - places[0] * [1.0, 0.0, 1.0])
+    moved[:, 1] = places[:, 1]
+    if how == "full":
+        back = rotations.conjugate(turns[0])
+    return moved, rotations.multiply(back, turns)

@@ -4,17 +4,17 @@ A link sends HELLO, asks for the catalogue, and is open then. Silence, a GONE, o
 never acknowledged starts a new session with the next number, for as long as the link exists.
 """
 
+from collections.abc import Sized
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
 from cubeling.affect import Emotion
-from cubeling.robot.contract.catalogue import Catalogue
+from cubeling.robot.contract.catalogue import Catalogue, JointLimits
 from cubeling.robot.contract.driver import Driver, DriverKind
 from cubeling.robot.contract.moves import JointMove, JointMover
 from cubeling.robot.contract.port import SendBuffer
 from cubeling.robot.contract.telemetry import LinkCounts, LinkState, Telemetry
-from cubeling.robot.drivers.cubeling.capabilities import CapabilityQuery
 from cubeling.robot.drivers.cubeling.reports import RobotReports
 from cubeling.robot.drivers.cubeling.scheduler import Action, CommandScheduler, RoundTrip
 from cubeling.robot.errors import RobotError
@@ -253,3 +253,40 @@ def _make(host: int, settings: Path | None) -> Driver:
 
 CUBELING = DriverKind(_make, timing.BAUD, timing.ANSWER_WITHIN)
 """The protocol "cubeling"."""
+
+
+class CapabilityQuery:
+    """The questions for a catalogue after one WELCOME, one at a time."""
+
+    def __init__(self, welcome: m.Welcome) -> None:
+        self.welcome = welcome
+        """The message with the number of entries."""
+        self._counts = (welcome.joints, welcome.motions, welcome.sounds, welcome.moods)
+        self._joints: list[JointLimits] = []
+        self._names: tuple[list[str], list[str], list[str]] = ([], [], [])
+
+    def question(self) -> m.Ask | None:
+        """Return the next question; None when everything was answered."""
+        known: tuple[Sized, ...] = (self._joints, *self._names)
+        for item, (entries, count) in enumerate(zip(known, self._counts, strict=True)):
+            if len(entries) < count:
+                return m.Ask(item, len(entries))
+        return None
+
+    def answer(self, entry: m.Joint | m.Name) -> bool:
+        """Process an answer; return False unless it answers the current question."""
+        item = m.ITEM_JOINT if isinstance(entry, m.Joint) else entry.item
+        if self.question() != m.Ask(item, entry.index):
+            return False
+        if isinstance(entry, m.Joint):
+            self._joints.append(JointLimits(entry.name, entry.low, entry.high, entry.speed))
+        else:
+            self._names[entry.item - m.ITEM_MOTION].append(entry.name)
+        return True
+
+    def catalogue(self) -> Catalogue:
+        """Return the catalogue of all answers."""
+        motions, sounds, moods = (tuple(names) for names in self._names)
+        return Catalogue(
+            self.welcome.name, self.welcome.firmware, tuple(self._joints), motions, sounds, moods
+        )

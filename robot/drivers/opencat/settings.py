@@ -7,12 +7,12 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
-from cubeling.affect.settings import TomlTable, read, shown
 from cubeling.affect.words import WORD_PLACES
 from cubeling.robot.contract.catalogue import MAX_NAME_BYTES, Catalogue
 from cubeling.robot.drivers.opencat import tokens
 from cubeling.robot.drivers.opencat.models import MODELS
 from cubeling.robot.errors import RobotError
+from cubeling.toml_file import TomlTable, read, shown
 
 BUNDLED_SETTINGS = Path(__file__).with_name("opencat.toml")
 """The bundled settings; a person's own file overrides parts of them."""
@@ -122,9 +122,7 @@ def parse_settings(document: Mapping[str, Any], source: str) -> OpenCatSettings:
     top.only("opencat", *MODELS)
     common = top.table("opencat")
     common.only("baud", "model", "commands_per_s", "dwell_s", "ask_every_s", "rest_after_s")
-    model = common.text("model")
-    if model and model not in MODELS:
-        raise common.unlike("model", f"one of {', '.join(MODELS)}")
+    model = common.choice("model", ("", *MODELS))
     baud = common.whole("baud", min(BAUDS), max(BAUDS))
     if baud not in BAUDS:
         raise common.unlike("baud", f"one of {', '.join(map(str, BAUDS))}")

@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
-from cubeling.affect.settings import TomlTable, read
 from cubeling.robot.contract.catalogue import MAX_NAME_BYTES, Catalogue
 from cubeling.robot.drivers.pleo import timing
 from cubeling.robot.drivers.pleo.joints import JOINT_NUMBERS, JOINTS
 from cubeling.robot.errors import RobotError
+from cubeling.toml_file import TomlTable, read
 
 BUNDLED_SETTINGS = Path(__file__).with_name("pleo.toml")
 """The bundled settings; a person's own file replaces them."""

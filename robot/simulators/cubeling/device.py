@@ -1,5 +1,6 @@
 """The robot side of the protocol, without clock, thread or port: it commands a body."""
 
+from collections import deque
 from dataclasses import replace
 from typing import Any, Protocol
 
@@ -8,10 +9,8 @@ from cubeling.robot.contract.catalogue import Catalogue
 from cubeling.robot.contract.port import SendBuffer
 from cubeling.robot.protocol import messages as m, timing
 from cubeling.robot.protocol.fields import MessageError
-from cubeling.robot.protocol.schema import pack, unpack
+from cubeling.robot.protocol.schema import pack, spec_of, unpack
 from cubeling.robot.protocol.wire import FrameReader, crc16, encode_frame
-from cubeling.robot.simulators.cubeling.log import LogQueue
-from cubeling.robot.simulators.cubeling.refusals import entry_names, refusal
 
 
 class Body(Protocol):
@@ -211,3 +210,69 @@ class DeviceLink(SendBuffer):
 
     def _send(self, message: Any) -> None:
         self._out += encode_frame(pack(message, self.session, self.version))
+
+
+MAX_WAITING_LINES = 8
+"""Lines that wait; when there are more, the new ones are dropped and counted."""
+
+_TEXT_BYTES = spec_of(m.Log).fields[-1].size
+
+
+class LogQueue:
+    """The first lines that were written and not yet sent."""
+
+    def __init__(self) -> None:
+        self._waiting: deque[m.Log] = deque()
+        self._count = 0
+
+    def write(self, severity: int, text: str, time: int) -> None:
+        """Write a line at `time` of the robot's clock [ms]; a long one is shortened."""
+        self._count = (self._count + 1) & 0xFFFF
+        if len(self._waiting) < MAX_WAITING_LINES:
+            text = text.encode()[:_TEXT_BYTES].decode(errors="ignore")
+            self._waiting.append(m.Log(self._count, time, severity, text))
+
+    def pop(self) -> m.Log | None:
+        """Return the next line, once; None if none waits."""
+        return self._waiting.popleft() if self._waiting else None
+
+
+TAKEN = (m.RESULT_TAKEN, "")
+
+
+def entry_names(catalogue: Catalogue, item: int) -> tuple[str, ...]:
+    """Return the names of the motions, sounds or moods; none for another item."""
+    lists = {
+        m.ITEM_MOTION: catalogue.motions,
+        m.ITEM_SOUND: catalogue.sounds,
+        m.ITEM_MOOD: catalogue.moods,
+    }
+    return lists.get(item, ())
+
+
+def refusal(command: m.Command, catalogue: Catalogue) -> tuple[int, str]:
+    """Return the result of a command, and for its owner what is wrong with it."""
+    match command:
+        case m.Express(mood=mood) if m.NOTHING > mood >= len(catalogue.moods):
+            return m.RESULT_REFUSED, f"EXPRESS {command.number}: no mood {mood}"
+        case m.Play(item=item, index=index) if index >= len(entry_names(catalogue, item)):
+            what = "motion" if item == m.ITEM_MOTION else "sound"
+            return m.RESULT_REFUSED, f"PLAY {command.number}: no {what} {index}"
+        case m.Move():
+            return _move_refusal(command, catalogue)
+    return TAKEN
+
+
+def _move_refusal(command: m.Move, catalogue: Catalogue) -> tuple[int, str]:
+    bits = command.moved | command.released
+    if bits >> len(catalogue.joints):
+        return m.RESULT_REFUSED, f"MOVE {command.number}: no joint {bits.bit_length() - 1}"
+    for index, joint in enumerate(catalogue.joints):
+        # In counts of the wire, as a host knows the limits from JOINT alone.
+        angle, low, high = (
+            round(1000 * one) for one in (command.angles[index], joint.low, joint.high)
+        )
+        if command.moved >> index & 1 and not low <= angle <= high:
+            what = f"MOVE {command.number}: joint {index} not to {angle} mrad"
+            return m.RESULT_OUT_OF_RANGE, what
+    return TAKEN

@@ -58,10 +58,10 @@ def test_a_profile_is_saved_and_read_again(cubeling, tmp_path):
     profile = tmp_path / "my.toml"
     out = tmp_path / "a.bvh"
     cubeling(
-        "speak", "Hi", "-o", str(out), "--database", "aggressive", "--gesture-emphasis", "0.5",
-        "--save-profile", str(profile),
+        "speak", "Hi", "-o", str(out), "--set", "database=aggressive",
+        "--set", "gesture_emphasis=0.5", "--save-profile", str(profile),
     )  # fmt: skip
-    assert SpeechProfile.load(profile) == SpeechProfile("aggressive", gesture_emphasis=0.5)
+    assert SpeechProfile.load(str(profile)) == SpeechProfile("aggressive", gesture_emphasis=0.5)
     cubeling("speak", "Hi", "-o", str(out), "--overwrite", "--profile", str(profile))
 
 
@@ -73,9 +73,13 @@ def test_a_profile_is_saved_and_read_again(cubeling, tmp_path):
         (("Hi", "--emotion", "purple"), "no emotion is called 'purple'"),
         (("Hi", "--character", "nobody"), "no bundled character 'nobody'"),
         (("Hi", "-o", "a.txt"), ".wav"),
-        (("Hi", "--gesture-emphasis", "3"), "give -1 to 1"),
-        (("Hi", "--database", "loud"), "choose one of aggressive"),
-        (("Hi", "--visemes", "none"), "choose one of"),
+        (("Hi", "--set", "gesture_emphasis=3"), "gesture_emphasis must be from -1 to 1, not 3"),
+        (("Hi", "--set", "database=loud"), "database must be one of aggressive, neutral, full"),
+        (("Hi", "--set", "visemes=none"), "visemes must be one of oculus"),
+        (("Hi", "--set", "volume=1"), "volume means nothing here; there are database, threshold"),
+        (("Hi", "--set", "threshold=much"), "threshold must be a number, not 'much'"),
+        (("Hi", "--set", "threshold"), "write threshold=VALUE"),
+        (("Hi", "--profile", "loud"), "there is no profile 'loud': choose one of usual, lively"),
         (("Hi", "--file", "missing.txt"), "missing.txt"),
         (("--audio", "missing.wav"), "missing.wav"),
         (("<begin_gesture id='a' anim='fly'/>Hi<end_gesture id='a'/>",), "no gesture 'fly'"),

@@ -20,6 +20,8 @@ WRONG = {
     "play companion -o x.abc": "a video is written as .mp4",
     "play companion -o there.mp4": "exists already",
     "play companion --profile missing.toml": "missing.toml",
+    "play companion --profile loud": "there is no profile 'loud'",
+    "play companion --set volume=1": "volume means nothing here",
     "play companion --panels weather": "there is no panel 'weather'",
     "replay missing.mcap": "cannot read the session 'missing.mcap'",
     "replay there.mp4": "is not a session",

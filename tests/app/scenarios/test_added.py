@@ -3,7 +3,6 @@
 import importlib
 import re
 import sys
-import tomllib
 from pathlib import Path
 
 import pytest
@@ -16,6 +15,7 @@ from cubeling.app.scenarios import make_scenario, scenario_names
 from cubeling.app.session import messages, session_info
 from cubeling.app.session.encoding import decode
 from cubeling.characters import CharacterCommand
+from cubeling.toml_file import parse
 
 PAGE = Path(app.__file__).parents[1] / "docs" / "your-own-scenario.md"
 (TOML,) = re.findall(r"```toml\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
@@ -30,7 +30,7 @@ def install(tmp_path_factory, monkeypatch):
 
     def install(pyproject, source):
         site = tmp_path_factory.mktemp("site-packages")
-        table = tomllib.loads(pyproject)
+        table = parse(pyproject, "pyproject.toml")
         project, (module,) = table["project"], table["tool"]["setuptools"]["py-modules"]
         (site / f"{module}.py").write_text(source, "utf-8")
         info = site / f"{project['name'].replace('-', '_')}-{project['version']}.dist-info"

@@ -1,7 +1,7 @@
 """The lines of scenarios: bundled ones and files of the user."""
 
-import tomllib
 from importlib import resources
+from pathlib import Path
 
 import pytest
 
@@ -9,6 +9,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.scenarios import SCENARIOS
 from cubeling.app.speaking.lines import bundled_lines, read_lines
 from cubeling.characters.speech.tagged_text import TaggedText
+from cubeling.toml_file import read
 
 
 @pytest.mark.parametrize("scenario", SCENARIOS)
@@ -30,12 +31,15 @@ def test_a_scenario_of_another_package_says_nothing():
 @pytest.mark.parametrize(
     ("text", "problem"),
     [
-        ("[voice.de]\nkiss = 'Kuss'", r"no lines in 'en', a table \[voice.en\]; has de"),
-        ("voice = 3", "has none"),
+        ("[voice.de]\nkiss = 'Kuss'", "voice.en: there are no lines in 'en'; has de"),
+        ("voice = 3", "voice must be a table, not 3"),
         ("kiss = 'x'", "has none"),
-        ("[voice.en]\nkiss = 3", "kiss is a line or a list of lines"),
-        ("[voice.en]\nkiss = ['a', 3]", "kiss is a line or a list of lines"),
-        ("[voice.en]\nkiss = ['']", "has 1 to 300 characters, not 0"),
+        ("[voice.en]\nkiss = 3", "kiss must be a list of at most 1000 texts, not 3"),
+        (
+            "[voice.en]\nkiss = ['a', 3]",
+            "none of them empty, not 3",
+        ),
+        ("[voice.en]\nkiss = ['']", "none of them empty, not ''"),
         (f"[voice.en]\nkiss = '{'a' * 301}'", "not 301"),
         ("[voice.en", "Expected"),
     ],
@@ -57,5 +61,5 @@ def test_a_single_line_need_not_be_a_list(tmp_path):
 def test_bundled_lines_are_in_the_package():
     folder = resources.files("cubeling.app") / "scenarios" / "lines"
     for file in folder.iterdir():
-        tomllib.loads(file.read_text("utf-8"))
+        read(Path(str(file)))
         assert file.name.removesuffix(".toml") in SCENARIOS

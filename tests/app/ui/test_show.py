@@ -16,8 +16,7 @@ from cubeling.app.pipeline.step import RobotView
 from cubeling.app.running.summary import Summary
 from cubeling.app.ui.canvas import Canvas, rounded_rectangle
 from cubeling.app.ui.cards.overlay import overlay
-from cubeling.app.ui.frame_sheet import MAX_FRAMES, FrameSheet
-from cubeling.app.ui.output_file import ENDING_RATE, ENDING_S
+from cubeling.app.ui.output_file import ENDING_RATE, ENDING_S, MAX_FRAMES, FrameSheet
 from cubeling.app.ui.output_formats import VIDEO_FORMATS
 from cubeling.app.ui.video_file import VideoFile
 from cubeling.tracking import LensEstimate

@@ -1,6 +1,5 @@
 """The benchmark's cube, read from its TOML file by independent code."""
 
-import tomllib
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -8,6 +7,8 @@ from pathlib import Path
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+
+from cubeling.toml_file import read
 
 CUBES = Path(__file__).resolve().parents[3] / "tracking" / "cubes"
 
@@ -117,7 +118,7 @@ class BenchmarkCube:
     def load(cls, name: str) -> "BenchmarkCube":
         """Read the bundled cube `name`, or the file of another."""
         path = Path(name) if name.endswith(".toml") else CUBES / f"{name}.toml"
-        document = tomllib.loads(path.read_text(encoding="utf-8"))
+        document = read(path)
         edge, marker = document["edge_mm"] / 1000, document["marker_mm"] / 1000
         sides = tuple(
             _side(table, document["dictionary"], edge, marker) for table in document["face"]

@@ -56,12 +56,15 @@ def test_the_table_names_folder_depth_and_meshes(sidecar):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("depth_mm = 2.0", "write maps ="),
+        ("depth_mm = 2.0", "face.maps is missing; it must be a text"),
         ('maps = "me_face"\nheight = 1', "face.height"),
-        ('maps = "me_face"\ndepth_mm = -1', "not a height above 0"),
-        ('maps = "me_face"\nmeshes = "Head"', "name of a mesh"),
-        ('maps = "me_face"\nscattering = -1', "not a number of 0 or more"),
-        ('maps = "me_face"\nscattering = "much"', "not a number of 0 or more"),
+        (
+            'maps = "me_face"\ndepth_mm = -1',
+            "depth_mm must be a number from 0.001",
+        ),
+        ('maps = "me_face"\nmeshes = "Head"', "face.meshes must be a list"),
+        ('maps = "me_face"\nscattering = -1', "must be a number of at least 0, not -1"),
+        ('maps = "me_face"\nscattering = "much"', "must be a number of at least 0, not 'much'"),
         ('maps = "elsewhere"', "no picture of a face"),
     ],
 )

@@ -22,8 +22,8 @@ from cubeling.characters import (
 )
 from cubeling.characters.control.controllers.recordings import read_motions
 from cubeling.characters.skeleton import rotations
+from cubeling.characters.synthesis.idle.bridges import fit, nearest_clip
 from cubeling.characters.synthesis.idle.database import IdleDatabase
-from cubeling.characters.synthesis.idle.fitting import fit, nearest_clip
 from cubeling.characters.synthesis.idle.idle_motion import REACTION_S, IdleMotion
 from cubeling.characters.synthesis.idle.layering import Varied
 from cubeling.characters.synthesis.idle.posture_space import PostureVectors

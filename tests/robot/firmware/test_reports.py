@@ -11,7 +11,7 @@ from cubeling.robot.firmware.dino.table import ServoTable
 from cubeling.robot.protocol import messages as m
 from cubeling.robot.protocol.schema import pack, unpack
 from cubeling.robot.protocol.wire import FrameReader, encode_frame
-from cubeling.robot.simulators.cubeling import log as simulated_log
+from cubeling.robot.simulators.cubeling import device
 from tests.robot.firmware.conftest import Dino, FailingBoard
 
 LEVEL = (0.0,) * m.JOINTS_MAX
@@ -23,7 +23,7 @@ def told(dino: Dino, kind: type[Any]) -> list[Any]:
 
 @given(st.lists(st.text(max_size=90), max_size=12))
 def test_lines_are_shortened_counted_and_dropped_as_by_the_simulated_robot(texts):
-    ours, simulated = firmware_log.LogQueue(), simulated_log.LogQueue()
+    ours, simulated = firmware_log.LogQueue(), device.LogQueue()
     for index, text in enumerate(texts):
         text = text.encode(errors="ignore").decode()
         ours.write(m.SEVERITY_WARNING, text, index)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from cubeling.tracking.geometry import se3
-from cubeling.tracking.gestures.turning import TurnCounter, wrap_angle
+from cubeling.tracking.gestures.gestures import TurnCounter, wrap_angle
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import pytest
 from numpy.typing import NDArray
 
 from cubeling.tracking.cube.model import CubeModel
-from cubeling.tracking.refinement.photometry.face_images import FaceTextures
+from cubeling.tracking.refinement.photometry.motion_blur_alignment import FaceTextures
 
 Array = NDArray[np.float64]
 Image = NDArray[np.float32]

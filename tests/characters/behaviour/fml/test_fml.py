@@ -6,11 +6,14 @@ from cubeling.characters.behaviour.bml import SYNCS, SyncReference
 from cubeling.characters.behaviour.fml import Lexicon, behaviours_of
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
 from cubeling.characters.errors import CharacterError
+from cubeling.toml_file import parse
 from tests.characters.behaviour.bml.suite import Session
 
 SPEECH = "<speech id='s'><text>Hello. <sync id='a'/>Look at the <sync id='b'/>cube.</text></speech>"
 
-LEXICON = Lexicon.parse("""
+LEXICON = Lexicon.of(
+    parse(
+        """
 [[emphasis.strong]]
 behaviour = "gesture"
 lexeme = "BEAT"
@@ -26,7 +29,10 @@ end = "end"
 behaviour = "pointing"
 target = "{target}"
 stroke = "start"
-""")
+""",
+        "mine.toml",
+    )
+)
 
 
 def planned(intention: str, lexicon: Lexicon | None = LEXICON):
@@ -122,7 +128,8 @@ def test_the_gestures_of_the_bundled_lexicon_are_in_the_library():
 )
 def test_bad_lexicons_are_refused_in_one_line(text):
     with pytest.raises(CharacterError) as error:
-        Lexicon.parse(text)
+        Lexicon.of(parse(text, "mine.toml", CharacterError), "mine.toml")
+    assert str(error.value).startswith("mine.toml: ")
     assert "\n" not in str(error.value)
 
 

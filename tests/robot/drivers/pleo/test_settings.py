@@ -69,7 +69,7 @@ def test_ones_own_settings_stand_instead_of_the_bundled_ones(tmp_path):
         ('[moods.neutral]\nmotion = "ж"\nlength_s = 1', "moods.neutral.motion", "ISO-8859-1"),
         ('[moods.neutral]\nmotion = ""\nlength_s = 1', "moods.neutral.motion", "one word"),
         (NEUTRAL + "loop = 1", "moods.neutral.loop", "true or false"),
-        (NEUTRAL + "speed = 1", "moods.neutral.speed", "there are motion, length_s"),
+        (NEUTRAL + "speed = 1", "moods.neutral.speed", "here are motion, length_s"),
         (NEUTRAL + "motion_speed = 0", "moods.neutral.motion_speed", "whole number from 1 to 200"),
         (NEUTRAL + "volume = 101", "moods.neutral.volume", "from 0 to 100, not 101"),
         (NEUTRAL + "sound = 3", "moods.neutral.sound", "a text, not 3"),

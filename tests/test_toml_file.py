@@ -3,20 +3,21 @@
 import os
 import sys
 import time
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import pytest
 from hypothesis import given, strategies as st
 
-from cubeling.affect.errors import AffectError
-from cubeling.affect.settings import MAX_ENTRIES, MAX_FILE_BYTES, TomlTable, parse, read
+from cubeling.toml_file import MAX_ENTRIES, MAX_FILE_BYTES, TomlTable, parse, read
 
 
 def outcome(do, *what) -> str | None:
     """Return the line with which something is refused; None if it is not."""
     try:
         do(*what)
-    except AffectError as error:
+    except ValueError as error:
         line = str(error)
     else:
         return None
@@ -54,7 +55,9 @@ def test_what_is_not_there_or_is_no_file_is_refused(tmp_path):
 def test_what_may_never_end_is_not_opened(tmp_path):
     os.mkfifo(tmp_path / "pipe.toml")
     for path in (tmp_path / "pipe.toml", Path("/dev/zero")):
-        assert refusal(read, path) == f"cannot read {path}: it is no file"
+        assert (
+            refusal(read, path) == f"cannot read {path}: a folder, a pipe or a device; give a file"
+        )
 
 
 @pytest.mark.parametrize(
@@ -184,3 +187,72 @@ values = st.recursive(
 def test_a_value_of_any_kind_is_given_or_refused_in_one_short_line(kind, value):
     line = outcome(READER_OF_KIND[kind], table(key=value))
     assert line is None or line.startswith("my.toml: moods.key")
+
+
+def test_a_message_is_one_line_whatever_keys_lead_to_its_place():
+    inner = table(**{"a\nb": {"c": {}}}).table("a\nb").table("c")
+    assert refusal(inner.number, "d").startswith("my.toml: moods.'a\\nb'.c.d is missing")
+
+
+def test_lists_of_tables_of_numbers_and_choices_are_given_or_refused_with_their_place():
+    one = table(rows=[{"at": [1, 2.5], "mode": "slow"}, {"at": [], "mode": "slo"}, {"mod": 1}])
+    first, second, third = one.rows("rows")
+    assert (first.numbers("at", 2), first.choice("mode", ("slow", "fast"))) == ((1.0, 2.5), "slow")
+    assert third.numbers("at", 2, default=(0.0, 1.0)) == (0.0, 1.0)
+    for do, says in (
+        (lambda: second.numbers("at", 2), "[1].at must be a list of 2 numbers, not []"),
+        (lambda: first.numbers("at", 2, 0, 2), "[0].at must be a number from 0 to 2, not 2.5"),
+        (
+            lambda: second.choice("mode", ("slow", "fast")),
+            "[1].mode is 'slo', which is not known; did you mean 'slow'?",
+        ),
+        (lambda: first.choice("mode", ("a", "b")), "[0].mode must be one of a, b, not 'slow'"),
+        (lambda: one.rows("rows", "at", "mode"), "[2].mod means nothing here; did you mean 'mode'"),
+    ):
+        assert refusal(do).startswith(f"my.toml: moods.rows{says}")
+
+
+@dataclass(frozen=True)
+class Inner:
+    side: Literal["left", "right"] = "left"
+    size: tuple[int, int] | None = None
+
+
+@dataclass(frozen=True)
+class Outer:
+    name: str
+    share: float = 0.5
+    loud: bool = False
+    words: tuple[str, ...] = ()
+    inner: Inner = Inner()
+    many: tuple[Inner, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.share > 1:
+            raise ValueError(f"share {self.share:g}: give 0 to 1")
+
+
+def test_a_dataclass_is_filled_by_its_types():
+    one = table(name="n", share=1, inner={"side": "right"}, many=[{"size": [1, 2]}, {}])
+    assert one.fill(Outer) == Outer(
+        "n", 1.0, inner=Inner("right"), many=(Inner(size=(1, 2)), Inner())
+    )
+
+
+@pytest.mark.parametrize(
+    ("values", "says"),
+    [
+        ({}, "moods.name is missing; it must be a text"),
+        ({"name": "n", "shre": 1}, "moods.shre means nothing here; did you mean 'share'?"),
+        ({"name": "n", "share": "1"}, "moods.share must be a number, not '1'"),
+        ({"name": "n", "share": 2}, "moods: share 2: give 0 to 1"),
+        ({"name": "n", "words": [1]}, "moods.words must be a text, not 1"),
+        ({"name": "n", "inner": {"side": "up"}}, "moods.inner.side must be one of left, right"),
+        ({"name": "n", "many": [{"size": [1]}]}, "moods.many[0].size must be a list of 2"),
+        ({"name": "n", "many": [{"size": [1, 2.0]}]}, "size must be a whole number, not 2.0"),
+    ],
+)
+def test_a_dataclass_of_wrong_values_is_refused_with_file_and_key(values, says):
+    line = refusal(table(**values).fill, Outer)
+    assert line.startswith("my.toml: moods")
+    assert says in line

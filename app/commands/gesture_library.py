@@ -1,4 +1,4 @@
-"""`cubeling gestures`."""
+"""`cubeling gesture learn` and `library`: gestures that beat the rhythm of speech."""
 
 from __future__ import annotations
 
@@ -33,15 +33,7 @@ UPPER_BODY = 0.62, 0.36
 SWEPT_THRESHOLDS = (0.01, 0.03, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0)
 """Similarity thresholds in the table of connectivity."""
 
-app = typer.Typer(
-    help="Learn how a person's hands beat the rhythm of speech, from recordings.",
-    no_args_is_help=True,
-    add_completion=False,
-    rich_markup_mode="rich",
-)
 
-
-@app.command()
 def learn(
     recordings: Annotated[
         list[str],
@@ -61,7 +53,7 @@ def learn(
     Gestures are found without marks: what hands do between two rests. Recordings without any are
     left out.
 
-    Example: [cyan]cubeling gestures learn talk.bvh -o anna.gestures[/]
+    Example: [cyan]cubeling gesture learn talk.bvh -o anna.gestures[/]
     """
     target = chosen_output(output, "my.gestures", "gesture library", (".gestures",), overwrite)
     from cubeling.characters import Character, read_motions
@@ -83,10 +75,9 @@ def learn(
     console.print(f"[bold]{escape(str(target))}[/] is written", soft_wrap=True, highlight=False)
 
 
-@app.command()
-def show(
-    library: Annotated[
-        Path, typer.Argument(help="A file of cubeling gestures learn, or a bundled character.")
+def library(
+    file: Annotated[
+        Path, typer.Argument(help="A file of cubeling gesture learn, or a bundled character.")
     ] = Path("human"),
     output: Annotated[
         Path | None,
@@ -96,14 +87,14 @@ def show(
 ) -> None:
     """Show a library of gestures: phrases by hand and strength, and how well they are connected.
 
-    Example: [cyan]cubeling gestures show human -o gestures.png[/]
+    Example: [cyan]cubeling gesture library human -o gestures.png[/]
     """
     if output is not None:
         chosen_output(output, "", "picture", SHEET_SUFFIXES, overwrite)
     console = Console()
     from cubeling.characters.motion import GestureLibrary
 
-    found = GestureLibrary.load(_file(library))
+    found = GestureLibrary.load(_file(file))
     describe(console, found)
     if output is not None:
         draw(output, found)

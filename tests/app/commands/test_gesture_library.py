@@ -1,4 +1,4 @@
-"""`cubeling gestures`."""
+"""`cubeling gesture learn` and `library`."""
 
 from pathlib import Path
 
@@ -36,7 +36,7 @@ def talking(talk, tmp_path) -> Path:
 
 def test_learns_the_gestures_of_recordings(cubeling, talking, tmp_path):
     code, out, _ = cubeling(
-        "gestures", "learn", f"{talking}#one", f"{talking}#two", "-o", "a.gestures"
+        "gesture", "learn", f"{talking}#one", f"{talking}#two", "-o", "a.gestures"
     )
     assert code == 0
     assert "6 gesture phrases" in out
@@ -46,7 +46,7 @@ def test_learns_the_gestures_of_recordings(cubeling, talking, tmp_path):
 
 
 def test_recordings_without_gestures_are_refused_in_one_line(cubeling, talking, tmp_path):
-    code, _, err = cubeling("gestures", "learn", f"{talking}#still", "-o", "b.gestures")
+    code, _, err = cubeling("gesture", "learn", f"{talking}#still", "-o", "b.gestures")
     assert code == 2
     assert "no gesture found" in err
     assert err.count("\n") == 1
@@ -54,15 +54,15 @@ def test_recordings_without_gestures_are_refused_in_one_line(cubeling, talking, 
 
 
 def test_shows_the_bundled_library_with_its_graph(cubeling):
-    code, out, _ = cubeling("gestures", "show")
+    code, out, _ = cubeling("gesture", "library")
     assert code == 0
     assert "72 gesture phrases" in out
     assert "connected" in out
 
 
 def test_draws_strokes_and_apices(cubeling, talking, tmp_path):
-    cubeling("gestures", "learn", f"{talking}#one", "-o", "c.gestures")
-    code, _, _ = cubeling("gestures", "show", "c.gestures", "-o", "c.png")
+    cubeling("gesture", "learn", f"{talking}#one", "-o", "c.gestures")
+    code, _, _ = cubeling("gesture", "library", "c.gestures", "-o", "c.png")
     assert code == 0
     picture = cv2.imread(str(tmp_path / "c.png"))
     assert picture is not None
@@ -72,8 +72,15 @@ def test_draws_strokes_and_apices(cubeling, talking, tmp_path):
 
 @pytest.mark.parametrize("name", ["nobody.gestures", "human.glb"])
 def test_what_is_no_library_is_refused_in_one_line(cubeling, name):
-    code, _, err = cubeling("gestures", "show", name)
+    code, _, err = cubeling("gesture", "library", name)
     assert code == 2
+    assert err.count("\n") == 1
+
+
+def test_the_group_of_old_versions_names_that_of_today(cubeling):
+    code, _, err = cubeling("gestures", "show", "human")
+    assert code == 2
+    assert err.startswith("cubeling: 'gestures' is now cubeling gesture")
     assert err.count("\n") == 1
 
 

@@ -1,0 +1,35 @@
+"""The options that say how a character speaks with its body, of `play` and `speak`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from cubeling.characters.speech import SpeechProfile
+
+ProfileOption = Annotated[
+    str,
+    typer.Option(
+        help="How the body speaks: usual, lively, calm, or a .toml file of "
+        "[cyan]cubeling speak --save-profile[/].",
+        metavar="NAME|FILE",
+    ),
+]
+SettingsOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        help="Change a field of the profile, such as [cyan]gesture_emphasis=0.5[/]; may be given "
+        "several times. docs/speaking.md lists the fields, and so does a wrong name.",
+        metavar="FIELD=VALUE",
+    ),
+]
+
+
+def profile_of(name: str, settings: list[str] | None) -> SpeechProfile:
+    """Return the profile that the two options ask for."""
+    from cubeling.characters.speech import SpeechProfile
+
+    return SpeechProfile.load(name).with_settings(settings or ())
