@@ -32,7 +32,7 @@ class Word(NamedTuple):
     """A word for an emotion: one row of the table."""
 
     word: str
-    """The word."""
+    """As players and settings write it, in small letters; unique in the table."""
 
     valence: float
     """From unpleasant, −1, to pleasant, 1."""
@@ -135,7 +135,7 @@ class LabelSet:
     """Whether valence alone decides, by the thresholds of the thesis."""
 
     start: str = "neutral"
-    """The initial label."""
+    """The label before any emotion has been felt; one of the set's words."""
 
     def next(self, label: str, emotion: Emotion, hysteresis: float) -> str:
         """Return the label that follows `label` at an emotion.

@@ -34,7 +34,6 @@ class Personality:
     """
 
     name: str
-    """Its name."""
 
     description: str = ""
     """A sentence about it."""
@@ -97,7 +96,7 @@ class Personality:
 
     @property
     def label_set(self) -> LabelSet:
-        """Its label set."""
+        """The labels that a robot or an overlay shows for its emotions; see `labels`."""
         return label_set(self.labels)
 
     def gain(self, action: str) -> AffectImpulse:

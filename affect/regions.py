@@ -17,10 +17,10 @@ class Box:
     """A rectangle of the plane."""
 
     valence: tuple[float, float]
-    """Least and greatest."""
+    """Least and greatest valence, −1…1."""
 
     arousal: tuple[float, float]
-    """Least and greatest."""
+    """Least and greatest arousal, −1…1."""
 
     def contains(self, emotion: Emotion, margin: float = 0.0) -> bool:
         """Return whether an emotion belongs to it, or is nearer to it than a margin."""
@@ -50,7 +50,7 @@ class Sector:
 
 
 Region = Box | Sector
-"""Some emotions."""
+"""A part of the plane of valence and arousal that belongs to one word."""
 
 NEUTRAL_RADIUS = 0.25
 """Emotions nearer to the middle of the plane than this are neutral."""

@@ -132,7 +132,7 @@ class TomlTable:
         return {name: table.table(name, *keys) for name in table.names(longest)}
 
     def text(self, key: str, default: str | None = None) -> str:
-        """Return a text."""
+        """Return a text; raise AffectError if it is another type, or missing without a default."""
         value = self._values.get(key, default)
         if not isinstance(value, str):
             raise self.unlike(key, "a text")
