@@ -62,10 +62,10 @@ class UsbIdentity(NamedTuple):
     """Identifies a USB device."""
 
     vendor: int
-    """USB vendor id."""
+    """Vendor id in the USB descriptor."""
 
     product: int
-    """USB product id."""
+    """Product id in the USB descriptor."""
 
     serial: str | None
     """Its serial number; cheap boards have none."""

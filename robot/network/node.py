@@ -25,10 +25,10 @@ class RobotControl(Protocol):
 
     @property
     def telemetry(self) -> Telemetry:
-        """The robot's state."""
+        """What is known of the robot now; see `Telemetry`."""
 
     def express(self, emotion: Emotion) -> None:
-        """Show an emotion."""
+        """Show an emotion from now on."""
 
     def play(self, name: str) -> None:
         """Play a motion or sound once; RobotError if that is not possible."""
@@ -79,7 +79,7 @@ class RobotNode(MemberEndpoint):
         self._ack_due = False
 
     def connected(self, now: float) -> None:
-        """Publish everything again."""
+        """Publish everything again, as the broker may have lost it."""
         self._epoch.connected(now)
         self._state_publisher.reset()
         self._announce()

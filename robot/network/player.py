@@ -125,7 +125,7 @@ class Player(MemberEndpoint):
         return len(self._pending)
 
     def connected(self, now: float) -> None:
-        """Publish everything again."""
+        """Publish everything again, as the broker may have lost it."""
         self._epoch.connected(now)
         self._last_heartbeat = self._last_emotion = -math.inf
         self._emotion_due = self._emotion is not None

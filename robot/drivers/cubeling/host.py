@@ -80,7 +80,7 @@ class HostLink(SendBuffer):
         self.scheduler.stop()
 
     def port_opened(self, now: float) -> None:
-        """Start a session."""
+        """Greet the robot with HELLO: a new session begins."""
         self._greet(now)
 
     def port_lost(self) -> None:
@@ -252,4 +252,4 @@ def _make(host: int, settings: Path | None) -> Driver:
 
 
 CUBELING = DriverKind(_make, timing.BAUD, timing.ANSWER_WITHIN)
-"""The protocol "cubeling"."""
+"""Drivers of robots that speak the protocol of `robot/PROTOCOL.md`."""

@@ -19,7 +19,6 @@ class PendingCommand:
     """The command that waits for its acknowledgement."""
 
     command: m.Command
-    """The command."""
 
     emotion: Emotion | None
     """The emotion of an EXPRESS."""
@@ -36,7 +35,6 @@ class Refusal:
     """A command that the robot did not take."""
 
     command: m.Command
-    """The command."""
 
     result: int
     """Why, one of `REFUSALS` or another."""
@@ -127,7 +125,7 @@ class CommandScheduler:
         return self.tries >= timing.TRIES_MAX
 
     def express(self, emotion: Emotion) -> None:
-        """Request an emotion."""
+        """Request an emotion; it replaces one that has not been sent yet."""
         if emotion != self.state.commanded:
             self._request(emotion)
 

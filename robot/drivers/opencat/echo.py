@@ -33,10 +33,10 @@ class BoardCommand:
     """A line with an effect."""
 
     kind: Kind
-    """Its purpose."""
+    """What the line starts, which tells what echo and what text follow."""
 
     line: bytes
-    """The line."""
+    """The bytes on the wire."""
 
     name: str
     """The skill or melody; empty for others."""
@@ -59,7 +59,6 @@ class PendingLine:
     """The command that waits for its echo."""
 
     command: BoardCommand
-    """The command."""
 
     sent: float
     """Time of the send [s]."""
@@ -73,13 +72,13 @@ class Question:
     """The question that waits for its echo."""
 
     line: bytes
-    """The line."""
+    """The bytes on the wire."""
 
     sent: float
     """Time of the last send [s]."""
 
     tries: int = 1
-    """Number of sends."""
+    """Number of sends so far; see `MAX_QUESTION_TRIES`."""
 
     settles: bool = True
     """Whether its echo makes later echoes reliable: it was asked after the doubt began."""

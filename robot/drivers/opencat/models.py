@@ -22,7 +22,7 @@ class OpenCatJoint:
     """Its number on the board."""
 
     name: str
-    """Its name."""
+    """Name in the catalogue, such as "left front knee"."""
 
     low: int
     """Smallest angle [°]: the narrower limit of the two firmwares."""

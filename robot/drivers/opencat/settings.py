@@ -58,7 +58,7 @@ class Behaviour:
     """Skills that can be played by name: those of the settings, and every posture and gesture."""
 
     sounds: Mapping[str, Notes]
-    """Melodies by name."""
+    """Melodies by the name that `play` takes."""
 
     stop: str
     """The posture for a stop."""
@@ -77,7 +77,7 @@ class Behaviour:
 
 @dataclass(frozen=True)
 class OpenCatSettings:
-    """A settings file."""
+    """What a settings file of a board says, checked; defaults come from the bundled file."""
 
     baud: int
     """Bits per second on the serial line."""

@@ -18,7 +18,6 @@ class CommandResult:
     """The result of a command."""
 
     command: Command
-    """The command."""
 
     sent: float
     """Time of the send [s]."""
@@ -38,7 +37,6 @@ class PromptedCommand:
     """The command that waits for its prompt."""
 
     command: Command
-    """The command."""
 
     sent: float
     """Time of the send [s]."""
@@ -50,7 +48,7 @@ class PromptedCommand:
     """Time of its last send or nudge [s]."""
 
     nudges: int = 0
-    """Number of nudges."""
+    """Empty lines sent since to make the console print its prompt again."""
 
 
 class Console(SendBuffer):

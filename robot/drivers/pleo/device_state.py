@@ -76,7 +76,6 @@ class CommandStep(NamedTuple):
     """One command of a mood or an action."""
 
     command: Command
-    """The command."""
 
     part: Literal["tone", "body", "sound", "action"]
     """tone: the speed of the motion. body: it shows the mood. sound: the sound of the mood.

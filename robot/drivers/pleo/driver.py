@@ -239,4 +239,4 @@ class PleoDriver:
 PLEO = DriverKind(
     lambda host, settings: PleoDriver(load_settings(settings)), timing.BAUD, timing.ANSWER_TIMEOUT_S
 )
-"""The protocol "pleo"."""
+"""Drivers of Ugobe's Pleo, over the monitor console of its USB port."""

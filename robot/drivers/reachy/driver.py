@@ -50,7 +50,7 @@ class PendingTarget:
     """The target that waits for its acknowledgement."""
 
     number: int
-    """Its number."""
+    """Sequence number that the acknowledgement repeats."""
 
     emotion: Emotion | None
     """The emotion that it belongs to."""
@@ -115,7 +115,7 @@ class ReachyDriver(SendBuffer):
         self._state.commanded, self._mood, self._still = None, motions.MOODS[0], True
 
     def port_opened(self, now: float) -> None:
-        """Start a session."""
+        """Start a session with nothing commanded and no telemetry."""
         self._open, self._last_received, self._pending = True, None, None
         self._last_target = None
         self.reader.clear()

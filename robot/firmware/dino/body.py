@@ -75,7 +75,7 @@ class DinoBody:
         self._start(index, True)
 
     def play_sound(self, index: int) -> None:
-        """Play a sound."""
+        """Play a sound by its index in `SOUNDS`, from its start."""
         self.stopped = False
         self.sounds.play(index)
 
