@@ -30,7 +30,7 @@ class AdjustmentResult:
     """The best model and its uncertainty."""
 
     model: CalibrationModel
-    """The unknowns."""
+    """Intrinsics and the views' poses at the optimum."""
 
     covariance: Array
     """Covariance of the camera's nine parameters and the plates' steps, (9 + 6 P, 9 + 6 P); zero
@@ -117,7 +117,7 @@ class _NormalEquations:
     blocks: list[_ViewBlock]
 
     def reduced(self, damping: float) -> tuple[Array, Array]:
-        """Eliminate the views."""
+        """Return the equations of the intrinsics alone: the Schur complement of the views."""
         normal, right = self.normal.copy(), self.right.copy()
         normal[np.diag_indices(len(normal))] *= 1 + damping
         for block in self.blocks:

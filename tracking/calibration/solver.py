@@ -41,7 +41,6 @@ class Calibration:
     """A camera, and the actual shape of the target that it was calibrated with."""
 
     intrinsics: Intrinsics
-    """The camera."""
 
     spread: Array
     """Standard deviations of fx fy cx cy [px] k1 k2 p1 p2 k3, (9,); 0 for fixed parameters."""

@@ -30,7 +30,6 @@ class Face:
     """One face of the cube and the marker printed on it."""
 
     name: str
-    """One of `FACE_AXES`."""
 
     marker_id: int
     """Id of the marker in the cube's dictionary."""

@@ -55,7 +55,7 @@ class BorderSegments:
 
     @property
     def length(self) -> Array:
-        """Lengths, (N,) [px]."""
+        """Distance from start to end, (N,) [px]."""
         return np.asarray(np.hypot(*(self.end - self.start).T))
 
     def select(self, chosen: Indices | Flags) -> "BorderSegments":

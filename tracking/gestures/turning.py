@@ -43,7 +43,7 @@ class TurnCounter:
         self._total = 0.0
 
     def restart(self, angle: float) -> None:
-        """Count from here."""
+        """Count from an angle [rad] on; the sum is 0 again."""
         self._angle, self._total = angle, 0.0
 
     def add(self, angle: float) -> None:

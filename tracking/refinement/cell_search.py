@@ -57,7 +57,7 @@ class CellMatch:
     """A pose at which the cells match the image, and the evidence for it."""
 
     alignment: StillAlignment
-    """The pose."""
+    """Pose that the cells of the match agree on, and how well."""
 
     found: tuple[str, ...]
     """Names of the faces that are found there."""

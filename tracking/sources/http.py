@@ -101,7 +101,7 @@ class _MjpegStream:
             self._socket.shutdown(socket.SHUT_RDWR)
 
     def close(self) -> None:
-        """Close the connection."""
+        """Close the connection; a read that waits on another thread ends with an error."""
         self._response.close()
         self._connection.close()
 

@@ -70,7 +70,7 @@ class _View:
     """What a window of the image shows."""
 
     window: Window
-    """Where it is."""
+    """Part of the picture that it is cut from."""
 
     lab: Floats
     """L + 16, a and b of CIELab, in bytes, (3, h, w)."""

@@ -43,10 +43,10 @@ class Window:
     """First row [px of the window]: also a multiple."""
 
     width: int
-    """Number of columns."""
+    """Number of columns, in pixels of the picture."""
 
     height: int
-    """Number of rows."""
+    """Number of rows, in pixels of the picture."""
 
     scale: int
     """Pixels of the image per pixel of the window."""

@@ -51,7 +51,7 @@ class PhotometricFit:
     """The rendered tones fitted to the image, and the step to a better pose and motion."""
 
     samples: PhotometricSamples
-    """The fitted samples."""
+    """Points of the cube whose brightness was compared."""
 
     rows: Array
     """Jacobian of the residual: pose, the K others, then the tones, (N, 6 + K + tones)."""
