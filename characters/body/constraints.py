@@ -20,7 +20,6 @@ class _Group:
     """Constraints of one kind that do not depend on each other."""
 
     kind: str
-    """Their kind."""
 
     joints: NDArray[np.intp]
     """The joints that turn, (n,)."""

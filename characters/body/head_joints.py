@@ -44,7 +44,7 @@ class Joint:
     """Its present rotation, in the character frame."""
 
     place: Vector = (0.0, 0.0, 0.0)
-    """Its present position."""
+    """Its present position in the character frame [m]."""
 
     scale: Vector = (1.0, 1.0, 1.0)
     """Its present scale, which stretches its children's translations."""

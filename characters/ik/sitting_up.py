@@ -42,7 +42,7 @@ class SittingUp:
     """What a four-legged skeleton turns when it sits up."""
 
     skeleton: Skeleton
-    """The whole skeleton."""
+    """The whole skeleton, of which it turns the trunk."""
 
     hind: LegIK
     """The hind legs; their paws stay where they are."""

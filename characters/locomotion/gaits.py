@@ -29,7 +29,7 @@ TOP_SPEED = 5.0
 """Largest Speed of AvatAR."""
 
 MAX_ANGULAR_RAD = math.pi / 2
-"""Largest Angular."""
+"""Largest value of AvatAR's parameter Angular [rad]."""
 
 MIN_CYCLE_LENGTH = 0.1
 """A cycle that goes less far is no gait [heights of the character]."""

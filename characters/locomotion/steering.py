@@ -41,7 +41,7 @@ class SteeringOutput:
 
 
 STANDSTILL = SteeringOutput(0.0, 0.0, 1.0)
-"""Standing still."""
+"""Neither goes nor turns, whatever was wished."""
 
 
 def has_arrived(distance: float, arrived: bool) -> bool:

@@ -33,7 +33,7 @@ class StrideBlend(PhaseDriven):
     """Clips mixed at one phase, with shorter strides and at another speed; `Cyclic`."""
 
     trajectories: FootTrajectories
-    """The clips."""
+    """Paths of the feet in each blended clip."""
 
     contributions: Sequence[tuple[int, float]]
     """Numbers of the mixed clips and their weights; positive, sum one."""

@@ -28,11 +28,11 @@ class SkinnedBody(Protocol):
 
     @property
     def skeleton(self) -> Skeleton:
-        """Its joints."""
+        """Joints, with the bind pose as their rest."""
 
     @property
     def meshes(self) -> Sequence[Mesh]:
-        """Its skinned geometry."""
+        """Meshes with joints and weights for each vertex."""
 
     @property
     def anatomy(self) -> Anatomy:

@@ -56,10 +56,10 @@ class Character:
     """Joints and rest pose."""
 
     clips: dict[str, Clip]
-    """Clips by name."""
+    """Clips by name, in the order of the file."""
 
     meshes: tuple[Mesh, ...]
-    """The skinned geometry."""
+    """Skinned meshes in the frame of the character [m]."""
 
     morphs: tuple[str, ...] = ()
     """Names of the morphs, in the order of the weights in `Pose.morphs`."""

@@ -17,7 +17,6 @@ class JointConstraint:
     """What another joint makes one do, as in the extension VRMC_node_constraint of glTF."""
 
     kind: ConstraintKind
-    """What it does."""
 
     joint: str
     """Name of the joint that is turned."""

@@ -37,17 +37,17 @@ class CharacterStats:
     vertices: int
     triangles: int
     materials: int
-    """Distinct materials."""
+    """Number of materials that differ."""
 
     textures: int
     """Distinct images of all kinds."""
 
     morphs: tuple[str, ...]
-    """Their names."""
+    """Names of the morph targets, each once."""
 
     @classmethod
     def of(cls, character: Character) -> "CharacterStats":
-        """Measure a character."""
+        """Measure a character in its bind pose."""
         materials = [mesh.material for mesh in character.meshes]
         textures = [image for each in materials for image in each.textures]
         return cls(
@@ -81,7 +81,6 @@ class ClipStats:
     """The movement of one clip."""
 
     clip: Clip
-    """The clip."""
 
     speed: float
     """Mean speed over the ground [m/s]; in place, over a ground that moves backward under it as a
@@ -94,7 +93,7 @@ class ClipStats:
     """Greatest distance of a joint between the first and the last frame [m]."""
 
     contacts: tuple[FootContactStats, ...]
-    """Of each foot."""
+    """One for each foot that was found."""
 
 
 @dataclass(frozen=True)
@@ -102,13 +101,12 @@ class Inspection:
     """The result of an inspection."""
 
     character: Character
-    """The character."""
 
     stats: CharacterStats
-    """Its size."""
+    """Numbers of joints, meshes, triangles and the like."""
 
     clips: tuple[ClipStats, ...]
-    """Its clips."""
+    """One for each clip of the character."""
 
     problems: tuple[str, ...]
     """Sentences for a person, the most important ones first."""

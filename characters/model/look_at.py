@@ -39,10 +39,10 @@ class LookAt:
     """Of an eye that looks away from the nose; also of both by morphs."""
 
     down: RangeMap
-    """Downwards."""
+    """Range for looking downwards."""
 
     up: RangeMap
-    """Upwards."""
+    """Range for looking upwards."""
 
     eye_offset: Point | None = None
     """Middle of the eyes in the frame of the head's joint [m]; None if it is not stated."""

@@ -1,4 +1,4 @@
-"""Motions as clips."""
+"""Sample motions at a fixed rate, and keep them as clips."""
 
 from collections.abc import Sequence
 from dataclasses import replace

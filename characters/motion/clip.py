@@ -26,7 +26,7 @@ class Clip:
     """(frames, joints, …); in a loop, the last frame equals the first, one cycle later."""
 
     loop: bool = True
-    """Whether it repeats."""
+    """Whether the frame after the last is the first."""
 
     root_motion: bool = False
     """Whether joint 0 is on the ground and carries the planar root motion; see `travel`."""

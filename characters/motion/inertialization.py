@@ -21,7 +21,7 @@ class OffsetDecay:
     """An offset of any shape that decays to zero, with a given initial velocity."""
 
     offset: Array
-    """Its initial value."""
+    """Difference at time 0, which decays to zero."""
 
     velocity: Array
     """Its initial rate of change [1/s]."""

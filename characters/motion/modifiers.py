@@ -59,7 +59,6 @@ class Window:
     """A part of a motion; its first and last pose are held before and after it."""
 
     motion: Motion
-    """The motion."""
 
     start: float
     """Start of the part in the motion [s]."""
@@ -160,7 +159,7 @@ class Filtered(TransformedMotion):
     """A motion whose poses go through a filter; `Cyclic`."""
 
     filter: PoseFilter
-    """The filter."""
+    """Called with each sampled pose."""
 
     def pose(self, pose: Pose) -> Pose:
         """Return a filtered pose."""
@@ -218,7 +217,6 @@ class Warped:
     """A motion whose time follows a curve."""
 
     motion: Motion
-    """The motion."""
 
     curve: TimeCurve
     """Maps times to times of the motion."""

@@ -57,7 +57,7 @@ class PhasedMotion(PhaseDriven):
     """A looped motion with marks for its phase; `Cyclic`."""
 
     motion: Motion
-    """The looped motion."""
+    """What the phase runs through; the motion loops."""
 
     marks: tuple[float, ...] = ()
     """Times of phases 0, ½, 1, 1½ … over one loop of the motion [s]; empty: phase 0 at its start.
@@ -111,7 +111,6 @@ class TransformedMotion(ABC):
     """Base of motions that change each pose and root delta of another motion; `Cyclic`."""
 
     motion: Motion
-    """The motion."""
 
     @property
     def duration(self) -> float:
@@ -153,17 +152,16 @@ class StaticPose:
     """A pose that is held; `Cyclic`, with a cycle of any length."""
 
     pose: Pose
-    """The pose."""
 
     duration: float
     """Length of its cycle [s], for blends."""
 
     def at(self, phase: float) -> Pose:
-        """Return the pose."""
+        """Return the pose, the same at every phase."""
         return self.pose
 
     def between(self, start: float, end: float) -> RootDelta:
-        """Return no movement."""
+        """Return no movement: a pose does not travel."""
         return RootDelta()
 
     sample = at
@@ -175,11 +173,10 @@ class UnphasedMotion:
     """A motion without an end, as a `Cyclic` whose phase is its time in seconds."""
 
     motion: Motion
-    """The motion."""
 
     @property
     def duration(self) -> float:
-        """Infinite."""
+        """Infinite, as it has no cycle that a blend could match."""
         return math.inf
 
     def at(self, phase: float) -> Pose:

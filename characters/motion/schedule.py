@@ -96,7 +96,7 @@ class _Contribution:
     """Of its joints, (joints,)."""
 
     morph_weight: float
-    """Of its morphs."""
+    """Weight of its morphs, which fade apart from the joints."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ class Schedule:
     """
 
     actions: tuple[Action, ...]
-    """The actions."""
+    """In any order; where they overlap, their layers and weights decide."""
 
     rest: Pose
     """The skeleton's rest pose: shown by joints without actions, and reference of scales."""

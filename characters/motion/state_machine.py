@@ -88,7 +88,7 @@ class StateMachine:
 
     @property
     def duration(self) -> float:
-        """Infinite."""
+        """Infinite: it stays in its last state."""
         return math.inf
 
     def request(

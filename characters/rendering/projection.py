@@ -26,16 +26,16 @@ class Rectangle:
     """An area of the picture in whole pixels."""
 
     x: int
-    """Left column."""
+    """Left column, in pixels of the picture."""
 
     y: int
-    """Top row."""
+    """Top row, in pixels of the picture."""
 
     width: int
-    """Number of columns."""
+    """Number of columns, in pixels of the picture."""
 
     height: int
-    """Number of rows."""
+    """Number of rows, in pixels of the picture."""
 
     @property
     def slices(self) -> tuple[slice, slice]:

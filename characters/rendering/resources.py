@@ -89,7 +89,7 @@ class FrameResources:
     """What the picture shows."""
 
     undistorted: Callable[[], Image]
-    """Waits for `picture`."""
+    """Returns `picture` without lens distortion, when a thread has computed it."""
 
     size: tuple[int, int]
     """(width, height) of the picture [px]."""

@@ -164,7 +164,7 @@ class Drawable(Protocol):
 
     @property
     def meshes(self) -> Sequence[Mesh]:
-        """Skinned meshes."""
+        """Meshes that follow the joints of `skeleton`."""
 
     @property
     def skeleton(self) -> Skeleton:

@@ -40,10 +40,10 @@ class Toy:
     """Its surface [m]; it stands at the origin."""
 
     skeleton: Skeleton = _ONE_JOINT
-    """Its joint."""
+    """A single joint, which carries the whole toy."""
 
     morphs: tuple[str, ...] = ()
-    """None."""
+    """A toy has no morph targets."""
 
     def placed(self, table_from_toy: Array, timestamp: float) -> SceneCharacter:
         """Return it as it is to be drawn at a place, (4, 4) [m]."""

@@ -28,10 +28,8 @@ class Heels:
     """Feet of a clip that may turn about their balls."""
 
     rig: Rig
-    """The skeleton."""
 
     legs: Sequence[LegJoints]
-    """Its legs."""
 
     pose: Pose
     """The clip, its feet turned as in the motion."""

@@ -55,10 +55,8 @@ class HeldLegs:
     """Legs of a clip, and where their ankles are held."""
 
     rig: Rig
-    """The skeleton."""
 
     legs: Sequence[LegJoints]
-    """Its legs."""
 
     ankles: Array
     """Where the ankles are to be, (frames, legs, 3) [m] in the common axes."""

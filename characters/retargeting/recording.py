@@ -32,7 +32,6 @@ class Recording:
     """Its file or clip, for messages and reports."""
 
     clip: Clip
-    """The motion."""
 
     skeleton: Skeleton
     """The skeleton of the clip; it rests in the bind pose."""

@@ -53,7 +53,6 @@ class Rig:
     """A skeleton with its anatomy; measures are in the common axes."""
 
     skeleton: Skeleton
-    """Its joints."""
 
     anatomy: Anatomy
     """Which joint is which body part."""

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 IDENTITY: Array = np.array([0.0, 0.0, 0.0, 1.0])
-"""The identity rotation."""
+"""The rotation by no angle, xyzw."""
 
 
 def _multiplication_table() -> Array:

@@ -48,16 +48,16 @@ class MouthWeights:
     """The shape of the mouth at a moment; each 0…1, together at most 1. The rest is closed."""
 
     open: float
-    """As in "father"."""
+    """Open, as in "father", 0…1."""
 
     spread: float
-    """As in "see"."""
+    """Spread, as in "see", 0…1."""
 
     rounded: float
-    """As in "too"."""
+    """Rounded, as in "too", 0…1."""
 
     hiss: float
-    """As in "hiss"."""
+    """Teeth together, as in "hiss", 0…1."""
 
 
 class MouthTracker:

@@ -36,7 +36,7 @@ class Interval:
     """When it ends [s]."""
 
     label: str
-    """Its text."""
+    """What is written in the interval; may be empty."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,6 @@ class Tier:
     """A row of a TextGrid."""
 
     name: str
-    """Its name."""
 
     intervals: tuple[Interval, ...]
     """Its intervals or points, in order."""
@@ -61,7 +60,7 @@ class TextGrid:
     """When it ends [s]."""
 
     tiers: tuple[Tier, ...]
-    """Its rows."""
+    """In the order of the file."""
 
 
 def read_textgrid(path: Path) -> TextGrid:

@@ -47,7 +47,7 @@ class ArchiveFormat:
     """The command that makes one."""
 
     def save(self, path: Path, content: Content, arrays: Arrays) -> None:
-        """Write a file."""
+        """Write content and arrays to a file of this format."""
         text = json.dumps({"format": self.name, "version": self.version, **content})
         with path.open("wb") as file:
             np.savez_compressed(file, content=np.array(text), **arrays)

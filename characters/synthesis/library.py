@@ -34,7 +34,6 @@ class MotionLibrary:
     """Frames of several clips of one skeleton, without their planar root motion."""
 
     skeleton: Skeleton
-    """The joints."""
 
     anatomy: Anatomy
     """Which joint is which body part."""

@@ -53,7 +53,7 @@ class SyncReference:
     """Whose sync point; "" for the block's start."""
 
     sync: str = ""
-    """Its name."""
+    """Name of the sync point; "" if the offset counts from the block's start."""
 
     block: str = ""
     """In which block; "" for the one that it stands in."""
@@ -76,7 +76,7 @@ class Constraint:
     """Whether `syncs` are all at one moment, or before or after `reference`."""
 
     syncs: tuple[SyncReference, ...]
-    """The moments."""
+    """The moments that are tied; their order means nothing."""
 
     reference: SyncReference | None = None
     """Which moment they are before or after; None for `synchronize`."""
@@ -96,13 +96,12 @@ class Element:
     """Its name, without namespace."""
 
     namespace: str = BML
-    """Its namespace."""
 
     attributes: Mapping[str, str] = field(default_factory=dict)
     """Its attributes; those of a namespace are named "{namespace}name"."""
 
     children: tuple["Element", ...] = ()
-    """What is inside."""
+    """The elements inside, in their order."""
 
     text: str = ""
     """Characters inside, those of its children too."""
@@ -113,7 +112,6 @@ class Mark:
     """A sync point in a text: `<sync id="s1"/>`."""
 
     id: str
-    """Its name."""
 
     at: int
     """How many characters of `Behaviour.text` are before it."""
@@ -163,13 +161,12 @@ class Behaviour:
 
 @dataclass(frozen=True)
 class Block:
-    """A `bml` element."""
+    """A `bml` element: behaviours and constraints that are scheduled together."""
 
     id: str
     """Its name, unique among blocks that are not over."""
 
     behaviours: tuple[Behaviour, ...] = ()
-    """What to do."""
 
     constraints: tuple[Constraint, ...] = ()
     """When, besides what the behaviours say themselves."""

@@ -22,13 +22,11 @@ class BlockProgress:
     """A block starts or ends."""
 
     block: str
-    """Which."""
 
     sync: Literal["start", "end"]
-    """What of it."""
 
     time: float
-    """When [s]."""
+    """By the clock of the player [s]."""
 
     character: str = ""
     """Whose block it is."""
@@ -39,16 +37,13 @@ class SyncPointProgress:
     """A sync point has come."""
 
     block: str
-    """In which block."""
 
     behaviour: str
-    """Whose."""
 
     sync: str
-    """Its name."""
 
     time: float
-    """When [s]."""
+    """By the clock of the player [s]."""
 
     block_time: float
     """When, since the start of its block [s]."""
@@ -62,7 +57,6 @@ class PredictedBehaviour:
     """When the sync points of a behaviour are expected."""
 
     id: str
-    """Which."""
 
     kind: str
     """Name of its element."""
@@ -76,7 +70,6 @@ class Prediction:
     """When a block is expected to start and to end."""
 
     block: str
-    """Which."""
 
     start: float
     """When it starts [s]; inf if that is not known."""

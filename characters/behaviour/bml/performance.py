@@ -21,7 +21,6 @@ class Performance:
     """A block and how far it has got."""
 
     block: Block
-    """What it is."""
 
     state: State
     """Whether it waits to be activated, waits for others, or runs."""

@@ -54,7 +54,6 @@ class Scheduled:
     """Which block it is of."""
 
     behaviour: Behaviour
-    """What it is."""
 
     times: Mapping[str, float]
     """When its sync points are, in their order [s]; inf for what comes only by an interrupt."""

@@ -36,10 +36,9 @@ class Track:
     """A behaviour that is scheduled, and how far it has got."""
 
     behaviour: Behaviour
-    """What it is."""
 
     timing: Timing
-    """Its natural times."""
+    """Its natural times, before constraints stretch or shift them."""
 
     times: list[float]
     """When its sync points are [s]; inf for what comes only by an interrupt."""
@@ -82,7 +81,6 @@ class Failure:
     """A behaviour or a constraint that is left out."""
 
     id: str
-    """Which."""
 
     type: WarningType
     """What kind of failure."""
@@ -115,7 +113,7 @@ class Schedule:
 
 
 class Scheduler:
-    """Schedules one block."""
+    """Finds the times of one block: its constraints met, its behaviours stretched least."""
 
     def __init__(self, block: Block, performer: Performer, external: External) -> None:
         self._block, self._external = block, external

@@ -26,13 +26,12 @@ class GestureBody:
     """What a character gestures with."""
 
     character: Character
-    """Who."""
 
     posture: Pose
     """How it stands while it gestures; a four-legged one sits up."""
 
     body: UpperBody
-    """Its arms."""
+    """Its torso and arms, for reaching."""
 
     trunk: TrunkTurns
     """Its trunk, shoulders and head."""

@@ -29,10 +29,10 @@ class Contact(NamedTuple):
     """To the side of the hand."""
 
     up: float
-    """Along +y."""
+    """Along +y; only the direction of the three numbers counts."""
 
     forward: float
-    """Along +z."""
+    """Along +z; only the direction of the three numbers counts."""
 
 
 CONTACTS: Mapping[str, Contact] = {

@@ -148,7 +148,7 @@ class GesturePlanning:
 
     @cached_property
     def motion(self) -> GestureMotion:
-        """All postures."""
+        """All postures, planned to the end and smoothed; the first access takes long."""
         self.advance(len(self._frames))
         times, poses = np.array([frame.time for frame in self._frames]), np.stack(self._poses)
         for side, track in self.tracks.items():

@@ -56,7 +56,7 @@ class RecordedHand:
     """A hand over the frames of a recording."""
 
     left: bool
-    """Whose it is."""
+    """Whether it is the left one."""
 
     places: Array
     """Of its palm, (frames, 3), from the chest and in its frame, in parts of an arm's length."""

@@ -30,7 +30,7 @@ CENTRES_X_CM = dict(zip(SECTORS_X, (45.0, 30.0, 15.0, -15.0), strict=True))
 """Outward from the middle of the body [cm]."""
 
 CENTRES_Y_CM = dict(zip(SECTORS_Y, (60.0, 40.0, 20.0, 10.0, 0.0, -10.0, -20.0), strict=True))
-"""Up [cm]."""
+"""Up from the middle of the chest [cm]."""
 
 CENTRES_Z_CM = dict(zip(SECTORS_Z, (10.0, 20.0, 40.0), strict=True))
 """Forward from the chest [cm]."""

@@ -39,7 +39,7 @@ class Overshoot:
     """Time of the key that it goes to."""
 
     times: Array
-    """When, (n,)."""
+    """Times of the stroke at which it is sampled, ascending, (n,)."""
 
     shares: Array
     """By how much of the way from key to key, (n,)."""

@@ -55,7 +55,7 @@ class PostureKind:
         return elastic(HOLD_SYNCS, POSTURE_SPANS_S, holds=frozenset({"ready"}))
 
     def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
-        """Add the posture."""
+        """Add the posture, and the arms' share of it as a held gesture."""
         take(scheduled, times_of(scheduled), who, performed)
 
 
@@ -70,7 +70,7 @@ class PostureShiftKind:
         return elastic(SHIFT_SYNCS, (SHIFT_S,), least=0.3, most=math.inf)
 
     def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
-        """Add the posture."""
+        """Add the posture, which stays when the behaviour is over."""
         take(scheduled, shift_times_of(scheduled), who, performed)
 
 
@@ -102,7 +102,7 @@ class WaitKind:
         return elastic(SHIFT_SYNCS, (span,), holds=frozenset({"start"}))
 
     def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
-        """Do nothing."""
+        """Do nothing: only its times count, for what is tied to them."""
 
 
 def take(scheduled: Scheduled, times: Times, who: Performing, performed: Performed) -> None:

@@ -44,7 +44,7 @@ class FaceKind:
         return elastic(FACE_SYNCS, FACE_SPANS_S, holds=frozenset({"attackPeak"}))
 
     def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
-        """Add the expression."""
+        """Add the expression, with its peak at "attackPeak"."""
         names, weights = _shown(scheduled.behaviour, who)
         times = times_of(scheduled, "attackPeak")
         performed.faces.append(FaceIntent(scheduled.key, names, weights, times))
@@ -61,7 +61,7 @@ class FaceShiftKind:
         return elastic(SHIFT_SYNCS, (SHIFT_S,), least=0.2, most=math.inf)
 
     def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
-        """Add the expression."""
+        """Add the expression, which stays when the behaviour is over."""
         names, weights = _shown(scheduled.behaviour, who)
         times = shift_times_of(scheduled)
         performed.faces.append(FaceIntent(scheduled.key, names, weights, times))

@@ -24,7 +24,7 @@ HANDS: dict[str, Hand] = {
     "RIGHT_HAND": "right",
     "BOTH_HANDS": "both",
 }
-"""BML's modes."""
+"""Hand of an intent by BML's attribute `mode`."""
 
 POINTING_SPANS_S = (0.6, 0.0, 0.1, 0.1, 0.7, 0.6)
 """Times between the sync points of pointing [s]; it lasts where the eye can follow it."""
@@ -55,7 +55,7 @@ class GestureKind:
         return elastic(GESTURE_SYNCS, spans, holds=HOLDS)
 
     def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
-        """Add the gesture."""
+        """Add the gesture by the hand of its `mode`."""
         gesture = _gesture(scheduled.behaviour, who)
         hand = HANDS.get(scheduled.behaviour.get("mode").upper(), "right")
         times = stroke_times_of(scheduled)

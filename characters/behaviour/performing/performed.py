@@ -52,7 +52,6 @@ class Going:
     """Where to, (x, z) in the table frame [m]."""
 
     manner: Manner = "walk"
-    """How."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +62,6 @@ class Saying:
     """Tells it from other speeches."""
 
     utterance: Utterance
-    """What is said."""
 
     start: float
     """When its sound begins [s]."""
@@ -110,7 +108,6 @@ class Performing:
     """Who performs: the body with its abilities, its surroundings and its voice."""
 
     character: Character
-    """The character."""
 
     collection: GestureCollection
     """The gestures that it may be asked for."""

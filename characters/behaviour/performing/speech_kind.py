@@ -27,7 +27,7 @@ MAX_LETTERS = 5000
 """Longer texts are refused."""
 
 XML = "http://www.w3.org/XML/1998/namespace"
-"""Namespace of `xml:lang`."""
+"""Namespace of the attribute `xml:lang`."""
 
 
 class SpeechKind:

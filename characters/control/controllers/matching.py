@@ -41,7 +41,7 @@ from cubeling.characters.synthesis.matching.matched_motion import MatchedMotion
 from cubeling.characters.synthesis.matching.prediction import Impulse, Wish, predict
 
 SPEED_KNOTS = (IDLE_SPEED, 1.0, 2.0, RUN_SPEED, 3.5, 4.0, TOP_SPEED)
-"""AvatAR's Speeds."""
+"""AvatAR's parameter Speed at the knots, in its own numbers."""
 
 PACE_KNOTS = (0.38, 0.51, 0.78, 1.26, 1.66, 1.9, 2.4)
 """The same over the ground, as the bundled human has them [body heights/s]."""

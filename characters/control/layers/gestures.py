@@ -1,4 +1,4 @@
-"""Symbolic gestures: `CharacterCommand.behaviour.gestures`."""
+"""The layer that plays symbolic gestures: `CharacterCommand.behaviour.gestures`."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING

@@ -44,7 +44,6 @@ class PerformedGesture:
     """Which hand performs it, if it is one-handed."""
 
     performer: Performer
-    """Whose body."""
 
     present: float
     """How far it has joined in, 0…1."""

@@ -125,7 +125,6 @@ class NearestHand:
     """Chooses a hand for each intent that leaves the choice, and keeps to it."""
 
     body: UpperBody
-    """Whose hands."""
 
     shoulders: dict[str, Vector]
     """Where they begin, in the character frame [m]."""
@@ -288,7 +287,6 @@ class StandingBody:
     """A character as it stands: what its hands stay out of, and where its arms begin."""
 
     character: Character
-    """Whose body."""
 
     surface: BodySurface
     """Its trunk and head."""

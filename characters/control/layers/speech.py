@@ -45,7 +45,6 @@ class OverlaidMotion:
     """A motion of some joints that lies over another one."""
 
     motion: Motion
-    """The motion."""
 
     start: float
     """When it begins [s]."""

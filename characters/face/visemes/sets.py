@@ -82,7 +82,6 @@ class SoundingViseme:
     """A viseme within a phone."""
 
     viseme: Viseme
-    """Which one."""
 
     share: float
     """Its share of the phone's time, 0…1; those of a phone sum to 1."""

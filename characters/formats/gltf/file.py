@@ -76,7 +76,7 @@ class GltfFile:
     """An opened glTF: its document and its bytes."""
 
     path: Path
-    """The file."""
+    """The file itself, to which the URIs of its buffers are relative."""
 
     document: Json
     """The JSON part, checked against the schema."""

@@ -88,7 +88,6 @@ class MappedMaterial:
     """A material with the mapping of its textures."""
 
     material: Material
-    """The surface."""
 
     uv_set: int = 0
     """The number n of the TEXCOORD_n that its textures use."""

@@ -27,7 +27,7 @@ class AcclaimSkeleton:
     """The content of an .asf file."""
 
     path: Path
-    """The file."""
+    """The file, for error messages."""
 
     skeleton: Skeleton
     """In the file's axes and units: a joint at the start of every bone, with the bone's name,

@@ -53,7 +53,7 @@ class BapTrack:
     """The parameters of a body over time."""
 
     rate: float
-    """Frames a second."""
+    """Frames a second, as the file's header says."""
 
     values: NDArray[np.int64]
     """(frames, 296); 0 is a body at rest."""

@@ -80,7 +80,7 @@ class _Tree:
         return ChannelLayout(offsets, turning, moving, angle_unit=float(np.pi / 180))
 
     def notes(self) -> tuple[str, ...]:
-        """Return the repairs."""
+        """Return what had to be repaired, one sentence each."""
         repeated = [name for name, count in self.name_counts.items() if count > 1]
         if not repeated:
             return ()

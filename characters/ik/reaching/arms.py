@@ -123,7 +123,7 @@ class BentArm(NamedTuple):
     """Of the lower arm."""
 
     hand: Quaternion
-    """Of the hand."""
+    """Rotation of the hand, `character_from_joint`."""
 
     wrist: Vector
     """Where the wrist is [m]."""

@@ -68,7 +68,6 @@ class HandOnItsWay(NamedTuple):
     """A hand that reaches, before the torso moves."""
 
     arm: Arm
-    """Its arm."""
 
     target: HandTarget
     """Where it is to be."""

@@ -39,7 +39,7 @@ class Hand:
     """One hand of a skeleton in its rest pose; vectors are in the character frame."""
 
     side: str
-    """Whose it is."""
+    """ "left" or "right", as in `SIDES`."""
 
     joint: int
     """The wrist, or the ankle of a paw."""

@@ -103,7 +103,6 @@ class Reaching(NamedTuple):
     """One arm that is to get somewhere."""
 
     arm: Arm
-    """Its bones."""
 
     fore: float
     """From its elbow to what reaches [m]."""

@@ -76,7 +76,6 @@ class ReachedPose(NamedTuple):
     """A pose that reaches, and what it took."""
 
     pose: Pose
-    """The pose."""
 
     effort: float
     """0 within the arms' reach … 1 where torso and arms are stretched; more beyond."""

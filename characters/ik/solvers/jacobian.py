@@ -33,7 +33,7 @@ class JacobianSolver:
     """Makes a step of the error."""
 
     max_steps: int = MAX_STEPS
-    """Most steps."""
+    """Number of steps after which it gives up."""
 
     def __call__(self, task: Task) -> Solved:
         """Return rotations within the limits."""
@@ -59,7 +59,7 @@ class JacobianMover:
     """Makes a step of the error."""
 
     max_steps: int = MAX_STEPS
-    """Most steps."""
+    """Number of steps after which it gives up."""
 
     def __call__(self, points: Array, task: Task) -> tuple[Array, NDArray[np.intp]]:
         """Return points (joints + 1, 3, batch), of the right lengths, and steps (batch,)."""

@@ -35,7 +35,7 @@ class PositionalSolver:
     """What moves the points."""
 
     max_loops: int = MAX_LOOPS
-    """Most rounds."""
+    """Number of rounds over the chain after which it gives up."""
 
     def __call__(self, task: Task) -> Solved:
         """Return rotations within the limits."""

@@ -46,7 +46,7 @@ class SingleSolution:
     """From the end to the target [m]."""
 
     iterations: int
-    """Steps."""
+    """Number of steps that it took."""
 
 
 class SingleChain:

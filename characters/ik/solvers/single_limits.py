@@ -28,7 +28,7 @@ Axis = tuple[Vector, Vector]
 """An axis of a joint and the place of the joint, in the frame of the base."""
 
 Basis = tuple[Vector, Vector, Vector]
-"""Three axes."""
+"""Three unit vectors at right angles: the axes x, y and z of a joint."""
 
 
 @dataclass(frozen=True)

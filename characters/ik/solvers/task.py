@@ -131,7 +131,7 @@ class Task:
 
     @property
     def count(self) -> int:
-        """Number of chains."""
+        """Number of chains that are solved at once: the batch."""
         return len(self.tolerance)
 
     @property

@@ -115,7 +115,6 @@ class Row:
     """One of several motions of a node."""
 
     motion: "Node"
-    """The motion."""
 
     fields: Mapping[str, Any]
     """Its other fields, such as "value" or "weight"."""
@@ -200,7 +199,6 @@ class Transition:
     """The state that it enters."""
 
     when: Condition
-    """Its condition."""
 
     seconds: float
     """Its length [s]."""
@@ -217,7 +215,7 @@ class StateGraph:
     """The motion of each state."""
 
     start: str
-    """The first state."""
+    """Name of the state that it begins in."""
 
     transitions: tuple[Transition, ...]
     """Tried in this order."""
@@ -251,7 +249,7 @@ class Plan:
     """The state graph; None if there is only one motion."""
 
     masks: Mapping[str, MaskPlan] = field(default_factory=dict)
-    """Masks by name."""
+    """Masks of joints by the name that layers use."""
 
     lags: Mapping[str, float] = field(default_factory=dict)
     """Time constants of parameters by name [s]; defaults are

@@ -61,7 +61,7 @@ class _PlanReader:
         self._depth = 0  # nesting of the motion that is being read
 
     def plan(self) -> Plan:
-        """Return the plan."""
+        """Return the plan of the whole document, checked."""
         masks = {name: self._mask(table, f"masks.{name}") for name, table in self._masks.items()}
         for name in self._motions:  # unused motions are checked too
             self._named_motion(name, f"motions.{name}")

@@ -62,7 +62,7 @@ class Light:
     """The light on a character, in linear RGB; 1 makes a white surface just white."""
 
     key: Array
-    """Key light, (3,)."""
+    """Linear RGB of the key light, (3,)."""
 
     sky: Array
     """Ambient light from the upper hemisphere, (3,)."""

@@ -27,7 +27,7 @@ class LoopCut:
     """A part of a clip that repeats."""
 
     start: int
-    """First frame."""
+    """Index of the first frame in the recording."""
 
     end: int
     """The frame that matches the first, one cycle later."""

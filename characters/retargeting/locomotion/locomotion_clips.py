@@ -64,7 +64,7 @@ class LocomotionResult:
     """The gaits found in the recordings."""
 
     clips: tuple[GaitReport, ...]
-    """The clips made."""
+    """One for each gait that was found or made."""
 
 
 def make_locomotion(

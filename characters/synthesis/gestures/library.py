@@ -23,7 +23,7 @@ from cubeling.characters.synthesis.archive import (
 from cubeling.characters.synthesis.choices import Database
 
 GESTURE_FORMAT = ArchiveFormat("cubeling gestures", 1, "gesture library", "cubeling gestures learn")
-"""The .gestures file."""
+"""The format of `.gestures` files: `cubeling gestures learn` writes them."""
 
 STEP_RAD = 1e-4
 """Resolution of rotation vectors in the file [rad]."""
@@ -73,7 +73,7 @@ class GestureRecording:
     """The upper body of a clip: one or more gesture phrases, often from rest to rest."""
 
     name: str
-    """Of the clip."""
+    """Name of the clip it was learned from."""
 
     turns: Array
     """Local rotations of the library's joints, (frames, joints, 4), with continuous signs."""
@@ -84,7 +84,6 @@ class GestureLibrary:
     """Gesture phrases of one body."""
 
     skeleton: Skeleton
-    """The joints."""
 
     anatomy: Anatomy
     """Which joint is which body part."""
@@ -99,7 +98,7 @@ class GestureLibrary:
     """Local rotations of these joints in rest, (joints, 4)."""
 
     recordings: tuple[GestureRecording, ...]
-    """The motion."""
+    """The recordings that phrases refer to by index."""
 
     phrases: tuple[GesturePhrase, ...]
     """What is in it, in order of recordings and time."""

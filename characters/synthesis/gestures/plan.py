@@ -48,13 +48,13 @@ class PlannedGesture:
     """A gesture with its times."""
 
     accent: Accent
-    """What it stresses."""
+    """The pitch accent whose time its stroke meets."""
 
     emphasized: float
     """The accent's strength with the slider, 0…1."""
 
     node: GestureNode
-    """What is played."""
+    """The gesture phrase that is played."""
 
     number: int
     """Its number in the graph."""
@@ -78,7 +78,6 @@ class PlannedGesture:
     """GSI as it is played."""
 
     costs: GestureCosts
-    """What it costs."""
 
     @property
     def relaxed(self) -> bool:

@@ -33,7 +33,7 @@ class GestureSettings:
     """How gestures are chosen."""
 
     model: CostModel = "bodyspeech"
-    """Costs and warps."""
+    """Which costs choose gestures, and which warps fit them."""
 
     database: Database = "full"
     """Which phrases are used."""

@@ -36,7 +36,7 @@ class Segment:
     """The frame that it begins with."""
 
     pace: float = 0.0
-    """Frames a second."""
+    """Frames of the recording that are played in a second; 0 holds the first."""
 
     def at(self, time: float) -> Array:
         """Return the rotations at a time [s] not before its start, (joints, 4)."""

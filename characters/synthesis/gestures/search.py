@@ -75,7 +75,7 @@ class Step:
     """What each state that goes on has chosen for an accent, (states,)."""
 
     parent: NDArray[np.intp]
-    """The state before."""
+    """Index of each one's best predecessor in the step before."""
 
     node: NDArray[np.intp]
     """The gesture; −1 if the accent is skipped."""
@@ -84,7 +84,6 @@ class Step:
     """When its apex is [s]."""
 
     ways: Ways
-    """How it follows."""
 
     strength: Array
     """Cost of its strength."""

@@ -20,7 +20,7 @@ from cubeling.characters.synthesis.graphs.candidates import Candidates
 from cubeling.characters.synthesis.library import MotionLibrary
 
 GRAPH_FORMAT = ArchiveFormat("cubeling motion graph", 1, "motion graph", "cubeling motions build")
-"""The .graph file."""
+"""The format of `.graph` files: `cubeling motions build` writes them."""
 
 WHOLE_BODY = "BP123456"
 """The name of the whole body among the parts."""
@@ -31,7 +31,6 @@ class StoredGraph:
     """What a .graph file holds."""
 
     library: MotionLibrary
-    """The frames."""
 
     distance: str
     """Name of the distance by which they were compared."""

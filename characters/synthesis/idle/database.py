@@ -32,7 +32,7 @@ class BalanceShift:
     """Balance before: "left", "both" or "right"."""
 
     end: str
-    """Balance after."""
+    """The balance that it leads to, one of `BALANCES`."""
 
     feeling: Region | None = None
     """The emotions that it leads to; None if it suits any."""
@@ -75,10 +75,10 @@ class IdleDatabase:
     """Frame rate of the shifts [Hz]."""
 
     space: PostureSpace
-    """The person's postures."""
+    """Principal components in which her postures are compared and mixed."""
 
     postures: tuple[RestingPosture, ...]
-    """Where she rests."""
+    """The postures in which she rests between shifts."""
 
     shifts: tuple[BalanceShift, ...]
     """How she shifts her balance."""

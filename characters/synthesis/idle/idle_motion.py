@@ -72,7 +72,7 @@ class IdleMotion:
 
     @property
     def duration(self) -> float:
-        """Infinite."""
+        """Infinite: it goes on for as long as it is sampled."""
         return math.inf
 
     @property

@@ -28,7 +28,7 @@ class Varied:
     """How much of them is added."""
 
     seed: int = 0
-    """Of their choice."""
+    """Seed of the generator that chooses them."""
 
     def __post_init__(self) -> None:
         rng = np.random.default_rng([self.seed, 2])

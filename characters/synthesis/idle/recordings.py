@@ -45,7 +45,7 @@ class Rest:
     """Frames of a recording in which a person rests, between two shifts."""
 
     first: int
-    """Their first frame."""
+    """Index of the first frame that belongs to it."""
 
     end: int
     """The frame after their last."""
@@ -59,7 +59,7 @@ class StandingRecording:
     """A recording of a standing person, with the root held in the middle between the feet."""
 
     name: str
-    """Of its clip."""
+    """Name of the clip it was cut from."""
 
     rate: float
     """[Hz]."""

@@ -21,7 +21,7 @@ from cubeling.characters.synthesis.idle.posture_space import PostureVectors
 from cubeling.characters.synthesis.idle.recordings import BALANCES, Rest, StandingRecording
 
 IDLE_FORMAT = ArchiveFormat("cubeling idle motion", 2, "idle motion", "cubeling idle learn")
-"""The .idle file."""
+"""The format of `.idle` files: `cubeling idle learn` writes them."""
 
 STEP = 1e-4
 """Resolution of postures in the file [rad and m]."""

@@ -27,7 +27,7 @@ class FeatureJoints:
     """The joints of a skeleton that features are taken from."""
 
     hips: int
-    """The hips."""
+    """Index of the joint that carries the body."""
 
     feet: tuple[int, ...]
     """Left and right ankle."""

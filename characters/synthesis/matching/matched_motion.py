@@ -98,7 +98,7 @@ class MatchedMotion:
 
     @property
     def duration(self) -> float:
-        """Infinite."""
+        """Infinite: it goes on for as long as it is sampled."""
         return math.inf
 
     def restart(self, start: Playhead) -> None:

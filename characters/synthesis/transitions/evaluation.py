@@ -61,7 +61,7 @@ class Summary:
     """The answers to many requests."""
 
     outcomes: tuple[Outcome, ...]
-    """All of them."""
+    """One for each trial, in their order."""
 
     @property
     def duration(self) -> float:

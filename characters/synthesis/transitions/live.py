@@ -34,7 +34,6 @@ class FrameSource(Protocol):
     """Plays a graph, one frame at a time."""
 
     library: MotionLibrary
-    """The frames."""
 
     frame: int
     """The frame that is played; with parts, that of the legs."""
@@ -154,7 +153,7 @@ class LiveMotion:
 
     @property
     def duration(self) -> float:
-        """Infinite."""
+        """Infinite: it goes on for as long as frames come."""
         return math.inf
 
     def restart(self) -> None:

@@ -51,7 +51,7 @@ class SearchSettings:
     """Arrivals of the legs that are tried before the window is widened."""
 
     wide_window: int = 20
-    """The widened window."""
+    """Window after `arrivals` have been tried in vain [frames]."""
 
     horizon: int = 120
     """Frames within which other arrivals of the legs are looked for."""
