@@ -27,7 +27,7 @@ from cubeling.characters import (
     RootDelta,
 )
 from cubeling.characters.face.lids import Lids
-from cubeling.characters.rendering import SceneCharacter, Stage, View, create_context
+from cubeling.characters.rendering import CameraView, SceneCharacter, Stage, create_context
 from cubeling.characters.rendering.portrait import PAPER_BGR
 from cubeling.characters.rendering.portrait_camera import CharacterExtent, PortraitCamera
 
@@ -75,7 +75,7 @@ def draw_group(context: moderngl.Context, size: tuple[int, int] = (1100, 520)) -
     paper = np.full((size[1], size[0], 3), PAPER_BGR, np.uint8)
     stage = Stage(context, size)
     try:
-        view = View(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
+        view = CameraView(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
         return stage.draw(view, characters)
     finally:
         stage.release()

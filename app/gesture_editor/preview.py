@@ -29,11 +29,11 @@ from cubeling.characters.behaviour import (
     natural_times,
 )
 from cubeling.characters.rendering import (
+    CameraView,
     CharacterExtent,
     PortraitCamera,
     SceneCharacter,
     Stage,
-    View,
 )
 
 Picture = NDArray[np.uint8]
@@ -154,7 +154,7 @@ class Preview:
             self._stage = Stage(self._context, size)
         camera = self.camera(performance.character, size)
         paper = np.full((size[1], size[0], 3), BACKDROP_BGR, np.uint8)
-        view = View(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
+        view = CameraView(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
         character = self.character(performance.character)
         return self._stage.draw(view, [SceneCharacter(character, posed)])
 

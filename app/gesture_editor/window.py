@@ -16,7 +16,7 @@ from cubeling.app.gesture_editor.handling import (
 )
 from cubeling.app.gesture_editor.panels.cards import HEIGHT, WIDTH
 from cubeling.app.gesture_editor.session import EditorSession
-from cubeling.app.ui.window.surface import TYPED_KEYS, Surface, key_name
+from cubeling.app.ui.window.surface import TYPED_KEYS, WindowSurface, key_name
 
 EDITING_KEYS = {glfw.KEY_DELETE: "Delete", glfw.KEY_BACKSPACE: "Backspace"}
 """Names of keys that other windows have no use for."""
@@ -34,7 +34,7 @@ SIZE = round(WIDTH), round(HEIGHT)
 """Size of the window at first [screen coordinates]."""
 
 
-class EditorWindow(Surface):
+class EditorWindow(WindowSurface):
     """A window with an `EditorSession` in it; see `Surface` for who closes it.
 
     Parameters

@@ -28,7 +28,7 @@ from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.pipeline.step import ReplayInputs, Step
 from cubeling.app.pipeline.step_renderer import StepRenderer
 from cubeling.app.pipeline.subjects import subjects
-from cubeling.app.pipeline.things import Body, BodyParts
+from cubeling.app.pipeline.things import BodyParts, PosedBody
 from cubeling.characters import (
     Animator,
     Character,
@@ -166,7 +166,7 @@ class Playground:
         self._renderer.play(cube)
         self._animator, self._parts = animator, BodyParts.of(character, animator.scale)
         self._posed: PosedCharacter | None = None
-        self._body: Body | None = None
+        self._body: PosedBody | None = None
         self._attention = Attention(self._look, cube.edge)
         self._window = CubeWindow(cube, character, scenario.roles, self._inside)
         self._other_cube = OtherCube(cube, self.known_cubes)
@@ -288,7 +288,7 @@ class Playground:
         posed = (
             self.animate(outcome.command) if replay.posed is None else self._fitted(replay.posed)
         )
-        self._posed, self._body = posed, Body(self.character, self._parts, posed)
+        self._posed, self._body = posed, PosedBody(self.character, self._parts, posed)
         self._complexion.update(outcome.command.timestamp, outcome.command.emotion)
         interior = self._window.update(state, controls, outcome.command, inputs.inside)
         if self._window.invites and self.other_cube is None:
@@ -370,7 +370,7 @@ class Playground:
         interior: Interior | None = None,
     ) -> NDArray[np.uint8] | None:
         """Draw the picture; return None without a graphics context."""
-        body, blood = Body(self.character, self._parts, posed), self._complexion.blood
+        body, blood = PosedBody(self.character, self._parts, posed), self._complexion.blood
         return self._renderer.draw(frame, state, controls, outcome, body, interior, blood)
 
     def drawn(self, step: Step) -> Step:

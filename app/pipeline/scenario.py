@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from cubeling.affect import Emotion, Personality
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.spoken_line import SpokenLine
-from cubeling.app.pipeline.things import Body, Thing
+from cubeling.app.pipeline.things import PosedBody, Thing
 from cubeling.characters import CharacterCommand, PosedCharacter, RootDelta
 from cubeling.characters.rendering import FloorPath
 from cubeling.tracking import CubeControls, CubeModel
@@ -37,7 +37,7 @@ class Inputs:
     cube: NDArray[np.float64] | None = None
     """`table_from_cube`, (4, 4) [m]; None where the cube is not seen."""
 
-    body: Body | None = None
+    body: PosedBody | None = None
     """The character's body as after the previous frame; None in the first."""
 
     line: SpokenLine | None = None

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from cubeling.app.pipeline.cube_window import Interior
 from cubeling.app.pipeline.resident import MIN_SIZE
 from cubeling.app.pipeline.scenario import Outcome
-from cubeling.app.pipeline.things import Body
+from cubeling.app.pipeline.things import PosedBody
 from cubeling.characters import PosedCharacter
 from cubeling.characters.rendering import FULL, Quality, SceneCharacter
 from cubeling.tracking import CubeControls, CubeModel, CubeState, Frame, Intrinsics
@@ -97,7 +97,7 @@ class StepRenderer:
         state: CubeState,
         controls: CubeControls,
         outcome: Outcome,
-        body: Body,
+        body: PosedBody,
         interior: Interior | None,
         blood: float,
     ) -> NDArray[np.uint8] | None:
@@ -117,7 +117,7 @@ class StepRenderer:
         return self._stage.draw(view, characters, outcome.floor if seen else (), find_cover)
 
     def _characters(
-        self, outcome: Outcome, body: Body, interior: Interior | None, blood: float
+        self, outcome: Outcome, body: PosedBody, interior: Interior | None, blood: float
     ) -> list[SceneCharacter]:
         """Return all that is drawn: the character on the table or in the cube, and its things."""
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cubeling.characters.rendering import Box, Cover, Focus, MeasuredLight, Softness, View
+from cubeling.characters.rendering import Box, CameraView, Cover, Focus, MeasuredLight, Softness
 from cubeling.tracking import CubeControls, CubeModel, CubeState, Frame, Intrinsics
 from cubeling.tracking.appearance import EDGE_SLOPE, HandFinder, HandMask, LightMeter, QualityMeter
 
@@ -42,13 +42,13 @@ class Surroundings:
 
     def view(
         self, frame: Frame, state: CubeState, controls: CubeControls, matched: bool = True
-    ) -> View:
+    ) -> CameraView:
         """Return the camera's picture with all that is known of the scene but the hand.
 
         Blur, noise and haze are measured only where the drawing is `matched` to them.
         """
         pose = state.camera_from_cube
-        return View(
+        return CameraView(
             frame.image,
             self._intrinsics.matrix,
             self._intrinsics.distortion,

@@ -99,7 +99,7 @@ def _stand_distance(character: Character, scale: float) -> float:
 
 
 @dataclass(frozen=True)
-class Body:
+class PosedBody:
     """The character's body on the table, as after the previous frame."""
 
     character: Character

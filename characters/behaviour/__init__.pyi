@@ -63,7 +63,7 @@ from cubeling.characters.behaviour.performing.performed import (
 )
 from cubeling.characters.behaviour.performing.speech_kind import retime_speeches as retime_speeches
 from cubeling.characters.behaviour.performing.surroundings import (
-    Surroundings as Surroundings,
+    NamedPlaces as NamedPlaces,
     numbers_of as numbers_of,
 )
 from cubeling.characters.behaviour.symbolic_gesture import (

@@ -28,7 +28,7 @@ between, its head's turns are more and more measured from the level."""
 
 
 @dataclass
-class Joint:
+class HeadJoint:
     """A joint on the way from the root to the head or an eye."""
 
     number: int
@@ -129,7 +129,7 @@ class HeadJoints:
         for joint in self._line:
             self.turn(local, joint, (x, y, z))
 
-    def turn(self, local: Array, joint: Joint, turned: Vector) -> None:
+    def turn(self, local: Array, joint: HeadJoint, turned: Vector) -> None:
         """Turn a joint in local rotations by a rotation vector in the character frame."""
         if joint.parent >= 0:
             turned = rotate(conjugate(self._joints[joint.parent].turn), turned)
@@ -152,7 +152,7 @@ def middle(places: Sequence[Vector]) -> Vector:
     return x, y, z
 
 
-def _with_ancestors(skeleton: Skeleton, joints: list[int]) -> list[Joint]:
+def _with_ancestors(skeleton: Skeleton, joints: list[int]) -> list[HeadJoint]:
     """Return joints with all their ancestors, parents first."""
     order = skeleton.with_ancestors(joints)
     place = {joint: number for number, joint in enumerate(order)} | {-1: -1}
@@ -160,7 +160,7 @@ def _with_ancestors(skeleton: Skeleton, joints: list[int]) -> list[Joint]:
     sizes = np.linalg.norm(matrices, axis=1, keepdims=True)
     rest = from_matrix(matrices / np.where(sizes > 0, sizes, 1.0)).tolist()
     return [
-        Joint(joint, place[skeleton.parents[joint]], conjugate(turned))
+        HeadJoint(joint, place[skeleton.parents[joint]], conjugate(turned))
         for joint, turned in zip(order, rest, strict=True)
     ]
 

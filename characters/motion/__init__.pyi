@@ -3,7 +3,7 @@ from cubeling.characters.ik.reaching.hand_shapes import HAND_SHAPES as HAND_SHAP
 from cubeling.characters.ik.reaching.hands import find_hand as find_hand
 from cubeling.characters.ik.solvers.measures import (
     REACH_M as REACH_M,
-    Problem as Problem,
+    ReachingProblem as ReachingProblem,
     arc_targets as arc_targets,
     joint_change as joint_change,
     target_path as target_path,
@@ -27,7 +27,7 @@ from cubeling.characters.motion.trees.dot import to_dot as to_dot
 from cubeling.characters.motion.trees.plan import (
     Node as Node,
     Plan as Plan,
-    Transition as Transition,
+    StateTransition as StateTransition,
 )
 from cubeling.characters.skeleton import rotations as rotations
 from cubeling.characters.skeleton.pose import Array as Array, Skeleton as Skeleton
@@ -93,7 +93,7 @@ from cubeling.characters.synthesis.transitions.comparison import (
 from cubeling.characters.synthesis.transitions.evaluation import (
     Answers as Answers,
     Requests as Requests,
-    Summary as Summary,
+    TransitionSummary as TransitionSummary,
     graph_requests as graph_requests,
     merge_answers as merge_answers,
 )

@@ -55,7 +55,7 @@ class Stretch:
 
 
 @dataclass(frozen=True)
-class Window:
+class TimeWindow:
     """A part of a motion; its first and last pose are held before and after it."""
 
     motion: Motion
@@ -242,5 +242,5 @@ def _finite(what: str, motion: Motion) -> None:
     if not math.isfinite(motion.duration):
         raise CharacterError(
             f"{what}: a {type(motion).__name__} of duration {motion.duration} s has no end; "
-            "take a Window of it"
+            "take a TimeWindow of it"
         )

@@ -18,7 +18,7 @@ from cubeling.characters.rendering.portrait_camera import (
     joints_below,
 )
 from cubeling.characters.rendering.quality import FULL
-from cubeling.characters.rendering.scene import SceneCharacter, View
+from cubeling.characters.rendering.scene import CameraView, SceneCharacter
 from cubeling.characters.rendering.stage import Stage
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
@@ -216,7 +216,7 @@ class PortraitRenderer:
     ) -> Image:
         width, height = self.size
         paper = np.full((height, width, 3), PAPER_BGR, np.uint8)
-        view = View(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
+        view = CameraView(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
         posed = PosedCharacter(pose, place, True, "", 0.0, 0.0, 0.0, 0.0)
         picture = self._stage.draw(view, [SceneCharacter(character, posed, wrinkles, blood)])
         faded = np.asarray(cv2.blendLinear(picture, paper, self._fade, 1.0 - self._fade), np.uint8)

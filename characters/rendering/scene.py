@@ -127,7 +127,7 @@ class Focus:
 
 
 @dataclass(frozen=True)
-class View:
+class CameraView:
     """The camera's picture and what is known about the scene in it."""
 
     image: NDArray[np.uint8] | None
@@ -217,7 +217,7 @@ class FloorPath:
 class Scene:
     """Everything that one picture shows."""
 
-    view: View
+    view: CameraView
     """The camera's frame, and the real cubes in it."""
 
     characters: Sequence[SceneCharacter]

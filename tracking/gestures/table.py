@@ -44,7 +44,7 @@ NEXT_FIRM_S, NEXT_FIRM_AFTER_PROVISIONAL_S = 1.5, 0.3
 
 
 @dataclass(frozen=True)
-class Rest:
+class RestingFoot:
     """The foot of a cube at rest, in the camera frame."""
 
     foot: Array
@@ -61,7 +61,7 @@ ALL_NORMALS = np.stack(list(SIDE_NORMALS.values()))
 """All of them, (6, 3)."""
 
 
-def rest_of(camera_from_cube: Array, edge: float, up: Array | None = None) -> Rest | None:
+def rest_of(camera_from_cube: Array, edge: float, up: Array | None = None) -> RestingFoot | None:
     """Return where a resting cube stands; None where no side of it can be up.
 
     Without a table (`up` is None) only sides that face the camera can be up.
@@ -76,7 +76,7 @@ def rest_of(camera_from_cube: Array, edge: float, up: Array | None = None) -> Re
     best = int(np.argmax(cosines))
     if cosines[best] < MIN_UP_COSINE:
         return None
-    return Rest(centre - normals[best] * (edge / 2), normals[best])
+    return RestingFoot(centre - normals[best] * (edge / 2), normals[best])
 
 
 class TablePlane:
@@ -85,7 +85,7 @@ class TablePlane:
     It is the height above its first estimate, (x, z) ↦ d + a·x + b·z. Rests measure it and slopes.
     """
 
-    def __init__(self, rest: Rest) -> None:
+    def __init__(self, rest: RestingFoot) -> None:
         self._start = _frame(rest.foot, rest.up)
         self._plane = np.zeros(3)
         self._information = np.diag(1 / REST_SIGMAS**2)
@@ -93,7 +93,7 @@ class TablePlane:
         self._rest_time = SETTLING_TIME_S
         self.camera_from_table = self._start
 
-    def learn(self, rest: Rest, seconds: float) -> None:
+    def learn(self, rest: RestingFoot, seconds: float) -> None:
         """Improve the plane with a rest that lasts `seconds` more."""
         if float(np.linalg.norm(rest.foot - self._place)) > NEW_PLACE_M:
             self._place, self._rest_time = rest.foot, 0.0
@@ -122,7 +122,7 @@ class TablePlane:
         slope = float(np.sqrt(1 + self._plane[1] ** 2 + self._plane[2] ** 2))
         return float(y - row @ self._plane) / slope, spread
 
-    def agrees(self, rest: Rest) -> bool:
+    def agrees(self, rest: RestingFoot) -> bool:
         """Whether a rest can be on this table."""
         height, spread = self.height(rest.foot)
         near = abs(height) < MAX_HEIGHT_ERROR_M + 3 * spread

@@ -9,7 +9,7 @@ from cubeling.app.running.opening import is_seekable
 from cubeling.app.running.playback.frame_feed import FrameFeed
 from cubeling.app.running.playback.saved_states import SavedStates
 from cubeling.app.session import events
-from cubeling.app.ui.playback.status import Mark, Position
+from cubeling.app.ui.playback.status import PlaybackMark, Position
 from cubeling.tracking import Frame, Health, LiveFrames
 
 
@@ -42,7 +42,7 @@ class Transport:
         self._changed_by_player = False
         self._target: _Target | None = None
         self._first: float | None = None
-        self._marks: tuple[Mark, ...] | None = None
+        self._marks: tuple[PlaybackMark, ...] | None = None
         self._start = session.options.start_s
         self._end = session.options.end_s or math.inf
         self.seekable = is_seekable(session.source)
@@ -214,8 +214,8 @@ class Transport:
         if self._session.pace is not None:
             self._session.pace.restart()
 
-    def _read_marks(self, first: float) -> tuple[Mark, ...]:
+    def _read_marks(self, first: float) -> tuple[PlaybackMark, ...]:
         """Return what happened in the recording, by its events."""
         source = self._session.options.source
         found = events(Path(source)) if source.endswith(".mcap") else []
-        return tuple(Mark(time - first, event) for time, event in found)
+        return tuple(PlaybackMark(time - first, event) for time, event in found)

@@ -41,7 +41,7 @@ class Note:
 
 
 @dataclass(frozen=True)
-class Curve:
+class PlotCurve:
     """A value over time."""
 
     name: str
@@ -67,7 +67,7 @@ class Plot:
     title: str
     """What they show."""
 
-    curves: tuple[Curve, ...]
+    curves: tuple[PlotCurve, ...]
     """The first one lies below the others."""
 
     span: float
@@ -178,7 +178,7 @@ class Switch:
 
 
 @dataclass(frozen=True)
-class Log:
+class LogLines:
     """The last messages, newest last."""
 
     rows: tuple[tuple[str, str, str], ...]
@@ -188,7 +188,7 @@ class Log:
     """How many rows have a place, so that the panel does not change its size."""
 
 
-Widget = Fact | Note | Plot | ShareBar | Choice | Slider | Switch | Log
+Widget = Fact | Note | Plot | ShareBar | Choice | Slider | Switch | LogLines
 
 
 @dataclass(frozen=True)

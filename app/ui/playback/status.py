@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Mark:
+class PlaybackMark:
     """Something that happened in a recording."""
 
     position: float
@@ -33,12 +33,12 @@ class Position:
     target: float | None = None
     """Where it seeks to; None if it does not seek."""
 
-    marks: tuple[Mark, ...] = ()
+    marks: tuple[PlaybackMark, ...] = ()
     """What happened in it."""
 
 
 @dataclass(frozen=True)
-class Choice:
+class MenuChoice:
     """Something that the player can choose."""
 
     part: str
@@ -87,7 +87,7 @@ class SessionStatus:
     ending: EndCard | None = None
     """The card to show, once the recording has ended."""
 
-    choices: tuple[Choice, ...] = ()
+    choices: tuple[MenuChoice, ...] = ()
     """What can be chosen, as far as it is known."""
 
     looking: bool = False

@@ -65,7 +65,7 @@ def key_name(key: int, scan: int | None = None) -> str | None:
     return letter.upper() if letter and letter.isalpha() else None
 
 
-class Surface:
+class WindowSurface:
     """A window with an OpenGL context, and pictures in it.
 
     Whoever opens it closes it; a second `close` does nothing. Esc and Q close it.

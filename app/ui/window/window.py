@@ -22,7 +22,7 @@ from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.layer import PlaybackLayer
 from cubeling.app.ui.playback.requests import SessionRequest, WindowRequest
 from cubeling.app.ui.playback.status import SessionStatus
-from cubeling.app.ui.window.surface import Surface
+from cubeling.app.ui.window.surface import WindowSurface
 
 Picture = NDArray[np.uint8]
 
@@ -31,7 +31,7 @@ MIN_ENLARGEMENT, MAX_ENLARGEMENT = 1.1, 2.0
 much, as the time grows with the area."""
 
 
-class Window(Surface):
+class Window(WindowSurface):
     """A `Screen` on the desktop.
 
     Parameters

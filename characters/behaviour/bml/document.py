@@ -89,7 +89,7 @@ class Constraint:
 
 
 @dataclass(frozen=True)
-class Element:
+class BmlElement:
     """An element inside a behaviour, as it is written."""
 
     tag: str
@@ -100,7 +100,7 @@ class Element:
     attributes: Mapping[str, str] = field(default_factory=dict)
     """Its attributes; those of a namespace are named "{namespace}name"."""
 
-    children: tuple["Element", ...] = ()
+    children: tuple["BmlElement", ...] = ()
     """The elements inside, in their order."""
 
     text: str = ""
@@ -108,7 +108,7 @@ class Element:
 
 
 @dataclass(frozen=True)
-class Mark:
+class SyncMark:
     """A sync point in a text: `<sync id="s1"/>`."""
 
     id: str
@@ -136,13 +136,13 @@ class Behaviour:
     attributes: Mapping[str, str] = field(default_factory=dict)
     """All other attributes; those of a namespace are named "{namespace}name"."""
 
-    children: tuple[Element, ...] = ()
+    children: tuple[BmlElement, ...] = ()
     """Elements inside: `stance`, `pose`, `trajectory` …"""
 
     text: str = ""
     """What a speech says: characters of `text` with white space as single spaces."""
 
-    marks: tuple[Mark, ...] = ()
+    marks: tuple[SyncMark, ...] = ()
     """Sync points in `text`, in its order."""
 
     required: bool = False

@@ -66,7 +66,7 @@ class PredictedBehaviour:
 
 
 @dataclass(frozen=True)
-class Prediction:
+class BlockPrediction:
     """When a block is expected to start and to end."""
 
     block: str
@@ -104,7 +104,7 @@ class BmlWarning:
     """Whose block it is."""
 
 
-Feedback = BlockProgress | SyncPointProgress | Prediction | BmlWarning
+Feedback = BlockProgress | SyncPointProgress | BlockPrediction | BmlWarning
 
 
 def feedback_xml(feedback: Feedback) -> str:
@@ -128,11 +128,11 @@ def feedback_xml(feedback: Feedback) -> str:
             of = _attributes(id=feedback.id, type=feedback.type)
             text = escape(feedback.description)
             return f"<warningFeedback {_head(feedback)}{of}>{text}</warningFeedback>"
-        case Prediction():
+        case BlockPrediction():
             return _prediction(feedback)
 
 
-def _prediction(feedback: Prediction) -> str:
+def _prediction(feedback: BlockPrediction) -> str:
     block = _attributes(id=feedback.block, globalStart=feedback.start, globalEnd=feedback.end)
     behaviours = "".join(
         f"<{b.kind} {_attributes(id=f'{feedback.block}:{b.id}', **dict(b.times))}/>"

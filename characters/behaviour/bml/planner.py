@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from cubeling.characters.behaviour.bml.constraints import Contradictory, Link, Moment, Order, Unmet
-from cubeling.characters.behaviour.bml.problem import Problem, check, sequence
+from cubeling.characters.behaviour.bml.problem import TimingProblem, check, sequence
 from cubeling.characters.behaviour.bml.spans import TOLERANCE, fits, stretched
 
 LATENESS = 0.1
@@ -39,7 +39,7 @@ class _Anchor:
     owner: str
 
 
-def plan(problem: Problem) -> dict[str, list[float]]:
+def plan(problem: TimingProblem) -> dict[str, list[float]]:
     """Return the times of the sync points of every behaviour [s], inf for those that never come.
 
     Raises
@@ -51,7 +51,7 @@ def plan(problem: Problem) -> dict[str, list[float]]:
 
 
 class _Planner:
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: TimingProblem) -> None:
         self._problem = problem
         self._ground = _Cluster([], grounded=True)
         self._clusters: dict[str, _Cluster] = {}

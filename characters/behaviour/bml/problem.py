@@ -13,7 +13,7 @@ SUM_TOLERANCE = 10 * TOLERANCE
 
 
 @dataclass(frozen=True)
-class Problem:
+class TimingProblem:
     """What is to be planned."""
 
     timings: Mapping[str, Timing]
@@ -41,7 +41,7 @@ class Problem:
     """Whether contradictions are raised; otherwise what runs goes on as well as it can."""
 
 
-def sequence(problem: Problem) -> list[str]:
+def sequence(problem: TimingProblem) -> list[str]:
     """Return behaviours in an order in which those that others refer to come first.
 
     Those that were moved come before all; a circle is entered at its first in the document.
@@ -67,7 +67,7 @@ def sequence(problem: Problem) -> list[str]:
     return order
 
 
-def check(problem: Problem, times: Mapping[str, Sequence[float]]) -> None:
+def check(problem: TimingProblem, times: Mapping[str, Sequence[float]]) -> None:
     """Check all constraints: none is broken unseen.
 
     Raises

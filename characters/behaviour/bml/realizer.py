@@ -21,7 +21,12 @@ from cubeling.characters.behaviour.bml.feedback import (
 from cubeling.characters.behaviour.bml.parser import parse
 from cubeling.characters.behaviour.bml.performance import Performance
 from cubeling.characters.behaviour.bml.performer import Performer, Scheduled
-from cubeling.characters.behaviour.bml.schedule import BlockFailed, Scheduler, Track, lead_over
+from cubeling.characters.behaviour.bml.schedule import (
+    BehaviourTrack,
+    BlockFailed,
+    Scheduler,
+    lead_over,
+)
 from cubeling.characters.errors import CharacterError
 
 
@@ -298,7 +303,7 @@ class Realizer:
     def _running(self) -> list[Performance]:
         return [p for p in self._performances.values() if p.state == "running"]
 
-    def _others(self, performance: Performance) -> list[Track]:
+    def _others(self, performance: Performance) -> list[BehaviourTrack]:
         others = [other for other in self._running() if other is not performance]
         return [track for other in others for track in other.tracks.values()]
 

@@ -21,7 +21,7 @@ from cubeling.characters.behaviour.bml.document import (
 from cubeling.characters.behaviour.bml.feedback import WarningType
 from cubeling.characters.behaviour.bml.performer import CannotPerform, Performer, Timing
 from cubeling.characters.behaviour.bml.planner import plan
-from cubeling.characters.behaviour.bml.problem import Problem
+from cubeling.characters.behaviour.bml.problem import TimingProblem
 from cubeling.characters.behaviour.bml.spans import TOLERANCE
 
 CONTROLS = {
@@ -32,7 +32,7 @@ CONTROLS = {
 
 
 @dataclass
-class Track:
+class BehaviourTrack:
     """A behaviour that is scheduled, and how far it has got."""
 
     behaviour: Behaviour
@@ -99,10 +99,10 @@ class BlockFailed(Exception):  # noqa: N818 -- a verdict on a document, not a bu
 
 
 @dataclass
-class Schedule:
+class BlockSchedule:
     """What is performed of a block, and when."""
 
-    tracks: dict[str, Track]
+    tracks: dict[str, BehaviourTrack]
     """Behaviours by id, in the document's order."""
 
     constraints: tuple[Constraint, ...]
@@ -128,7 +128,7 @@ class Scheduler:
             except CannotPerform as error:
                 self._leave_out(behaviour.id, _failure_type(behaviour, error), str(error))
 
-    def schedule(self, start: float, others: Sequence[Track]) -> Schedule:
+    def schedule(self, start: float, others: Sequence[BehaviourTrack]) -> BlockSchedule:
         """Return the schedule of the block if it starts at `start` [s] beside `others`.
 
         Raises
@@ -146,13 +146,13 @@ class Scheduler:
             conflicts = [*_conflicts(tracks.values(), others)]
             if not conflicts:
                 lead_over(tracks.values(), others, start)
-                return Schedule(tracks, tuple(self._constraints.values()), self._failures)
+                return BlockSchedule(tracks, tuple(self._constraints.values()), self._failures)
             for name, reason in conflicts:
                 self._leave_out(name, "IMPOSSIBLE_TO_SCHEDULE", reason)
 
-    def _attempt(self, start: float) -> dict[str, Track]:
+    def _attempt(self, start: float) -> dict[str, BehaviourTrack]:
         links, orders = self._rules(start)
-        times = plan(Problem(self._timings, links, orders, start))
+        times = plan(TimingProblem(self._timings, links, orders, start))
         ended = {
             end[0]
             for link in links
@@ -160,7 +160,7 @@ class Scheduler:
             if end is not None and end[1] == len(self._timings[end[0]].syncs) - 1
         }
         return {
-            name: Track(self._behaviours[name], timing, times[name], name in ended)
+            name: BehaviourTrack(self._behaviours[name], timing, times[name], name in ended)
             for name, timing in self._timings.items()
         }
 
@@ -188,7 +188,9 @@ class Scheduler:
                 del self._constraints[constraint.id], self._parts[constraint.id]
 
 
-def lead_over(tracks: Iterable[Track], others: Iterable[Track], now: float) -> None:
+def lead_over(
+    tracks: Iterable[BehaviourTrack], others: Iterable[BehaviourTrack], now: float
+) -> None:
     """Let behaviours end when the next one takes what they occupied: none returns to rest first.
 
     Those that others have taken from already end `now` [s].
@@ -204,7 +206,9 @@ def lead_over(tracks: Iterable[Track], others: Iterable[Track], now: float) -> N
                 other.times[-1] = min(other.times[-1], end)
 
 
-def _conflicts(tracks: Iterable[Track], others: Iterable[Track]) -> Iterator[tuple[str, str]]:
+def _conflicts(
+    tracks: Iterable[BehaviourTrack], others: Iterable[BehaviourTrack]
+) -> Iterator[tuple[str, str]]:
     """Yield what of a block wants something of the body that another behaviour has, and why."""
     earlier = [o for o in others if o.timing.occupies and not o.over and not o.interrupted]
     for track in tracks:

@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.characters.behaviour.gestures.contacts import BodySurface
+from cubeling.characters.behaviour.gestures.contacts import ContactPoints
 from cubeling.characters.behaviour.gestures.space import GestureSpace
 from cubeling.characters.behaviour.gestures.trunk import TrunkTurns, chest_part
 from cubeling.characters.ik.reaching import UpperBody
@@ -36,7 +36,7 @@ class GestureBody:
     trunk: TrunkTurns
     """Its trunk, shoulders and head."""
 
-    surface: BodySurface
+    surface: ContactPoints
     """Where it can be touched."""
 
     space: GestureSpace
@@ -58,7 +58,7 @@ class GestureBody:
         if sitting is not None:
             posture = sitting.sit_up(posture, 1.0)
         body = UpperBody.of(skeleton, anatomy)
-        surface = BodySurface(skeleton, anatomy, character.meshes, posture)
+        surface = ContactPoints(skeleton, anatomy, character.meshes, posture)
         joints = {}
         for side, arm in body.arms.items():
             collarbone, upper, *_ = arm.joints

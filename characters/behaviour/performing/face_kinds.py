@@ -7,8 +7,8 @@ from cubeling.characters.behaviour.bml import (
     FACE_SYNCS,
     SHIFT_SYNCS,
     Behaviour,
+    BmlElement,
     CannotPerform,
-    Element,
     Scheduled,
     Timing,
     elastic,
@@ -79,7 +79,7 @@ def _shown(behaviour: Behaviour, who: Performing) -> tuple[tuple[str, ...], tupl
     return names, weights
 
 
-def _named(element: Behaviour | Element, usual: float) -> Iterator[tuple[str, float]]:
+def _named(element: Behaviour | BmlElement, usual: float) -> Iterator[tuple[str, float]]:
     given: Mapping[str, str] = element.attributes
     amount = _amount(given, usual)
     unit, side = given.get("au", "").strip(), given.get("side", "BOTH").upper()

@@ -21,7 +21,7 @@ from cubeling.characters.behaviour.intents import (
 )
 from cubeling.characters.behaviour.performing.face_names import FaceNames
 from cubeling.characters.behaviour.performing.stances import StanceJoints
-from cubeling.characters.behaviour.performing.surroundings import Surroundings, numbers_of
+from cubeling.characters.behaviour.performing.surroundings import NamedPlaces, numbers_of
 from cubeling.characters.ik.reaching.hands import find_hand
 from cubeling.characters.model.character import Character
 from cubeling.characters.skeleton.anatomy import SIDES
@@ -112,7 +112,7 @@ class Performing:
     collection: GestureCollection
     """The gestures that it may be asked for."""
 
-    surroundings: Surroundings
+    surroundings: NamedPlaces
     """Where it is, and the places that may be named."""
 
     utterance_of: UtteranceOf = lambda _text, _language: None

@@ -20,7 +20,7 @@ _NUMBERS = re.compile(r"[\s,;]+")
 
 
 @dataclass
-class Surroundings:
+class NamedPlaces:
     """Places by name, which may move from frame to frame, and where the character is."""
 
     places: dict[str, Array] = field(default_factory=dict)
@@ -40,7 +40,7 @@ class Surroundings:
     def point(self, text: str) -> Array:
         """Return the place that a text names: a name, or three numbers [m].
 
-        >>> Surroundings({"cube": np.zeros(3)}).point("0.1, 0.05 0.2").tolist()
+        >>> NamedPlaces({"cube": np.zeros(3)}).point("0.1, 0.05 0.2").tolist()
         [0.1, 0.05, 0.2]
 
         Raises

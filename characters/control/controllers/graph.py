@@ -27,7 +27,7 @@ from cubeling.characters.synthesis.graphs.search import CostToGo
 from cubeling.characters.synthesis.graphs.storage import StoredGraph, load_graph
 from cubeling.characters.synthesis.library import MotionLibrary
 from cubeling.characters.synthesis.transitions.live import (
-    FrameSource,
+    GraphPlayback,
     LiveMotion,
     PartsSource,
     StandardSource,
@@ -63,7 +63,7 @@ class GraphController(WalkController):
         scale: float,
         place: RootDelta | None,
         behaviours: Behaviours,
-        source: FrameSource,
+        source: GraphPlayback,
         to_stand: CostToGo,
     ) -> None:
         super().__init__(character, scale, place)
@@ -239,7 +239,7 @@ LIVE_COSTS = EdgeCosts(per_frame=0.01, most_jumps=4)
 """What edges cost in play: to wait for a tenth of a second is as dear as a good jump."""
 
 
-Playable: TypeAlias = tuple[Behaviours, Callable[[], FrameSource], CostToGo]
+Playable: TypeAlias = tuple[Behaviours, Callable[[], GraphPlayback], CostToGo]
 """What a graph can do, what makes a source that plays it, and its ways to standing."""
 
 

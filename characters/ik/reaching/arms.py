@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cubeling.characters.ik.reaching.hands import Hand, part_names
+from cubeling.characters.ik.reaching.hands import HandJoints, part_names
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.joint_chains import chains_to_root
@@ -53,7 +53,7 @@ _ELBOW_AHEAD: Vector = (0.0, -0.9, -0.4)
 class Arm:
     """The bones of one arm in the rest pose of its skeleton; vectors are in the character frame."""
 
-    hand: Hand
+    hand: HandJoints
     """Its hand, with its side."""
 
     sign: float
@@ -132,7 +132,7 @@ class BentArm(NamedTuple):
     """Where the elbow is [m]."""
 
 
-def find_arm(skeleton: Skeleton, anatomy: Anatomy, hand: Hand) -> Arm | None:
+def find_arm(skeleton: Skeleton, anatomy: Anatomy, hand: HandJoints) -> Arm | None:
     """Return the arm of a hand; None if a bone of it has no length."""
     parts = [anatomy.joint(part) for part in part_names(hand.side, anatomy)]
     shoulder, upper, lower, wrist = (-1 if joint is None else joint for joint in parts)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from cubeling.characters.ik.solvers.rules import damped_pull
-from cubeling.characters.skeleton.joint_limits import EDGE_RAD, JointLimits
+from cubeling.characters.skeleton.joint_limits import EDGE_RAD, AngleLimits
 from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
     Quaternion,
@@ -54,7 +54,7 @@ class LimitedJoints:
     """The axes of each joint at zero in those of the joint before; None where they are the same."""
 
     @staticmethod
-    def of(limits: JointLimits, offsets: Sequence[Vector]) -> "LimitedJoints":
+    def of(limits: AngleLimits, offsets: Sequence[Vector]) -> "LimitedJoints":
         """Return the joints with limits and bones, in their own frames [m]."""
         before: list[Quaternion] = [(x, y, z, w) for x, y, z, w in limits.before.tolist()]
         after: list[Quaternion] = [(x, y, z, w) for x, y, z, w in limits.after.tolist()]

@@ -18,8 +18,8 @@ from cubeling.characters.motion.modifiers import (
     RootOffset,
     Stretch,
     TimeCurve,
+    TimeWindow,
     Warped,
-    Window,
 )
 from cubeling.characters.motion.motion import Motion, RootDelta
 from cubeling.characters.motion.phase import StaticPose, as_cyclic, phased
@@ -218,7 +218,7 @@ class Builder:
 _MODIFIER_BUILDERS: Mapping[str, Callable[[Motion, Mapping[str, Any]], Motion]] = {
     "hold": lambda motion, fields: StaticPose(motion.sample(fields["at"]), 1.0),
     "stretch": lambda motion, fields: Stretch(motion, fields["seconds"]),
-    "window": lambda motion, fields: Window(motion, fields["start"], fields["end"]),
+    "window": lambda motion, fields: TimeWindow(motion, fields["start"], fields["end"]),
     "loop": lambda motion, _: Loop(motion),
     "warp": lambda motion, fields: Warped(motion, TimeCurve(fields["times"], fields["sources"])),
 }

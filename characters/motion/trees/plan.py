@@ -189,7 +189,7 @@ class Node:
 
 
 @dataclass(frozen=True)
-class Transition:
+class StateTransition:
     """A transition from one state to another."""
 
     start: str
@@ -217,7 +217,7 @@ class StateGraph:
     start: str
     """Name of the state that it begins in."""
 
-    transitions: tuple[Transition, ...]
+    transitions: tuple[StateTransition, ...]
     """Tried in this order."""
 
 

@@ -19,7 +19,7 @@ from cubeling.characters.motion.trees.plan import (
     Plan,
     Row,
     StateGraph,
-    Transition,
+    StateTransition,
 )
 
 STATE_VALUES = {"time": "since the state was entered [s]", "done": "whether its motion has ended"}
@@ -93,7 +93,7 @@ class _PlanReader:
         )
         return StateGraph(states, start, read)
 
-    def _transition(self, given: object, states: Mapping[str, Node], path: str) -> Transition:
+    def _transition(self, given: object, states: Mapping[str, Node], path: str) -> StateTransition:
         table = self._table(given, path)
         self._check_keys(table, ("from", "to", "when", "seconds", "crossfade"), path)
         for key in ("to", "when"):
@@ -113,7 +113,7 @@ class _PlanReader:
         if not 0.0 < seconds <= 10.0:
             self._refuse(f"{path}.seconds", f"{seconds} s; give more than 0 and at most 10")
         crossfade = self._field(table.get("crossfade", False), "flag", f"{path}.crossfade")
-        return Transition(start, end, when, seconds, bool(crossfade))
+        return StateTransition(start, end, when, seconds, bool(crossfade))
 
     def _time_constants(self) -> dict[str, float]:
         table = self._table(self._document.get("parameters", {}), "parameters")

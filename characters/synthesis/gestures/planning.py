@@ -22,7 +22,7 @@ from cubeling.characters.synthesis.gestures.plan import (
     knots_of,
 )
 from cubeling.characters.synthesis.gestures.rules import IntensityRule, SynchronyRule
-from cubeling.characters.synthesis.gestures.search import BeamSearch, SearchWeights, Step
+from cubeling.characters.synthesis.gestures.search import BeamSearch, SearchStep, SearchWeights
 
 EQUAL_COST = 1e-3
 """Gestures whose costs differ by less are equals [of a cost]."""
@@ -183,7 +183,9 @@ class GesturePlanner:
         shares: Array = (played - self._weakest) / self._range
         return np.abs(strength - shares)
 
-    def _gesture(self, accent: Accent, strength: float, step: Step, state: int) -> PlannedGesture:
+    def _gesture(
+        self, accent: Accent, strength: float, step: SearchStep, state: int
+    ) -> PlannedGesture:
         number, ways, apex = int(step.node[state]), step.ways, float(step.apex[state])
         node, warp = self.graph.nodes[number], float(ways.warp[state])
         weight = self.settings.strength_weight

@@ -41,7 +41,7 @@ _MAX_SPEED = 5.0  # [body heights/s]: a joint that is faster has jumped
 
 
 @dataclass(frozen=True)
-class Rest:
+class RestSpan:
     """Frames of a recording in which a person rests, between two shifts."""
 
     first: int
@@ -71,14 +71,14 @@ class StandingRecording:
     """Where the hips are between the feet, (frames,) [stances]: 0.5 above the left, −0.5 above the
     right one."""
 
-    rests: tuple[Rest, ...]
+    rests: tuple[RestSpan, ...]
     """Where she rests, in order; what is between them are balance shifts."""
 
     feeling: Region | None = None
     """The emotions that it shows; None if it suits any."""
 
     @property
-    def shifts(self) -> tuple[tuple[Rest, Rest], ...]:
+    def shifts(self) -> tuple[tuple[RestSpan, RestSpan], ...]:
         """The pairs of rests between which the balance shifts."""
         return tuple(pairwise(self.rests))
 
@@ -172,7 +172,7 @@ def _on_the_spot(poses: Pose, skeleton: Skeleton, hips: int, places: Array, turn
     return Pose(translations, local)
 
 
-def find_rests(balance: Array, rate: float) -> tuple[Rest, ...]:
+def find_rests(balance: Array, rate: float) -> tuple[RestSpan, ...]:
     """Return where a person rests between her balance shifts, (frames,) [stances].
 
     A shift is a way to one side of at least `MIN_SHIFT`, without a stop. Between a shift and the
@@ -196,7 +196,7 @@ def find_rests(balance: Array, rate: float) -> tuple[Rest, ...]:
         end = max(end, first + 1)
         side = float(np.median(smooth[first:end]))
         name = "both" if abs(side) < STANDING_SHARE else "left" if side > 0 else "right"
-        rests.append(Rest(first, end, name))
+        rests.append(RestSpan(first, end, name))
     inner = [
         rest
         for rest in rests

@@ -30,7 +30,7 @@ clips."""
 _SAMPLED_FRAMES = 32  # played frames that can still be sampled
 
 
-class FrameSource(Protocol):
+class GraphPlayback(Protocol):
     """Plays a graph, one frame at a time."""
 
     library: MotionLibrary
@@ -47,7 +47,7 @@ class FrameSource(Protocol):
 
 
 class StandardSource:
-    """Plays the graph of the whole body; a `FrameSource`."""
+    """Plays the graph of the whole body; a `GraphPlayback`."""
 
     def __init__(self, graph: MotionGraph, start: int) -> None:
         self.library = graph.library
@@ -66,7 +66,7 @@ class StandardSource:
 
 
 class PartsSource:
-    """Plays the graphs of the parts; a `FrameSource`.
+    """Plays the graphs of the parts; a `GraphPlayback`.
 
     A transition is planned as a whole and played until all parts have arrived. What was shown goes
     over into it by a decaying offset, so it may begin in the very frame of the request.
@@ -140,7 +140,7 @@ class LiveMotion:
     It can be sampled at the present time and shortly before, not far behind.
     """
 
-    def __init__(self, source: FrameSource, goals: Goals) -> None:
+    def __init__(self, source: GraphPlayback, goals: Goals) -> None:
         self.source = source
         self.goals = goals
         """Which frames meet the request, (frames,); may be replaced at any time."""

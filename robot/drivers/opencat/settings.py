@@ -48,7 +48,7 @@ class OpenCatMood:
 
 
 @dataclass(frozen=True)
-class Behaviour:
+class ModelBehaviour:
     """How a model behaves."""
 
     moods: Mapping[str, OpenCatMood]
@@ -97,7 +97,7 @@ class OpenCatSettings:
     rest_after: float
     """Time without a new request after which the servos are switched off [s]; 0 for never."""
 
-    behaviours: Mapping[str, Behaviour]
+    behaviours: Mapping[str, ModelBehaviour]
     """The behaviour of each of `MODELS`."""
 
 
@@ -139,7 +139,7 @@ def parse_settings(document: Mapping[str, Any], source: str) -> OpenCatSettings:
     )
 
 
-def _behaviour(table: TomlTable, model: str) -> Behaviour:
+def _behaviour(table: TomlTable, model: str) -> ModelBehaviour:
     table.only("stop", "motions", "sounds", "moods")
     melodies = table.table("sounds")
     sounds = {name: _melody(melodies, name) for name in melodies.names(MAX_NAME_BYTES)}
@@ -157,7 +157,7 @@ def _behaviour(table: TomlTable, model: str) -> Behaviour:
         motions |= dict.fromkeys((mood.posture, *mood.gestures))
     if both := motions.keys() & sounds.keys():
         raise melodies.wrong(min(both), "a skill has this name too; give the sound another name")
-    return Behaviour(moods, tuple(motions), sounds, stop)
+    return ModelBehaviour(moods, tuple(motions), sounds, stop)
 
 
 def _mood(table: TomlTable, model: str, sounds: Mapping[str, Notes]) -> OpenCatMood:

@@ -10,11 +10,11 @@ from cubeling.robot.protocol import messages as m, timing
 from cubeling.robot.protocol.fields import MessageError
 from cubeling.robot.protocol.schema import pack, unpack
 from cubeling.robot.protocol.wire import FrameReader, crc16, encode_frame
-from cubeling.robot.simulators.cubeling.log import LogQueue
+from cubeling.robot.simulators.cubeling.log import SimulatedLogQueue
 from cubeling.robot.simulators.cubeling.refusals import entry_names, refusal
 
 
-class Body(Protocol):
+class SimulatedBody(Protocol):
     """What the protocol commands."""
 
     catalogue: Catalogue
@@ -45,7 +45,7 @@ class Body(Protocol):
 class DeviceLink(SendBuffer):
     """The robot side of one link. A reboot is a new `DeviceLink`."""
 
-    def __init__(self, body: Body) -> None:
+    def __init__(self, body: SimulatedBody) -> None:
         super().__init__()
         self.body = body
         self.session = 0
@@ -65,7 +65,7 @@ class DeviceLink(SendBuffer):
         self._gone_sent = float("-inf")
         self._log_sent = float("-inf")
         self._booted: float | None = None
-        self.log = LogQueue()
+        self.log = SimulatedLogQueue()
         """What it has to say to its owner."""
         self.log.write(m.SEVERITY_INFO, "started", 0)
         self.reader = FrameReader()

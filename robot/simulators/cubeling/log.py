@@ -11,7 +11,7 @@ MAX_WAITING = 8
 _TEXT_BYTES = spec_of(m.Log).fields[-1].size
 
 
-class LogQueue:
+class SimulatedLogQueue:
     """The first lines that were written and not yet sent."""
 
     def __init__(self) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cubeling.app.pipeline.scenario import Inputs, ScenarioSettings
-from cubeling.app.pipeline.things import GRIP, Body, BodyParts, Thing
+from cubeling.app.pipeline.things import GRIP, BodyParts, PosedBody, Thing
 from cubeling.app.scenarios.reach import HINTS, Reach
 from cubeling.app.scenarios.reach_behaviour import GESTURES
 from cubeling.app.scenarios.reach_gifts import AT_HAND_M
@@ -54,7 +54,7 @@ class Play:
             )
             posed = None if self.body is None else self.body.posed
             outcome = self.reach.update(controls, posed, inputs)
-            self.body = Body(self.character, self.parts, self.animator.update(outcome.command))
+            self.body = PosedBody(self.character, self.parts, self.animator.update(outcome.command))
             self.events += outcome.events
             self.outcomes.append(outcome)
             titles.append(outcome.icon)

@@ -12,11 +12,11 @@ import pytest
 from cubeling.characters.behaviour.bml import (
     BML,
     BMLA,
+    BlockPrediction,
     BlockProgress,
     BmlWarning,
     Feedback,
     Performer,
-    Prediction,
     Realizer,
     SyncPointProgress,
 )
@@ -156,5 +156,5 @@ class Session:
         start, end = self.block_time(later, "start"), self.block_time(earlier, "end")
         assert end <= start <= end + TOLERANCE, self.trace()
 
-    def predictions(self, name: str) -> list[Prediction]:
-        return [f for f in self.of(Prediction) if f.block == name]
+    def predictions(self, name: str) -> list[BlockPrediction]:
+        return [f for f in self.of(BlockPrediction) if f.block == name]

@@ -8,7 +8,7 @@ from cubeling.characters.behaviour.bml import (
     HOLD_SYNCS,
     SHIFT_SYNCS,
     SYNCS,
-    Prediction,
+    BlockPrediction,
 )
 from tests.characters.behaviour.bml.suite import Session, Until, block
 
@@ -257,7 +257,7 @@ def test_controls_are_not_for_the_performer():
 
 def test_predictions_tell_when_a_block_will_be():
     session = Session(block("<head id='n' start='2'/>", more='characterId="Anna"')).finish()
-    (prediction,) = session.of(Prediction)
+    (prediction,) = session.of(BlockPrediction)
     assert prediction.start == session.block_time("bml1", "start")
     assert prediction.end == pytest.approx(session.block_time("bml1", "end"))
     assert dict(prediction.behaviours[0].times)["start"] == pytest.approx(2.0)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from cubeling.characters.behaviour.bml import BmlWarning, Prediction, Realizer
+from cubeling.characters.behaviour.bml import BlockPrediction, BmlWarning, Realizer
 from tests.characters.behaviour.bml.estimates import Estimates
 from tests.characters.behaviour.bml.suite import block
 
@@ -17,7 +17,7 @@ def schedule(inside: str, now: float = 100.0) -> tuple[dict[str, float], list[Bm
     times = {
         f"{behaviour.id}:{sync}": time
         for prediction in feedback
-        if isinstance(prediction, Prediction)
+        if isinstance(prediction, BlockPrediction)
         for behaviour in prediction.behaviours
         for sync, time in behaviour.times
     }

@@ -12,7 +12,7 @@ from cubeling.characters.behaviour.gestures.collection import GestureCollection
 from cubeling.characters.behaviour.performing.character_performer import CharacterPerformer
 from cubeling.characters.behaviour.performing.performed import CUBELING, Performing
 from cubeling.characters.behaviour.performing.speech_kind import estimated, retime_speeches
-from cubeling.characters.behaviour.performing.surroundings import Surroundings
+from cubeling.characters.behaviour.performing.surroundings import NamedPlaces
 from cubeling.characters.behaviour.symbolic_gesture import HandKey, SymbolicGesture
 from cubeling.characters.speech.speech import Utterance, Word
 
@@ -29,7 +29,7 @@ class Stage:
     def __init__(self, character=HUMAN, utterance_of=lambda _text, _language: None, **changes):
         places = {"cube": np.array([0.2, 0.03, 0.1]), "viewer": np.array([0.0, 0.2, 0.7])}
         collection = GestureCollection({"WAVE": WAVE})
-        self.who = Performing(character, collection, Surroundings(places), utterance_of, **changes)
+        self.who = Performing(character, collection, NamedPlaces(places), utterance_of, **changes)
         self.performer = CharacterPerformer(self.who)
         self.realizer = Realizer(self.performer)
         self.feedback = []
@@ -217,7 +217,7 @@ def test_without_a_voice_the_estimate_counts():
 
 
 def test_a_target_of_an_offset_is_beside_it():
-    point = Surroundings(eyes=np.array([0.0, 0.1, 0.0])).seen_aside(
+    point = NamedPlaces(eyes=np.array([0.0, 0.1, 0.0])).seen_aside(
         np.array([0.0, 0.1, 1.0]), math.radians(90), 0.0
     )
     assert point == pytest.approx(np.array([1.0, 0.1, 0.0]))

@@ -13,7 +13,7 @@ from cubeling.characters.ik.solvers.positional import PositionalSolver
 from cubeling.characters.ik.solvers.springs import MassSprings
 from cubeling.characters.ik.solvers.task import Limiting, Task
 from cubeling.characters.skeleton import rotations
-from cubeling.characters.skeleton.joint_limits import JointLimits
+from cubeling.characters.skeleton.joint_limits import AngleLimits
 from cubeling.characters.skeleton.pose import Array
 
 COUNT = 200
@@ -23,7 +23,7 @@ def planar_chains(first_deg: float = 120.0, others_deg: float = 50.0) -> Chains:
     """Return a chain of six joints that turn about z only."""
     high = np.zeros((6, 3))
     high[:, 2] = np.radians([first_deg, *[others_deg] * 5])
-    return Chains.straight(np.full(6, 1 / 6), JointLimits.of_angles(-high, high))
+    return Chains.straight(np.full(6, 1 / 6), AngleLimits.of_angles(-high, high))
 
 
 def planar_task(limiting: Limiting) -> Task:
