@@ -23,8 +23,8 @@ from cubeling.characters import (
 from cubeling.characters.behaviour import (
     BehaviourIntent,
     GestureIntent,
+    GestureRealizer,
     Hand,
-    Performer,
     SymbolicGesture,
     natural_times,
 )
@@ -120,7 +120,7 @@ class Preview:
         self._posed: PosedCharacter | None = None
         self._stage: Stage | None = None
         self._layers: dict[str, GestureLayer] = {}
-        self._performers: dict[str, Performer] = {}
+        self._performers: dict[str, GestureRealizer] = {}
         self._cameras: dict[tuple[str, tuple[int, int]], PortraitCamera] = {}
 
     def character(self, name: str) -> Character:
@@ -190,9 +190,9 @@ class Preview:
             self._stage.release()
         self._stage = None
 
-    def _performer(self, name: str) -> Performer:
+    def _performer(self, name: str) -> GestureRealizer:
         if name not in self._performers:
-            self._performers[name] = Performer.of(self.character(name))
+            self._performers[name] = GestureRealizer.of(self.character(name))
         return self._performers[name]
 
     def _new_animator(self, name: str) -> Animator:

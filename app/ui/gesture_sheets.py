@@ -17,7 +17,7 @@ from cubeling.characters.behaviour import (
     GestureCollection,
     GestureExpressivity,
     GestureMotion,
-    Performer,
+    GestureRealizer,
     SymbolicGesture,
     apex_share,
 )
@@ -53,7 +53,7 @@ AZIMUTH_RAD = 0.25
 def draw_settings(path: Path, gesture: str = "BEAT_BOTH", character: str = "human") -> None:
     """Draw one gesture in five settings side by side, at three moments of its stroke."""
     symbolic = GestureCollection.bundled().get(gesture)
-    performer = Performer.of(Character.load(character))
+    performer = GestureRealizer.of(Character.load(character))
     with ExitStack() as closing:
         renderer = _renderer(closing)
         columns = []
@@ -66,7 +66,7 @@ def draw_settings(path: Path, gesture: str = "BEAT_BOTH", character: str = "huma
 
 def draw_library(path: Path, characters: Sequence[str] = ("human", "vleo", "robot")) -> None:
     """Draw the end of the stroke of every bundled gesture, on several characters."""
-    performers = [Performer.of(Character.load(name)) for name in characters]
+    performers = [GestureRealizer.of(Character.load(name)) for name in characters]
     with ExitStack() as closing:
         renderer = _renderer(closing)
         cells = []
@@ -89,7 +89,7 @@ def _telling_moment(gesture: SymbolicGesture) -> float:
 
 def _pictures(
     renderer: PortraitRenderer,
-    performer: Performer,
+    performer: GestureRealizer,
     motion: GestureMotion,
     moments: Sequence[float],
 ) -> list[Image]:

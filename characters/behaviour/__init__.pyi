@@ -24,7 +24,7 @@ from cubeling.characters.behaviour.gestures.files import (
     save_gesture as save_gesture,
 )
 from cubeling.characters.behaviour.gestures.motion import GestureMotion as GestureMotion
-from cubeling.characters.behaviour.gestures.planning import Performer as Performer
+from cubeling.characters.behaviour.gestures.planning import GestureRealizer as GestureRealizer
 from cubeling.characters.behaviour.gestures.recording import (
     gesture_from_recording as gesture_from_recording,
 )
@@ -53,12 +53,12 @@ from cubeling.characters.behaviour.intents import (
     Times as Times,
 )
 from cubeling.characters.behaviour.performing.character_performer import (
-    CharacterPerformer as CharacterPerformer,
+    CharacterRealizer as CharacterRealizer,
 )
 from cubeling.characters.behaviour.performing.performed import (
     Manner as Manner,
-    Performed as Performed,
-    Performing as Performing,
+    RealizationContext as RealizationContext,
+    RealizedFrame as RealizedFrame,
     Saying as Saying,
 )
 from cubeling.characters.behaviour.performing.speech_kind import retime_speeches as retime_speeches

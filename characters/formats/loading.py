@@ -12,7 +12,7 @@ from cubeling.registry import Registry
 
 
 @dataclass(frozen=True)
-class Performance:
+class RecordedMotion:
     """A recorded motion with the skeleton that its poses belong to."""
 
     skeleton: Skeleton
@@ -50,7 +50,7 @@ class MotionOptions:
 
 _FORMATS = "cubeling.characters.formats"
 
-MOTION_READERS = Registry[Callable[[Path, MotionOptions], Performance]](
+MOTION_READERS = Registry[Callable[[Path, MotionOptions], RecordedMotion]](
     {
         ".glb": f"{_FORMATS}.gltf.reading:load_motion",
         ".gltf": f"{_FORMATS}.gltf.reading:load_motion",
@@ -78,7 +78,7 @@ def load_motion(
     rate: float | None = None,
     scale: float | None = None,
     up: str | None = None,
-) -> Performance:
+) -> RecordedMotion:
     """Read one motion from a .bvh, .amc (with its .asf), .glb, .gltf, .vrm or .vrma file.
 
     Motion capture is returned in metres with +y up, with identity rest rotations. Its clips do

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.formats.loading import Performance, is_motion_only, load_motion
+from cubeling.characters.formats.loading import RecordedMotion, is_motion_only, load_motion
 from cubeling.characters.model.bind_pose import with_bind_pose
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.sidecar import read_sidecar
@@ -71,7 +71,7 @@ def load_recording(
     """
     file, _, clip = name.partition("#")
     if is_motion_only(file):
-        return _of_performance(
+        return _of_recorded_motion(
             name, load_motion(file, clip or None, skeleton=skeleton, up=up), rest
         )
     character = Character.load(file)
@@ -87,7 +87,7 @@ def load_recording(
     return Recording(Path(name).name, found, bound, character.anatomy)
 
 
-def _of_performance(name: str, motion: Performance, rest: str | None) -> Recording:
+def _of_recorded_motion(name: str, motion: RecordedMotion, rest: str | None) -> Recording:
     """Return a motion without a body as a recording that stands at rest."""
     file = name.partition("#")[0]
     sidecar = Path(file).with_suffix(".toml")

@@ -26,10 +26,10 @@ from cubeling.characters.behaviour.bml.feedback import (
 )
 from cubeling.characters.behaviour.bml.parser import parse
 from cubeling.characters.behaviour.bml.performer import (
-    CannotPerform,
-    Performer,
+    CannotRealize,
     Scheduled,
     Timing,
+    TimingEstimator,
     elastic,
     rigid,
 )
@@ -49,10 +49,9 @@ __all__ = [
     "BlockProgress",
     "BmlElement",
     "BmlWarning",
-    "CannotPerform",
+    "CannotRealize",
     "Constraint",
     "Feedback",
-    "Performer",
     "PredictedBehaviour",
     "Realizer",
     "Scheduled",
@@ -60,6 +59,7 @@ __all__ = [
     "SyncPointProgress",
     "SyncReference",
     "Timing",
+    "TimingEstimator",
     "elastic",
     "feedback_xml",
     "parse",

@@ -17,7 +17,7 @@ State = Literal["preplanned", "waiting", "running", "over"]
 
 
 @dataclass(eq=False)
-class Performance:
+class Realization:
     """A block and how far it has got."""
 
     block: Block

@@ -9,7 +9,7 @@ from cubeling.characters.behaviour.bml.document import Behaviour, Block
 from cubeling.characters.behaviour.bml.feedback import WarningType
 
 
-class CannotPerform(Exception):  # noqa: N818 -- a verdict on a document, not a bug
+class CannotRealize(Exception):  # noqa: N818 -- a verdict on a document, not a bug
     """A behaviour that a performer cannot do; the message says why, in one line."""
 
     def __init__(self, reason: str, type: WarningType | None = None) -> None:
@@ -77,7 +77,7 @@ class Scheduled:
         return self.times["end"]
 
 
-class Performer(Protocol):
+class TimingEstimator(Protocol):
     """Whoever performs behaviours: a character, or a stand-in with fixed estimates."""
 
     def timing(self, behaviour: Behaviour, block: Block) -> Timing:

@@ -19,8 +19,8 @@ from cubeling.characters.behaviour.bml.feedback import (
     WarningType,
 )
 from cubeling.characters.behaviour.bml.parser import parse
-from cubeling.characters.behaviour.bml.performance import Performance
-from cubeling.characters.behaviour.bml.performer import Performer, Scheduled
+from cubeling.characters.behaviour.bml.performance import Realization
+from cubeling.characters.behaviour.bml.performer import Scheduled, TimingEstimator
 from cubeling.characters.behaviour.bml.schedule import (
     BehaviourTrack,
     BlockFailed,
@@ -39,14 +39,14 @@ class Realizer:
         Whoever performs their behaviours: it is asked for their natural times.
     """
 
-    def __init__(self, performer: Performer) -> None:
-        self._performer = performer
+    def __init__(self, performer: TimingEstimator) -> None:
+        self._estimator = performer
         self._arrived: list[str | bytes | Block] = []
-        self._performances: dict[str, Performance] = {}
+        self._realizations: dict[str, Realization] = {}
         self._feedback: list[Feedback] = []
         self._now = 0.0
 
-    def perform(self, bml: str | bytes | Block) -> None:
+    def accept(self, bml: str | bytes | Block) -> None:
         """Accept a block, a document or what was read of one; it counts from the next update on."""
         self._arrived.append(bml)
 
@@ -76,7 +76,7 @@ class Realizer:
         """The behaviours that go on or are still to come, as far as their times are known."""
         return tuple(
             scheduled
-            for performance in self._performances.values()
+            for performance in self._realizations.values()
             if math.isfinite(performance.start)
             for scheduled in performance.scheduled()
         )
@@ -85,7 +85,7 @@ class Realizer:
     def idle(self) -> bool:
         """Whether nothing goes on or waits for its turn; blocks to be activated do not count."""
         return not self._arrived and all(
-            performance.state == "preplanned" for performance in self._performances.values()
+            performance.state == "preplanned" for performance in self._realizations.values()
         )
 
     def retime(self, block: str, behaviour: str, sync: str, time: float) -> None:
@@ -100,7 +100,7 @@ class Realizer:
         time
             When it is now expected [s]; what is past counts as now.
         """
-        performance = self._performances.get(block)
+        performance = self._realizations.get(block)
         if performance is None or performance.state != "running":
             return
         track = performance.tracks.get(behaviour)
@@ -127,50 +127,50 @@ class Realizer:
             except CharacterError as error:
                 self._feedback.append(BmlWarning("", "PARSING_FAILURE", str(error), self._now))
                 return
-        if bml.id in self._performances:
+        if bml.id in self._realizations:
             self._warn(bml, "", "PARSING_FAILURE", "a block with this id is not over yet")
             return
-        performance = Performance(bml, "preplanned", self._now)
-        self._performances[bml.id] = performance
+        performance = Realization(bml, "preplanned", self._now)
+        self._realizations[bml.id] = performance
         if not bml.preplan:
             self._activate(performance, self._now)
         if not performance.awaits_nothing:
             self._preview(performance)
 
-    def _activate(self, performance: Performance, time: float) -> None:
+    def _activate(self, performance: Realization, time: float) -> None:
         """Find out what a block has to wait for."""
         block = performance.block
-        others = [name for name in self._performances if name != block.id]
+        others = [name for name in self._realizations if name != block.id]
         performance.state, performance.ready = "waiting", time
         performance.awaits_release = {name for name in block.chunk_after if name in others}
         performance.awaits_end = {name for name in block.append_after if name in others}
         if block.composition == "APPEND":
             performance.awaits_end |= {
-                name for name in others if self._performances[name].state != "preplanned"
+                name for name in others if self._realizations[name].state != "preplanned"
             }
         wanted = others if block.composition == "REPLACE" else block.interrupt
         performance.interrupts = tuple(name for name in wanted if name in others)
 
-    def _preview(self, performance: Performance) -> None:
+    def _preview(self, performance: Realization) -> None:
         """Predict a block that does not start yet; what it cannot do is known when it starts.
 
         It leaves what runs alone: its times are a guess.
         """
         if performance.state != "preplanned":
-            ends = [self._performances[name].end for name in performance.awaits_end]
-            ends += [self._performances[name].release for name in performance.awaits_release]
+            ends = [self._realizations[name].end for name in performance.awaits_end]
+            ends += [self._realizations[name].release for name in performance.awaits_release]
             performance.start = max([performance.ready, *ends])
         start = performance.start if math.isfinite(performance.start) else self._now
         with suppress(BlockFailed):
-            scheduler = Scheduler(performance.block, self._performer, self._external)
+            scheduler = Scheduler(performance.block, self._estimator, self._external)
             performance.tracks = scheduler.schedule(start, ()).tracks
             self._feedback.append(performance.prediction())
 
-    def _schedule(self, performance: Performance, start: float) -> bool:
+    def _schedule(self, performance: Realization, start: float) -> bool:
         """Schedule a block and send warnings; return whether it can be performed."""
         block = performance.block
         try:
-            scheduler = Scheduler(block, self._performer, self._external)
+            scheduler = Scheduler(block, self._estimator, self._external)
             schedule = scheduler.schedule(start, self._others(performance))
         except BlockFailed as failed:
             self._warn(block, "", failed.type, f"it is required: {failed}")
@@ -188,7 +188,7 @@ class Realizer:
         while True:
             due = [
                 (time, kind, order, performance)
-                for order, performance in enumerate(self._performances.values())
+                for order, performance in enumerate(self._realizations.values())
                 for time, kind in [self._due(performance)]
                 if time <= self._now
             ]
@@ -197,7 +197,7 @@ class Realizer:
             time, kind, _, performance = min(due, key=lambda event: event[:3])
             (self._progress, self._finish, self._begin)[kind](performance, time)
 
-    def _due(self, performance: Performance) -> tuple[float, int]:
+    def _due(self, performance: Realization) -> tuple[float, int]:
         """Return when a block wants attention, and what for: a sync point, its end or its start."""
         if performance.awaits_nothing:
             return performance.ready, 2
@@ -208,13 +208,13 @@ class Realizer:
             return max(performance.end, performance.latest), 1
         return track.times[track.happened], 0
 
-    def _begin(self, performance: Performance, time: float) -> None:
+    def _begin(self, performance: Realization, time: float) -> None:
         """End what a block replaces; start it if that is over."""
         if performance.interrupts:
             for name in performance.interrupts:
-                if name in self._performances:
-                    self._interrupt(self._performances[name], time)
-            performance.awaits_end = {n for n in performance.interrupts if n in self._performances}
+                if name in self._realizations:
+                    self._interrupt(self._realizations[name], time)
+            performance.awaits_end = {n for n in performance.interrupts if n in self._realizations}
             performance.interrupts = ()
             return
         if not self._schedule(performance, time):
@@ -225,7 +225,7 @@ class Realizer:
         self._feedback.append(BlockProgress(block.id, "start", time, block.character))
         self._activate_all(block, block.on_start, time)
 
-    def _progress(self, performance: Performance, time: float) -> None:
+    def _progress(self, performance: Realization, time: float) -> None:
         """Report a sync point, and do what it is for."""
         track = performance.next_track()
         assert track is not None
@@ -241,22 +241,22 @@ class Realizer:
         if behaviour.namespace == BMLA and sync == "start":
             self._control(block, behaviour, time)
         if performance.released:
-            for other in self._performances.values():
+            for other in self._realizations.values():
                 self._stop_waiting(other.awaits_release, other, performance, time)
 
-    def _finish(self, performance: Performance, time: float, *, report: bool = True) -> None:
+    def _finish(self, performance: Realization, time: float, *, report: bool = True) -> None:
         """Forget a block, and let those that wait for it go on."""
         block = performance.block
-        del self._performances[block.id]
+        del self._realizations[block.id]
         performance.state = "over"
         if report:
             self._feedback.append(BlockProgress(block.id, "end", time, block.character))
-        for other in self._performances.values():
+        for other in self._realizations.values():
             self._stop_waiting(other.awaits_end, other, performance, time)
             self._stop_waiting(other.awaits_release, other, performance, time)
 
     def _stop_waiting(
-        self, awaited: set[str], waiting: Performance, performance: Performance, time: float
+        self, awaited: set[str], waiting: Realization, performance: Realization, time: float
     ) -> None:
         if performance.block.id in awaited:
             awaited.discard(performance.block.id)
@@ -271,7 +271,7 @@ class Realizer:
         if behaviour.kind != "interrupt":
             return
         for name in targets:
-            target = self._performances.get(name)
+            target = self._realizations.get(name)
             if target is None:
                 self._warn(block, behaviour.id, "NO_SUCH_TARGET", f"there is no block {name}")
             else:
@@ -280,7 +280,7 @@ class Realizer:
 
     def _activate_all(self, block: Block, names: Iterable[str], time: float) -> None:
         for name in names:
-            target = self._performances.get(name)
+            target = self._realizations.get(name)
             if target is None or target.state != "preplanned":
                 self._warn(block, "", "NO_SUCH_TARGET", f"{name} is no block to be activated")
             else:
@@ -288,7 +288,7 @@ class Realizer:
 
     def _interrupt(
         self,
-        target: Performance,
+        target: Realization,
         time: float,
         only: tuple[str, ...] = (),
         but: tuple[str, ...] = (),
@@ -300,16 +300,16 @@ class Realizer:
 
     # Between blocks
 
-    def _running(self) -> list[Performance]:
-        return [p for p in self._performances.values() if p.state == "running"]
+    def _running(self) -> list[Realization]:
+        return [p for p in self._realizations.values() if p.state == "running"]
 
-    def _others(self, performance: Performance) -> list[BehaviourTrack]:
+    def _others(self, performance: Realization) -> list[BehaviourTrack]:
         others = [other for other in self._running() if other is not performance]
         return [track for other in others for track in other.tracks.values()]
 
     def _external(self, reference: SyncReference) -> float | None:
         """Return when a sync point of another block is [s], None if that is not known."""
-        performance = self._performances.get(reference.block)
+        performance = self._realizations.get(reference.block)
         if performance is None or not math.isfinite(performance.start):
             return None
         track = performance.tracks.get(reference.behaviour)

@@ -19,7 +19,7 @@ from cubeling.characters.behaviour.bml.document import (
     Constraint,
 )
 from cubeling.characters.behaviour.bml.feedback import WarningType
-from cubeling.characters.behaviour.bml.performer import CannotPerform, Performer, Timing
+from cubeling.characters.behaviour.bml.performer import CannotRealize, Timing, TimingEstimator
 from cubeling.characters.behaviour.bml.planner import plan
 from cubeling.characters.behaviour.bml.problem import TimingProblem
 from cubeling.characters.behaviour.bml.spans import TOLERANCE
@@ -115,7 +115,7 @@ class BlockSchedule:
 class Scheduler:
     """Finds the times of one block: its constraints met, its behaviours stretched least."""
 
-    def __init__(self, block: Block, performer: Performer, external: External) -> None:
+    def __init__(self, block: Block, performer: TimingEstimator, external: External) -> None:
         self._block, self._external = block, external
         self._behaviours = {behaviour.id: behaviour for behaviour in block.behaviours}
         self._constraints = {constraint.id: constraint for constraint in block.constraints}
@@ -125,7 +125,7 @@ class Scheduler:
         for behaviour in block.behaviours:
             try:
                 self._timings[behaviour.id] = _timing(behaviour, block, performer)
-            except CannotPerform as error:
+            except CannotRealize as error:
                 self._leave_out(behaviour.id, _failure_type(behaviour, error), str(error))
 
     def schedule(self, start: float, others: Sequence[BehaviourTrack]) -> BlockSchedule:
@@ -228,13 +228,13 @@ def _conflicts(
             earlier.append(track)
 
 
-def _timing(behaviour: Behaviour, block: Block, performer: Performer) -> Timing:
+def _timing(behaviour: Behaviour, block: Block, performer: TimingEstimator) -> Timing:
     if behaviour.namespace == BMLA and behaviour.kind in CONTROLS:
         return CONTROLS[behaviour.kind]
     return performer.timing(behaviour, block)
 
 
-def _failure_type(behaviour: Behaviour, error: CannotPerform) -> WarningType:
+def _failure_type(behaviour: Behaviour, error: CannotRealize) -> WarningType:
     if error.type is not None:
         return error.type
     if behaviour.namespace != BML:

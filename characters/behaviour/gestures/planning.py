@@ -50,16 +50,16 @@ PLANS = 64
 """Plans that are kept for when a gesture comes again."""
 
 
-class Performer(GestureBody):
+class GestureRealizer(GestureBody):
     """A body that plans gestures."""
 
     @staticmethod
-    def of(character: Character) -> "Performer":
+    def of(character: Character) -> "GestureRealizer":
         """Return what a character gestures with; the last few characters' are kept."""
         for kept in _KEPT:
             if kept.character.skeleton is character.skeleton:
                 return kept
-        _KEPT.append(Performer.measured(character))
+        _KEPT.append(GestureRealizer.measured(character))
         return _KEPT[-1]
 
     def plan(
@@ -85,12 +85,15 @@ class Performer(GestureBody):
         return _planning(self, gesture, hand, expressivity)
 
 
-_KEPT: deque[Performer] = deque(maxlen=CHARACTERS)
+_KEPT: deque[GestureRealizer] = deque(maxlen=CHARACTERS)
 
 
 @lru_cache(maxsize=PLANS)
 def _planning(
-    performer: Performer, gesture: SymbolicGesture, hand: Hand, expressivity: GestureExpressivity
+    performer: GestureRealizer,
+    gesture: SymbolicGesture,
+    hand: Hand,
+    expressivity: GestureExpressivity,
 ) -> "GesturePlanning":
     return GesturePlanning(performer, gesture, hand, expressivity)
 

@@ -7,7 +7,7 @@ from cubeling.characters.behaviour.bml import (
     HOLD_SYNCS,
     SHIFT_SYNCS,
     Behaviour,
-    CannotPerform,
+    CannotRealize,
     Scheduled,
     Timing,
     elastic,
@@ -17,8 +17,8 @@ from cubeling.characters.behaviour.performing.hand_kinds import held
 from cubeling.characters.behaviour.performing.performed import (
     Going,
     Manner,
-    Performed,
-    Performing,
+    RealizationContext,
+    RealizedFrame,
     number,
     shift_times_of,
     times_of,
@@ -49,12 +49,14 @@ class PostureKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of a posture, which lasts as long as it is to."""
         _check_posture(behaviour, who)
         return elastic(HOLD_SYNCS, POSTURE_SPANS_S, holds=frozenset({"ready"}))
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(
+        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
+    ) -> None:
         """Add the posture, and the arms' share of it as a held gesture."""
         take(scheduled, times_of(scheduled), who, performed)
 
@@ -64,12 +66,14 @@ class PostureShiftKind:
 
     channel = "posture"
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of the change."""
         _check_posture(behaviour, who)
         return elastic(SHIFT_SYNCS, (SHIFT_S,), least=0.3, most=math.inf)
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(
+        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
+    ) -> None:
         """Add the posture, which stays when the behaviour is over."""
         take(scheduled, shift_times_of(scheduled), who, performed)
 
@@ -79,13 +83,15 @@ class LocomotionKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the time that the way takes from where the character is."""
         target = who.surroundings.point(behaviour.get("target"))[[0, 2]]
         span = max(who.walk_time(target, _manner(behaviour)), 0.1)
         return elastic(SHIFT_SYNCS, (span,), least=0.3, most=math.inf)
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(
+        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
+    ) -> None:
         """Go to where the target is now."""
         target = who.surroundings.point(scheduled.behaviour.get("target"))[[0, 2]]
         performed.going = Going(scheduled.key, scheduled.end, target, _manner(scheduled.behaviour))
@@ -96,16 +102,20 @@ class WaitKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the time to wait."""
         span = number(behaviour, "duration", WAIT_S, 0.0, 3600.0)
         return elastic(SHIFT_SYNCS, (span,), holds=frozenset({"start"}))
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(
+        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
+    ) -> None:
         """Do nothing: only its times count, for what is tied to them."""
 
 
-def take(scheduled: Scheduled, times: Times, who: Performing, performed: Performed) -> None:
+def take(
+    scheduled: Scheduled, times: Times, who: RealizationContext, performed: RealizedFrame
+) -> None:
     """Add a posture of trunk and legs, and one of the arms as a gesture that is held."""
     names = [*_names(scheduled.behaviour)]
     stance = "+".join(name for name in names if who.stances.knows(name)) or UPRIGHT[0]
@@ -122,7 +132,7 @@ def take(scheduled: Scheduled, times: Times, who: Performing, performed: Perform
             )
 
 
-def _check_posture(behaviour: Behaviour, who: Performing) -> None:
+def _check_posture(behaviour: Behaviour, who: RealizationContext) -> None:
     """Refuse a posture of which the body can do nothing."""
     names = [*_names(behaviour)]
     able = [
@@ -132,10 +142,10 @@ def _check_posture(behaviour: Behaviour, who: Performing) -> None:
     ]
     if not able:
         asked = ", ".join(names) or "a posture without stance, pose or lexeme"
-        raise CannotPerform(f"{who.character.name} cannot take {asked}")
+        raise CannotRealize(f"{who.character.name} cannot take {asked}")
 
 
-def _arms(name: str, who: Performing) -> SymbolicGesture | None:
+def _arms(name: str, who: RealizationContext) -> SymbolicGesture | None:
     """Return the gesture with which arms take a posture; None if it is no posture of arms."""
     lexeme = ARM_POSTURES.get(name, name)
     if who.arms and not who.stances.knows(name) and lexeme in who.collection:

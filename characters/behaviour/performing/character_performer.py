@@ -7,7 +7,7 @@ from cubeling.characters.behaviour.bml import (
     BML,
     Behaviour,
     Block,
-    CannotPerform,
+    CannotRealize,
     Scheduled,
     Timing,
 )
@@ -21,7 +21,11 @@ from cubeling.characters.behaviour.performing.face_kinds import FaceKind, FaceSh
 from cubeling.characters.behaviour.performing.hand_kinds import GestureKind, PointingKind
 from cubeling.characters.behaviour.performing.head_kinds import GazeKind, GazeShiftKind, HeadKind
 from cubeling.characters.behaviour.performing.kinds import BehaviourKind
-from cubeling.characters.behaviour.performing.performed import Going, Performed, Performing
+from cubeling.characters.behaviour.performing.performed import (
+    Going,
+    RealizationContext,
+    RealizedFrame,
+)
 from cubeling.characters.behaviour.performing.speech_kind import SpeechKind
 
 KINDS: Mapping[str, BehaviourKind] = {
@@ -52,7 +56,7 @@ class _Shift:
     scheduled: Scheduled
 
 
-class CharacterPerformer:
+class CharacterRealizer:
     """Performs behaviours with a character; a `Performer` for a realizer.
 
     Parameters
@@ -63,7 +67,7 @@ class CharacterPerformer:
         What it can perform, by name.
     """
 
-    def __init__(self, who: Performing, kinds: Mapping[str, BehaviourKind] = KINDS) -> None:
+    def __init__(self, who: RealizationContext, kinds: Mapping[str, BehaviourKind] = KINDS) -> None:
         self.who = who
         """The character, what it knows and where it is."""
         self._kinds = kinds
@@ -81,12 +85,12 @@ class CharacterPerformer:
         """
         kind = self._kind(behaviour)
         if kind is None:
-            raise CannotPerform(f"<{behaviour.kind}> is not known here")
+            raise CannotRealize(f"<{behaviour.kind}> is not known here")
         return kind.timing(behaviour, self.who)
 
-    def performed(self, active: Sequence[Scheduled], now: float) -> Performed:
+    def frame_of(self, active: Sequence[Scheduled], now: float) -> RealizedFrame:
         """Return what the character does at a time [s] for the behaviours that are active."""
-        shown = Performed(now)
+        shown = RealizedFrame(now)
         started = [each for each in active if each.start <= now]
         self._keep_shifts(started, now)
         for channel, kept in self._kept.items():
@@ -103,11 +107,11 @@ class CharacterPerformer:
     def _kind(self, behaviour: Behaviour) -> BehaviourKind | None:
         return self._kinds.get(behaviour.kind) if behaviour.namespace == BML else None
 
-    def _add(self, kind: BehaviourKind, scheduled: Scheduled, shown: Performed) -> None:
+    def _add(self, kind: BehaviourKind, scheduled: Scheduled, shown: RealizedFrame) -> None:
         """Add what a behaviour does; one whose target has gone meanwhile does nothing."""
         try:
-            kind.perform(scheduled, self.who, shown)
-        except CannotPerform:
+            kind.realize(scheduled, self.who, shown)
+        except CannotRealize:
             return
 
     def _keep_shifts(self, started: Sequence[Scheduled], now: float) -> None:
@@ -130,7 +134,7 @@ class CharacterPerformer:
         times = {**scheduled.times, "relax": newer[-1].start, "gone": newer[-1].end}
         return replace(scheduled, times=times)
 
-    def _keep_going(self, shown: Performed) -> None:
+    def _keep_going(self, shown: RealizedFrame) -> None:
         """Let a character that has not quite arrived in time go on; one that is cut off stops."""
         if shown.going is None and self._going is not None and shown.now >= self._going.end:
             shown.going = self._going

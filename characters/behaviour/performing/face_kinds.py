@@ -8,15 +8,15 @@ from cubeling.characters.behaviour.bml import (
     SHIFT_SYNCS,
     Behaviour,
     BmlElement,
-    CannotPerform,
+    CannotRealize,
     Scheduled,
     Timing,
     elastic,
 )
 from cubeling.characters.behaviour.intents import FaceIntent
 from cubeling.characters.behaviour.performing.performed import (
-    Performed,
-    Performing,
+    RealizationContext,
+    RealizedFrame,
     shift_times_of,
     times_of,
 )
@@ -38,12 +38,14 @@ class FaceKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of an expression, which lasts as long as it is to."""
         _shown(behaviour, who)
         return elastic(FACE_SYNCS, FACE_SPANS_S, holds=frozenset({"attackPeak"}))
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(
+        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
+    ) -> None:
         """Add the expression, with its peak at "attackPeak"."""
         names, weights = _shown(scheduled.behaviour, who)
         times = times_of(scheduled, "attackPeak")
@@ -55,26 +57,30 @@ class FaceShiftKind:
 
     channel = "face"
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times in which the face changes."""
         _shown(behaviour, who)
         return elastic(SHIFT_SYNCS, (SHIFT_S,), least=0.2, most=math.inf)
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(
+        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
+    ) -> None:
         """Add the expression, which stays when the behaviour is over."""
         names, weights = _shown(scheduled.behaviour, who)
         times = shift_times_of(scheduled)
         performed.faces.append(FaceIntent(scheduled.key, names, weights, times))
 
 
-def _shown(behaviour: Behaviour, who: Performing) -> tuple[tuple[str, ...], tuple[float, ...]]:
+def _shown(
+    behaviour: Behaviour, who: RealizationContext
+) -> tuple[tuple[str, ...], tuple[float, ...]]:
     """Return the names and weights that a behaviour and its children give."""
     found = [*_named(behaviour, USUAL_AMOUNT)]
     if not found:
-        raise CannotPerform("an expression without a lexeme, au or name")
+        raise CannotRealize("an expression without a lexeme, au or name")
     unknown = [name for name, _ in found if who.faces.weights(name) is None]
     if len(unknown) == len(found):
-        raise CannotPerform(f"the face of {who.character.name} cannot show {', '.join(unknown)}")
+        raise CannotRealize(f"the face of {who.character.name} cannot show {', '.join(unknown)}")
     names, weights = zip(*found, strict=True)
     return names, weights
 

@@ -5,15 +5,15 @@ from dataclasses import replace
 from cubeling.characters.behaviour.bml import (
     GESTURE_SYNCS,
     Behaviour,
-    CannotPerform,
+    CannotRealize,
     Scheduled,
     Timing,
     elastic,
 )
 from cubeling.characters.behaviour.intents import GestureIntent, Hand, ReachIntent
 from cubeling.characters.behaviour.performing.performed import (
-    Performed,
-    Performing,
+    RealizationContext,
+    RealizedFrame,
     stroke_times_of,
     times_of,
 )
@@ -38,7 +38,7 @@ class GestureKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times that the gesture has by itself."""
         gesture = _gesture(behaviour, who)
         if gesture.right or gesture.left:
@@ -54,7 +54,9 @@ class GestureKind:
         )
         return elastic(GESTURE_SYNCS, spans, holds=HOLDS)
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(
+        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
+    ) -> None:
         """Add the gesture by the hand of its `mode`."""
         gesture = _gesture(scheduled.behaviour, who)
         hand = HANDS.get(scheduled.behaviour.get("mode").upper(), "right")
@@ -68,13 +70,15 @@ class PointingKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of pointing."""
         who.require_arms(behaviour.get("mode"))
         who.surroundings.point(behaviour.get("target"))
         return elastic(GESTURE_SYNCS, POINTING_SPANS_S, holds=HOLDS)
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(
+        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
+    ) -> None:
         """Add the reach to where the target is now."""
         behaviour = scheduled.behaviour
         hand = HANDS.get(behaviour.get("mode").upper(), "nearest")
@@ -88,8 +92,8 @@ def held(gesture: SymbolicGesture) -> SymbolicGesture:
     return replace(gesture, right=gesture.right[:1], left=gesture.left[:1], repeats=1)
 
 
-def _gesture(behaviour: Behaviour, who: Performing) -> SymbolicGesture:
+def _gesture(behaviour: Behaviour, who: RealizationContext) -> SymbolicGesture:
     lexeme = behaviour.get("lexeme")
     if lexeme not in who.collection:
-        raise CannotPerform(f'no gesture is called "{lexeme}"; `cubeling gesture list` names all')
+        raise CannotRealize(f'no gesture is called "{lexeme}"; `cubeling gesture list` names all')
     return who.collection.get(lexeme)

@@ -9,7 +9,7 @@ from cubeling.characters.behaviour.bml import (
     HOLD_SYNCS,
     SHIFT_SYNCS,
     Behaviour,
-    CannotPerform,
+    CannotRealize,
     Scheduled,
     Timing,
     elastic,
@@ -17,8 +17,8 @@ from cubeling.characters.behaviour.bml import (
 from cubeling.characters.behaviour.intents import GazeIntent, HeadIntent, Influence, Times
 from cubeling.characters.behaviour.performing.head_movements import HALF_AMOUNT, HEAD_MOVEMENTS
 from cubeling.characters.behaviour.performing.performed import (
-    Performed,
-    Performing,
+    RealizationContext,
+    RealizedFrame,
     number,
     shift_times_of,
     stroke_times_of,
@@ -53,7 +53,7 @@ class HeadKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of the movement, with all its swings."""
         who.require_head()
         lexeme = _movement(behaviour)
@@ -66,7 +66,9 @@ class HeadKind:
         # A head that has more time goes on to nod; it does not wait.
         return replace(natural, longest=(*natural.longest[:3], math.inf, *natural.longest[4:]))
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(
+        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
+    ) -> None:
         """Add the movement; one that takes longer has more swings unless their number is told."""
         behaviour, times = scheduled.behaviour, stroke_times_of(scheduled)
         repeats = _repeats(behaviour)
@@ -84,7 +86,7 @@ class GazeKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of a look, which lasts as long as it is to."""
         who.require_head()
         _looked_at(behaviour, who)
@@ -92,7 +94,9 @@ class GazeKind:
             HOLD_SYNCS, GAZE_SPANS_S, holds=frozenset({"ready"}), occupies=frozenset({"gaze"})
         )
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(
+        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
+    ) -> None:
         """Add the look to where the target is now."""
         look(scheduled, times_of(scheduled), who, performed)
 
@@ -102,18 +106,22 @@ class GazeShiftKind:
 
     channel = "gaze"
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of a turn."""
         who.require_head()
         _looked_at(behaviour, who)
         return elastic(SHIFT_SYNCS, (SHIFT_S,), least=0.2, most=math.inf)
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(
+        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
+    ) -> None:
         """Add the look to where the target is now."""
         look(scheduled, shift_times_of(scheduled), who, performed)
 
 
-def look(scheduled: Scheduled, times: Times, who: Performing, performed: Performed) -> None:
+def look(
+    scheduled: Scheduled, times: Times, who: RealizationContext, performed: RealizedFrame
+) -> None:
     """Add a look at the target of a behaviour; with WHOLE, the feet turn too."""
     point = _looked_at(scheduled.behaviour, who)
     influence = _influence(scheduled.behaviour)
@@ -123,14 +131,14 @@ def look(scheduled: Scheduled, times: Times, who: Performing, performed: Perform
         performed.facing = point
 
 
-def _looked_at(behaviour: Behaviour, who: Performing) -> Array:
+def _looked_at(behaviour: Behaviour, who: RealizationContext) -> Array:
     point = who.surroundings.point(behaviour.get("target"))
     angle = math.radians(number(behaviour, "offsetAngle", 0.0, -180.0, 180.0))
     if not angle:
         return point
     direction = behaviour.get("offsetDirection", "RIGHT").upper()
     if direction not in DIRECTIONS:
-        raise CannotPerform(f'offsetDirection="{direction}" is none of {", ".join(DIRECTIONS)}')
+        raise CannotRealize(f'offsetDirection="{direction}" is none of {", ".join(DIRECTIONS)}')
     left, up = DIRECTIONS[direction]
     return who.surroundings.seen_aside(point, angle * left, angle * up)
 
@@ -143,7 +151,7 @@ def _influence(behaviour: Behaviour) -> Influence:
 def _movement(behaviour: Behaviour) -> str:
     lexeme = behaviour.get("lexeme").upper()
     if lexeme not in HEAD_MOVEMENTS:
-        raise CannotPerform(f'a head cannot "{lexeme}"; choose one of {", ".join(HEAD_MOVEMENTS)}')
+        raise CannotRealize(f'a head cannot "{lexeme}"; choose one of {", ".join(HEAD_MOVEMENTS)}')
     return lexeme
 
 

@@ -3,7 +3,7 @@
 from typing import Protocol
 
 from cubeling.characters.behaviour.bml import Behaviour, Scheduled, Timing
-from cubeling.characters.behaviour.performing.performed import Performed, Performing
+from cubeling.characters.behaviour.performing.performed import RealizationContext, RealizedFrame
 
 
 class BehaviourKind(Protocol):
@@ -12,7 +12,7 @@ class BehaviourKind(Protocol):
     channel: str
     """What of the body stays as it leaves it, "gaze" …; "" if nothing does."""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the natural times of a behaviour.
 
         Raises
@@ -22,6 +22,8 @@ class BehaviourKind(Protocol):
         """
         ...
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(
+        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
+    ) -> None:
         """Add what the body does for a behaviour that is being performed."""
         ...

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
-from cubeling.characters.behaviour.bml import Behaviour, CannotPerform, Scheduled
+from cubeling.characters.behaviour.bml import Behaviour, CannotRealize, Scheduled
 from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
 from cubeling.characters.behaviour.intents import (
@@ -68,7 +68,7 @@ class Saying:
 
 
 @dataclass(eq=False)
-class Performed:
+class RealizedFrame:
     """What a character does in one frame."""
 
     now: float
@@ -104,7 +104,7 @@ class Performed:
 
 
 @dataclass(eq=False)
-class Performing:
+class RealizationContext:
     """Who performs: the body with its abilities, its surroundings and its voice."""
 
     character: Character
@@ -149,15 +149,15 @@ class Performing:
     def require_head(self) -> None:
         """Refuse what a body without a head cannot do."""
         if self.character.anatomy.joint("head") is None:
-            raise CannotPerform(f"{self.character.name} has no head")
+            raise CannotRealize(f"{self.character.name} has no head")
 
     def require_arms(self, mode: str = "") -> None:
         """Refuse what needs arms that the body lacks."""
         if not self.arms:
-            raise CannotPerform(f"{self.character.name} has no arms")
+            raise CannotRealize(f"{self.character.name} has no arms")
         side = mode.lower().removesuffix("_hand")
         if side in SIDES and side not in self.arms:
-            raise CannotPerform(f"{self.character.name} has no {side} arm")
+            raise CannotRealize(f"{self.character.name} has no {side} arm")
 
     def how(self, scheduled: Scheduled) -> GestureExpressivity:
         """Return how a behaviour is performed: as it says, or its block, or as usual."""
@@ -183,7 +183,7 @@ def number(behaviour: Behaviour, name: str, default: float, low: float, high: fl
         return default
     found = numbers_of(text)
     if len(found) != 1:
-        raise CannotPerform(f'{name}="{text}" is no number')
+        raise CannotRealize(f'{name}="{text}" is no number')
     return min(max(found[0], low), high)
 
 

@@ -5,13 +5,17 @@ from itertools import pairwise
 
 from cubeling.characters.behaviour.bml import (
     Behaviour,
-    CannotPerform,
+    CannotRealize,
     Realizer,
     Scheduled,
     Timing,
     rigid,
 )
-from cubeling.characters.behaviour.performing.performed import Performed, Performing, Saying
+from cubeling.characters.behaviour.performing.performed import (
+    RealizationContext,
+    RealizedFrame,
+    Saying,
+)
 from cubeling.characters.speech.speech import Utterance, Word
 
 LETTER_S, WORD_S = 0.06, 0.06
@@ -35,10 +39,10 @@ class SpeechKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of the voice, or those of an estimate."""
         if len(behaviour.text) > MAX_LETTERS:
-            raise CannotPerform(f"a text of more than {MAX_LETTERS} letters; say it in parts")
+            raise CannotRealize(f"a text of more than {MAX_LETTERS} letters; say it in parts")
         utterance = heard(behaviour, who)
         if utterance is None:
             who.estimated.add(_asked(behaviour))
@@ -49,7 +53,9 @@ class SpeechKind:
         spans = tuple(max(b - a, 0.0) for a, b in pairwise(times))
         return rigid(names, spans)
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(
+        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
+    ) -> None:
         """Say it, as soon as the voice has answered."""
         utterance, key = heard(scheduled.behaviour, who), scheduled.key
         if utterance is None:
@@ -59,7 +65,7 @@ class SpeechKind:
             performed.sayings.append(Saying(key, utterance, start))
 
 
-def retime_speeches(realizer: Realizer, who: Performing, now: float) -> None:
+def retime_speeches(realizer: Realizer, who: RealizationContext, now: float) -> None:
     """Move the sync points of speeches that were estimated to where the voice has them.
 
     A speech that had begun without its voice sounds from now on.
@@ -84,7 +90,7 @@ def retime_speeches(realizer: Realizer, who: Performing, now: float) -> None:
     who.estimated -= known
 
 
-def heard(behaviour: Behaviour, who: Performing) -> Utterance | None:
+def heard(behaviour: Behaviour, who: RealizationContext) -> Utterance | None:
     """Return what the voice says for a speech; None if it has not answered."""
     return who.utterance_of(*_asked(behaviour))
 

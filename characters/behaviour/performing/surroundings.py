@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from cubeling.characters.behaviour.bml import CannotPerform
+from cubeling.characters.behaviour.bml import CannotRealize
 from cubeling.characters.skeleton.pose import Array
 
 SAME_AS_VIEWER = ("camera", "user", "listener", "audience")
@@ -57,7 +57,7 @@ class NamedPlaces:
         if len(numbers) == 3 and max(map(abs, numbers)) <= MAX_DISTANCE_M:
             return np.array(numbers)
         known = ", ".join(sorted(self.places)) or "none"
-        raise CannotPerform(
+        raise CannotRealize(
             f'no target "{text}"; name a known one ({known}), or give x,y,z in metres'
         )
 

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.formats.loading import MotionOptions, Performance
+from cubeling.characters.formats.loading import MotionOptions, RecordedMotion
 from cubeling.characters.formats.mocap.asf import AcclaimSkeleton, load_skeleton
-from cubeling.characters.formats.mocap.axes_and_units import metric_performance
+from cubeling.characters.formats.mocap.axes_and_units import metric_motion
 from cubeling.characters.formats.mocap.text import CUT_OFF, TextFile, numbers, parse_numbers, quoted
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.skeleton.pose import Array
@@ -24,7 +24,7 @@ _MAX_RATE_HZ = 1e5
 _FRAME_NUMBER = re.compile(r"\n[ \t]*\d{1,11}[ \t]*\n")
 
 
-def load_motion(path: Path, options: MotionOptions) -> Performance:
+def load_motion(path: Path, options: MotionOptions) -> RecordedMotion:
     """Read an .amc file and the .asf that goes with it; errors name the line of the problem.
 
     Every joint's rest rotation is the identity: joints keep the axes of the file, and the bones'
@@ -44,7 +44,7 @@ def load_motion(path: Path, options: MotionOptions) -> Performance:
     values, notes = _values(file, start, body)
     file.check_size(len(body.skeleton), len(values))
     clip = Clip(path.stem, rate, body.channels(angle_unit).poses(values), loop=False)
-    return metric_performance(path, clip, body.skeleton, options, notes, stated_unit=body.unit)
+    return metric_motion(path, clip, body.skeleton, options, notes, stated_unit=body.unit)
 
 
 def _find_skeleton(path: Path) -> Path:

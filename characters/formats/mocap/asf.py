@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.formats.loading import MotionOptions, Performance
+from cubeling.characters.formats.loading import MotionOptions, RecordedMotion
 from cubeling.characters.formats.mocap.asf_bones import AsfBone, Line, read_bones, read_sections
 from cubeling.characters.formats.mocap.channels import AxisChannel, ChannelLayout
 from cubeling.characters.formats.mocap.text import TextFile, quoted
@@ -79,7 +79,7 @@ class AcclaimSkeleton:
         return ChannelLayout(offsets, tuple(rotating), tuple(moving), angle_unit)
 
 
-def refuse_motion(path: Path, options: MotionOptions) -> Performance:
+def refuse_motion(path: Path, options: MotionOptions) -> RecordedMotion:
     """Refuse an .asf file that is given as a motion."""
     raise CharacterError(f"{path}: a skeleton without motion; give the .amc that goes with it")
 

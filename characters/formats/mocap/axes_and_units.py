@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.formats.loading import MotionOptions, Performance
+from cubeling.characters.formats.loading import MotionOptions, RecordedMotion
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
@@ -45,14 +45,14 @@ _NECK_NAME = re.compile(r"neck", re.IGNORECASE)
 _FOOT_NAME = re.compile(r"foot|ankle|toe|paw|hoof", re.IGNORECASE)
 
 
-def metric_performance(
+def metric_motion(
     path: Path,
     clip: Clip,
     skeleton: Skeleton,
     options: MotionOptions,
     notes: tuple[str, ...],
     stated_unit: float | None = None,
-) -> Performance:
+) -> RecordedMotion:
     """Return a recording in metres with +y up.
 
     Scale and vertical axis are recognised if the options leave them out; a unit stated by the
@@ -75,7 +75,7 @@ def metric_performance(
         raise CharacterError(f"{path}: scale {scale:g} is not a length; give metres per unit")
     turn = _Y_UP_FROM[axis]
     rest = _transformed(skeleton.rest, turn, scale)
-    return Performance(
+    return RecordedMotion(
         Skeleton(skeleton.names, skeleton.parents, rest),
         replace(clip, poses=_transformed(poses, turn, scale)),
         notes,

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.formats.loading import MotionOptions, Performance
+from cubeling.characters.formats.loading import MotionOptions, RecordedMotion
 from cubeling.characters.formats.mocap.hanim import (
     BAP_COUNT,
     FINGERS,
@@ -141,9 +141,9 @@ def read_baps(path: Path) -> BapTrack:
     return BapTrack(rate, values)
 
 
-def load_motion(path: Path, options: MotionOptions) -> Performance:
+def load_motion(path: Path, options: MotionOptions) -> RecordedMotion:
     """Read a .bap file as the motion of a person of 1.75 m."""
-    return Performance(hanim_skeleton(), read_baps(path).motion(path.stem))
+    return RecordedMotion(hanim_skeleton(), read_baps(path).motion(path.stem))
 
 
 def _header(file: TextFile, words: list[str]) -> tuple[float, int]:

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.formats.loading import MotionOptions, Performance
-from cubeling.characters.formats.mocap.axes_and_units import metric_performance
+from cubeling.characters.formats.loading import MotionOptions, RecordedMotion
+from cubeling.characters.formats.mocap.axes_and_units import metric_motion
 from cubeling.characters.formats.mocap.channels import AxisChannel, ChannelLayout
 from cubeling.characters.formats.mocap.text import CUT_OFF, TextFile, numbers, parse_numbers, quoted
 from cubeling.characters.motion.clip import Clip
@@ -23,7 +23,7 @@ from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 _FRAME_TIME_RANGE_S = (1e-5, 100.0)
 
 
-def load_motion(path: Path, options: MotionOptions) -> Performance:
+def load_motion(path: Path, options: MotionOptions) -> RecordedMotion:
     """Read a .bvh file; errors name the line of the problem.
 
     Every joint's rest rotation is the identity. End sites become joints with the name of the
@@ -34,7 +34,7 @@ def load_motion(path: Path, options: MotionOptions) -> Performance:
     rate, values, notes = _motion(file, end, tree.channel_count)
     file.check_size(len(tree.names), len(values))
     clip = Clip(path.stem, rate, tree.channels().poses(values), loop=False)
-    return metric_performance(path, clip, tree.skeleton(), options, tree.notes() + notes)
+    return metric_motion(path, clip, tree.skeleton(), options, tree.notes() + notes)
 
 
 @dataclass

@@ -16,9 +16,9 @@ from cubeling.characters.behaviour.bml import (
     BlockProgress,
     BmlWarning,
     Feedback,
-    Performer,
     Realizer,
     SyncPointProgress,
+    TimingEstimator,
 )
 from tests.characters.behaviour.bml.estimates import Estimates
 
@@ -53,7 +53,7 @@ def block(inside: str = "", *, name: str = "bml1", more: str = "") -> str:
 class Session:
     """Performs documents, and keeps all feedback."""
 
-    def __init__(self, *steps: Step, performer: Performer | None = None) -> None:
+    def __init__(self, *steps: Step, performer: TimingEstimator | None = None) -> None:
         self.realizer = Realizer(performer or Estimates())
         self.now = 0.0
         self.feedback: list[Feedback] = []
@@ -61,7 +61,7 @@ class Session:
             if isinstance(step, Until):
                 self._wait(step)
             else:
-                self.realizer.perform(step)
+                self.realizer.accept(step)
 
     def _wait(self, until: Until) -> None:
         end = self.now + until.seconds

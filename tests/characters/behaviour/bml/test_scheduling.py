@@ -12,7 +12,7 @@ SPEECH = "<speech id='s'><text>one two three <sync id='m'/>four five</text></spe
 def schedule(inside: str, now: float = 100.0) -> tuple[dict[str, float], list[BmlWarning]]:
     """Return block times by "behaviour:sync", and warnings."""
     realizer = Realizer(Estimates())
-    realizer.perform(block(inside))
+    realizer.accept(block(inside))
     feedback = realizer.update(now)
     times = {
         f"{behaviour.id}:{sync}": time

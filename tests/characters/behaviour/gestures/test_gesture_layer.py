@@ -7,7 +7,7 @@ import pytest
 
 from cubeling.characters import ActionIntent, Animator, Character, CharacterCommand
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
-from cubeling.characters.behaviour.gestures.planning import Performer
+from cubeling.characters.behaviour.gestures.planning import GestureRealizer
 from cubeling.characters.behaviour.gestures.timing import natural_times, phase_at
 from cubeling.characters.behaviour.intents import BehaviourIntent, GestureIntent, ReachIntent, Times
 from cubeling.characters.behaviour.symbolic_gesture import HandKey, Place, SymbolicGesture
@@ -52,7 +52,7 @@ def human(characters):
 
 @pytest.fixture(scope="module")
 def performer(human):
-    return Performer.of(human)
+    return GestureRealizer.of(human)
 
 
 def _play(character, behaviour_at, end, **kw):

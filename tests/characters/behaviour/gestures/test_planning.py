@@ -11,7 +11,7 @@ from hypothesis import given, settings, strategies as st
 from cubeling.characters import Character, CharacterWarning
 from cubeling.characters.behaviour.expressivity import GestureExpressivity
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
-from cubeling.characters.behaviour.gestures.planning import GesturePlanning, Performer
+from cubeling.characters.behaviour.gestures.planning import GesturePlanning, GestureRealizer
 from cubeling.characters.behaviour.gestures.timing import apex_share
 from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
 from cubeling.characters.skeleton import rotations
@@ -33,7 +33,7 @@ SWING = SymbolicGesture(
 
 @pytest.fixture(scope="module")
 def performers():
-    return {name: Performer.of(Character.load(name)) for name in NAMES}
+    return {name: GestureRealizer.of(Character.load(name)) for name in NAMES}
 
 
 def _palms(performer, motion, side="right", count=41):
@@ -198,7 +198,7 @@ def test_an_open_stroke_goes_back_before_it_is_repeated(performers):
 
 
 def test_without_arms_the_rest_of_the_body_performs_and_says_so(actor):
-    performer = Performer.of(actor)
+    performer = GestureRealizer.of(actor)
     with pytest.warns(CharacterWarning, match="without its right arm"):
         motion = performer.plan(SWING)
     assert not len(motion.arms)
