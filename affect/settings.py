@@ -189,7 +189,7 @@ class TomlTable:
         """Return the error for a value that is not allowed; None for the value of the key."""
         if key not in self._values:
             return self._error(key, f" is missing; it must be {allowed}")
-        given = shown(self._values[key] if value is None else value)
+        given = excerpt(self._values[key] if value is None else value)
         return self._error(key, f" must be {allowed}, not {given}")
 
     def _error(self, key: str, text: str) -> Exception:
@@ -200,10 +200,10 @@ class TomlTable:
         return ".".join(part for part in (self._place, key) if part)
 
 
-def shown(value: object) -> str:
+def excerpt(value: object) -> str:
     """Return a value for a message, at most `MAX_SHOWN_CHARS` long.
 
-    >>> shown([1, "a"]), shown("b" * 99)[:10]
+    >>> excerpt([1, "a"]), excerpt("b" * 99)[:10]
     ("[1, 'a']", "'bbbbbbbbb")
     """
     try:

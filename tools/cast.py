@@ -111,7 +111,7 @@ def _mood_pose(character: Character, label: str) -> Pose:
         for number in range(last + 1)
     ]
     lids = Lids.of(character.morphs)
-    return min(poses[first:], key=lambda pose: lids.closed(pose.morphs))
+    return min(poses[first:], key=lambda pose: lids.closure(pose.morphs))
 
 
 STANDING_MOODS = ("neutral", *SECTOR_WORDS)
@@ -163,11 +163,11 @@ if __name__ == "__main__":
     context = create_context()
     save(draw_group(context), FOLDER.parent / "cast.jpg", MAX_BYTES)
     sheets = ContactSheets(context)
-    moods = draw_moods(sheets, map(Character.load, Character.bundled()))
+    moods = draw_moods(sheets, map(Character.load, Character.bundled_names()))
     save(moods, FOLDER.parent / "moods-on-faces.jpg", MAX_BYTES)
-    standing = draw_standing(sheets, map(Character.load, Character.bundled()))
+    standing = draw_standing(sheets, map(Character.load, Character.bundled_names()))
     save(standing, FOLDER.parent / "moods-standing.jpg", MAX_BYTES)
     sheets.release()
     context.release()
-    for path in draw_cast(map(Character.load, Character.bundled())):
+    for path in draw_cast(map(Character.load, Character.bundled_names())):
         Console().print(f"{path.name}: {path.stat().st_size / 1e3:.0f} kB")

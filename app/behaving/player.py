@@ -120,7 +120,7 @@ class BehaviourPlayer:
         places |= {name.lower(): place for name, place in (options.targets or {}).items()}
         self.who = RealizationContext(
             character,
-            GestureCollection.bundled(),
+            GestureCollection.load_bundled(),
             NamedPlaces(places),
             self._utterance,
             options.expressivity,

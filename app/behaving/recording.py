@@ -14,7 +14,7 @@ from cubeling.app.sound.mixer import FADE_OUT, limited
 from cubeling.app.sound.session_sound import SPEECH_GAIN, at_sample_rate
 from cubeling.characters import Clip, Pose, PosedCharacter
 from cubeling.characters.behaviour import Feedback
-from cubeling.characters.motion import rotations, stacked
+from cubeling.characters.motion import rotations, stack
 
 SETTLE_S = 2.0
 """Time before the first frame [s], which is not shown: eyes find the viewer."""
@@ -134,7 +134,7 @@ def placed_pose(posed: PosedCharacter) -> Pose:
 
 
 def _clip(frames: Sequence[BehaviourFrame], rate: float, name: str) -> Clip:
-    poses = stacked([placed_pose(frame.posed) for frame in frames])
+    poses = stack([placed_pose(frame.posed) for frame in frames])
     return Clip(name, rate, poses, loop=False, root_motion=True)
 
 

@@ -110,7 +110,7 @@ def show(
     if output is not None:
         from cubeling.app.gesture_editor.sheet import draw_sheet
 
-        draw_sheet(output, gesture, character or list(Character.bundled()))
+        draw_sheet(output, gesture, character or list(Character.bundled_names()))
         print_written(str(output))
 
 

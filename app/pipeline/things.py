@@ -153,7 +153,7 @@ class PosedBody:
         table_from_toy = np.eye(4)
         palm = None if thing.hand is None else self.palm(thing.hand)
         table_from_toy[:3, 3] = thing.place if palm is None else palm - GRIP + thing.place
-        return toy(thing.name).placed(table_from_toy, self.posed.timestamp)
+        return toy(thing.name).place(table_from_toy, self.posed.timestamp)
 
     def _hand_points(self, side: Side) -> Point:
         joint, points = self.parts.hands[side]

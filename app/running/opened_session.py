@@ -159,7 +159,7 @@ class OpenedSession:
         if setting == "language":
             self.speaker.language = str(value)
         else:
-            self.speaker.profile = self.speaker.profile.changed(setting, value)
+            self.speaker.profile = self.speaker.profile.with_setting(setting, value)
         self.observe()
 
     def observe(self) -> None:

@@ -52,7 +52,7 @@ AZIMUTH_RAD = 0.25
 
 def draw_settings(path: Path, gesture: str = "BEAT_BOTH", character: str = "human") -> None:
     """Draw one gesture in five settings side by side, at three moments of its stroke."""
-    symbolic = GestureCollection.bundled().get(gesture)
+    symbolic = GestureCollection.load_bundled().get(gesture)
     performer = GestureRealizer.of(Character.load(character))
     with ExitStack() as closing:
         renderer = _renderer(closing)
@@ -70,7 +70,7 @@ def draw_library(path: Path, characters: Sequence[str] = ("human", "vleo", "robo
     with ExitStack() as closing:
         renderer = _renderer(closing)
         cells = []
-        for gesture in GestureCollection.bundled():
+        for gesture in GestureCollection.load_bundled():
             shown = []
             for performer in performers:
                 motion = performer.plan(gesture)

@@ -119,7 +119,7 @@ class Gaze:
         if target is not None:
             x, y, z = target.tolist()
             point = (x, y, z)
-        aim = self._aimed(joints, back, point)
+        aim = self._aim_at(joints, back, point)
         self.shift = 0.0 if aim is None or self._aim is None else math.dist(aim, self._aim)
         self._aim = aim
         turn = (0.0, 0.0) if aim is None else _head_turn(aim, held, head_share)
@@ -151,7 +151,7 @@ class Gaze:
             self._morphs.look(weights, *self._morph_parts(joints, point, share, elapsed))
         return Pose(pose.translations, local, pose.scales, weights)
 
-    def _aimed(
+    def _aim_at(
         self, joints: HeadJoints, back: Quaternion, point: Vector | None
     ) -> tuple[float, float] | None:
         """Return yaw and pitch of a point relative to the chest; None if it is ignored.
@@ -194,7 +194,7 @@ class Gaze:
                 if self._look_at is None:
                     yaw, pitch = within_range(*asked, share)
                 else:
-                    yaw, pitch = self._look_at.mapped(*asked, "right" if number else "left")
+                    yaw, pitch = self._look_at.map_angles(*asked, "right" if number else "left")
                 target = yaw - held[0], pitch - held[1]
             before = self._eye_turns[number]
             yaw, pitch = (w + (b - w) * kept for w, b in zip(target, before, strict=True))
@@ -217,7 +217,7 @@ class Gaze:
             if self._look_at is None:
                 target = range_parts(*within_range(*asked, share))
             else:
-                target = self._look_at.mapped(*asked)
+                target = self._look_at.map_angles(*asked)
         kept = math.exp(-elapsed / EYE_LAG_S)
         yaw, pitch = (w + (b - w) * kept for w, b in zip(target, self._eye_turns[0], strict=True))
         self._eye_turns[0] = yaw, pitch

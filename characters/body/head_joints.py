@@ -83,7 +83,7 @@ class HeadJoints:
         """The rotation of the chest; it is taken as level where a quadruped sits up."""
         base = self._line[0].parent
         facing = self._joints[base].facing if base >= 0 else IDENTITY
-        return _levelled(facing) if self._four_legs else facing
+        return _level(facing) if self._four_legs else facing
 
     def place(self, pose: Pose) -> None:
         """Compute the joints' rotations and positions in a pose."""
@@ -136,7 +136,7 @@ class HeadJoints:
         local[joint.number] = multiply(from_rotation_vector(turned), local[joint.number].tolist())
 
 
-def _levelled(chest: Quaternion) -> Quaternion:
+def _level(chest: Quaternion) -> Quaternion:
     """Return the rotation of a chest that is level where it is as far up as `UPRIGHT_RAD`."""
     _, up, _ = rotate(chest, (0.0, 0.0, 1.0))
     raised = math.asin(min(max(up, -1.0), 1.0))

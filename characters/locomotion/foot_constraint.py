@@ -69,7 +69,7 @@ class FootOffset:
     y: float = 0.0
     """[m]."""
 
-    def shown(self, points: FootPoints, heel: bool) -> tuple[float, float]:
+    def shown_point(self, points: FootPoints, heel: bool) -> tuple[float, float]:
         """Return x, z of the shown heel or ball of a foot."""
         ball = points.ball[0] + self.x, points.ball[2] + self.z
         if not heel:
@@ -116,7 +116,7 @@ class FootConstraint:
         """Advance by a time [s] to the present points of the motion."""
         self.step_time_left = max(self.step_time_left - elapsed, 0.0)
         self._age += elapsed
-        decayed, before = self._decayed(), self._shown
+        decayed, before = self._decay(), self._shown
         self._shown = [a + b for a, b in zip(self._goal(points), decayed, strict=True)]
         self.offset = FootOffset(*self._shown)
         self._last_height = before[3]
@@ -148,7 +148,7 @@ class FootConstraint:
         if self.held and self._heel == heel:
             return
         self._heel = heel
-        x, z = self.offset.shown(points, self._heel)
+        x, z = self.offset.shown_point(points, self._heel)
         self.anchor = x, z, points.heading + self.offset.yaw
         if not self.held:
             self.held = True
@@ -172,7 +172,7 @@ class FootConstraint:
         velocity[3] = max(velocity[3], 0.0)
         self._start_decay(self._shown, velocity, _QUICK_STEP_S if step else _OFFSET_DECAY_S)
         self.offset.y = self._shown[3]
-        self._last_stand = self.offset.shown(points, heel=False)
+        self._last_stand = self.offset.shown_point(points, heel=False)
         self._step_length = self.offset.length
         self.step_time_left = _QUICK_STEP_S if step else 0.0
 
@@ -187,7 +187,7 @@ class FootConstraint:
             angle = math.pi * self.step_time_left / _QUICK_STEP_S
             lowest = top * math.sin(angle) ** 2 - points.height
         elif not self.held:
-            x, z = self.offset.shown(points, heel=False)
+            x, z = self.offset.shown_point(points, heel=False)
             away = math.hypot(x - self._last_stand[0], z - self._last_stand[1]) / self._body_height
             fade = (_LIFT_FADE_END - away) / (_LIFT_FADE_END - _LIFT_FADE_START)
             raised = _LIFT_HEIGHT * self._body_height * min(away / _LIFT_DISTANCE, 1.0)
@@ -220,7 +220,7 @@ class FootConstraint:
         self._old, self._old_velocity = list(old), velocity
         self._age, self._decay_time = 0.0, length
 
-    def _decayed(self) -> list[float]:
+    def _decay(self) -> list[float]:
         if self._age >= self._decay_time:
             return [0.0] * 4
         position, velocity = quintic_decay(self._age / self._decay_time)

@@ -65,7 +65,7 @@ class FootLock:
         for foot, own, contact in zip(self.feet, points, down, strict=True):
             self._update(foot, own, contact, standing)
             foot.lift(own)
-        return self._bent(pose, frames, place, elapsed)
+        return self._bend(pose, frames, place, elapsed)
 
     def _update(self, foot: FootConstraint, points: FootPoints, down: bool, standing: bool) -> None:
         others_held = all(other.held for other in self.feet if other is not foot)
@@ -97,7 +97,7 @@ class FootLock:
             feet.append(FootPoints(heel, ball))
         return feet
 
-    def _bent(self, pose: Pose, frames: LegFrames, place: RootDelta, elapsed: float) -> Pose:
+    def _bend(self, pose: Pose, frames: LegFrames, place: RootDelta, elapsed: float) -> Pose:
         """Return the pose with the feet's offsets, and a lower pelvis if they are far away."""
         least = _MIN_CHANGE * self._body_height
         changes = (

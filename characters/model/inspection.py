@@ -195,7 +195,7 @@ def _problems_of_clips(character: Character, clips: Sequence[ClipStats]) -> Iter
         yield "It has no clips: it can be posed and retargeted to, but plays nothing by itself."
     static = [stats.clip.name for stats in clips if stats.clip.duration == 0.0]
     if static:
-        yield f"{_named(static)} only one frame long and does not move."
+        yield f"{_subject_and_verb(static)} only one frame long and does not move."
     height = max(character.height, 1e-9)
     unclosed = [
         f"{stats.clip.name!r} ({100 * stats.loop_gap / height:.0f} % of its height)"
@@ -213,21 +213,21 @@ def _problems_of_clips(character: Character, clips: Sequence[ClipStats]) -> Iter
         if _GAIT_NAME.search(stats.clip.name) and not any(foot.landings for foot in stats.contacts)
     ]
     if without_contacts:
-        yield f"{_named(without_contacts)} named as a gait, but no foot steps in it."
+        yield f"{_subject_and_verb(without_contacts)} named as a gait, but no foot steps in it."
     treadmill = [
         stats.clip.name for stats in clips if stats.in_place and _GAIT_NAME.search(stats.clip.name)
     ]
     if treadmill:
         yield (
-            f"{_named(treadmill)} in place: `cubeling character locomotion` turns it into a walk "
-            "over the ground."
+            f"{_subject_and_verb(treadmill)} in place: `cubeling character locomotion` turns it into "
+            "a walk over the ground."
         )
 
 
-def _named(names: Sequence[str]) -> str:
+def _subject_and_verb(names: Sequence[str]) -> str:
     """Return the subject of a sentence about some clips, and its verb.
 
-    >>> _named(["Walk"]), _named(["Walk", "Run"])
+    >>> _subject_and_verb(["Walk"]), _subject_and_verb(["Walk", "Run"])
     ("The clip 'Walk' is", "The clips 'Walk', 'Run' are")
     """
     listed = ", ".join(repr(name) for name in names)

@@ -18,9 +18,9 @@ from cubeling.characters.ik.solvers.solving import (
     solve as solve,
 )
 from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M as ARRIVAL_DISTANCE_M
-from cubeling.characters.motion.baking import bake as bake, stacked as stacked
+from cubeling.characters.motion.baking import bake as bake, stack as stack
 from cubeling.characters.motion.motion import Motion as Motion
-from cubeling.characters.motion.phase import phased as phased
+from cubeling.characters.motion.phase import with_phase as with_phase
 from cubeling.characters.motion.schedule import Schedule as Schedule
 from cubeling.characters.motion.schedule_file import ScheduleReader as ScheduleReader
 from cubeling.characters.motion.trees.dot import to_dot as to_dot

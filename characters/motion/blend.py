@@ -171,7 +171,7 @@ class TimeScaled:
 
     def between(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two phases."""
-        return self.motion.between(start, end).scaled(self.stride)
+        return self.motion.between(start, end).scale(self.stride)
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s] since phase 0."""

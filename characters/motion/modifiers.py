@@ -115,7 +115,7 @@ class Loop:
             return self.motion.travel(early, late)
         whole = self.motion.travel(0.0, self.duration)
         rest = self.motion.travel(early, self.duration)
-        return rest.then(whole.repeated(last - first - 1)).then(self.motion.travel(0.0, late))
+        return rest.then(whole.repeat(last - first - 1)).then(self.motion.travel(0.0, late))
 
     def _repetition(self, time: float) -> tuple[int, float]:
         """Return the number of the repetition at a time [s] and the time in it [s]."""

@@ -245,7 +245,7 @@ def has_footfalls(motion: Motion) -> bool:
     return any(map(has_footfalls, members if inner is None else (inner,)))
 
 
-def phased(clip: Clip, skeleton: Skeleton) -> PhasedMotion:
+def with_phase(clip: Clip, skeleton: Skeleton) -> PhasedMotion:
     """Return a clip with its footfalls as marks, or without marks if it has no regular steps.
 
     On four legs the hind feet define the phase. Feet that land nearly together, as in a gallop or a

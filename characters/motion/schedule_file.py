@@ -121,16 +121,16 @@ class ScheduleReader:
         root = parse(text, origin)
         if root.tag != "blendingschedule":
             raise self._error(root, f"<{root.tag}> is not a <blendingschedule>")
-        self._known(root, ("actionpool", "activate"))
+        self._check_tag(root, ("actionpool", "activate"))
         pool: dict[str, Action] = {}
         for part in root.children:
             if part.tag == "actionpool":
-                self._known(part, ("blendingaction",))
+                self._check_tag(part, ("blendingaction",))
                 for each in part.children:
                     if self._name(each) in pool:
                         raise self._error(each, f"a second action {self._name(each)!r}; rename one")
                     pool[self._name(each)] = self._action(each)
-        actions = [self._activated(e, pool) for e in root.children if e.tag == "activate"]
+        actions = [self._activate(e, pool) for e in root.children if e.tag == "activate"]
         if not actions:
             raise self._error(root, "no action is activated; add <activate>")
         counts: dict[str, int] = {}
@@ -142,7 +142,7 @@ class ScheduleReader:
 
     def _action(self, element: ScheduleElement) -> Action:
         """Return an action of the pool, which starts at 0."""
-        self._known(element, ("blendingparams", "blendableobject"))
+        self._check_tag(element, ("blendingparams", "blendableobject"))
         motion = self._object(self._one(element, "blendableobject"))
         found = [each for each in element.children if each.tag == "blendingparams"]
         if len(found) > 1:
@@ -162,7 +162,7 @@ class ScheduleReader:
             name=self._name(element),
         )
 
-    def _activated(self, element: ScheduleElement, pool: Mapping[str, Action]) -> Action:
+    def _activate(self, element: ScheduleElement, pool: Mapping[str, Action]) -> Action:
         name, start = self._name(element), self._number(element, "offset", 0.0)
         if name not in pool:
             raise self._error(element, f"no action {name!r}; there are {', '.join(pool) or 'none'}")
@@ -173,21 +173,21 @@ class ScheduleReader:
         """Return the motion that an object describes."""
         kind = element.attributes.get("type", "")
         if kind == "keyframebodyanimation":
-            self._known(element, ())
-            return self._opened(self._open_motion, element)
+            self._check_tag(element, ())
+            return self._open(self._open_motion, element)
         if kind in ("idlemotion", "idleemotion"):
-            self._known(element, ("balance",))
-            return self._opened(self._open_idle, self._one(element, "balance"))
+            self._check_tag(element, ("balance",))
+            return self._open(self._open_idle, self._one(element, "balance"))
         if kind == "modifier":
-            self._known(element, ("modifier", "blendableobject"))
+            self._check_tag(element, ("modifier", "blendableobject"))
             inner = self._object(self._one(element, "blendableobject"))
-            return self._modified(self._one(element, "modifier"), inner)
+            return self._modify(self._one(element, "modifier"), inner)
         kinds = "keyframebodyanimation, idlemotion, modifier"
         raise self._error(element, f'type="{kind}" is not known here; there are {kinds}')
 
-    def _modified(self, element: ScheduleElement, motion: Motion) -> Motion:
+    def _modify(self, element: ScheduleElement, motion: Motion) -> Motion:
         kind = element.attributes.get("type", "")
-        self._known(element, ("duration", "begin", "end"))
+        self._check_tag(element, ("duration", "begin", "end"))
         try:
             if kind == "stretch":
                 return Stretch(motion, self._number(element, "duration"))
@@ -208,12 +208,12 @@ class ScheduleReader:
         """Return the parameters of an action that lasts a duration [s]."""
         kind, ones = element.attributes.get("type", "none"), np.ones(len(self._skeleton))
         if kind == "none":
-            self._known(element, ())
+            self._check_tag(element, ())
             return _Parameters(ones, ones)
         if kind == "joints":
             return self._joints(element)
         if kind == "merge":
-            self._known(element, ("blendingparams",))
+            self._check_tag(element, ("blendingparams",))
             merged = _Parameters(ones, ones)
             for each in element.children:
                 one = self._parameters(each, duration)
@@ -224,7 +224,7 @@ class ScheduleReader:
                 )
             return merged
         if kind == "curve":
-            self._known(element, ("curveshape",))
+            self._check_tag(element, ("curveshape",))
             element = self._one(element, "curveshape")
             kind = element.attributes.get("type", "")
         return _Parameters(ones, ones, (self._curve(element, kind, duration),))
@@ -247,20 +247,20 @@ class ScheduleReader:
             return self._percent(element, name, 0.0) * duration
 
         if ending == "fade":
-            self._known(element, ("fadein", "fadeout"))
+            self._check_tag(element, ("fadein", "fadeout"))
             return FadeCurve(part("fadein"), part("fadeout"), shape)
-        self._known(element, ("attack", "decay", "sustain", "release"))
+        self._check_tag(element, ("attack", "decay", "sustain", "release"))
         level = self._percent(element, "sustain", 100.0)
         return Adsr(part("attack"), part("decay"), level, part("release"), shape)
 
     def _joints(self, element: ScheduleElement) -> _Parameters:
         """Return weights and scales of joints; later elements override earlier ones."""
-        self._known(element, ("default", "scope", "rotation", "translation"))
+        self._check_tag(element, ("default", "scope", "rotation", "translation"))
         weights, scales = np.ones(len(self._skeleton)), np.ones(len(self._skeleton))
         order = ("default", "scope", "rotation", "translation")
         for each in sorted(element.children, key=lambda child: order.index(child.tag)):
-            self._known(each, ())
-            joints = self._covered(each)
+            self._check_tag(each, ())
+            joints = self._joints_of(each)
             for name, values in (("weight", weights), ("scaling", scales)):
                 if name in each.attributes:
                     values[joints] = self._number(each, name)
@@ -268,7 +268,7 @@ class ScheduleReader:
             raise self._error(element, "a weight below 0")
         return _Parameters(weights, scales)
 
-    def _covered(self, element: ScheduleElement) -> list[int]:
+    def _joints_of(self, element: ScheduleElement) -> list[int]:
         """Return the joints that an element is about."""
         everything = list(range(len(self._skeleton)))
         if element.tag == "default":
@@ -287,7 +287,7 @@ class ScheduleReader:
             raise self._error(element, f"no joint {name!r}")
         return [joint]
 
-    def _opened(self, opener: Opener, element: ScheduleElement) -> Motion:
+    def _open(self, opener: Opener, element: ScheduleElement) -> Motion:
         name = element.text.strip()
         if not name:
             raise self._error(element, f"<{element.tag}> names no file")
@@ -302,7 +302,7 @@ class ScheduleReader:
             raise self._error(element, f"<{element.tag}> needs one <{tag}>, not {len(found)}")
         return found[0]
 
-    def _known(self, element: ScheduleElement, tags: tuple[str, ...]) -> None:
+    def _check_tag(self, element: ScheduleElement, tags: tuple[str, ...]) -> None:
         for child in element.children:
             if child.tag not in tags:
                 there = ", ".join(f"<{tag}>" for tag in tags) or "none"

@@ -117,7 +117,7 @@ class PortraitRenderer:
             The character has no such part.
         """
         pose = character.skeleton.rest if pose is None else pose
-        framed = [pose, *(_sampled(extent) if isinstance(extent, Clip) else extent)]
+        framed = [pose, *(_sample(extent) if isinstance(extent, Clip) else extent)]
         place = _place(character, azimuth)
         camera = self._camera(character, [(each, place) for each in framed], elevation, focus)
         return self._draw(character, pose, place, camera, wrinkles, blood)
@@ -147,7 +147,7 @@ class PortraitRenderer:
     ) -> Image:
         """Return a character from `count` sides, side by side, from the front to its left."""
         pose = character.skeleton.rest if pose is None else pose
-        ((_, back),) = _centered([pose], character)
+        ((_, back),) = _center([pose], character)
         places = [_place(character, math.tau * turn / count) @ back for turn in range(count)]
         camera = self._camera(character, [(pose, place) for place in places], elevation, focus)
         return side_by_side([self._draw(character, pose, place, camera) for place in places])
@@ -172,7 +172,7 @@ class PortraitRenderer:
         shown = [clip.sample(float(time)) for time in times]
         place = _place(character, azimuth)
         framed = [
-            (pose, place @ back) for pose, back in _centered([*shown, *_sampled(clip)], character)
+            (pose, place @ back) for pose, back in _center([*shown, *_sample(clip)], character)
         ]
         camera = self._camera(character, framed, elevation, focus)
         return side_by_side([self._draw(character, *each, camera) for each in framed[: len(shown)]])
@@ -252,13 +252,13 @@ def _place(character: Character, azimuth: float) -> Array:
     return place
 
 
-def _sampled(clip: Clip) -> list[Pose]:
+def _sample(clip: Clip) -> list[Pose]:
     """Return evenly spaced poses of a clip."""
     count = min(SAMPLED_POSES, len(clip))
     return [clip.sample(float(time)) for time in np.linspace(0.0, clip.duration, count)]
 
 
-def _centered(poses: Sequence[Pose], character: Character) -> list[tuple[Pose, Array]]:
+def _center(poses: Sequence[Pose], character: Character) -> list[tuple[Pose, Array]]:
     """Return poses, each with the transform (4, 4) back to the centre and to the front."""
     joints = np.stack([pose.globals(character.skeleton) for pose in poses])[..., :3, 3]
     rotation = rotations.to_matrix(rotations.about("y", -_mean_heading(joints, character.anatomy)))

@@ -45,7 +45,7 @@ class Toy:
     morphs: tuple[str, ...] = ()
     """A toy has no morph targets."""
 
-    def placed(self, table_from_toy: Array, timestamp: float) -> SceneCharacter:
+    def place(self, table_from_toy: Array, timestamp: float) -> SceneCharacter:
         """Return it as it is to be drawn at a place, (4, 4) [m]."""
         pose = self.skeleton.rest
         posed = PosedCharacter(pose, table_from_toy, True, "still", 0.0, 0.0, 0.0, timestamp)
@@ -61,7 +61,7 @@ class _ToyPart:
     triangles: NDArray[np.int64]  # (m, 3), counter-clockwise from outside
     color: tuple[float, float, float]  # linear RGB
 
-    def transformed(self, turn: Array, origin: ArrayLike) -> "_ToyPart":
+    def transform(self, turn: Array, origin: ArrayLike) -> "_ToyPart":
         """Return it after a linear map (3, 3), moved to an origin."""
         normals = self.normals @ np.linalg.inv(turn)
         normals /= np.linalg.norm(normals, axis=1, keepdims=True)
@@ -92,11 +92,11 @@ def _flower() -> list[_ToyPart]:
     petals = []
     for angle in np.arange(6) * np.pi / 3:
         turn = facing @ _about_y(angle)
-        petal = _ball(_PINK).transformed(turn @ np.diag([0.0055, 0.0018, 0.0075]), (0.0, 0.0, 0.0))
-        petals.append(petal.transformed(np.eye(3), head + turn @ [0.0, 0.0, 0.0085]))
-    middle = _ball(_YELLOW).transformed(facing @ np.diag([0.0052, 0.0036, 0.0052]), head)
+        petal = _ball(_PINK).transform(turn @ np.diag([0.0055, 0.0018, 0.0075]), (0.0, 0.0, 0.0))
+        petals.append(petal.transform(np.eye(3), head + turn @ [0.0, 0.0, 0.0085]))
+    middle = _ball(_YELLOW).transform(facing @ np.diag([0.0052, 0.0036, 0.0052]), head)
     leaves = [
-        _ball(_GREEN).transformed(
+        _ball(_GREEN).transform(
             _about_z(side * 0.6) @ np.diag([0.0085, 0.0012, 0.0035]), (side * 0.008, height, 0.0)
         )
         for side, height in ((1, 0.030), (-1, 0.036))
@@ -106,14 +106,14 @@ def _flower() -> list[_ToyPart]:
 
 def _balloon() -> list[_ToyPart]:
     """Return a balloon on a stick with a foot."""
-    body = _ball(_RED).transformed(np.diag([0.0155, 0.0185, 0.0155]), (0.0, 0.105, 0.0))
+    body = _ball(_RED).transform(np.diag([0.0155, 0.0185, 0.0155]), (0.0, 0.105, 0.0))
     knot = _round(_RED, (0.0, 0.0835), (0.0032, 0.0835), (0.0008, 0.0875))
     return [*_foot(_BLUE), *_stick(_WHITE, 0.086, 0.0008), body, *knot]
 
 
 def _flag() -> list[_ToyPart]:
     """Return a pennant with a stripe on a pole."""
-    knob = _ball(_YELLOW).transformed(0.0026 * np.eye(3), (0.0, 0.110, 0.0))
+    knob = _ball(_YELLOW).transform(0.0026 * np.eye(3), (0.0, 0.110, 0.0))
     cloth = [
         _pennant(0.110, 0.084, 0.0, 0.030, _BLUE),
         _pennant(0.101, 0.093, 0.0004, 0.0301, _YELLOW),
@@ -147,7 +147,7 @@ def _rim(radius: float, height: float, color: tuple[float, float, float]) -> lis
 
 def _round(color: tuple[float, float, float], *profile: tuple[float, float]) -> list[_ToyPart]:
     """Return surfaces of revolution about +y through (radius, height) [m], with sharp edges."""
-    return [_turned(np.array(pair), color) for pair in itertools.pairwise(profile)]
+    return [_revolve(np.array(pair), color) for pair in itertools.pairwise(profile)]
 
 
 def _ball(color: tuple[float, float, float]) -> _ToyPart:
@@ -155,10 +155,12 @@ def _ball(color: tuple[float, float, float]) -> _ToyPart:
     angles = np.linspace(-np.pi / 2, np.pi / 2, 13)
     radius = np.cos(angles)
     radius[[0, -1]] = 0.0  # not 1e-16: each pole is one point
-    return _turned(np.stack([radius, np.sin(angles)], axis=1), color, sphere=True)
+    return _revolve(np.stack([radius, np.sin(angles)], axis=1), color, sphere=True)
 
 
-def _turned(profile: Array, color: tuple[float, float, float], *, sphere: bool = False) -> _ToyPart:
+def _revolve(
+    profile: Array, color: tuple[float, float, float], *, sphere: bool = False
+) -> _ToyPart:
     """Return a surface of revolution through (rings, 2), from below to above on its outside."""
     radius, height = profile.T
     along = profile[-1] - profile[0]

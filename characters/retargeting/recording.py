@@ -83,7 +83,7 @@ def load_recording(
             f"{file}: which clip? write {file}#CLIP with one of its clips: {known}"
         )
     bound = with_bind_pose(character)
-    found = _unrolled(character.clips[clip], bound, character.anatomy)
+    found = _unroll(character.clips[clip], bound, character.anatomy)
     return Recording(Path(name).name, found, bound, character.anatomy)
 
 
@@ -107,7 +107,7 @@ def _of_recorded_motion(name: str, motion: RecordedMotion, rest: str | None) -> 
         if found is upright:
             break
         upright = found
-    clip = _unrolled(motion.clip, upright, anatomy)
+    clip = _unroll(motion.clip, upright, anatomy)
     clip = _without_calibration_frame(clip, upright)
     return Recording(Path(name).name, clip, upright, anatomy)
 
@@ -123,7 +123,7 @@ def _without_calibration_frame(clip: Clip, skeleton: Skeleton) -> Clip:
     return replace(clip, poses=clip.poses[np.arange(1, len(clip))])
 
 
-def _unrolled(clip: Clip, skeleton: Skeleton, anatomy: Anatomy) -> Clip:
+def _unroll(clip: Clip, skeleton: Skeleton, anatomy: Anatomy) -> Clip:
     """Return a loop whose hips end elsewhere as several cycles on their way over the ground.
 
     Its joints close but for the way, which it has in the hips and not in a root joint.

@@ -102,7 +102,7 @@ class AngleLimits:
         inside = (clamped == angles).all(-1)
         return np.where(inside[..., None], local, self.rotations(clamped))
 
-    def widened(self, angle: float) -> "AngleLimits":
+    def widen(self, angle: float) -> "AngleLimits":
         """Return limits that are wider by an angle [rad] on each side."""
         return replace(self, low=self.low - angle, high=self.high + angle)
 

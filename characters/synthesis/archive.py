@@ -93,7 +93,7 @@ class ArchiveFormat:
             changed = path.stat().st_mtime_ns
         except (OSError, ValueError):
             changed = 0  # the reader says what is wrong
-        loaded: _T = _loaded(self, path, changed, read)
+        loaded: _T = _load(self, path, changed, read)
         return loaded
 
     @property
@@ -102,7 +102,7 @@ class ArchiveFormat:
 
 
 @lru_cache(maxsize=16)
-def _loaded(
+def _load(
     kind: ArchiveFormat, path: Path, changed: int, read: Callable[[Content, Arrays], Any]
 ) -> Any:
     return kind.load(path, read)

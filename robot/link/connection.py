@@ -9,7 +9,7 @@ from cubeling.robot.errors import RobotError
 from cubeling.robot.link.exchange import IoThread
 from cubeling.robot.link.line_sample import LineSample
 from cubeling.robot.link.linked_robot import Robot
-from cubeling.robot.link.transport import opener, spaced
+from cubeling.robot.link.transport import opener, space_writes
 
 CATALOGUE_TIMEOUT_S = 10.0
 """Additional time to report its catalogue for a robot that answers over a very lossy line [s]."""
@@ -64,7 +64,7 @@ def connect(
     else:
         open_port = kind.opener(url, clock)
     if kind.spacing:
-        open_port = spaced(open_port, kind.spacing, clock)
+        open_port = space_writes(open_port, kind.spacing, clock)
     sample = LineSample()
 
     def observe(direction: Direction, data: bytes, now: float) -> None:

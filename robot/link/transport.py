@@ -168,6 +168,6 @@ class SpacedPort:
         return written
 
 
-def spaced(open_port: Opener, spacing: float, clock: Clock) -> Opener:
+def space_writes(open_port: Opener, spacing: float, clock: Clock) -> Opener:
     """Return an opener of the same port with at least `spacing` [s] between its writes."""
     return lambda: cast(Port, SpacedPort(open_port(), spacing, clock))

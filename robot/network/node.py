@@ -78,9 +78,9 @@ class RobotNode(MemberEndpoint):
         self._acks = 0
         self._ack_due = False
 
-    def connected(self, now: float) -> None:
+    def on_connect(self, now: float) -> None:
         """Publish everything again, as the broker may have lost it."""
-        self._epoch.connected(now)
+        self._epoch.on_connect(now)
         self._state_publisher.reset()
         self._announce()
 

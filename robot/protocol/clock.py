@@ -62,7 +62,7 @@ class RobotClock:
 
     def add(self, ms: int, sent: float, received: float) -> None:
         """Take the time of a STATE [ms] between two times of the host [s]."""
-        self._elapsed_ms, self._last_ms = self._unwrapped(ms), ms
+        self._elapsed_ms, self._last_ms = self._unwrap(ms), ms
         # The clock shows a millisecond from its begin to its end: at the mean, half of it is over.
         robot = self._elapsed_ms / 1000 + TICK_S / 2
         error = (received - sent) / 2 + TICK_S / 2
@@ -83,12 +83,12 @@ class RobotClock:
         best = self._best
         if best is None:
             return None
-        robot = self._unwrapped(ms) / 1000 + TICK_S / 2
+        robot = self._unwrap(ms) / 1000 + TICK_S / 2
         age = robot - best.robot
         error = best.error + TICK_S / 2 + ERROR_GROWTH * abs(age)
         return ClockSample(robot, best.host + age / (1 + self.drift), error)
 
-    def _unwrapped(self, ms: int) -> int:
+    def _unwrap(self, ms: int) -> int:
         """Return a time as milliseconds since the first one, however often the clock wrapped."""
         if self._last_ms is None:
             return 0

@@ -137,7 +137,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("-o", "--output", type=Path, help="folder for enlarged pictures")
     parser.add_argument(
-        "characters", nargs="*", default=Character.bundled(), help="names or files of characters"
+        "characters",
+        nargs="*",
+        default=Character.bundled_names(),
+        help="names or files of characters",
     )
     options = parser.parse_args()
     headings = (

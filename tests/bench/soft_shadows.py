@@ -64,7 +64,7 @@ def main() -> int:
     for heading in ("character", "texels in shadow", "RMSE", "nothing drawn", "mean of both"):
         table.add_column(heading, justify="left" if heading == "character" else "right")
     worst = 0.0
-    for name in Character.bundled():
+    for name in Character.bundled_names():
         character = Character.load(name)
         view, actor = scene(character)
         stage, watch = Stage(context, SIZE), WatchPass()

@@ -24,7 +24,7 @@ from cubeling.characters import Character
 from cubeling.characters.control.speech_profile import DEFAULT_PROFILE
 from cubeling.characters.face.visemes.mouth_morphs import MouthMorphs
 from cubeling.characters.retargeting.root import with_root_joint
-from cubeling.characters.speech.audio import resampled
+from cubeling.characters.speech.audio import resample
 from cubeling.characters.speech.voices import Manner, Voice, espeak
 
 CONSOLE = Console(highlight=False, soft_wrap=True)
@@ -65,7 +65,7 @@ def live_mouth(human: Character, voice: Voice) -> None:
     loudness of the same sound, at the greatest correlation.
     """
     speech = voice.say("Papa, mama, baba! My, oh my! Poppy and Bob are a happy couple.")
-    sound = resampled(speech.samples, speech.rate, MICROPHONE_HZ)
+    sound = resample(speech.samples, speech.rate, MICROPHONE_HZ)
     performer, mouth = LivePerformer(human), MouthMorphs.of(human.morphs)
     opening, loudness, took = [], [], []
     for number in range(len(sound) // BLOCK):

@@ -154,7 +154,7 @@ class CubeModel:
         """The dictionary and the id of each marker; cubes that share all cannot be told apart."""
         return frozenset((self.dictionary, face.marker_id) for face in self.faces)
 
-    def scaled(self, edge: float) -> Self:
+    def scale(self, edge: float) -> Self:
         """Return the same cube in another size, its markers grown or shrunk with it.
 
         Parameters

@@ -62,15 +62,15 @@ class MarkerDetector:
 
     def detect(self, grey: Image) -> list[Marker]:
         """Detect markers in a grey image, (H, W), with the window that finds most."""
-        return _detected(self._first, grey)
+        return _detect(self._first, grey)
 
     def detect_others(self, grey: Image) -> list[Marker]:
         """Detect markers with the other windows, some of them again."""
-        return _detected(self._others, grey)
+        return _detect(self._others, grey)
 
     def detect_strictly(self, grey: Image) -> list[Marker]:
         """Detect markers with all windows, and none with a wrong bit: nothing else proves them."""
-        return _detected(self._strict, grey)
+        return _detect(self._strict, grey)
 
 
 def _parameters(first: int, last: int) -> cv2.aruco.DetectorParameters:
@@ -85,7 +85,7 @@ def _parameters(first: int, last: int) -> cv2.aruco.DetectorParameters:
     return parameters
 
 
-def _detected(detector: cv2.aruco.ArucoDetector, grey: Image) -> list[Marker]:
+def _detect(detector: cv2.aruco.ArucoDetector, grey: Image) -> list[Marker]:
     quads, ids = detector.detectMarkers(grey)[:2]
     # None where there is no marker; (N,) in OpenCV 5, (N, 1) in OpenCV 4.
     marker_ids = [] if ids is None else [int(number) for number in np.ravel(ids)]

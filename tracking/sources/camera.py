@@ -127,7 +127,7 @@ class CaptureDevice:
     def read(self) -> Image | bytes | None:
         """Wait for the next image."""
         success, data = self._capture.read()
-        image = _converted(data) if success and data is not None else None
+        image = _convert(data) if success and data is not None else None
         if image is not None:
             # V4L2 gives the buffer's time in milliseconds of CLOCK_MONOTONIC. Other systems give
             # arbitrary numbers, so `ExposureClock` compares them with the clock.
@@ -181,10 +181,10 @@ def _locks(capture: VideoCapture, options: CameraOptions) -> tuple[ControlLock, 
     )
 
 
-def _converted(data: Image) -> Image | bytes:
+def _convert(data: Image) -> Image | bytes:
     """Tell JPEG data from pixels by its shape in OpenCV; convert pixels to BGR."""
     if 1 in data.shape[:2] or data.ndim == 1:
-        return _trimmed(data.tobytes())
+        return _trim(data.tobytes())
     if data.ndim == 2:
         return np.asarray(cv2.cvtColor(data, cv2.COLOR_GRAY2BGR), np.uint8)
     if data.shape[2] == 2:  # the camera does not use MJPG after all
@@ -192,7 +192,7 @@ def _converted(data: Image) -> Image | bytes:
     return data
 
 
-def _trimmed(data: bytes) -> bytes:
+def _trim(data: bytes) -> bytes:
     """Cut the data off after the JPEG: some drivers return their whole buffer.
 
     After the start of scan (FF DA), FF D9 can only be the end of the image.

@@ -126,8 +126,8 @@ def draw_hand(
     skin = _CapsuleLayer(camera, region, hand.skin)
     cloth = _CapsuleLayer(camera, region, hand.sleeve)
     over = cloth.cover[..., None]
-    colour = skin.shaded(_skin_shader(hand.skin_bgr), to_light) * (1 - over)
-    colour += cloth.shaded(_cloth_shader(hand.sleeve_bgr), to_light) * over
+    colour = skin.shade(_skin_shader(hand.skin_bgr), to_light) * (1 - over)
+    colour += cloth.shade(_cloth_shader(hand.sleeve_bgr), to_light) * over
     depth = np.where(cloth.cover > 0.5, cloth.depth(), skin.depth())
     return colour, np.maximum(skin.cover, cloth.cover), depth
 
@@ -208,7 +208,7 @@ class _CapsuleLayer:
         weight = np.maximum(self._sums[6], MIN_WEIGHT)
         return np.asarray(self._sums[5] / weight, np.float32)
 
-    def shaded(self, colour: Shader, to_light: Array) -> Floats:
+    def shade(self, colour: Shader, to_light: Array) -> Floats:
         """Return the colour (h, w, 3) BGR; black where there is nothing."""
         shown = np.zeros((*self.cover.shape, 3), np.float32)
         covered = self.cover > 0

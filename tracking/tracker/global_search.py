@@ -115,7 +115,7 @@ class GlobalDetector:
         for observations in self._observations(markers, thorough):
             if observations:
                 poses = self._poses.find(markers.grey, observations, expected, tone)
-                found = _merged(found, poses)
+                found = _merge(found, poses)
                 if is_unambiguous(found):
                     return found
         if any(each.certain for each in found):
@@ -165,7 +165,7 @@ def _around(seen: Sequence[Observation], grey: Image) -> Region:
     return left, top, right, bottom
 
 
-def _merged(one: list[Candidate], other: list[Candidate]) -> list[Candidate]:
+def _merge(one: list[Candidate], other: list[Candidate]) -> list[Candidate]:
     """Join two lists; of poses that are the same, keep the better one. The best comes first."""
     kept: list[Candidate] = []
     for each in sorted([*one, *other], key=lambda each: each.rank):

@@ -65,7 +65,7 @@ class LocalTracker:
             return LocalMatch()
         found = self._by_edges(patch, track, prediction, camera)
         if found is not None:
-            return self._studied(patch, found, track, prediction.timestamp, camera)
+            return self._study_blur(patch, found, track, prediction.timestamp, camera)
         if self._footprint.pixels_per_cell(prediction.camera_from_cube) < MAX_WHOLE_CELL_PX:
             match = self._cells.search(image, prediction.camera_from_cube, camera.tone)
             if match is not None and match.proved:
@@ -105,9 +105,11 @@ class LocalTracker:
             return LocalMatch()
         pose, covariance = aligned.camera_from_cube, aligned.covariance[:6, :6]
         velocity = track.motion(pose, covariance, prediction.timestamp)[0]
-        return LocalMatch(self._blur.candidate(patch, aligned), self._observed(aligned, velocity))
+        return LocalMatch(
+            self._blur.candidate(patch, aligned), self._observation(aligned, velocity)
+        )
 
-    def _studied(
+    def _study_blur(
         self, patch: Patch, found: Candidate, track: Track, timestamp: float, camera: CameraModel
     ) -> LocalMatch:
         """Align a slightly blurred image, too, while the camera is not known well."""
@@ -120,9 +122,9 @@ class LocalTracker:
         if not shows_exposure(extent, self._footprint.pixels_per_cell(pose)):
             return LocalMatch(found)
         aligned = self._blur.align(patch, pose, motion, camera, coarse=False)
-        return LocalMatch(found, self._observed(aligned, velocity) if aligned else None, True)
+        return LocalMatch(found, self._observation(aligned, velocity) if aligned else None, True)
 
-    def _observed(self, aligned: Alignment, velocity: Array) -> BlurObservation | None:
+    def _observation(self, aligned: Alignment, velocity: Array) -> BlurObservation | None:
         """Return the measurements of the camera in an alignment; None where it may be wrong."""
         if not aligned.correlation >= MIN_CORRELATION_ALONE:
             return None

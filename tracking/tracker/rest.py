@@ -53,7 +53,7 @@ class Rest:
         assert self.first is not None, "a pose was added"
         count = len(self.offsets)
         mean: Array = np.mean(self.offsets, axis=0)
-        return se3.moved(self.first, mean), np.asarray(np.mean(self.noises, axis=0) / count)
+        return se3.apply_delta(self.first, mean), np.asarray(np.mean(self.noises, axis=0) / count)
 
     def _moves(self) -> bool:
         """Whether the last pose leaves the others, or all have a slope, by more than noise."""

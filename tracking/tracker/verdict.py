@@ -104,14 +104,14 @@ class FollowedPoseJudge:
             return Verdict(candidate, "", unsettled)
         better = _better(candidate, other)
         if better is None:
-            better = _better(*self._weighed(candidate, other, image, tone))
+            better = _better(*self._weigh(candidate, other, image, tone))
         if better:
             return Verdict(better, "", settled)
         if planar_ambiguity_angle < MIN_HARMFUL_ANGLE:
-            return Verdict(candidate.widened_to(other), "", past)
+            return Verdict(candidate.widen_to(other), "", past)
         return ambiguous
 
-    def _weighed(
+    def _weigh(
         self, one: Candidate, other: Candidate, image: Image, tone: Floats
     ) -> tuple[Candidate, Candidate]:
         """Weigh two poses by all cells in view."""

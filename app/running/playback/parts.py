@@ -105,7 +105,9 @@ def _exchange_camera(
 def _characters(session: OpenedSession) -> Iterator[MenuChoice]:
     own = session.playground.scenario.character
     present = session.options.character or own
-    for name in dict.fromkeys((present, session.asked.character or own, *Character.bundled())):
+    for name in dict.fromkeys(
+        (present, session.asked.character or own, *Character.bundled_names())
+    ):
         yield MenuChoice("character", name, Path(name).name, present=name == present)
 
 

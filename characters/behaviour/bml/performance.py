@@ -86,7 +86,7 @@ class Realization:
                     found, earliest = track, time
         return found
 
-    def scheduled(self, at: float | None = None) -> Iterator[Scheduled]:
+    def behaviours(self, at: float | None = None) -> Iterator[Scheduled]:
         """Yield its behaviours for a performer that are not over, or only those that go on then."""
         for track in self.tracks.values():
             goes_on = not track.over if at is None else track.times[0] <= at < track.times[-1]

@@ -69,7 +69,7 @@ class Realizer:
 
     def active(self, now: float) -> tuple[Scheduled, ...]:
         """Return the behaviours that are going on, in the order in which their blocks came."""
-        return tuple(s for performance in self._running() for s in performance.scheduled(now))
+        return tuple(s for performance in self._running() for s in performance.behaviours(now))
 
     @property
     def scheduled(self) -> tuple[Scheduled, ...]:
@@ -78,7 +78,7 @@ class Realizer:
             scheduled
             for performance in self._realizations.values()
             if math.isfinite(performance.start)
-            for scheduled in performance.scheduled()
+            for scheduled in performance.behaviours()
         )
 
     @property

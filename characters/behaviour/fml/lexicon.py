@@ -98,11 +98,11 @@ class Lexicon:
                 where = f"{origin}: {kind}.{name}"
                 if not isinstance(tables, list) or not all(isinstance(t, dict) for t in tables):
                     raise CharacterError(f"{where} is no list of tables; write [[{kind}.{name}]]")
-                entries[kind, name] = tuple(_shown(table, where) for table in tables)
+                entries[kind, name] = tuple(_read_shown(table, where) for table in tables)
         return Lexicon(entries)
 
 
-def _shown(table: dict[str, Any], where: str) -> Shown:
+def _read_shown(table: dict[str, Any], where: str) -> Shown:
     given = dict(table)
     behaviour = given.pop("behaviour", None)
     if behaviour not in SYNCS:

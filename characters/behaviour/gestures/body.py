@@ -49,7 +49,7 @@ class GestureBody:
     """Joints of collarbone, arm, hand and fingers by side."""
 
     @classmethod
-    def measured(cls, character: Character) -> Self:
+    def measure(cls, character: Character) -> Self:
         """Return what a character gestures with."""
         skeleton, anatomy = character.skeleton, character.anatomy
         idle = idle_clips(character.clips)

@@ -23,9 +23,9 @@ from cubeling.characters.behaviour.gestures.timing import Repeats, stroke_length
 from cubeling.characters.behaviour.gestures.tracks import (
     POSITION,
     HandTrack,
+    choose_side,
     hand_track,
     one_period,
-    sided,
 )
 from cubeling.characters.behaviour.gestures.trunk import body_track
 from cubeling.characters.behaviour.intents import Hand
@@ -59,7 +59,7 @@ class GestureRealizer(GestureBody):
         for kept in _KEPT:
             if kept.character.skeleton is character.skeleton:
                 return kept
-        _KEPT.append(GestureRealizer.measured(character))
+        _KEPT.append(GestureRealizer.measure(character))
         return _KEPT[-1]
 
     def plan(
@@ -117,7 +117,7 @@ class GesturePlanning:
         self._postures = KeyPostures(performer, ReachStyle(openness, power))
         space = performer.space
         self.space = GestureSpace(np.zeros(3), space.arm, expressivity.spatial)
-        shown, mirrored = sided(gesture, hand)
+        shown, mirrored = choose_side(gesture, hand)
         self.repeats = repeats = Repeats.of(gesture)
         body = one_period(shown.body, repeats) or (BodyKey(0.0),)
         self.body = body_track(body, mirrored, expressivity)
@@ -202,7 +202,7 @@ class GesturePlanning:
             met: Array = np.zeros(3) if other is None else other.keys.between(key.at)[POSITION]
             return met + offset
         if key.place.contact:
-            _, posed = self._postures.turned(self.body.between(key.at))
+            _, posed = self._postures.turn_by(self.body.between(key.at))
             place = self.performer.surface.place(key.place.contact, left, posed)
             if place is not None:
                 turn, chest = self._postures.chest(posed)

@@ -64,7 +64,7 @@ class GestureSpace:
         below = (CENTRES_Y_CM["YUpperC"] - CHEST_CM) / 100.0 * arm / REFERENCE_ARM_M
         return GestureSpace(shoulders + np.array([0.0, -below, DEPTH * arm]), arm)
 
-    def turned(self, turn: Array, chest: Array, torso_scale: float = 1.0) -> "GestureSpace":
+    def turn_by(self, turn: Array, chest: Array, torso_scale: float = 1.0) -> "GestureSpace":
         """Return the space of a body whose torso is turned, moved and bent."""
         return replace(self, turn=turn, chest=chest, torso_scale=torso_scale)
 

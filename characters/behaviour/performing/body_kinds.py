@@ -13,7 +13,7 @@ from cubeling.characters.behaviour.bml import (
     elastic,
 )
 from cubeling.characters.behaviour.intents import GestureIntent, PostureIntent, StrokeTimes, Times
-from cubeling.characters.behaviour.performing.hand_kinds import held
+from cubeling.characters.behaviour.performing.hand_kinds import hold
 from cubeling.characters.behaviour.performing.performed import (
     Going,
     Manner,
@@ -128,7 +128,7 @@ def take(
             )
             key = f"{scheduled.key}:{name}"
             performed.gestures.append(
-                GestureIntent(key, held(arms), strokes, "both", who.how(scheduled))
+                GestureIntent(key, hold(arms), strokes, "both", who.how(scheduled))
             )
 
 

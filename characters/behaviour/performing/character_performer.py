@@ -94,7 +94,7 @@ class CharacterRealizer:
         started = [each for each in active if each.start <= now]
         self._keep_shifts(started, now)
         for channel, kept in self._kept.items():
-            self._add(kept.kind, self._released(kept.scheduled, channel), shown)
+            self._add(kept.kind, self._release(kept.scheduled, channel), shown)
         for scheduled in started:
             kind = self._kind(scheduled.behaviour)
             if kind is not None:
@@ -126,7 +126,7 @@ class CharacterRealizer:
                 self._kept[shift.kind.channel] = shift
         self._shifting = running
 
-    def _released(self, scheduled: Scheduled, channel: str) -> Scheduled:
+    def _release(self, scheduled: Scheduled, channel: str) -> Scheduled:
         """Return a shift that goes as far as another one of its channel comes."""
         newer = [s.scheduled for s in self._shifting.values() if s.kind.channel == channel]
         if not newer:

@@ -40,14 +40,14 @@ class FaceKind:
 
     def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of an expression, which lasts as long as it is to."""
-        _shown(behaviour, who)
+        _face_weights(behaviour, who)
         return elastic(FACE_SYNCS, FACE_SPANS_S, holds=frozenset({"attackPeak"}))
 
     def realize(
         self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
     ) -> None:
         """Add the expression, with its peak at "attackPeak"."""
-        names, weights = _shown(scheduled.behaviour, who)
+        names, weights = _face_weights(scheduled.behaviour, who)
         times = times_of(scheduled, "attackPeak")
         performed.faces.append(FaceIntent(scheduled.key, names, weights, times))
 
@@ -59,23 +59,23 @@ class FaceShiftKind:
 
     def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times in which the face changes."""
-        _shown(behaviour, who)
+        _face_weights(behaviour, who)
         return elastic(SHIFT_SYNCS, (SHIFT_S,), least=0.2, most=math.inf)
 
     def realize(
         self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
     ) -> None:
         """Add the expression, which stays when the behaviour is over."""
-        names, weights = _shown(scheduled.behaviour, who)
+        names, weights = _face_weights(scheduled.behaviour, who)
         times = shift_times_of(scheduled)
         performed.faces.append(FaceIntent(scheduled.key, names, weights, times))
 
 
-def _shown(
+def _face_weights(
     behaviour: Behaviour, who: RealizationContext
 ) -> tuple[tuple[str, ...], tuple[float, ...]]:
     """Return the names and weights that a behaviour and its children give."""
-    found = [*_named(behaviour, USUAL_AMOUNT)]
+    found = [*_names_and_weights(behaviour, USUAL_AMOUNT)]
     if not found:
         raise CannotRealize("an expression without a lexeme, au or name")
     unknown = [name for name, _ in found if who.faces.weights(name) is None]
@@ -85,7 +85,9 @@ def _shown(
     return names, weights
 
 
-def _named(element: Behaviour | BmlElement, usual: float) -> Iterator[tuple[str, float]]:
+def _names_and_weights(
+    element: Behaviour | BmlElement, usual: float
+) -> Iterator[tuple[str, float]]:
     given: Mapping[str, str] = element.attributes
     amount = _amount(given, usual)
     unit, side = given.get("au", "").strip(), given.get("side", "BOTH").upper()
@@ -95,7 +97,7 @@ def _named(element: Behaviour | BmlElement, usual: float) -> Iterator[tuple[str,
         if given.get(attribute):
             yield given[attribute], amount
     for child in element.children:
-        yield from _named(child, amount)
+        yield from _names_and_weights(child, amount)
 
 
 def _amount(attributes: Mapping[str, str], usual: float) -> float:

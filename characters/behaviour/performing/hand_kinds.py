@@ -87,7 +87,7 @@ class PointingKind:
         performed.reaches.append(ReachIntent(scheduled.key, point, times, "point", hand, how))
 
 
-def held(gesture: SymbolicGesture) -> SymbolicGesture:
+def hold(gesture: SymbolicGesture) -> SymbolicGesture:
     """Return a gesture that stays where its first key puts the hands."""
     return replace(gesture, right=gesture.right[:1], left=gesture.left[:1], repeats=1)
 

@@ -89,7 +89,7 @@ class GazeKind:
     def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of a look, which lasts as long as it is to."""
         who.require_head()
-        _looked_at(behaviour, who)
+        _gaze_target(behaviour, who)
         return elastic(
             HOLD_SYNCS, GAZE_SPANS_S, holds=frozenset({"ready"}), occupies=frozenset({"gaze"})
         )
@@ -109,7 +109,7 @@ class GazeShiftKind:
     def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of a turn."""
         who.require_head()
-        _looked_at(behaviour, who)
+        _gaze_target(behaviour, who)
         return elastic(SHIFT_SYNCS, (SHIFT_S,), least=0.2, most=math.inf)
 
     def realize(
@@ -123,7 +123,7 @@ def look(
     scheduled: Scheduled, times: Times, who: RealizationContext, performed: RealizedFrame
 ) -> None:
     """Add a look at the target of a behaviour; with WHOLE, the feet turn too."""
-    point = _looked_at(scheduled.behaviour, who)
+    point = _gaze_target(scheduled.behaviour, who)
     influence = _influence(scheduled.behaviour)
     performed.gazes.append(GazeIntent(scheduled.key, point, times, influence))
     released = times.relax is not None and performed.now >= times.relax
@@ -131,7 +131,7 @@ def look(
         performed.facing = point
 
 
-def _looked_at(behaviour: Behaviour, who: RealizationContext) -> Array:
+def _gaze_target(behaviour: Behaviour, who: RealizationContext) -> Array:
     point = who.surroundings.point(behaviour.get("target"))
     angle = math.radians(number(behaviour, "offsetAngle", 0.0, -180.0, 180.0))
     if not angle:
@@ -140,7 +140,7 @@ def _looked_at(behaviour: Behaviour, who: RealizationContext) -> Array:
     if direction not in DIRECTIONS:
         raise CannotRealize(f'offsetDirection="{direction}" is none of {", ".join(DIRECTIONS)}')
     left, up = DIRECTIONS[direction]
-    return who.surroundings.seen_aside(point, angle * left, angle * up)
+    return who.surroundings.point_aside(point, angle * left, angle * up)
 
 
 def _influence(behaviour: Behaviour) -> Influence:

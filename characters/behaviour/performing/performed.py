@@ -190,7 +190,7 @@ def number(behaviour: Behaviour, name: str, default: float, low: float, high: fl
 def times_of(scheduled: Scheduled, ready: str = "ready") -> Times:
     """Return the times of something that rises to one sync point and falls from "relax"."""
     times, start = scheduled.times, scheduled.start
-    relax, end = (_known(times.get(sync)) for sync in ("relax", "end"))
+    relax, end = (_finite(times.get(sync)) for sync in ("relax", "end"))
     return Times(start, times.get(ready, start), relax, end)
 
 
@@ -207,7 +207,7 @@ def stroke_times_of(scheduled: Scheduled) -> StrokeTimes:
     return StrokeTimes(plain.start, plain.ready, plain.relax, plain.end, *strokes)
 
 
-def _known(time: float | None) -> float | None:
+def _finite(time: float | None) -> float | None:
     return None if time is None or time == float("inf") else time
 
 

@@ -43,10 +43,10 @@ class SpeechKind:
         """Return the times of the voice, or those of an estimate."""
         if len(behaviour.text) > MAX_LETTERS:
             raise CannotRealize(f"a text of more than {MAX_LETTERS} letters; say it in parts")
-        utterance = heard(behaviour, who)
+        utterance = utterance_of(behaviour, who)
         if utterance is None:
-            who.estimated.add(_asked(behaviour))
-            utterance = estimated(behaviour.text)
+            who.estimated.add(_text_and_language(behaviour))
+            utterance = estimate(behaviour.text)
         marks = [(mark.id, mark_time(utterance, mark.at)) for mark in behaviour.marks]
         names = ("start", *(name for name, _ in marks), "end")
         times = [0.0, *(time for _, time in marks), utterance.duration]
@@ -57,7 +57,7 @@ class SpeechKind:
         self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
     ) -> None:
         """Say it, as soon as the voice has answered."""
-        utterance, key = heard(scheduled.behaviour, who), scheduled.key
+        utterance, key = utterance_of(scheduled.behaviour, who), scheduled.key
         if utterance is None:
             who.late[key] = math.inf
         start = who.late.get(key, scheduled.start)
@@ -75,12 +75,12 @@ def retime_speeches(realizer: Realizer, who: RealizationContext, now: float) -> 
     known: set[tuple[str, str]] = set()
     for scheduled in realizer.scheduled:
         behaviour = scheduled.behaviour
-        if behaviour.kind != "speech" or _asked(behaviour) not in who.estimated:
+        if behaviour.kind != "speech" or _text_and_language(behaviour) not in who.estimated:
             continue
-        utterance = heard(behaviour, who)
+        utterance = utterance_of(behaviour, who)
         if utterance is None:
             continue
-        known.add(_asked(behaviour))
+        known.add(_text_and_language(behaviour))
         if scheduled.key in who.late:
             who.late[scheduled.key] = now
         start = who.late.get(scheduled.key, scheduled.start)
@@ -90,15 +90,15 @@ def retime_speeches(realizer: Realizer, who: RealizationContext, now: float) -> 
     who.estimated -= known
 
 
-def heard(behaviour: Behaviour, who: RealizationContext) -> Utterance | None:
+def utterance_of(behaviour: Behaviour, who: RealizationContext) -> Utterance | None:
     """Return what the voice says for a speech; None if it has not answered."""
-    return who.utterance_of(*_asked(behaviour))
+    return who.utterance_of(*_text_and_language(behaviour))
 
 
-def estimated(text: str) -> Utterance:
+def estimate(text: str) -> Utterance:
     """Return an utterance with the words of a text at times that a voice might take.
 
-    >>> estimated("No, never.").words
+    >>> estimate("No, never.").words
     (Word(text='No,', start=0.0, end=0.18, offset=0), Word(text='never.', start=0.33, end=0.69, offset=4))
     """  # noqa: E501
     words, at, offset = list[Word](), 0.0, 0
@@ -116,6 +116,6 @@ def mark_time(utterance: Utterance, at: int) -> float:
     return min((w.start for w in utterance.words if w.offset >= at), default=utterance.duration)
 
 
-def _asked(behaviour: Behaviour) -> tuple[str, str]:
+def _text_and_language(behaviour: Behaviour) -> tuple[str, str]:
     """Return what a voice is asked for: text and language."""
     return behaviour.text, behaviour.get("lang", namespace=XML)

@@ -61,7 +61,7 @@ class NamedPlaces:
             f'no target "{text}"; name a known one ({known}), or give x,y,z in metres'
         )
 
-    def seen_aside(self, point: Array, yaw: float, pitch: float) -> Array:
+    def point_aside(self, point: Array, yaw: float, pitch: float) -> Array:
         """Return a point that lies to the left of another one and above it by angles [rad]."""
         way = point - self.eyes
         distance = float(np.linalg.norm(way))

@@ -190,7 +190,7 @@ def graph_factory(
     if files and len(motions) > 1:
         raise CharacterError(f"{', '.join(motions)}: give one .graph file alone, or only motions")
     if files:
-        stored = fitted(load_graph(files[0]), character)
+        stored = fit_graph(load_graph(files[0]), character)
     else:
         own = [clip for name, clip in character.clips.items() if name in OWN_CLIPS]
         clips = read_motions(motions, character) if motions else own
@@ -207,7 +207,7 @@ OWN_CLIPS = ("idle", *NOT_ACTIONS)
 """The clips of a character that its own graph is made of."""
 
 
-def fitted(stored: StoredGraph, character: Character) -> StoredGraph:
+def fit_graph(stored: StoredGraph, character: Character) -> StoredGraph:
     """Return a graph on the skeleton of a character; its clips are retargeted if they must be.
 
     Raises

@@ -113,7 +113,7 @@ class MatchingController:
         if action == "idle":
             self._match(wish, now - self._machine.entered, elapsed)
         step = self._machine.travel(now, self._time)
-        self.place = self.place.then(step.scaled(self._scale))
+        self.place = self.place.then(step.scale(self._scale))
         if elapsed > 0.0:
             pace, rate = step.z / elapsed, step.yaw / elapsed
             self._pace_now = low_pass(self._pace_now, pace, elapsed, MEASURING_LAG_S)
@@ -186,7 +186,7 @@ class MatchingController:
         """Search for frames that suit a wish better, and turn a little where none fits exactly."""
         here = RootDelta(self.place.x / self._scale, self.place.z / self._scale, self.place.yaw)
         impulse = self._impulse
-        self._impulse, _ = impulse.advanced(here, wish, self._height, elapsed)
+        self._impulse, _ = impulse.advance(here, wish, self._height, elapsed)
         error = 0.0 if wish.target is None else here.bearing(*wish.target)
 
         def ahead() -> Mapping[str, Array]:

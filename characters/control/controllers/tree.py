@@ -78,7 +78,7 @@ class TreeController:
         state = self._machine.state
         self._bindings[state].set_values(self._values, now - self._machine.entered)
         step = self._machine.travel(now, self._time)
-        self._place = self._place.then(step.scaled(self._scale))
+        self._place = self._place.then(step.scale(self._scale))
         name = state or command.activity
         return ControllerFrame(
             self._machine.sample(self._time),

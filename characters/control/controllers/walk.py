@@ -109,7 +109,7 @@ class WalkController:
         now, self._time = self._time, self._time + elapsed
         self._play(steered, "move" if course.speed > 0.0 else action, weight, now)
         step = self._machine.travel(now, self._time)
-        self.place = self.place.then(step.scaled(self._scale))
+        self.place = self.place.then(step.scale(self._scale))
         return self._frame(steered, course.speed > 0.0 and not self._turning)
 
     def _frame(self, steered: SteeringOutput, going: bool) -> ControllerFrame:

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from cubeling.characters.behaviour.expressivity import NEUTRAL
-from cubeling.characters.behaviour.gestures.easing import eased
+from cubeling.characters.behaviour.gestures.easing import ease_time
 from cubeling.characters.behaviour.gestures.planning import GestureRealizer
 from cubeling.characters.behaviour.gestures.timing import (
     GONE,
@@ -126,7 +126,7 @@ class GesturePlayback:
         weight, prepares = 1.0, phase < PREPARED
         if prepares:
             self._planning.advance(POSTURES_PER_FRAME)
-            weight = eased(smoothstep(phase), self._style)
+            weight = ease_time(smoothstep(phase), self._style)
             weight = min(weight, 1.0) if self._touches else weight
         elif phase > STROKE_END:
             weight = smoothstep(GONE - phase)

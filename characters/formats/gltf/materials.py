@@ -236,7 +236,7 @@ class MaterialWriter:
         if material.toon is not None:
             image = material.toon.texture
             shade = None if image is None else self._texture(image)
-            self._extend(item, mtoon.EXTENSION, mtoon.written(material.toon, shade))
+            self._extend(item, mtoon.EXTENSION, mtoon.write(material.toon, shade))
         if any(material.emissive):
             self._set_emission(item, material.emissive)
         if material.blended:

@@ -81,7 +81,7 @@ def track_of(clip: Clip) -> BapTrack:
     so that hands and feet stay where they are. The outer joints of fingers keep their flexion.
     """
     skeleton = hanim_skeleton()
-    turns = _reduced(rotations.normalize(clip.poses.rotations))
+    turns = _reduce(rotations.normalize(clip.poses.rotations))
     angles = _joint_angles(turns)
     moved = clip.poses.translations - skeleton.rest.translations
     values = np.zeros((len(clip), BAP_COUNT), np.int64)
@@ -157,7 +157,7 @@ def _header(file: TextFile, words: list[str]) -> tuple[float, int]:
     return rate, count
 
 
-def _reduced(turns: Array) -> Array:
+def _reduce(turns: Array) -> Array:
     """Return local rotations (frames, joints, 4) that the parameters can express."""
     index = hanim_skeleton().index
     turns = turns.copy()

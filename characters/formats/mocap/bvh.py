@@ -15,7 +15,7 @@ from cubeling.characters.errors import CharacterError
 from cubeling.characters.formats.loading import MotionOptions, RecordedMotion
 from cubeling.characters.formats.mocap.axes_and_units import metric_motion
 from cubeling.characters.formats.mocap.channels import AxisChannel, ChannelLayout
-from cubeling.characters.formats.mocap.text import CUT_OFF, TextFile, numbers, parse_numbers, quoted
+from cubeling.characters.formats.mocap.text import CUT_OFF, TextFile, numbers, parse_numbers, quote
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
@@ -115,7 +115,7 @@ class _Words:
         expected = " or ".join(words)
         word = self.next(expected)
         if word.upper() not in words:
-            raise self.error(f"expected {expected}, found {quoted(word)}", "export again")
+            raise self.error(f"expected {expected}, found {quote(word)}", "export again")
         return word.upper()
 
 
@@ -173,13 +173,13 @@ def _read_channels(words: _Words, tree: _Tree, joint: int) -> None:
     count = words.next("a number of channels")
     # isdecimal() also accepts digits of other scripts, which int() reads as well.
     if not count.isdecimal() or len(count) > 6:
-        raise words.error(f"{quoted(count)} is not a number of channels", "give their count")
+        raise words.error(f"{quote(count)} is not a number of channels", "give their count")
     for _ in range(int(count)):
         channel = words.next("the name of a channel")
         axis, kind = "XYZ".find(channel[0].upper()), channel[1:].lower()
         if axis < 0 or kind not in ("position", "rotation"):
             raise words.error(
-                f"expected a channel of {quoted(tree.names[joint])}, found {quoted(channel)}",
+                f"expected a channel of {quote(tree.names[joint])}, found {quote(channel)}",
                 "use Xposition … Zrotation, as many as stated",
             )
         moves = AxisChannel(joint, np.eye(3)[axis], tree.channel_count)
@@ -233,7 +233,7 @@ def _setting(file: TextFile, lines: list[str], start: int, key: str) -> tuple[in
         if not words:
             continue
         if [word.lower() for word in words[:-1]] != key.split():
-            problem = f"expected {key!r}, found {quoted(lines[line].strip())}"
+            problem = f"expected {key!r}, found {quote(lines[line].strip())}"
             raise file.error(line + 1, problem, "export it again")
         return line + 1, file.number(line + 1, words[-1])
     raise file.error(len(lines), f"ends without {key!r}", CUT_OFF)

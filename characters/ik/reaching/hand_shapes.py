@@ -110,7 +110,7 @@ class HandShapes:
             self._postures[key] = found
         return self._postures[key]
 
-    def shaped(self, pose: Pose, side: str, shape: str, weight: float = 1.0) -> Pose:
+    def shape(self, pose: Pose, side: str, shape: str, weight: float = 1.0) -> Pose:
         """Return a pose with a hand in a shape, or part of the way there; `weight` is 0…1."""
         posture = self.posture(side, shape)
         if not len(posture.joints) or weight <= 0.0:

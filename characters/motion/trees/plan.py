@@ -170,7 +170,7 @@ class Node:
             return "clip"
         defaults = NODE_KINDS[self.kind].optional
         fields = [
-            f"{key.removesuffix('_deg')} {_formatted(value)}"
+            f"{key.removesuffix('_deg')} {_format(value)}"
             for key, value in self.fields.items()
             if value not in ("", None) and (key not in defaults or defaults[key] != value)
         ]
@@ -265,13 +265,13 @@ class Plan:
 def _row_label(fields: Mapping[str, Any]) -> str:
     """Return the position, start or weight of a row's motion."""
     if "start" in fields:
-        return f"{_formatted(fields['start'])} s"
-    return _formatted(fields.get("value", fields.get("weight", "")))
+        return f"{_format(fields['start'])} s"
+    return _format(fields.get("value", fields.get("weight", "")))
 
 
-def _formatted(value: object) -> str:
+def _format(value: object) -> str:
     if isinstance(value, float):
         return f"{value:g}".replace("-", "−")
     if isinstance(value, tuple):
-        return ", ".join(map(_formatted, value))
+        return ", ".join(map(_format, value))
     return str(value)

@@ -259,11 +259,11 @@ class _PlanReader:
             with suppress(OverflowError):  # whole numbers in TOML may have any number of digits
                 if math.isfinite(number := float(given)):
                     return number
-        self._refuse(path, f"{_abbreviated(given)} is not a finite number")
+        self._refuse(path, f"{_abbreviate(given)} is not a finite number")
 
     def _table(self, given: object, path: str) -> Mapping[str, Any]:
         if not isinstance(given, dict):
-            self._refuse(path, f"{_abbreviated(given)} is not a table")
+            self._refuse(path, f"{_abbreviate(given)} is not a table")
         return given
 
     def _check_keys(self, table: Mapping[str, Any], keys: Collection[str], path: str) -> None:
@@ -282,6 +282,6 @@ class _PlanReader:
         raise CharacterError(f"{self._source}: {path}: {what}")
 
 
-def _abbreviated(given: object) -> str:
+def _abbreviate(given: object) -> str:
     text = repr(given)
     return text if len(text) <= 60 else text[:57] + "..."

@@ -169,9 +169,9 @@ class GestureLibrary:
             for each in self.phrases
         ]
         arrays["joints"] = np.array(self.joints, np.int32)
-        arrays["rest"] = _packed(self.rest)
+        arrays["rest"] = _pack(self.rest)
         for number, each in enumerate(self.recordings):
-            arrays[f"turns_{number}"] = _packed(each.turns)
+            arrays[f"turns_{number}"] = _pack(each.turns)
         GESTURE_FORMAT.save(path, content, arrays)
 
     @staticmethod
@@ -204,13 +204,13 @@ def gesture_joints(skeleton: Skeleton, anatomy: Anatomy) -> tuple[int, ...]:
     return tuple(sorted(moved))
 
 
-def _packed(turns: Array) -> Array:
+def _pack(turns: Array) -> Array:
     """Return rotations as integers: their rotation vectors in steps of `STEP_RAD`."""
     packed: Array = np.rint(rotations.to_rotation_vector(turns) / STEP_RAD).astype(np.int16)
     return packed
 
 
-def _unpacked(packed: Array) -> Array:
+def _unpack(packed: Array) -> Array:
     return rotations.from_rotation_vector(packed.astype(float) * STEP_RAD)
 
 
@@ -218,7 +218,7 @@ def _library(content: Content, arrays: Arrays) -> GestureLibrary:
     skeleton, anatomy = read_skeleton(content, arrays)
     joints = tuple(int(joint) for joint in arrays["joints"])
     recordings = tuple(
-        GestureRecording(str(name), rotations.continuous(_unpacked(arrays[f"turns_{number}"])))
+        GestureRecording(str(name), rotations.continuous(_unpack(arrays[f"turns_{number}"])))
         for number, name in enumerate(content["recordings"])
     )
     if not joints or not 0 <= min(joints) <= max(joints) < len(skeleton):
@@ -228,7 +228,7 @@ def _library(content: Content, arrays: Arrays) -> GestureLibrary:
             raise ValueError("its rotations do not belong to its joints")
     lengths = [len(each.turns) for each in recordings]
     phrases = tuple(_phrase(each, lengths) for each in content["phrases"])
-    rate, rest = float(content["rate"]), _unpacked(arrays["rest"])
+    rate, rest = float(content["rate"]), _unpack(arrays["rest"])
     if not rate > 0 or rest.shape != (len(joints), 4):
         raise ValueError("its rest or its rate is damaged")
     return GestureLibrary(skeleton, anatomy, joints, rate, rest, recordings, phrases)

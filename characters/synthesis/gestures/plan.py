@@ -147,7 +147,7 @@ class GesturePlan:
             left, again = first.start - up, last.end + down
             segments += [
                 bridge(left, up, still, self._ends(first, leaving=False), rate),
-                *self._joined(group),
+                *self._join(group),
                 bridge(last.end, down, self._ends(last, leaving=True), still, rate),
                 PlayedSegment(again, library.rest[None]),
             ]
@@ -166,7 +166,7 @@ class GesturePlan:
             groups[-1].append(gesture)
         return groups
 
-    def _joined(self, group: Sequence[PlannedGesture]) -> Iterator[PlayedSegment]:
+    def _join(self, group: Sequence[PlannedGesture]) -> Iterator[PlayedSegment]:
         """Yield what is played of gestures, with bridges between them."""
         library = self.graph.library
         for number, gesture in enumerate(group):

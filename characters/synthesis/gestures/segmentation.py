@@ -174,11 +174,11 @@ def _moves(path: Array, speed: Array, begin: int, end: int) -> list[HandMove]:
                 parts[-1] = (parts[-1][0], last)
                 continue
         parts.append((first, last))
-    moves = [_trimmed(path, speed, *part) for part in parts]
+    moves = [_trim(path, speed, *part) for part in parts]
     return [move for move in moves if move.length >= MIN_MOVE]
 
 
-def _trimmed(path: Array, speed: Array, first: int, last: int) -> HandMove:
+def _trim(path: Array, speed: Array, first: int, last: int) -> HandMove:
     """Return a move without the slow frames at its ends."""
     fast = np.flatnonzero(speed[first : last + 1] > SLOW)
     begin, end = first + max(int(fast[0]) - 1, 0), min(first + int(fast[-1]) + 1, last)

@@ -86,10 +86,10 @@ def load_graph(path: Path) -> StoredGraph:
     CharacterError
         If it is missing, damaged, of another version, or no graph at all.
     """
-    return GRAPH_FORMAT.load(path, _stored)
+    return GRAPH_FORMAT.load(path, _read_stored)
 
 
-def _stored(content: Content, arrays: Arrays) -> StoredGraph:
+def _read_stored(content: Content, arrays: Arrays) -> StoredGraph:
     skeleton, anatomy = read_skeleton(content, arrays)
     frames, joints = arrays["rotations"].shape[:2]
     translations = np.tile(arrays["fixed_translations"].astype(float), (frames, 1, 1))

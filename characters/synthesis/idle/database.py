@@ -178,11 +178,11 @@ class IdleDatabase:
         longest = max(each.duration for each in own)
         return min(whole, default=longest), longest
 
-    def added(self, shift: BalanceShift) -> "IdleDatabase":
+    def with_shift(self, shift: BalanceShift) -> "IdleDatabase":
         """Return it with one more shift."""
         return replace(self, shifts=(*self.shifts, shift))
 
-    def removed(self, number: int) -> "IdleDatabase":
+    def without_shift(self, number: int) -> "IdleDatabase":
         """Return it without one of its shifts."""
         return replace(self, shifts=self.shifts[:number] + self.shifts[number + 1 :])
 

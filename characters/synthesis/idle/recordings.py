@@ -16,7 +16,7 @@ from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.feet import find_feet
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
-from cubeling.characters.smoothing import gaussian_smoothed
+from cubeling.characters.smoothing import gaussian_smooth
 from cubeling.characters.synthesis.choices import Alignment
 from cubeling.characters.synthesis.idle.alignment import align
 from cubeling.characters.synthesis.idle.posture_space import PostureVectors
@@ -182,7 +182,7 @@ def find_rests(balance: Array, rate: float) -> tuple[RestSpan, ...]:
     >>> [(rest.balance, rest.first, rest.end) for rest in find_rests(sway, 25.0)]
     [('left', 0, 38), ('right', 62, 100)]
     """
-    smooth = gaussian_smoothed(balance, _SMOOTHING_S * rate)
+    smooth = gaussian_smooth(balance, _SMOOTHING_S * rate)
     speed = np.gradient(smooth) * rate if len(smooth) > 1 else np.zeros(1)
     bounds = [0]
     for sign in (1, -1):

@@ -35,7 +35,7 @@ def save_person(person: Person, path: Path) -> None:
     skeleton, anatomy, recordings = person
     content, arrays = map(dict, skeleton_content(skeleton, anatomy))
     content["recordings"] = [
-        [each.name, each.rate, *([_written(each.feeling)] if each.feeling else [])]
+        [each.name, each.rate, *([_write_region(each.feeling)] if each.feeling else [])]
         for each in recordings
     ]
     for number, each in enumerate(recordings):
@@ -72,7 +72,7 @@ def _person(content: Content, arrays: Arrays) -> Person:
     return skeleton, anatomy, recordings
 
 
-def _written(region: Region) -> list[str | list[float]]:
+def _write_region(region: Region) -> list[str | list[float]]:
     """Return a region as it is written: its kind and its numbers."""
     # Names of the file format, whatever the classes are called.
     return ["Box" if isinstance(region, RegionBox) else "Sector", *astuple(region)]

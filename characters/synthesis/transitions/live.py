@@ -167,16 +167,16 @@ class LiveMotion:
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]."""
         frame, u = self._position(time)
-        first, second = self._played(frame)[0], self._played(frame + 1)[0]
+        first, second = self._play(frame)[0], self._play(frame + 1)[0]
         return first if u == 0.0 else mix([first, second], [1.0 - u, u])
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
-        return self._placed(start).to(self._placed(end))
+        return self._place_at(start).to(self._place_at(end))
 
-    def _placed(self, time: float) -> RootDelta:
+    def _place_at(self, time: float) -> RootDelta:
         frame, u = self._position(time)
-        return self._played(frame)[1].interpolated(self._played(frame + 1)[1], u)
+        return self._play(frame)[1].interpolate(self._play(frame + 1)[1], u)
 
     def _position(self, time: float) -> tuple[int, float]:
         at = self._frames_at(time)
@@ -186,7 +186,7 @@ class LiveMotion:
     def _frames_at(self, time: float) -> float:
         return max(self._start + (time - self._since) * self._rate * self._tempo, 0.0)
 
-    def _played(self, frame: int) -> tuple[Pose, RootDelta]:
+    def _play(self, frame: int) -> tuple[Pose, RootDelta]:
         """Return pose and place of a frame; play on until it is reached."""
         while self._newest < frame:
             self._place = self._place.then(self.source.advance(self.goals))

@@ -7,7 +7,7 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
-from cubeling.affect.settings import TomlTable, read, shown
+from cubeling.affect.settings import TomlTable, excerpt, read
 from cubeling.affect.words import WORD_PLACES
 from cubeling.robot.contract.catalogue import MAX_NAME_BYTES, Catalogue
 from cubeling.robot.drivers.opencat import tokens
@@ -112,13 +112,13 @@ def load_settings(path: Path | None = None) -> OpenCatSettings:
 
 
 @cache
-def _bundled() -> Mapping[str, Any]:
+def _read_bundled() -> Mapping[str, Any]:
     return read(BUNDLED_SETTINGS, RobotError)
 
 
 def parse_settings(document: Mapping[str, Any], source: str) -> OpenCatSettings:
     """Return the settings in a TOML document, over the bundled ones."""
-    top = TomlTable(_merged(_bundled(), document), source, error=RobotError)
+    top = TomlTable(_merge(_read_bundled(), document), source, error=RobotError)
     top.only("opencat", *MODELS)
     common = top.table("opencat")
     common.only("baud", "model", "commands_per_s", "dwell_s", "ask_every_s", "rest_after_s")
@@ -165,7 +165,7 @@ def _mood(table: TomlTable, model: str, sounds: Mapping[str, Notes]) -> OpenCatM
     sound = table.text("sound", "")
     if sound and sound not in sounds:
         known = ", ".join(sounds) or "none"
-        raise table.wrong("sound", f"there is no sound {shown(sound)}; there is {known}")
+        raise table.wrong("sound", f"there is no sound {excerpt(sound)}; there is {known}")
     mood = OpenCatMood(
         posture=_skill(table, "posture"),
         pose=_pose(table, model),
@@ -187,7 +187,7 @@ def _pose(table: TomlTable, model: str) -> Mapping[int, int]:
         if name not in joints:
             known = ", ".join(joints) or "none that is known"
             raise angles.wrong(name, f"no joint is called that; a {model} has {known}")
-        pose[joints[name].number] = joints[name].clamped(angles.number(name, -360.0, 360.0))
+        pose[joints[name].number] = joints[name].clamp(angles.number(name, -360.0, 360.0))
     if pose:
         _check_line(table, "pose", lambda: tokens.pose(pose))
     return pose
@@ -230,11 +230,11 @@ def _check_line(table: TomlTable, key: str, make: Callable[[], bytes]) -> None:
         raise table.wrong(key, str(error)) from error
 
 
-def _merged(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+def _merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
     """Return `base` overridden by `over`, key by key; a mood with a posture is replaced whole."""
     merged = dict(base)
     for key, value in over.items():
         old = merged.get(key)
         deeper = isinstance(old, Mapping) and isinstance(value, Mapping) and "posture" not in value
-        merged[key] = _merged(old, value) if deeper else value  # type: ignore[arg-type] # see above
+        merged[key] = _merge(old, value) if deeper else value  # type: ignore[arg-type] # see above
     return merged

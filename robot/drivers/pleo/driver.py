@@ -187,7 +187,7 @@ class PleoDriver:
         if result.outcome == "unsure":  # every one of these may be sent twice
             self._start.appendleft(result.command)
             return
-        self._scheduler.started(result.command, result.sent)
+        self._scheduler.record_start(result.command, result.sent)
         if not self._start:
             self._open(now)
 

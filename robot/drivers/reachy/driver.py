@@ -136,7 +136,7 @@ class ReachyDriver(SendBuffer):
     def receive(self, data: bytes, now: float) -> None:
         """Process received bytes at time `now` [s]."""
         for line in self.reader.feed(data):
-            message = _decoded(line)
+            message = _decode(line)
             if message is None:
                 self._skipped += 1
             elif self._open and not self._closed:
@@ -234,7 +234,7 @@ class ReachyDriver(SendBuffer):
         self._sent += 1
 
 
-def _decoded(line: str) -> dict[str, Any] | None:
+def _decode(line: str) -> dict[str, Any] | None:
     """Return the message of a line; None if it has none."""
     try:
         message = json.loads(line)

@@ -124,7 +124,7 @@ class TransmitBuffer:
             return
         self.end = encode(body, size, self.data, self.end)
 
-    def sent(self, count: int) -> None:
+    def drop(self, count: int) -> None:
         """Remove the first `count` bytes, which were sent."""
         self.start += count
         if self.start >= self.end:

@@ -44,7 +44,7 @@ class Firmware:
         self._report_servos(now)
         buffer = self._send_buffer
         if buffer.end:
-            buffer.sent(board.write(self._to_send[buffer.start : buffer.end]))
+            buffer.drop(board.write(self._to_send[buffer.start : buffer.end]))
         if attended and not self._watchdog_started:
             # Not earlier: before the first session a developer may interrupt the program.
             self._watchdog_started = True

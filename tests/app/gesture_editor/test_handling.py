@@ -30,7 +30,7 @@ SMALLEST_TEXT = 11.0
 
 @pytest.fixture
 def state():
-    collection = GestureCollection.bundled()
+    collection = GestureCollection.load_bundled()
     document = GestureDocument(collection.get("WAVE")).select("right", 1)
     names = ("human", "robot", "vleo")
     return EditorState(document, document, characters=names, names=collection.names)

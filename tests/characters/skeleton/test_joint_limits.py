@@ -26,7 +26,7 @@ def test_angles_make_the_rotations_that_they_were_made_of(seed: int) -> None:
     assert np.array_equal(limits.clamp(local), local)
     wild = rotations.normalize(random.normal(size=(20, 4, 4)))
     assert limits.excess(limits.clamp(wild)).max() <= EDGE_RAD
-    assert limits.widened(0.1).excess(limits.rotations(limits.high + 0.05)).max() <= EDGE_RAD
+    assert limits.widen(0.1).excess(limits.rotations(limits.high + 0.05)).max() <= EDGE_RAD
 
 
 def test_limits_that_are_none_are_refused() -> None:

@@ -212,9 +212,9 @@ def test_entered_again_it_goes_on(database: IdleDatabase) -> None:
 def test_shifts_can_be_added_and_removed_while_it_plays(database: IdleDatabase) -> None:
     motion = IdleMotion(database, 9)
     motion.sample(3.0)
-    motion.database = database.removed(0)
+    motion.database = database.without_shift(0)
     motion.sample(6.0)
-    motion.database = motion.database.added(database.shifts[0])
+    motion.database = motion.database.with_shift(database.shifts[0])
     motion.sample(9.0)
     assert set(map(id, motion.database.shifts)) == set(map(id, database.shifts))
 

@@ -20,9 +20,7 @@ class FaceTextures:
         self._x, self._y, slopes = frequencies(side)
         self._derivatives = np.stack([np.ones_like(slopes[0]), *slopes]).astype(np.complex64)
 
-    def blurred(
-        self, faces: Indices, texels_to_pixels: Array, sigma: float
-    ) -> tuple[Floats, Array]:
+    def blur(self, faces: Indices, texels_to_pixels: Array, sigma: float) -> tuple[Floats, Array]:
         """Blur faces by a Gaussian that is round in the camera's image, not on the paper.
 
         `texels_to_pixels` is the Jacobian of the image by the texels of each face, (faces, 2, 2),

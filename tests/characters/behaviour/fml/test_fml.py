@@ -93,7 +93,7 @@ def test_every_entry_of_the_bundled_lexicon_is_performed(kind, name):
 
 
 def test_the_gestures_of_the_bundled_lexicon_are_in_the_library():
-    gestures = GestureCollection.bundled()
+    gestures = GestureCollection.load_bundled()
     lexemes = {
         str(shown.attributes["lexeme"])
         for entry in BUNDLED.entries.values()

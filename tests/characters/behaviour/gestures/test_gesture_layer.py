@@ -189,7 +189,7 @@ SHOWN += [(name, gesture) for gesture in GESTURES for name in ("human", "vleo", 
 
 @pytest.mark.parametrize(("name", "gesture"), some(dict.fromkeys(SHOWN), 4))
 def test_gestures_have_no_jumps_on_any_character(characters, name, gesture):
-    symbolic = GestureCollection.bundled().get(gesture)
+    symbolic = GestureCollection.load_bundled().get(gesture)
     times = natural_times(symbolic, 0.5)
     _, poses = _play(characters[name], _asked(symbolic, times), (times.end or 0.0) + 0.3)
     assert _largest_step(poses) < 45.0

@@ -44,7 +44,7 @@ def _palms(performer, motion, side="right", count=41):
 @pytest.mark.parametrize("name", some(NAMES))
 def test_every_bundled_gesture_is_performed_by_every_bundled_character(performers, name):
     performer = performers[name]
-    for gesture in GestureCollection.bundled():
+    for gesture in GestureCollection.load_bundled():
         motion = performer.plan(gesture)
         shown = motion.sample(0.5 * motion.duration).rotations
         assert np.isfinite(shown).all()
@@ -71,7 +71,7 @@ def test_what_a_processor_rounds_changes_no_posture(performers, name, one_of):
     performer = performers[name]
     turns = performer.posture.rotations
     shares = itertools.cycle((-1e-12, 1e-12))
-    gestures = list(GestureCollection.bundled())[::one_of]
+    gestures = list(GestureCollection.load_bundled())[::one_of]
     for gesture, share in zip(gestures, shares, strict=False):
         planned = performer.plan(gesture).arm_turns
         posture = replace(performer.posture, rotations=turns * (1.0 + share))
@@ -111,7 +111,7 @@ def test_a_hand_on_the_other_side_is_the_mirror_image(performers):
 
 def test_hands_that_meet_meet(performers):
     performer = performers["human"]
-    motion = performer.plan(GestureCollection.bundled().get("CLAP"))
+    motion = performer.plan(GestureCollection.load_bundled().get("CLAP"))
     gap = np.linalg.norm(
         _palms(performer, motion, "left", 201) - _palms(performer, motion, "right", 201), axis=1
     )
@@ -181,7 +181,7 @@ def test_power_overshoots_in_rotation_and_comes_back(performers):
 
 
 def test_repeated_strokes_are_the_same_and_the_apex_is_that_of_the_first(performers):
-    clap = GestureCollection.bundled().get("CLAP")
+    clap = GestureCollection.load_bundled().get("CLAP")
     motion = performers["human"].plan(clap)
     first = motion.turns(apex_share(clap))
     assert motion.turns(apex_share(clap) + 1.0 / clap.repeats) == pytest.approx(first)
@@ -215,7 +215,7 @@ def test_a_gesture_of_the_body_or_of_one_key_is_held(performers, keys):
 
 def test_a_frame_takes_less_than_a_millisecond(performers):
     performer = performers["human"]
-    motion = performer.plan(GestureCollection.bundled().get("OPEN_ARMS"))
+    motion = performer.plan(GestureCollection.load_bundled().get("OPEN_ARMS"))
     spans = []
     for _ in range(50):
         start = time.perf_counter()
@@ -225,7 +225,7 @@ def test_a_frame_takes_less_than_a_millisecond(performers):
 
 
 def test_a_plan_made_bit_by_bit_is_the_plan_made_at_once(performers):
-    wave = GestureCollection.bundled().get("WAVE")
+    wave = GestureCollection.load_bundled().get("WAVE")
     style = GestureExpressivity(spatial=0.123)
     planning = performers["human"].planning(wave, "right", style)
     opening = planning.opening.sample(0.0).rotations

@@ -11,7 +11,7 @@ from cubeling.characters.behaviour.expressivity import GestureExpressivity
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
 from cubeling.characters.behaviour.performing.character_performer import CharacterRealizer
 from cubeling.characters.behaviour.performing.performed import CUBELING, RealizationContext
-from cubeling.characters.behaviour.performing.speech_kind import estimated, retime_speeches
+from cubeling.characters.behaviour.performing.speech_kind import estimate, retime_speeches
 from cubeling.characters.behaviour.performing.surroundings import NamedPlaces
 from cubeling.characters.behaviour.symbolic_gesture import HandKey, SymbolicGesture
 from cubeling.characters.speech.speech import Utterance, Word
@@ -193,7 +193,7 @@ def test_a_slower_voice_moves_the_rest_and_no_sync_point_is_out_of_order():
     stage = Stage(utterance_of=lambda text, _language: voice.get(text))
     stage.perform(SPEECH)
     assert not stage.at(0.0).sayings
-    guess = estimated(TEXT)
+    guess = estimate(TEXT)
     assert stage.times("s")["m"] == pytest.approx(guess.words[1].start)
     stage.at(0.08)
     voice[TEXT] = spoken(0.7)
@@ -219,7 +219,7 @@ def test_without_a_voice_the_estimate_counts():
 
 
 def test_a_target_of_an_offset_is_beside_it():
-    point = NamedPlaces(eyes=np.array([0.0, 0.1, 0.0])).seen_aside(
+    point = NamedPlaces(eyes=np.array([0.0, 0.1, 0.0])).point_aside(
         np.array([0.0, 0.1, 1.0]), math.radians(90), 0.0
     )
     assert point == pytest.approx(np.array([1.0, 0.1, 0.0]))
