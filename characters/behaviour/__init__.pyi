@@ -52,17 +52,17 @@ from cubeling.characters.behaviour.intents import (
     StrokeTimes as StrokeTimes,
     Times as Times,
 )
-from cubeling.characters.behaviour.performing.character_performer import (
+from cubeling.characters.behaviour.realization.character_realizer import (
     CharacterRealizer as CharacterRealizer,
 )
-from cubeling.characters.behaviour.performing.performed import (
+from cubeling.characters.behaviour.realization.frame import (
     Manner as Manner,
     RealizationContext as RealizationContext,
     RealizedFrame as RealizedFrame,
     Saying as Saying,
 )
-from cubeling.characters.behaviour.performing.speech_kind import retime_speeches as retime_speeches
-from cubeling.characters.behaviour.performing.surroundings import (
+from cubeling.characters.behaviour.realization.speech_kind import retime_speeches as retime_speeches
+from cubeling.characters.behaviour.realization.surroundings import (
     NamedPlaces as NamedPlaces,
     numbers_of as numbers_of,
 )

@@ -96,7 +96,7 @@ def load_motion(
         Frame rate of an .amc [Hz]; left out, what it states, or 120.
     scale, up
         Unit [m] and vertical axis ("y", "z", "-y", …) of a .bvh or .amc file; left out, they
-        are recognised, and `Performance.notes` says how.
+        are recognised, and `RecordedMotion.notes` says how.
 
     Raises
     ------
@@ -110,12 +110,12 @@ def load_motion(
         advice = conversion_advice(path)
         raise CharacterError(f"{path}: not a motion file of {known}; {advice}")
     stated = MotionOptions(name, None if skeleton is None else Path(skeleton), rate, scale, up)
-    performance = reader(path, stated)
-    if name not in (None, performance.clip.name):
+    recorded = reader(path, stated)
+    if name not in (None, recorded.clip.name):
         raise CharacterError(
-            f"{path}: has no clip {name!r}, only {performance.clip.name!r}; leave the name out"
+            f"{path}: has no clip {name!r}, only {recorded.clip.name!r}; leave the name out"
         )
-    return performance
+    return recorded
 
 
 def is_motion_only(path: "str | Path") -> bool:

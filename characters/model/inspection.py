@@ -219,8 +219,8 @@ def _problems_of_clips(character: Character, clips: Sequence[ClipStats]) -> Iter
     ]
     if treadmill:
         yield (
-            f"{_subject_and_verb(treadmill)} in place: `cubeling character locomotion` turns it into "
-            "a walk over the ground."
+            f"{_subject_and_verb(treadmill)} in place: `cubeling character locomotion` turns it "
+            "into a walk over the ground."
         )
 
 

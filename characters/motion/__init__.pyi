@@ -69,6 +69,7 @@ from cubeling.characters.synthesis.idle.database import (
     RestingPosture as RestingPosture,
 )
 from cubeling.characters.synthesis.idle.idle_motion import IdleMotion as IdleMotion
+from cubeling.characters.synthesis.idle.motion_texture import StretchStream as StretchStream
 from cubeling.characters.synthesis.idle.posture_space import PostureVectors as PostureVectors
 from cubeling.characters.synthesis.idle.recordings import (
     BALANCES as BALANCES,
@@ -79,7 +80,6 @@ from cubeling.characters.synthesis.idle.storage import (
     load_person as load_person,
     save_person as save_person,
 )
-from cubeling.characters.synthesis.idle.stretches import StretchStream as StretchStream
 from cubeling.characters.synthesis.idle.variations import COMPONENTS as COMPONENTS
 from cubeling.characters.synthesis.library import (
     DEFAULT_RATE_HZ as DEFAULT_RATE_HZ,

@@ -15,7 +15,7 @@ import numpy as np
 from rich.console import Console
 
 from cubeling.app.speaking.lines import bundled_lines
-from cubeling.app.speaking.live import LivePerformer
+from cubeling.app.speaking.live import LiveRealizer
 from cubeling.app.speaking.microphone import BLOCK, MICROPHONE_HZ
 from cubeling.app.speaking.moments import LineRequest
 from cubeling.app.speaking.performance import Direction, performed, write_video
@@ -66,7 +66,7 @@ def live_mouth(human: Character, voice: Voice) -> None:
     """
     speech = voice.say("Papa, mama, baba! My, oh my! Poppy and Bob are a happy couple.")
     sound = resample(speech.samples, speech.rate, MICROPHONE_HZ)
-    performer, mouth = LivePerformer(human), MouthMorphs.of(human.morphs)
+    performer, mouth = LiveRealizer(human), MouthMorphs.of(human.morphs)
     opening, loudness, took = [], [], []
     for number in range(len(sound) // BLOCK):
         block = sound[number * BLOCK : (number + 1) * BLOCK]

@@ -25,7 +25,8 @@ from cubeling.characters.behaviour.bml.feedback import (
     feedback_xml,
 )
 from cubeling.characters.behaviour.bml.parser import parse
-from cubeling.characters.behaviour.bml.performer import (
+from cubeling.characters.behaviour.bml.realizer import Realizer
+from cubeling.characters.behaviour.bml.timing import (
     CannotRealize,
     Scheduled,
     Timing,
@@ -33,7 +34,6 @@ from cubeling.characters.behaviour.bml.performer import (
     elastic,
     rigid,
 )
-from cubeling.characters.behaviour.bml.realizer import Realizer
 
 __all__ = [
     "BML",

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from cubeling.characters.behaviour.bml.document import Behaviour, Block, Constraint, SyncReference
-from cubeling.characters.behaviour.bml.performer import Timing
+from cubeling.characters.behaviour.bml.timing import Timing
 
 Moment = tuple[str, int]
 """A sync point: a behaviour's id, and the index in its `Timing.syncs`."""

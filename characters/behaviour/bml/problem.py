@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from cubeling.characters.behaviour.bml.constraints import Link, Moment, Order, Unmet
-from cubeling.characters.behaviour.bml.performer import Timing
 from cubeling.characters.behaviour.bml.spans import TOLERANCE
+from cubeling.characters.behaviour.bml.timing import Timing
 
 SUM_TOLERANCE = 10 * TOLERANCE
 """Seconds by which constraints may be missed at the end: every placement may add its rounding."""

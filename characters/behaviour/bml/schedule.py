@@ -19,10 +19,10 @@ from cubeling.characters.behaviour.bml.document import (
     Constraint,
 )
 from cubeling.characters.behaviour.bml.feedback import WarningType
-from cubeling.characters.behaviour.bml.performer import CannotRealize, Timing, TimingEstimator
 from cubeling.characters.behaviour.bml.planner import plan
 from cubeling.characters.behaviour.bml.problem import TimingProblem
 from cubeling.characters.behaviour.bml.spans import TOLERANCE
+from cubeling.characters.behaviour.bml.timing import CannotRealize, Timing, TimingEstimator
 
 CONTROLS = {
     "interrupt": Timing(("start", "end"), (0.0,), (0.0,), (0.0,)),
@@ -115,7 +115,7 @@ class BlockSchedule:
 class Scheduler:
     """Finds the times of one block: its constraints met, its behaviours stretched least."""
 
-    def __init__(self, block: Block, performer: TimingEstimator, external: External) -> None:
+    def __init__(self, block: Block, estimator: TimingEstimator, external: External) -> None:
         self._block, self._external = block, external
         self._behaviours = {behaviour.id: behaviour for behaviour in block.behaviours}
         self._constraints = {constraint.id: constraint for constraint in block.constraints}
@@ -124,7 +124,7 @@ class Scheduler:
         self._failures: list[Failure] = []
         for behaviour in block.behaviours:
             try:
-                self._timings[behaviour.id] = _timing(behaviour, block, performer)
+                self._timings[behaviour.id] = _timing(behaviour, block, estimator)
             except CannotRealize as error:
                 self._leave_out(behaviour.id, _failure_type(behaviour, error), str(error))
 
@@ -228,10 +228,10 @@ def _conflicts(
             earlier.append(track)
 
 
-def _timing(behaviour: Behaviour, block: Block, performer: TimingEstimator) -> Timing:
+def _timing(behaviour: Behaviour, block: Block, estimator: TimingEstimator) -> Timing:
     if behaviour.namespace == BMLA and behaviour.kind in CONTROLS:
         return CONTROLS[behaviour.kind]
-    return performer.timing(behaviour, block)
+    return estimator.timing(behaviour, block)
 
 
 def _failure_type(behaviour: Behaviour, error: CannotRealize) -> WarningType:

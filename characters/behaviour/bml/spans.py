@@ -3,7 +3,7 @@
 import math
 from itertools import pairwise
 
-from cubeling.characters.behaviour.bml.performer import Timing
+from cubeling.characters.behaviour.bml.timing import Timing
 
 TOLERANCE = 1e-6
 """Seconds by which limits may be missed: rounding of sums."""

@@ -126,7 +126,7 @@ class GraphController(WalkController):
 
     def _play(self, steered: SteeringOutput, state: str, weight: float, now: float) -> None:
         if state in self._actions:
-            self._perform(self._actions[state], weight, now, self._machine.state == state)
+            self._play_action(self._actions[state], weight, now, self._machine.state == state)
         elif state == "move":
             self._request(steered, now)
         self._machine.request(state, now, begin=self._live.restart if state == "move" else None)

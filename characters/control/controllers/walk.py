@@ -192,10 +192,10 @@ class WalkController:
         elif state == "move":
             self._strides.restart(motion, self._first_phase)
         if state in self._actions:
-            self._perform(self._actions[state], weight, now, self._machine.state == state)
+            self._play_action(self._actions[state], weight, now, self._machine.state == state)
         self._machine.request(state, now)
 
-    def _perform(self, action: ActionMotion, weight: float, now: float, playing: bool) -> None:
+    def _play_action(self, action: ActionMotion, weight: float, now: float, playing: bool) -> None:
         if not playing:
             self._weight = weight
             action.begin(weight)

@@ -5,9 +5,9 @@ import math
 import numpy as np
 
 from cubeling.characters.behaviour.intents import GazeIntent, Influence
-from cubeling.characters.behaviour.performing.face_names import FaceNames
-from cubeling.characters.behaviour.performing.planned_values import PlannedValues
-from cubeling.characters.behaviour.performing.stances import StanceJoints
+from cubeling.characters.behaviour.realization.face_names import FaceNames
+from cubeling.characters.behaviour.realization.planned_values import PlannedValues
+from cubeling.characters.behaviour.realization.stances import StanceJoints
 from cubeling.characters.control.layers.layer import FrameContext
 from cubeling.characters.control.layers.posture import posture_share
 from cubeling.characters.model.character import Character

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cubeling.characters.behaviour.performing.head_movements import turned_head
-from cubeling.characters.behaviour.performing.planned_values import PlannedValues
+from cubeling.characters.behaviour.realization.head_movements import turned_head
+from cubeling.characters.behaviour.realization.planned_values import PlannedValues
 from cubeling.characters.body.gaze import HEAD_LAG_S, Gaze
 from cubeling.characters.control.layers.behaviour import gaze_of, lag_of
 from cubeling.characters.control.layers.layer import FrameContext

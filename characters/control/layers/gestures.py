@@ -11,7 +11,7 @@ from cubeling.characters.skeleton.pose import Pose
 from cubeling.characters.smoothing import low_pass
 
 if TYPE_CHECKING:
-    from cubeling.characters.control.layers.performed_gesture import GesturePlayback
+    from cubeling.characters.control.layers.gesture_playback import GesturePlayback
 
 FADE_S = 0.3
 """How long a gesture takes to go that is left out before its end, or to join in late [s]."""
@@ -77,7 +77,7 @@ class GestureLayer:
     ) -> "GesturePlayback":
         # Most sessions have no gestures: what plans them is loaded with the first one.
         from cubeling.characters.behaviour.gestures.planning import GestureRealizer
-        from cubeling.characters.control.layers.performed_gesture import GesturePlayback
+        from cubeling.characters.control.layers.gesture_playback import GesturePlayback
 
         hand = intent.hand
         if hand == "nearest":
@@ -90,7 +90,7 @@ class GestureLayer:
 
 def prepare_gestures(character: Character) -> None:
     """Load what plans gestures and measure a body, so that its first gesture delays no frame."""
-    import cubeling.characters.control.layers.performed_gesture  # noqa: F401
+    import cubeling.characters.control.layers.gesture_playback  # noqa: F401
     from cubeling.characters.behaviour.gestures.planning import GestureRealizer
 
     GestureRealizer.of(character)

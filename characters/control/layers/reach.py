@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.behaviour.intents import ReachIntent, Times
-from cubeling.characters.behaviour.performing.planned_values import PlannedValues
+from cubeling.characters.behaviour.realization.planned_values import PlannedValues
 from cubeling.characters.body.capsules import fitted_capsules
 from cubeling.characters.control.layers.layer import FrameContext
 from cubeling.characters.errors import CharacterError

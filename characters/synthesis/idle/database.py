@@ -15,9 +15,9 @@ from cubeling.affect import Emotion
 from cubeling.affect.regions import Region
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.idle.motion_texture import Stretches
 from cubeling.characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
 from cubeling.characters.synthesis.idle.recordings import StandingRecording
-from cubeling.characters.synthesis.idle.stretches import Stretches
 from cubeling.characters.synthesis.idle.variations import COMPONENTS, Variations
 
 

@@ -20,7 +20,7 @@ from cubeling.characters.synthesis.idle.bridges import (
     nearest_balance,
 )
 from cubeling.characters.synthesis.idle.database import IdleDatabase, RestingPosture
-from cubeling.characters.synthesis.idle.stretches import StretchStream
+from cubeling.characters.synthesis.idle.motion_texture import StretchStream
 from cubeling.characters.synthesis.idle.variations import VariationStream
 
 Small = Literal["recorded", "extrema", "none"]

@@ -11,7 +11,7 @@ import numpy as np
 from cubeling.characters.motion.motion import Motion, RootDelta
 from cubeling.characters.skeleton.pose import Pose
 from cubeling.characters.synthesis.idle.database import IdleDatabase
-from cubeling.characters.synthesis.idle.stretches import StretchStream
+from cubeling.characters.synthesis.idle.motion_texture import StretchStream
 
 
 @dataclass

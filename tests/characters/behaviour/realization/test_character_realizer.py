@@ -9,10 +9,10 @@ from cubeling.characters import Character
 from cubeling.characters.behaviour.bml import BmlWarning, Realizer, parse
 from cubeling.characters.behaviour.expressivity import GestureExpressivity
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
-from cubeling.characters.behaviour.performing.character_performer import CharacterRealizer
-from cubeling.characters.behaviour.performing.performed import CUBELING, RealizationContext
-from cubeling.characters.behaviour.performing.speech_kind import estimate, retime_speeches
-from cubeling.characters.behaviour.performing.surroundings import NamedPlaces
+from cubeling.characters.behaviour.realization.character_realizer import CharacterRealizer
+from cubeling.characters.behaviour.realization.frame import CUBELING, RealizationContext
+from cubeling.characters.behaviour.realization.speech_kind import estimate, retime_speeches
+from cubeling.characters.behaviour.realization.surroundings import NamedPlaces
 from cubeling.characters.behaviour.symbolic_gesture import HandKey, SymbolicGesture
 from cubeling.characters.speech.speech import Utterance, Word
 

@@ -15,8 +15,7 @@ from cubeling.characters.behaviour.bml import (
     elastic,
 )
 from cubeling.characters.behaviour.intents import GazeIntent, HeadIntent, Influence, Times
-from cubeling.characters.behaviour.performing.head_movements import HALF_AMOUNT, HEAD_MOVEMENTS
-from cubeling.characters.behaviour.performing.performed import (
+from cubeling.characters.behaviour.realization.frame import (
     RealizationContext,
     RealizedFrame,
     number,
@@ -24,7 +23,8 @@ from cubeling.characters.behaviour.performing.performed import (
     stroke_times_of,
     times_of,
 )
-from cubeling.characters.behaviour.performing.surroundings import DIRECTIONS
+from cubeling.characters.behaviour.realization.head_movements import HALF_AMOUNT, HEAD_MOVEMENTS
+from cubeling.characters.behaviour.realization.surroundings import DIRECTIONS
 from cubeling.characters.skeleton.pose import Array
 
 SWING_S = 0.45
@@ -66,9 +66,7 @@ class HeadKind:
         # A head that has more time goes on to nod; it does not wait.
         return replace(natural, longest=(*natural.longest[:3], math.inf, *natural.longest[4:]))
 
-    def realize(
-        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
-    ) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Add the movement; one that takes longer has more swings unless their number is told."""
         behaviour, times = scheduled.behaviour, stroke_times_of(scheduled)
         repeats = _repeats(behaviour)
@@ -76,9 +74,7 @@ class HeadKind:
             lasting = times.stroke_end - times.stroke_start
             repeats = min(max(round(lasting / (1.6 * SWING_S)), 1), MAX_REPEATS)
         amount = number(behaviour, "amount", HALF_AMOUNT, 0.0, 1.0)
-        performed.heads.append(
-            HeadIntent(scheduled.key, _movement(behaviour), times, amount, repeats)
-        )
+        frame.heads.append(HeadIntent(scheduled.key, _movement(behaviour), times, amount, repeats))
 
 
 class GazeKind:
@@ -94,11 +90,9 @@ class GazeKind:
             HOLD_SYNCS, GAZE_SPANS_S, holds=frozenset({"ready"}), occupies=frozenset({"gaze"})
         )
 
-    def realize(
-        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
-    ) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Add the look to where the target is now."""
-        look(scheduled, times_of(scheduled), who, performed)
+        look(scheduled, times_of(scheduled), who, frame)
 
 
 class GazeShiftKind:
@@ -112,23 +106,19 @@ class GazeShiftKind:
         _gaze_target(behaviour, who)
         return elastic(SHIFT_SYNCS, (SHIFT_S,), least=0.2, most=math.inf)
 
-    def realize(
-        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
-    ) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Add the look to where the target is now."""
-        look(scheduled, shift_times_of(scheduled), who, performed)
+        look(scheduled, shift_times_of(scheduled), who, frame)
 
 
-def look(
-    scheduled: Scheduled, times: Times, who: RealizationContext, performed: RealizedFrame
-) -> None:
+def look(scheduled: Scheduled, times: Times, who: RealizationContext, frame: RealizedFrame) -> None:
     """Add a look at the target of a behaviour; with WHOLE, the feet turn too."""
     point = _gaze_target(scheduled.behaviour, who)
     influence = _influence(scheduled.behaviour)
-    performed.gazes.append(GazeIntent(scheduled.key, point, times, influence))
-    released = times.relax is not None and performed.now >= times.relax
+    frame.gazes.append(GazeIntent(scheduled.key, point, times, influence))
+    released = times.relax is not None and frame.now >= times.relax
     if influence == "WHOLE" and not released:
-        performed.facing = point
+        frame.facing = point
 
 
 def _gaze_target(behaviour: Behaviour, who: RealizationContext) -> Array:

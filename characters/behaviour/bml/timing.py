@@ -1,4 +1,4 @@
-"""What a BML realizer asks of whoever performs the behaviours."""
+"""The natural times of behaviours, and who tells them to a BML realizer."""
 
 import math
 from collections.abc import Mapping
@@ -10,7 +10,7 @@ from cubeling.characters.behaviour.bml.feedback import WarningType
 
 
 class CannotRealize(Exception):  # noqa: N818 -- a verdict on a document, not a bug
-    """A behaviour that a performer cannot do; the message says why, in one line."""
+    """A behaviour that cannot be done; the message says why, in one line."""
 
     def __init__(self, reason: str, type: WarningType | None = None) -> None:
         super().__init__(reason)
@@ -78,15 +78,15 @@ class Scheduled:
 
 
 class TimingEstimator(Protocol):
-    """Whoever performs behaviours: a character, or a stand-in with fixed estimates."""
+    """Tells natural times: a character, or a stand-in with fixed estimates."""
 
     def timing(self, behaviour: Behaviour, block: Block) -> Timing:
         """Return the natural times of a behaviour.
 
         Raises
         ------
-        CannotPerform
-            If it cannot perform it.
+        CannotRealize
+            If nobody here can do it.
         """
 
 

@@ -13,8 +13,7 @@ from cubeling.characters.behaviour.bml import (
     elastic,
 )
 from cubeling.characters.behaviour.intents import GestureIntent, PostureIntent, StrokeTimes, Times
-from cubeling.characters.behaviour.performing.hand_kinds import hold
-from cubeling.characters.behaviour.performing.performed import (
+from cubeling.characters.behaviour.realization.frame import (
     Going,
     Manner,
     RealizationContext,
@@ -23,6 +22,7 @@ from cubeling.characters.behaviour.performing.performed import (
     shift_times_of,
     times_of,
 )
+from cubeling.characters.behaviour.realization.hand_kinds import hold
 from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
 
 POSTURE_SPANS_S = (0.9, 1.5, 0.9)
@@ -54,11 +54,9 @@ class PostureKind:
         _check_posture(behaviour, who)
         return elastic(HOLD_SYNCS, POSTURE_SPANS_S, holds=frozenset({"ready"}))
 
-    def realize(
-        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
-    ) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Add the posture, and the arms' share of it as a held gesture."""
-        take(scheduled, times_of(scheduled), who, performed)
+        take(scheduled, times_of(scheduled), who, frame)
 
 
 class PostureShiftKind:
@@ -71,11 +69,9 @@ class PostureShiftKind:
         _check_posture(behaviour, who)
         return elastic(SHIFT_SYNCS, (SHIFT_S,), least=0.3, most=math.inf)
 
-    def realize(
-        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
-    ) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Add the posture, which stays when the behaviour is over."""
-        take(scheduled, shift_times_of(scheduled), who, performed)
+        take(scheduled, shift_times_of(scheduled), who, frame)
 
 
 class LocomotionKind:
@@ -89,12 +85,10 @@ class LocomotionKind:
         span = max(who.walk_time(target, _manner(behaviour)), 0.1)
         return elastic(SHIFT_SYNCS, (span,), least=0.3, most=math.inf)
 
-    def realize(
-        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
-    ) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Go to where the target is now."""
         target = who.surroundings.point(scheduled.behaviour.get("target"))[[0, 2]]
-        performed.going = Going(scheduled.key, scheduled.end, target, _manner(scheduled.behaviour))
+        frame.going = Going(scheduled.key, scheduled.end, target, _manner(scheduled.behaviour))
 
 
 class WaitKind:
@@ -107,19 +101,15 @@ class WaitKind:
         span = number(behaviour, "duration", WAIT_S, 0.0, 3600.0)
         return elastic(SHIFT_SYNCS, (span,), holds=frozenset({"start"}))
 
-    def realize(
-        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
-    ) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Do nothing: only its times count, for what is tied to them."""
 
 
-def take(
-    scheduled: Scheduled, times: Times, who: RealizationContext, performed: RealizedFrame
-) -> None:
+def take(scheduled: Scheduled, times: Times, who: RealizationContext, frame: RealizedFrame) -> None:
     """Add a posture of trunk and legs, and one of the arms as a gesture that is held."""
     names = [*_names(scheduled.behaviour)]
     stance = "+".join(name for name in names if who.stances.knows(name)) or UPRIGHT[0]
-    performed.postures.append(PostureIntent(scheduled.key, stance, times))
+    frame.postures.append(PostureIntent(scheduled.key, stance, times))
     for name in names:
         arms = _arms(name, who)
         if arms is not None:
@@ -127,7 +117,7 @@ def take(
                 times.start, times.ready, times.relax, times.end, *(times.ready,) * 3
             )
             key = f"{scheduled.key}:{name}"
-            performed.gestures.append(
+            frame.gestures.append(
                 GestureIntent(key, hold(arms), strokes, "both", who.how(scheduled))
             )
 

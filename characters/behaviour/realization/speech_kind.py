@@ -11,7 +11,7 @@ from cubeling.characters.behaviour.bml import (
     Timing,
     rigid,
 )
-from cubeling.characters.behaviour.performing.performed import (
+from cubeling.characters.behaviour.realization.frame import (
     RealizationContext,
     RealizedFrame,
     Saying,
@@ -53,16 +53,14 @@ class SpeechKind:
         spans = tuple(max(b - a, 0.0) for a, b in pairwise(times))
         return rigid(names, spans)
 
-    def realize(
-        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
-    ) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Say it, as soon as the voice has answered."""
         utterance, key = utterance_of(scheduled.behaviour, who), scheduled.key
         if utterance is None:
             who.late[key] = math.inf
         start = who.late.get(key, scheduled.start)
         if utterance is not None and start < math.inf:
-            performed.sayings.append(Saying(key, utterance, start))
+            frame.sayings.append(Saying(key, utterance, start))
 
 
 def retime_speeches(realizer: Realizer, who: RealizationContext, now: float) -> None:

@@ -1,4 +1,4 @@
-"""What a performer knows of a body, and what the body does in one frame."""
+"""What is known of a body, and what the body does in one frame."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -19,9 +19,9 @@ from cubeling.characters.behaviour.intents import (
     StrokeTimes,
     Times,
 )
-from cubeling.characters.behaviour.performing.face_names import FaceNames
-from cubeling.characters.behaviour.performing.stances import StanceJoints
-from cubeling.characters.behaviour.performing.surroundings import NamedPlaces, numbers_of
+from cubeling.characters.behaviour.realization.face_names import FaceNames
+from cubeling.characters.behaviour.realization.stances import StanceJoints
+from cubeling.characters.behaviour.realization.surroundings import NamedPlaces, numbers_of
 from cubeling.characters.ik.reaching.hands import find_hand
 from cubeling.characters.model.character import Character
 from cubeling.characters.skeleton.anatomy import SIDES
@@ -105,7 +105,7 @@ class RealizedFrame:
 
 @dataclass(eq=False)
 class RealizationContext:
-    """Who performs: the body with its abilities, its surroundings and its voice."""
+    """Who plays it: the body with its abilities, its surroundings and its voice."""
 
     character: Character
 
@@ -175,7 +175,7 @@ def number(behaviour: Behaviour, name: str, default: float, low: float, high: fl
 
     Raises
     ------
-    CannotPerform
+    CannotRealize
         If it is no number.
     """
     text = behaviour.get(name)

@@ -14,13 +14,13 @@ from cubeling.characters.behaviour.bml import (
     elastic,
 )
 from cubeling.characters.behaviour.intents import FaceIntent
-from cubeling.characters.behaviour.performing.performed import (
+from cubeling.characters.behaviour.realization.frame import (
     RealizationContext,
     RealizedFrame,
     shift_times_of,
     times_of,
 )
-from cubeling.characters.behaviour.performing.surroundings import numbers_of
+from cubeling.characters.behaviour.realization.surroundings import numbers_of
 
 FACE_SPANS_S = (0.4, 1.2, 0.5)
 """Times between the sync points of an expression [s]."""
@@ -43,13 +43,11 @@ class FaceKind:
         _face_weights(behaviour, who)
         return elastic(FACE_SYNCS, FACE_SPANS_S, holds=frozenset({"attackPeak"}))
 
-    def realize(
-        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
-    ) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Add the expression, with its peak at "attackPeak"."""
         names, weights = _face_weights(scheduled.behaviour, who)
         times = times_of(scheduled, "attackPeak")
-        performed.faces.append(FaceIntent(scheduled.key, names, weights, times))
+        frame.faces.append(FaceIntent(scheduled.key, names, weights, times))
 
 
 class FaceShiftKind:
@@ -62,13 +60,11 @@ class FaceShiftKind:
         _face_weights(behaviour, who)
         return elastic(SHIFT_SYNCS, (SHIFT_S,), least=0.2, most=math.inf)
 
-    def realize(
-        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
-    ) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Add the expression, which stays when the behaviour is over."""
         names, weights = _face_weights(scheduled.behaviour, who)
         times = shift_times_of(scheduled)
-        performed.faces.append(FaceIntent(scheduled.key, names, weights, times))
+        frame.faces.append(FaceIntent(scheduled.key, names, weights, times))
 
 
 def _face_weights(

@@ -45,7 +45,7 @@ class NamedPlaces:
 
         Raises
         ------
-        CannotPerform
+        CannotRealize
             If it names none.
         """
         name = text.strip().lower()

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from cubeling.characters.behaviour.intents import FaceIntent
-from cubeling.characters.behaviour.performing.planned_values import presence
+from cubeling.characters.behaviour.realization.planned_values import presence
 from cubeling.characters.face.affect_display import FACE_RECIPES
 from cubeling.characters.face.expressions import EXPRESSIONS, ExpressionMorphs
 from cubeling.characters.face.lids import Lids, numbers_by_name

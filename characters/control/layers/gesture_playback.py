@@ -1,4 +1,4 @@
-"""One gesture that is performed, from its first frame to its last."""
+"""One gesture that plays, from its first frame to its last."""
 
 import math
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ STEP_S = 1e-3
 
 @dataclass(eq=False)
 class GesturePlayback:
-    """One gesture that is performed, from its first frame to its last."""
+    """One gesture that plays, from its first frame to its last."""
 
     intent: GestureIntent
     """What is asked, last heard of."""

@@ -1,4 +1,4 @@
-"""A block that is being performed, or waits for its turn."""
+"""A block laid out in time, which plays or waits for its turn."""
 
 import math
 from collections.abc import Collection, Iterator
@@ -8,10 +8,10 @@ from typing import Literal
 from cubeling.characters.behaviour.bml.constraints import External, Resolver
 from cubeling.characters.behaviour.bml.document import Block, Constraint
 from cubeling.characters.behaviour.bml.feedback import BlockPrediction, PredictedBehaviour
-from cubeling.characters.behaviour.bml.performer import Scheduled
 from cubeling.characters.behaviour.bml.planner import plan
 from cubeling.characters.behaviour.bml.problem import TimingProblem
 from cubeling.characters.behaviour.bml.schedule import BehaviourTrack
+from cubeling.characters.behaviour.bml.timing import Scheduled
 
 State = Literal["preplanned", "waiting", "running", "over"]
 
@@ -87,7 +87,7 @@ class Realization:
         return found
 
     def behaviours(self, at: float | None = None) -> Iterator[Scheduled]:
-        """Yield its behaviours for a performer that are not over, or only those that go on then."""
+        """Yield its behaviours that are not over, or only those that go on then."""
         for track in self.tracks.values():
             goes_on = not track.over if at is None else track.times[0] <= at < track.times[-1]
             if goes_on and not track.control:

@@ -11,7 +11,7 @@ from cubeling.characters.behaviour.bml import (
     elastic,
 )
 from cubeling.characters.behaviour.intents import GestureIntent, Hand, ReachIntent
-from cubeling.characters.behaviour.performing.performed import (
+from cubeling.characters.behaviour.realization.frame import (
     RealizationContext,
     RealizedFrame,
     stroke_times_of,
@@ -54,15 +54,13 @@ class GestureKind:
         )
         return elastic(GESTURE_SYNCS, spans, holds=HOLDS)
 
-    def realize(
-        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
-    ) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Add the gesture by the hand of its `mode`."""
         gesture = _gesture(scheduled.behaviour, who)
         hand = HANDS.get(scheduled.behaviour.get("mode").upper(), "right")
         times = stroke_times_of(scheduled)
         how = who.how(scheduled)
-        performed.gestures.append(GestureIntent(scheduled.key, gesture, times, hand, how))
+        frame.gestures.append(GestureIntent(scheduled.key, gesture, times, hand, how))
 
 
 class PointingKind:
@@ -76,15 +74,13 @@ class PointingKind:
         who.surroundings.point(behaviour.get("target"))
         return elastic(GESTURE_SYNCS, POINTING_SPANS_S, holds=HOLDS)
 
-    def realize(
-        self, scheduled: Scheduled, who: RealizationContext, performed: RealizedFrame
-    ) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Add the reach to where the target is now."""
         behaviour = scheduled.behaviour
         hand = HANDS.get(behaviour.get("mode").upper(), "nearest")
         point = who.surroundings.point(behaviour.get("target"))
         times, how = times_of(scheduled), who.how(scheduled)
-        performed.reaches.append(ReachIntent(scheduled.key, point, times, "point", hand, how))
+        frame.reaches.append(ReachIntent(scheduled.key, point, times, "point", hand, how))
 
 
 def hold(gesture: SymbolicGesture) -> SymbolicGesture:

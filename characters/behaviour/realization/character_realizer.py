@@ -1,4 +1,4 @@
-"""Performs BML behaviours with a character: their natural times, and its body frame by frame."""
+"""Plays BML behaviours with a character: their natural times, and its body frame by frame."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -11,22 +11,22 @@ from cubeling.characters.behaviour.bml import (
     Scheduled,
     Timing,
 )
-from cubeling.characters.behaviour.performing.body_kinds import (
+from cubeling.characters.behaviour.realization.body_kinds import (
     LocomotionKind,
     PostureKind,
     PostureShiftKind,
     WaitKind,
 )
-from cubeling.characters.behaviour.performing.face_kinds import FaceKind, FaceShiftKind
-from cubeling.characters.behaviour.performing.hand_kinds import GestureKind, PointingKind
-from cubeling.characters.behaviour.performing.head_kinds import GazeKind, GazeShiftKind, HeadKind
-from cubeling.characters.behaviour.performing.kinds import BehaviourKind
-from cubeling.characters.behaviour.performing.performed import (
+from cubeling.characters.behaviour.realization.face_kinds import FaceKind, FaceShiftKind
+from cubeling.characters.behaviour.realization.frame import (
     Going,
     RealizationContext,
     RealizedFrame,
 )
-from cubeling.characters.behaviour.performing.speech_kind import SpeechKind
+from cubeling.characters.behaviour.realization.hand_kinds import GestureKind, PointingKind
+from cubeling.characters.behaviour.realization.head_kinds import GazeKind, GazeShiftKind, HeadKind
+from cubeling.characters.behaviour.realization.kinds import BehaviourKind
+from cubeling.characters.behaviour.realization.speech_kind import SpeechKind
 
 KINDS: Mapping[str, BehaviourKind] = {
     "speech": SpeechKind(),
@@ -57,14 +57,14 @@ class _Shift:
 
 
 class CharacterRealizer:
-    """Performs behaviours with a character; a `Performer` for a realizer.
+    """Plays behaviours with a character; a `TimingEstimator` for a realizer.
 
     Parameters
     ----------
     who
         The character, what it knows and where it is.
     kinds
-        What it can perform, by name.
+        What it can do, by name.
     """
 
     def __init__(self, who: RealizationContext, kinds: Mapping[str, BehaviourKind] = KINDS) -> None:
@@ -80,7 +80,7 @@ class CharacterRealizer:
 
         Raises
         ------
-        CannotPerform
+        CannotRealize
             If this character cannot perform it.
         """
         kind = self._kind(behaviour)

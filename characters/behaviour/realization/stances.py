@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cubeling.characters.behaviour.intents import PostureIntent
-from cubeling.characters.behaviour.performing.planned_values import presence
+from cubeling.characters.behaviour.realization.planned_values import presence
 from cubeling.characters.body.axes import Degrees, body_axes, rotation_vectors
 from cubeling.characters.ik.legs import LegIK, find_legs, find_paws
 from cubeling.characters.skeleton import rotations
