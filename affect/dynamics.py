@@ -40,6 +40,7 @@ class Feelings:
         self._valence, self._arousal = home.valence, home.arousal
         self._label_set = personality.label_set
         self._next_word = self._word = self._label_set.start
+        # Infinitely long ago: the dwell time never holds back the first word.
         self._word_since = -math.inf
         self._movement = 0.0
         self._timestamp: float | None = None
@@ -66,6 +67,7 @@ class Feelings:
         """
         check_range(f"the weight of {action!r}", weight, -1.0, 1.0)
         check_range("the speed", speed, 0.0, math.inf)
+        # Before anything is changed: a refused update leaves the state as it was.
         elapsed = self._time_since_update(timestamp)
         personality, gain = self.personality, self.personality.gain(action)
         self._movement = min(speed / TOP_SPEED, 1.0) * personality.movement
@@ -75,6 +77,8 @@ class Feelings:
         self._valence = _decay(
             self._valence, home.valence, rate, personality.valence_half_life, elapsed
         )
+        # With "magnitude" arousal is computed from valence and movement in `emotion`, and has no
+        # state.
         if personality.arousal == "own":
             rate, level = gain.arousal * strength / 2.0, home.arousal + self._movement
             self._arousal = _decay(
@@ -119,10 +123,14 @@ class Feelings:
 
     def _choose_word(self, now: float) -> None:
         """Choose the next word, and take it once the present one has lasted its dwell time."""
+        # The candidate has hysteresis against itself, not against the word that is shown: during
+        # the
+        # dwell time it goes on moving, and the newest one is taken at its end.
         labels, personality = self._label_set, self.personality
         self._next_word = labels.next(self._next_word, self.emotion, personality.hysteresis)
         if self._next_word == self._word or now - self._word_since < personality.dwell:
             return
+        # Robots have motions only from and to neutral: from happy to angry it passes the hub.
         through_hub = labels.hub not in (None, self._next_word, self._word)
         self._word = str(labels.hub) if through_hub else self._next_word
         self._word_since = now
@@ -143,9 +151,11 @@ def _decay(value: float, home: float, rate: float, half_life: float, elapsed: fl
 
     The solution is monotone, so clamping its end is exact too.
     """
+    # The limit of the formula below, which would divide by a decay of zero.
     if half_life == math.inf:
         return _clamp(value + rate * elapsed)
     decay = math.log(2.0) / half_life
+    # 1 − e^−x loses its digits for the small x of one frame; expm1 keeps them.
     share = -math.expm1(-decay * elapsed)
     return _clamp(value + (home - value) * share + rate * share / decay)
 

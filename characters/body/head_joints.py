@@ -94,6 +94,7 @@ class HeadJoints:
             joint.turn, joint.place = own, shift
             if joint.parent >= 0:
                 above = self._joints[joint.parent]
+                # glTF: a parent's scale stretches where its children are, not how far they turn.
                 if scales is not None:
                     shift = [a * b for a, b in zip(shift, above.scale, strict=True)]
                 x, y, z = rotate(above.turn, shift)
@@ -133,6 +134,7 @@ class HeadJoints:
         """Turn a joint in local rotations by a rotation vector in the character frame."""
         if joint.parent >= 0:
             turned = rotate(conjugate(self._joints[joint.parent].turn), turned)
+        # From the left: the turn is in the parent's frame.
         local[joint.number] = multiply(from_rotation_vector(turned), local[joint.number].tolist())
 
 
@@ -143,6 +145,7 @@ def _level(chest: Quaternion) -> Quaternion:
     if raised <= RAISED_RAD:
         return chest
     share = min((raised - RAISED_RAD) / (UPRIGHT_RAD - RAISED_RAD), 1.0)
+    # About +x by a positive angle +z turns down: it takes back what the chest is raised.
     return multiply(chest, from_rotation_vector((raised * share, 0.0, 0.0)))
 
 

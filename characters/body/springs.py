@@ -91,11 +91,13 @@ class SpringBody:
         """
         placed = self._frames.place_bones(pose, world_from_character)
         if self._last is None:
+            # At rest at first: without a step before there is no speed.
             self._now = self._before = placed.tails
             before, elapsed = placed, SETTLING_STEPS / REFERENCE_RATE
         else:
             before = self._carry(self._last, placed, elapsed)
         self._last = placed
+        # 1e-6: a frame of exactly 1/60 s is one step, whatever the rounding of its times.
         steps = max(math.ceil(elapsed * REFERENCE_RATE - 1e-6), 1)
         length = elapsed * REFERENCE_RATE / steps
         kept, falling, pulled, taken_along = self._step_factors(length)
@@ -132,6 +134,7 @@ class SpringBody:
         squares, most = np.vecdot(ways, ways), (self._most_speed * elapsed) ** 2
         if squares.max() > most:
             jumps = squares > most
+            # Whole chains: a bone that is carried while its parent swings would tear them apart.
             chains = np.isin(self._frames.roots, self._frames.roots[jumps])
             moves = rigid_moves(before.frames[first], now.frames[first])
             before = self._move_along(before, moves[self._frames.roots], chains)
@@ -152,7 +155,9 @@ class SpringBody:
         """Return where the tails' own speeds take them in a step, and forget the step before."""
         drift = self._now - self._before
         if length != self._step:
+            # Verlet has no speed but the last way, which belongs to the length of its own step.
             drift *= length / self._step
+        # A frame without time must not forget the speed.
         if length > 0.0:
             self._before, self._step = self._now, length
         drift *= kept
@@ -177,6 +182,8 @@ class SpringBody:
                 own[..., 3] += above[..., 3]
             origins, rest = own[..., 3], own[..., 4]
             way = with_length(free[level] + pulled[level] * rest - origins, reach)
+            # After the distance is restored, as in the specification; `push_out` keeps the distance
+            # itself.
             contacts = self._contacts[number]
             if contacts is not None:
                 contacts.push_out(way, origins, reach, colliders)

@@ -122,6 +122,7 @@ class Loop:
         if self.duration == 0.0:
             return 0, 0.0
         rounds = math.floor(time / self.duration)
+        # Rounding of the product may leave the interval by an ulp; the motion must not wrap there.
         return rounds, min(max(time - rounds * self.duration, 0.0), self.duration)
 
 
@@ -147,6 +148,7 @@ class RootOffset(TransformedMotion):
 
     def delta(self, delta: RootDelta) -> RootDelta:
         """Return a delta of the motion in the frame of the new place."""
+        # Conjugation: the same step, seen from the new place and heading.
         return self.offset.then(delta).then(self.offset.inverse())
 
 

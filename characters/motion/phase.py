@@ -89,6 +89,7 @@ class PhasedMotion(PhaseDriven):
         (0.6, -0.8)
         """
         if not self.marks:
+            # Without marks phase 0 is the start of the loop.
             return phase * self.motion.duration
         loops, at = divmod(2 * phase, len(self.marks))
         mark = min(int(at), len(self.marks) - 1)
@@ -102,6 +103,7 @@ class PhasedMotion(PhaseDriven):
         gaps = [later - earlier for earlier, later in itertools.pairwise(times)]
         before = [gaps[-1], *gaps]
         after = [*gaps, gaps[0]]
+        # The harmonic mean keeps time monotone: a walk never runs backward between two steps.
         slopes = [2 * a * b / (a + b) for a, b in zip(before, after, strict=True)]
         return list(zip(times, slopes, strict=True))
 

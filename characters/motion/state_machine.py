@@ -153,6 +153,7 @@ class StateMachine:
             )
         last = self._switches[-1]
         if last.below is not None and last.weight(time) >= 1.0:
+            # Or the chain of states below would grow with every request.
             last = replace(last, below=None)  # drop finished states
         if crossfade > 0.0 and not last.plays(state):
             if begin is not None:
@@ -173,6 +174,7 @@ class StateMachine:
     ) -> _Switch:
         # Forward differences: before its start, a loop with a gap would jump.
         old = (self._sample(last, time), self._sample(last, time + _VELOCITY_STEP_S))
+        # Before `begin`: it may restart the very motion that is being left.
         old_delta = self._travel(last, time, time + _VELOCITY_STEP_S)
         if begin is not None:
             begin()

@@ -141,6 +141,7 @@ class FrameResources:
     def camera_position(self) -> Array:
         """The camera in the table frame, (3,) [m]."""
         rotation, origin = self.camera_from_table[:3, :3], self.camera_from_table[:3, 3]
+        # −Rᵀ t, written as a row times a matrix.
         return np.asarray(-origin @ rotation, float)
 
     @cached_property

@@ -59,6 +59,7 @@ def connect(
     # The microsecond of the call tells this program from others.
     host = int(clock() * 1e6) % 0xFFFFFFFF + 1
     driver = kind.make(host, None if settings is None else Path(settings))
+    # Simulators are reached by URL whatever the protocol, also where a driver opens its own line.
     if kind.opener is None or url.startswith("sim:"):
         open_port = opener(url, clock, getattr(driver, "baud", kind.baud))
     else:
@@ -80,6 +81,7 @@ def connect(
             return robot
         if thread.failure is not None:
             robot.check()
+        # Whoever speaks the protocol but loses many frames gets more time; a dead line does not.
         answers = robot.telemetry.silence is not None
         if answers and robot.wait_until_ready(CATALOGUE_TIMEOUT_S):
             return robot

@@ -71,6 +71,8 @@ class RobotClock:
             self._second = robot
             self._fit()  # before the second of which one sample is all that is known
             self._samples.append(sample)
+        # Only the shortest round trip of a second: delays on the line are one-sided, and short ones
+        # hide the least of them.
         elif error < self._samples[-1].error:
             self._samples[-1] = sample
         else:
@@ -105,4 +107,5 @@ class RobotClock:
         mean_offset = sum(weight * offset for weight, _, offset in rows) / total
         spread = sum(weight * (host - mean_host) ** 2 for weight, host, _ in rows)
         slope = sum(w * (host - mean_host) * (offset - mean_offset) for w, host, offset in rows)
+        # No quartz is worse; a larger slope comes from delays that change.
         self.drift = min(max(slope / spread if spread else 0.0, -CLOCK_TOLERANCE), CLOCK_TOLERANCE)

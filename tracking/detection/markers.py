@@ -57,6 +57,7 @@ class MarkerDetector:
         self._others = cv2.aruco.ArucoDetector(pattern, _parameters(first, last))
         strict = _parameters(first, last)
         strict.adaptiveThreshWinSizeStep = (last - first) // 2
+        # OpenCV's share of the dictionary's correctable bits; 0 takes exact patterns only.
         strict.errorCorrectionRate = 0.0
         self._strict = cv2.aruco.ArucoDetector(pattern, strict)
 
@@ -77,6 +78,7 @@ def _parameters(first: int, last: int) -> cv2.aruco.DetectorParameters:
     parameters = cv2.aruco.DetectorParameters()
     parameters.adaptiveThreshWinSizeMin = first
     parameters.adaptiveThreshWinSizeMax = last
+    # One step from the first to the last window; OpenCV asserts that it is positive.
     parameters.adaptiveThreshWinSizeStep = max(last - first, 1)
     parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
     # The search window must not reach the next edge of a small marker: 0.3 cells, at most 5 px.

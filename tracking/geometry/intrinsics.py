@@ -83,6 +83,7 @@ class Intrinsics:
         flat = pixels.reshape(-1, 1, 2)
         if not len(flat):
             return pixels.copy()
+        # OpenCV's default stops after 5 iterations: too few at the border of a wide lens.
         precise = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 50, 1e-12)
         moved = cv2.undistortImagePoints(flat, self.matrix, self.distortion, None, precise)
         return moved.reshape(pixels.shape).astype(np.float64)

@@ -68,9 +68,11 @@ def rest_of(camera_from_cube: Array, edge: float, up: Array | None = None) -> Re
     """
     rotation, centre = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
     normals = ALL_NORMALS @ rotation.T
+    # Rows are normals: the product with the transpose turns all of them at once.
     cosines = normals @ (PRIOR_UP if up is None else up)
     if up is None:
         tops = centre + normals * (edge / 2)
+        # −0.1: a side seen edge-on counts as facing, as noise tilts it either way.
         facing = -np.einsum("ij,ij->i", normals, tops) > -0.1 * np.linalg.norm(tops, axis=1)
         cosines = np.where(facing, cosines, -1)
     best = int(np.argmax(cosines))
@@ -103,6 +105,7 @@ class TablePlane:
         self._rest_time += share * SETTLING_TIME_S
         x, y, z = (se3.inverse(self._start) @ np.append(rest.foot, 1))[:3].tolist()
         normal = self._start[:3, :3].T @ rest.up
+        # The slopes of y over x and z from a normal (−a, 1, −b) of any length.
         a, b = -normal[0] / normal[1], -normal[2] / normal[1]
         rows = np.array([[1, x, z], [0, 1, 0], [0, 0, 1]])
         weights = share / REST_SIGMAS**2
@@ -153,6 +156,7 @@ class TableEstimator:
                 if firm or self._provisional:
                     self.table.learn(rest, seconds)
                     self._drop_alternative()
+                # One firm rest that agrees settles a provisional table for good.
                 self._provisional &= not firm
                 return
         self._gather(camera_from_cube, firm, seconds)
@@ -191,6 +195,7 @@ def _frame(origin: Array, up: Array) -> Array:
     Straight below the camera, where that has no direction, +z points down in the image.
     """
     towards = -origin - up * (-origin @ up)
+    # Nearer than 2 cm to the point below the camera its direction is noise.
     if float(np.linalg.norm(towards)) < 0.02:
         towards = np.array([0.0, 1.0, 0.0])
         towards = towards - up * (towards @ up)

@@ -31,6 +31,7 @@ class VideoSource(StoredFrames):
         self._path = Path(path)
         self._container = _open(self._path)
         stream = self._container.streams.video[0]
+        # Frames and slices on all cores; without it FFmpeg decodes on one.
         stream.thread_type = "AUTO"
         try:
             frames = self._decode_frames(self._container)

@@ -82,6 +82,7 @@ class LocalTracker:
             return track.motion(pose, covariance, prediction.timestamp)[0] * camera.exposure
 
         start = prediction.camera_from_cube
+        # Blur wider than that has no edge profile to fit; the image is aligned as a whole.
         if self._footprint.blur_extent(blur_motion(start)) >= MAX_EDGE_BLUR_CELLS:
             return None
         found = self._edges.search(patch, start, blur_motion)
@@ -93,6 +94,7 @@ class LocalTracker:
             return None
         if self._footprint.blur_extent(measured - assumed) < MAX_MOTION_SURPRISE_CELLS:
             return found
+        # The first result where the second search fails: it was good, if not the best.
         return self._edges.search(patch, pose, lambda _: measured) or found
 
     def _by_blur(
@@ -126,6 +128,7 @@ class LocalTracker:
 
     def _observation(self, aligned: Alignment, velocity: Array) -> BlurObservation | None:
         """Return the measurements of the camera in an alignment; None where it may be wrong."""
+        # `not >=` instead of `<`, so that NaN is refused too.
         if not aligned.correlation >= MIN_CORRELATION_ALONE:
             return None
         return BlurObservation(

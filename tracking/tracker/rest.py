@@ -39,6 +39,7 @@ class Rest:
         begun = Rest(camera_from_cube, (np.zeros(6),), (noise,), (timestamp,))
         if self.first is None or not 0 < timestamp - self.timestamps[-1] <= MAX_FRAME_GAP_S:
             return begun
+        # `first` stays when its own offset falls out: it is only the origin of the others.
         kept = slice(-MAX_REST_FRAMES, None)
         longer = Rest(
             self.first,
@@ -65,6 +66,8 @@ class Rest:
             return True
         times = np.array(self.timestamps)
         times -= times.mean()
+        # A slow slide leaves no single pose apart from the others; only the slope over time shows
+        # it.
         spread = float(times @ times)
         slope = times @ offsets / spread
         noise = noises.mean(axis=0) / spread

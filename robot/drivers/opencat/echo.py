@@ -119,11 +119,14 @@ class EchoMatcher:
     def match(self, line: str, now: float) -> PendingLine | Question | None:
         """Return what a received line is the echo of. No command is pending after a question."""
         question, pending = self.question, self.pending
+        # The board echoes only the token, the first letter of a line.
         if question is not None and line == question.line[:1].decode():
+            # Of a repeated question it is unknown which send was echoed (Karn's rule).
             if question.tries == 1:
                 self.round_trip = now - question.sent
             self._end_question(question)
             self.answered = now
+            # A question asked before the fall says nothing about what came after it.
             self.doubtful = self.doubtful and not question.settles
             return question
         if pending is None:
@@ -168,5 +171,6 @@ class EchoMatcher:
         self.doubtful = False
 
     def _end_question(self, question: Question) -> None:
+        # Alternate, or a late echo of this one would count for the next.
         self._next_question = tokens.ANGLES if question.line == tokens.QUERY else tokens.QUERY
         self.question = None

@@ -76,6 +76,7 @@ class PleoDriver:
 
     def close(self) -> None:
         """Send Pleo to its neutral pose if the console is free, and nothing afterwards."""
+        # A busy console would take the line for a part of the pending command.
         if self._phase == "open" and self.console.pending is None:
             self.console.send(commands.JOINT_NEUTRAL, 0.0)
         elif self._phase != "closed":
@@ -96,6 +97,7 @@ class PleoDriver:
         result = self.console.tick(now)
         if result is not None:
             self._process(result, now)
+        # Only now: while a command is pending, all text belongs to its answer.
         elif self.console.pending is None:
             self._process_unsolicited(now)
         if self.console.pending is None and self._phase in ("starting", "open"):
@@ -196,6 +198,7 @@ class PleoDriver:
         took = result.ended - result.sent
         if command is commands.NUDGE and math.isfinite(result.ended):  # its answer needs no work
             before = took if self._round_trip is None else self._round_trip
+            # The gain of RFC 6298, as for the other robots.
             self._round_trip = before + (took - before) / 8
         # Each of these may be a restart that was not detected.
         late = took >= timing.MIN_RESTART_S
@@ -223,6 +226,8 @@ class PleoDriver:
             command = self._start.popleft()
             self.console.send(command, now, patient=command is commands.APP_UNLOAD)
             return
+        # Before any motion: Pleo's own behaviour, back after a restart, fights with ours for the
+        # joints.
         if self._unload_again:
             self.console.send(commands.APP_UNLOAD, now)
             return

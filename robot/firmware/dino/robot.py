@@ -87,6 +87,7 @@ def run(board: RobotBoard, table: ServoTable) -> None:
                 return
             except Exception as error:
                 log.write(SEVERITY_ERROR, f"restarted after {error!r}", 0)
+                # Before the pause: whatever went wrong, the servos must not hold on to it.
                 joints.release()
                 board.tone(0)
                 board.log_error(error)
