@@ -3,6 +3,7 @@
 The ground floor of the program: characters show an emotion and robots express it, and both take it
 from here.
 
+>>> from cubeling.affect import Feelings
 >>> Feelings("lively").emotion.label
 'neutral'
 """

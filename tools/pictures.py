@@ -18,14 +18,13 @@ from cubeling.app.behaving.opening import open_lines
 from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
 from cubeling.app.behaving.recording import perform
 from cubeling.app.commands.mood import plot
-from cubeling.app.gesture_editor.tour import draw_tour
 from cubeling.app.latency.pattern import draw_pattern
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.opening import intrinsics_for, open_session
 from cubeling.app.running.runner import run
-from cubeling.app.session import SessionOptions, events
+from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.session.bundled import bundled
 from cubeling.app.ui.calibration.coach import ANIMATION_PERIOD_S, CoachView
 from cubeling.app.ui.calibration.coach_lines import write_coverage
@@ -44,6 +43,7 @@ from cubeling.characters.rendering.portrait import PortraitRenderer
 from cubeling.tracking import CubeModel, open_source, write_sheet
 from cubeling.tracking.calibration import CubeFinder
 from cubeling.tracking.synthetic import open_synthetic
+from tools.gesture_tour import draw_tour
 from tools.offscreen import no_display_needed
 
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures"
@@ -91,7 +91,8 @@ def draw(scenario: str, moments: dict[str, float]) -> None:
 def in_window(picture: Picture, scenario: str, now: float, length: float) -> Picture:
     """Return a picture of a replay as the window shows it, paused."""
     layer = PlaybackLayer((scenario,), Path(), {})
-    marks = tuple(PlaybackMark(time, event) for time, event in events(bundled(scenario)))
+    with SessionFile(bundled(scenario)) as session:
+        marks = tuple(PlaybackMark(time, event) for time, event in session.events)
     position = Position(now, length, 0.0, length, marks=marks)
     layer.report(SessionStatus(scenario, paused=True, position=position))
     return layer.draw(picture)
@@ -234,14 +235,18 @@ def draw_behaviour() -> None:
     cv2.imwrite(str(FOLDER / "behave.jpg"), np.vstack(rows), quality)
 
 
-EDITOR_STEP = 5
+EDITOR_STEP = 6
 """The step of the tour through the gesture editor that is shown."""
 
 
 def draw_gestures() -> None:
-    """Draw the library of gestures, one of them in five settings, and the editor."""
+    """Draw the library of gestures, and one of them in five settings."""
     draw_library(FOLDER / "gestures.jpg")
     draw_settings(FOLDER / "gesture-settings.jpg")
+
+
+def draw_gesture_editor() -> None:
+    """Draw the editor in the middle of its tour."""
     with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as own:
         shown = draw_tour(Path(folder), Path(own))[EDITOR_STEP - 1]
         shutil.copyfile(shown, FOLDER / "gesture-editor.png")
@@ -257,4 +262,5 @@ if __name__ == "__main__":
     draw_pattern_of_latency()
     draw_moods()
     draw_gestures()
+    draw_gesture_editor()
     draw_behaviour()

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import moderngl
@@ -11,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from cubeling.app.pipeline.surroundings import Surroundings
 from cubeling.app.ui.contact_sheets import save
 from cubeling.characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
-from cubeling.characters.rendering import SceneCharacter, Softness, Stage, create_context
+from cubeling.characters.rendering import Box, CameraView, SceneCharacter, Stage, create_context
 from cubeling.characters.rendering.camera_picture.haze import haze_table
 from cubeling.characters.rendering.camera_picture.light import LINEAR_FROM_SRGB
 from cubeling.tracking import CubeControls, CubeGestures, CubeState, CubeTracker, Frame
+from cubeling.tracking.appearance import AppearanceMeter
 from cubeling.tracking.synthetic import SyntheticSource, open_synthetic
 from tools.captions import framed
 
@@ -45,8 +44,8 @@ ROWS: tuple[tuple[str, ...], ...] = (
 CROP = (slice(150, 560), slice(440, 1010))
 """The part of each picture that is shown: rows and columns."""
 
-GLARE = Softness(0.0, 0.0, haze=0.3, paper=0.75)
-"""Haze of the lens that sees the scene of the second picture."""
+GLARE, PAPER = 0.3, 0.75
+"""Haze, and light of the paper, of the lens that sees the scene of the second picture."""
 
 DIM = 0.08
 """Light in the dark room of the third picture, relative to that in the others."""
@@ -86,7 +85,7 @@ def _save(rows: Sequence[Image], name: str) -> None:
 
 def _hazed(frame: Frame) -> Frame:
     """Return a frame as a hazy lens shows it."""
-    table = haze_table(GLARE)
+    table = haze_table(GLARE, PAPER)
     assert table is not None
     return replace(frame, image=table[frame.image])
 
@@ -119,15 +118,24 @@ def _drawn(
     assert source.intrinsics is not None
     character = Character.load("human")
     animator = Animator(character, place=PLACE)
-    surroundings = Surroundings(source.cube, source.intrinsics, chosen)
+    meter = AppearanceMeter(source.cube, source.intrinsics, chosen)
     stage = Stage(context, source.intrinsics.size)
     gaze = np.array([0.0, 0.25, 0.6])
     for frame, state, controls in seen:
         command = CharacterCommand(frame.timestamp, action=ActionIntent("idle"), gaze=gaze)
         posed = animator.update(command)
-        view = surroundings.view(frame, state, controls)
-        find_cover = partial(surroundings.cover, frame, state)
-        picture = stage.draw(view, [SceneCharacter(character, posed)], find_cover=find_cover)
+        found, pose = meter.update(frame, state, controls.camera_from_table), state.camera_from_cube
+        view = CameraView(
+            frame.image,
+            source.intrinsics.matrix,
+            source.intrinsics.distortion,
+            controls.camera_from_table,
+            () if pose is None else (Box(pose, source.cube.edge),),
+            found.hand,
+            found.light,
+            found.softness,
+        )
+        picture = stage.draw(view, [SceneCharacter(character, posed)])
     stage.release()
     return picture
 

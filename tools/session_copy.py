@@ -7,9 +7,9 @@ from mcap.reader import SeekingReader
 from mcap.writer import Writer
 
 from cubeling.app.session.encoding import IMAGE_TOPIC, INPUTS_TOPIC, LINE_TOPIC, encode
-from cubeling.app.session.inputs import RecordedInputs, recorded_inputs
-from cubeling.app.session.reading import messages
+from cubeling.app.session.inputs import RecordedInputs
 from cubeling.app.session.recorder import CHUNK_BYTES, JSON_SCHEMAS
+from cubeling.app.session.session_file import SessionFile
 
 INPUT_TOPICS = (IMAGE_TOPIC, "/camera/calibration", INPUTS_TOPIC, LINE_TOPIC, "/events")
 """The channels of what came in."""
@@ -24,8 +24,8 @@ def keep_inputs(session: Path, path: Path) -> None:
     The camera's bytes stay as they are. What an older session says in its commands is copied to
     the inputs.
     """
-    has_inputs = next(messages(session, INPUTS_TOPIC), None) is not None
-    added = {} if has_inputs else recorded_inputs(session)
+    with SessionFile(session) as recorded:
+        added = {} if recorded.has(INPUTS_TOPIC) else recorded.inputs
     copy_session(
         session, path, lambda topic, _, data: data if topic in INPUT_TOPICS else None, added
     )

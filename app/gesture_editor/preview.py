@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from cubeling.app.gesture_editor.editing.document import GestureDocument, moves
 from cubeling.app.gesture_editor.editing.timing import duration
-from cubeling.app.gesture_editor.panels.space_overlay import ShownSpace
+from cubeling.app.gesture_editor.shown_space import ShownSpace
 from cubeling.characters import (
     Animator,
     Character,
@@ -38,7 +38,7 @@ from cubeling.characters.rendering import (
 
 Picture = NDArray[np.uint8]
 
-BACKDROP_BGR = 236, 240, 242
+BACKDROP_BGR = 240, 246, 250
 """Colour behind the character."""
 
 LEAD_S = 0.5
@@ -52,6 +52,9 @@ STEP_S, LONG_STEP_S = 1 / 30, 0.2
 
 EXACT_S = 0.1
 """How long before a time that is shown the steps are short [s]."""
+
+MARGIN_SHARE = 0.04
+"""What stays free on each side of the picture."""
 
 HEADROOM_SHARE = 0.12
 """What the picture shows above a character, for raised hands, over its height."""
@@ -75,8 +78,8 @@ class Performance:
 
     @staticmethod
     def of(document: GestureDocument, character: str) -> "Performance":
-        """Return what a document asks for."""
-        return Performance(document.gesture, document.hand, character)
+        """Return what a document asks for; its words do not change how it is performed."""
+        return Performance(replace(document.gesture, name="", summary=""), document.hand, character)
 
     @property
     def cycle(self) -> float:
@@ -181,7 +184,7 @@ class Preview:
             points = np.concatenate([points, [[0.0, top, 0.0]]])
             placed = posed.table_from_character
             table = points @ placed[:3, :3].T + placed[:3, 3]
-            self._cameras[key] = PortraitCamera.around(table, ELEVATION_RAD, size)
+            self._cameras[key] = PortraitCamera.around(table, ELEVATION_RAD, size, MARGIN_SHARE)
         return self._cameras[key]
 
     def release(self) -> None:

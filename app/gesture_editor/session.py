@@ -1,4 +1,4 @@
-"""One run of the editor, with or without a window: its state, its preview and its files."""
+"""One run of the editor, whatever shows it: its state, its preview and its files."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -18,6 +18,7 @@ from cubeling.app.gesture_editor.editing.document import (
 from cubeling.app.gesture_editor.editing.edits import gesture_name
 from cubeling.app.gesture_editor.editing.importing import imported
 from cubeling.app.gesture_editor.editing.state import (
+    Action,
     EditorState,
     Import,
     New,
@@ -26,13 +27,13 @@ from cubeling.app.gesture_editor.editing.state import (
     Request,
     Save,
     fresh,
+    settled,
     told,
     unless_unsaved,
 )
 from cubeling.app.gesture_editor.editing.store import GestureStore
-from cubeling.app.gesture_editor.handling import Event, handle, left_field
-from cubeling.app.gesture_editor.panels.layout import Picture, WindowDrawing, preview_size
-from cubeling.app.gesture_editor.preview import Performance, Preview
+from cubeling.app.gesture_editor.preview import Performance, Picture, Preview
+from cubeling.app.gesture_editor.shown_space import ShownSpace
 from cubeling.characters import Character, CharacterError
 from cubeling.characters.behaviour import SymbolicGesture
 
@@ -41,7 +42,7 @@ KEEP_INTERVAL_S = 2.0
 
 
 class EditorSession:
-    """Takes events and time, and returns pictures; it knows no window and no clock.
+    """Takes actions and time, and shows the character; it knows no window and no clock.
 
     Who opens it closes it; a second `close` does nothing.
 
@@ -67,7 +68,6 @@ class EditorSession:
     ) -> None:
         self._store = GestureStore(folder)
         self._preview = Preview(context)
-        self._drawing = WindowDrawing()
         self._preview.character(character)
         known = Character.bundled_names()
         characters = known if character in known else (*known, character)
@@ -84,16 +84,18 @@ class EditorSession:
         self._since_kept = 0.0
         self._begin(name)
 
-    def send(self, *events: Event) -> None:
-        """Handle events, and do what they ask for."""
-        for event in events:
-            self.state = handle(event, self.state)
-            self._perform(self.state.requests)
+    def do(self, action: Action) -> None:
+        """Do something, and what it asks for."""
+        self.settle(action(self.state))
+
+    def settle(self, state: EditorState, held: int = 0) -> None:
+        """Take the state after a frame, and do what it asks for; `held` is that of `settled`."""
+        self.state = settled(self.state, state, held)
+        self._perform(self.state.requests)
 
     def ask_to_quit(self) -> None:
         """Close, or ask what is to become of changes that are not saved."""
-        self.state = unless_unsaved(left_field(self.state), Quit())
-        self._perform(self.state.requests)
+        self.do(lambda state: unless_unsaved(state, Quit()))
 
     def advance(self, elapsed: float) -> None:
         """Let time pass [s]: the preview plays, and changes are kept."""
@@ -112,7 +114,7 @@ class EditorSession:
 
     def keep(self) -> None:
         """Keep changes that are not saved, so that nothing that happens can lose them."""
-        gesture = left_field(self.state).document.gesture
+        gesture = self.state.document.gesture
         if gesture == self._kept or gesture == self.state.saved.gesture:
             return
         self._kept = gesture
@@ -121,26 +123,26 @@ class EditorSession:
         except CharacterError as error:
             self.state = told(self.state, f"not safe yet: {error}", alarming=True)
 
-    def picture(self, scale: float) -> Picture:
-        """Return the picture of the window for a scale: 1 for 1280×720."""
-        size = preview_size(scale)
-        performance = self._performance or Performance.of(self.state.document, self.state.character)
-        shows_space = self.state.sectors_shown or self.state.held == "map"
-        shown = performance, self._played, size, shows_space, self.state.document
+    def picture(self, size: tuple[int, int]) -> Picture:
+        """Return the character, (height, width, 3) BGR; the same array while nothing changes."""
+        shown = self._shown_performance, self._played, size
         if self._still is None or self._still[0] != shown:
-            preview = self._preview.draw(performance, self._played, size)
-            if shows_space and self.state.document.hand_row is not None:
-                self._draw_space(preview, performance)
-            self._still = shown, preview
-        return self._drawing.draw(self.state, self._still[1], scale)
+            self._still = shown, self._preview.draw(self._shown_performance, self._played, size)
+        return self._still[1]
 
-    def _draw_space(self, preview: Picture, performance: Performance) -> None:
-        """Draw the gesture space of the selected hand over a picture, in place."""
+    @property
+    def space(self) -> ShownSpace | None:
+        """The gesture space of the selected hand in the last picture; None for trunk and head."""
         document = self.state.document
+        if self._still is None or document.hand_row is None:
+            return None
         left = document.row == "left" or (document.gesture.one_handed and document.hand == "left")
-        size = preview.shape[1], preview.shape[0]
-        place = None if document.hand_key is None else document.hand_key.place
-        self._preview.shown_space(performance, size, left).draw(preview, place)
+        size = self._still[1].shape[1], self._still[1].shape[0]
+        return self._preview.shown_space(self._shown_performance, size, left)
+
+    @property
+    def _shown_performance(self) -> Performance:
+        return self._performance or Performance.of(self.state.document, self.state.character)
 
     def close(self) -> None:
         """Release what draws; changes that are not saved and not discarded are kept."""

@@ -3,26 +3,17 @@
 from pathlib import Path
 from typing import Any
 
+# imgui-bundle contains the GLFW library that both must share, and sets its path on import.
+from imgui_bundle import imgui  # isort: skip
 import glfw
 
-from cubeling.app.gesture_editor.handling import (
-    Dropped,
-    Event,
-    KeyPressed,
-    Moved,
-    Pressed,
-    Released,
-    Typed,
-)
-from cubeling.app.gesture_editor.panels.cards import HEIGHT, WIDTH
+from cubeling.app.gesture_editor.editing.actions import drop_file
+from cubeling.app.gesture_editor.panels.ui import DESK
+from cubeling.app.gesture_editor.panels.view import EditorView
 from cubeling.app.gesture_editor.session import EditorSession
-from cubeling.app.ui.window.surface import TYPED_KEYS, WindowSurface, key_name
-
-EDITING_KEYS = {glfw.KEY_DELETE: "Delete", glfw.KEY_BACKSPACE: "Backspace"}
-"""Names of keys that other windows have no use for."""
-
-MIN_SCALE, MAX_SCALE = 1.0, 2.0
-"""Pixels for a unit of the canvas; a window beyond that shows an enlarged picture."""
+from cubeling.app.ui.panels.drawing.backend import ImGuiBackend, ui_scale
+from cubeling.app.ui.panels.drawing.style import rgba
+from cubeling.app.ui.window.surface import WindowSurface
 
 FRAME_S = 1 / 30
 """Time between two pictures, at least [s]."""
@@ -30,12 +21,15 @@ FRAME_S = 1 / 30
 MAX_ELAPSED_S = 0.1
 """Time that one picture advances the preview, at most [s]."""
 
-SIZE = round(WIDTH), round(HEIGHT)
+SIZE = 1360, 780
 """Size of the window at first [screen coordinates]."""
+
+MIN_SIZE = 640, 360
+"""Least size of the window [screen coordinates]."""
 
 
 class EditorWindow(WindowSurface):
-    """A window with an `EditorSession` in it; see `Surface` for who closes it.
+    """A window with an `EditorSession` in it; see `WindowSurface` for who closes it.
 
     Parameters
     ----------
@@ -63,11 +57,13 @@ class EditorWindow(WindowSurface):
         on_drop: Any = self._on_drop  # glfw's type hints know the callback in C
         glfw.set_drop_callback(self._window, on_drop)
         glfw.set_window_close_callback(self._window, self._on_close)
-        glfw.set_window_size_limits(self._window, SIZE[0] // 2, SIZE[1] // 2, -1, -1)
-        self._events: list[Event] = []
+        glfw.set_window_size_limits(self._window, *MIN_SIZE, -1, -1)
         self._session: EditorSession | None = None
+        self._view: EditorView | None = None
+        self._backend = ImGuiBackend(self._window)
         try:
             self._session = EditorSession(self.context, folder, character, name)
+            self._view = EditorView(self._session, self.context)
         except BaseException:
             self.close()
             raise
@@ -77,6 +73,12 @@ class EditorWindow(WindowSurface):
         """The editor."""
         assert self._session is not None, "it was opened"
         return self._session
+
+    @property
+    def view(self) -> EditorView:
+        """What shows it."""
+        assert self._view is not None, "it was opened"
+        return self._view
 
     def run(self) -> None:
         """Edit until the user ends it."""
@@ -88,57 +90,38 @@ class EditorWindow(WindowSurface):
             last = now
 
     def frame(self, elapsed: float) -> None:
-        """Handle what has happened, and show a picture."""
-        events, self._events = self._events, []
-        self.session.send(*events)
-        if self.session.closed:
+        """Show a picture, and do what the user asks for."""
+        size = glfw.get_framebuffer_size(self._window)
+        if 0 in size:  # an iconified window
+            self.poll()
             return
         self.session.advance(elapsed)
-        self.paint(self.session.picture(self._scale))
+        with self._backend.frame():
+            self.view.draw(ui_scale(self._window))
+            full = imgui.shortcut(int(imgui.Key.f), imgui.InputFlags_.route_global)
+        screen = self.context.detect_framebuffer(0)
+        screen.use()
+        screen.viewport = (0, 0, *size)
+        screen.clear(*rgba(DESK))
+        self._backend.render()
         self.present()
+        if full and not self.session.state.card:
+            self.toggle_full_screen()
 
     def release(self) -> None:
-        """Close the session."""
+        """Close the session, and what shows it."""
+        if self._view is not None:
+            self._view.release()
         if self._session is not None:
             self._session.close()
+        self._backend.close()
 
-    def handle_pointer(self, x: float, y: float) -> None:
-        """Handle the mouse."""
-        self._events.append(Moved(x / self._scale, y / self._scale))
-
-    @property
-    def _scale(self) -> float:
-        """Pixels of a picture for a unit of the canvas."""
-        wide, high = glfw.get_framebuffer_size(self._window)
-        return min(max(min(wide / WIDTH, high / HEIGHT), MIN_SCALE), MAX_SCALE)
-
-    def _on_button(self, _window: Any, button: int, action: int, mods: int) -> None:
-        if button == glfw.MOUSE_BUTTON_LEFT:
-            shift = bool(mods & glfw.MOD_SHIFT)
-            self._events.append(Pressed(shift) if action == glfw.PRESS else Released())
-
-    def _on_key(self, _window: Any, key: int, scan: int, action: int, mods: int) -> None:
-        name = EDITING_KEYS.get(key) or key_name(key, scan)
-        if name is None or action not in (glfw.PRESS, glfw.REPEAT):
-            return
-        control = bool(mods & (glfw.MOD_CONTROL | glfw.MOD_SUPER))
-        if name == "F" and not control and not self.session.state.focus:
-            self.toggle_full_screen()
-        elif name == "V" and control:
-            pasted: Any = glfw.get_clipboard_string(self._window) or b""
-            self._events.append(Typed(bytes(pasted).decode(errors="replace")))
-        else:
-            self._events.append(KeyPressed(name, bool(mods & glfw.MOD_SHIFT), control))
-
-    def _on_character(self, _window: Any, code: int) -> None:
-        letter = chr(code)
-        if letter in TYPED_KEYS and not self.session.state.focus:
-            self._events.append(KeyPressed(letter))
-        else:
-            self._events.append(Typed(letter))
+    def handle_key(self, key: str, *, shift: bool = False, repeated: bool = False) -> None:
+        """Leave the keys to the panels."""
 
     def _on_drop(self, _window: Any, paths: list[str]) -> None:
-        self._events += [Dropped(path) for path in paths[:1]]
+        if paths:
+            self.session.do(lambda state: drop_file(state, paths[0]))
 
     def _on_close(self, _window: Any) -> None:
         glfw.set_window_should_close(self._window, False)

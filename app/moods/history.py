@@ -13,7 +13,7 @@ from cubeling.app.pipeline.scenario import EmotionTarget
 from cubeling.app.scenarios import find_scenario, scenario_names
 from cubeling.app.scenarios.follow import gait
 from cubeling.app.scenarios.mood import MoodController
-from cubeling.app.session import SessionInfo, messages, session_info, start_over_times
+from cubeling.app.session import SessionFile, SessionInfo
 from cubeling.app.session.encoding import decode
 from cubeling.characters import CharacterCommand
 from cubeling.tracking import CubeControls
@@ -93,10 +93,15 @@ def read_history(path: Path, *, salvage: bool = False) -> MoodHistory:
     AppError
         The file is not a session, was cut off, or has no emotions.
     """
-    info = session_info(path, salvage=salvage)
+    with SessionFile(path, salvage=salvage) as session:
+        return _history(session)
+
+
+def _history(session: SessionFile) -> MoodHistory:
+    path, info = session.path, session.info
     frames: list[dict[str, Any]] = []
     frame: dict[str, Any] = {}
-    for topic, _, data in messages(path, *CHANNEL_TYPES):
+    for topic, _, data in session.messages(*CHANNEL_TYPES):
         try:
             frame[topic] = decode(CHANNEL_TYPES[topic], data)
         except ValueError as error:
@@ -113,7 +118,7 @@ def read_history(path: Path, *, salvage: bool = False) -> MoodHistory:
         _track("", [each["/robot/emotion"] for each in frames]),
         tuple(each["/cube/controls"] for each in frames),
         tuple(each["/character/command"] for each in frames),
-        start_over_times(path),
+        session.start_overs,
     )
 
 

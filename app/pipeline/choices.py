@@ -1,6 +1,6 @@
 """What a player may choose of the picture, by name; needs no numpy, as the command line checks it.
 
-`Surroundings` measures what the realism needs, and `CubeWindow` shows the character inside.
+`AppearanceMeter` measures what the realism needs, and `CubeWindow` shows the character inside.
 """
 
 from cubeling.app.errors import AppError

@@ -12,7 +12,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.attention import Attention
 from cubeling.app.pipeline.checkpoint import Checkpoint
 from cubeling.app.pipeline.choices import REALISM_CHOICES
-from cubeling.app.pipeline.cube_window import CubeWindow, Interior
+from cubeling.app.pipeline.cube_window import CubeWindow
 from cubeling.app.pipeline.frame_times import Lap
 from cubeling.app.pipeline.other_cube import OtherCube, advice
 from cubeling.app.pipeline.registry import make_scenario
@@ -24,7 +24,8 @@ from cubeling.app.pipeline.scenario import (
     ScenarioSettings,
 )
 from cubeling.app.pipeline.scenario_errors import checked, scenario_errors
-from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.situation import Situation, table_from_cube
+from cubeling.app.pipeline.speaking import Speaking
 from cubeling.app.pipeline.step import ReplayInputs, Step
 from cubeling.app.pipeline.step_renderer import StepRenderer
 from cubeling.app.pipeline.subjects import subjects
@@ -36,7 +37,6 @@ from cubeling.characters import (
     ControllerFactory,
     PosedCharacter,
     RootDelta,
-    SpeechIntent,
     first_suitable,
 )
 from cubeling.characters.rendering import Quality
@@ -51,12 +51,10 @@ from cubeling.tracking import (
     Intrinsics,
     LensEstimate,
 )
+from cubeling.tracking.appearance import APPEARANCE_PARTS, Appearance, AppearanceMeter
 
 if TYPE_CHECKING:
     import moderngl
-
-SUBTITLE_S = 1.2
-"""A line stays in the command for so long after its end [s], for those who read it."""
 
 LOOK_INSIDE = "Look into the cube: turn it, or tip it"
 """What the player is told when the cube has opened."""
@@ -71,8 +69,7 @@ STATE_NAMES = (
     "_attention",
     "_other_cube",
     "other_cube",
-    "_line",
-    "_speech",
+    "_speaking",
     "_complexion",
     "_window",
 )
@@ -111,6 +108,8 @@ class Playground:
         What makes the characters look real, of `REALISM_CHOICES`.
     inside
         When the character is in the cube, one of `INSIDE_CHOICES`.
+    measured
+        Whether the appearance of the pictures is measured although none is drawn.
 
     Raises
     ------
@@ -135,6 +134,7 @@ class Playground:
         controller: ControllerFactory = first_suitable,
         realism: Sequence[str] = tuple(REALISM_CHOICES),
         inside: str = "auto",
+        measured: bool = False,
     ) -> None:
         if isinstance(scenario, str):
             scenario = make_scenario(scenario, cube)
@@ -144,6 +144,8 @@ class Playground:
         self._controller, self._inside = controller, inside
         self.fixed = fixed
         """Whether the scenario cannot be changed now, so that the player is not told how."""
+        parts = tuple(each for each in APPEARANCE_PARTS if each in realism)
+        self._measured = parts if measured or context is not None else ()
         self._renderer = StepRenderer(context, intrinsics, realism)
         self.play(scenario, cube, character)
 
@@ -163,7 +165,7 @@ class Playground:
         self.scenario, self.cube, self.character = scenario, cube, character
         self._tracker = CubeTracker(cube, self.intrinsics)
         self._gestures = CubeGestures(cube)
-        self._renderer.play(cube)
+        self._begin_to_see(cube)
         self._animator, self._parts = animator, BodyParts.of(character, animator.scale)
         self._posed: PosedCharacter | None = None
         self._body: PosedBody | None = None
@@ -172,8 +174,7 @@ class Playground:
         self._other_cube = OtherCube(cube, self.known_cubes)
         self.other_cube: CubeModel | None = None
         """Another cube than the one in play, if one is in view."""
-        self._line: SpokenLine | None = None
-        self._speech: SpeechIntent | None = None
+        self._speaking = Speaking()
         self._complexion = Complexion()
 
     def cast(self, character: Character) -> None:
@@ -227,11 +228,16 @@ class Playground:
         """Go on as after the frame at which a checkpoint was made.
 
         The scenario, the cube and the character must be the same as then. What the drawing follows
-        is measured again: light, hand and softness of a later time are not those of this one.
+        is measured again: the appearance of a later time is not that of this one.
         """
         for name, value in checkpoint.content().items():
             setattr(self, name, value)
-        self._renderer.play(self.cube)
+        self._begin_to_see(self.cube)
+
+    def _begin_to_see(self, cube: CubeModel) -> None:
+        """Forget what the pictures have shown so far beside the cube's pose."""
+        self._renderer.play(cube)
+        self._appearance = AppearanceMeter(cube, self.intrinsics, self._measured)
 
     def adjust(self, settings: ScenarioSettings, look: str) -> None:
         """Play on with other settings, as far as the scenario can be adjusted."""
@@ -260,7 +266,7 @@ class Playground:
         replay
             Recorded messages to use instead of computing them; None to compute all.
         drawn
-            Whether to draw the picture; the other results are the same without it.
+            Whether to measure the picture's appearance and to draw it; all else is the same.
 
         Returns
         -------
@@ -274,33 +280,41 @@ class Playground:
         self._lap("tracking")
         controls = replay.controls or self.gesture(state)
         self._lap("gestures")
+        appearance = replay.appearance
+        if appearance is None and drawn:
+            appearance = self.see(frame, state, controls)
+        self._lap("appearance")
         inputs = inputs or Inputs()
-        inputs = replace(inputs, cube=_table_from_cube(state, controls))
-        outcome = self.attend(state, controls, self.decide(controls, inputs))
-        outcome = self.speak(inputs, outcome)
-        self.other_cube = self._other_cube.update(frame, state)
-        if self.other_cube is not None:
-            hint = advice(self.other_cube, self.scenario.name, self.cube.name, self.fixed)
-            outcome = replace(outcome, hint=hint)
+        decision = self.decide(state, controls, inputs)
+        command = self.command(state, controls, decision, inputs)
         if replay.command is not None:
-            outcome = replace(outcome, command=replay.command)
+            command = replay.command
+        self.other_cube = self._other_cube.update(frame, state)
         self._lap("scenario")
-        posed = (
-            self.animate(outcome.command) if replay.posed is None else self._fitted(replay.posed)
-        )
+        posed = replay.posed_for(self.character) or self.animate(command)
         self._posed, self._body = posed, PosedBody(self.character, self._parts, posed)
-        self._complexion.update(outcome.command.timestamp, outcome.command.emotion)
-        interior = self._window.update(state, controls, outcome.command, inputs.inside)
-        if self._window.invites and self.other_cube is None:
-            outcome = replace(outcome, hint=LOOK_INSIDE)
+        self._complexion.update(command.timestamp, command.emotion)
+        interior = self._window.update(state, controls, command, inputs.inside)
+        outcome = replace(decision, command=command, hint=self._hint(decision))
         self._lap("animation")
-        picture = self.draw(frame, state, controls, outcome, posed, interior) if drawn else None
         matrix = self.intrinsics.matrix
-        seen = subjects(state, controls, self.cube, self.character, posed, interior, matrix)
+        step = Step(
+            frame,
+            state,
+            controls,
+            outcome,
+            posed,
+            picture=None,
+            subjects=subjects(state, controls, self.cube, self.character, posed, interior, matrix),
+            scenario=self.scenario.name,
+            line=self._speaking.line if command.speech is not None else None,
+            interior=interior,
+            appearance=appearance,
+        )
+        if drawn:
+            step = replace(step, picture=self.draw(step))
         self._lap("drawing")
-        name = self.scenario.name
-        line = self._line if outcome.command.speech is not None else None
-        return Step(frame, state, controls, outcome, posed, picture, seen, name, line, interior)
+        return step
 
     @property
     def lens(self) -> LensEstimate:
@@ -319,83 +333,62 @@ class Playground:
         """Compute what the hand does with the cube."""
         return self._gestures.update(state)
 
-    def decide(self, controls: CubeControls, inputs: Inputs) -> Outcome:
+    def see(self, frame: Frame, state: CubeState, controls: CubeControls) -> Appearance | None:
+        """Measure what the picture tells beside the cube's pose; None where nothing needs it."""
+        table = controls.camera_from_table
+        return self._appearance.update(frame, state, table) if self._measured else None
+
+    def decide(self, state: CubeState, controls: CubeControls, inputs: Inputs) -> Outcome:
         """Let the scenario decide."""
         animator = self._animator
-        inputs = replace(
-            inputs,
-            body=self._body,
-            actions=animator.actions,
-            walks=animator.walks,
-            body_length=animator.length,
+        situation = Situation(
+            self._posed,
+            self._body,
+            animator.actions,
+            animator.walks,
+            animator.length,
+            table_from_cube(state, controls),
         )
         scenario = type(self.scenario)
         with scenario_errors(scenario):
-            return checked(self.scenario.update(controls, self._posed, inputs), scenario)
+            return checked(self.scenario.update(controls, situation, inputs), scenario)
 
-    def attend(self, state: CubeState, controls: CubeControls, outcome: Outcome) -> Outcome:
-        """Add gaze and emotion to the command.
+    def command(
+        self, state: CubeState, controls: CubeControls, decision: Outcome, inputs: Inputs
+    ) -> CharacterCommand:
+        """Return the command of a decision with gaze, emotion and speech.
 
-        Only this method does so: character, virtual robot and robot show one emotion.
+        Only this method adds the emotion: character, virtual robot and robot show one.
         """
-        gaze = self._attention.update(state, controls, outcome.command)
-        command = replace(outcome.command, gaze=gaze, emotion=outcome.emotion.emotion)
-        return replace(outcome, command=command)
+        command = decision.command
+        return replace(
+            command,
+            gaze=self._attention.update(state, controls, command),
+            emotion=decision.emotion.emotion,
+            speech=self._speaking.update(inputs, command),
+        )
 
-    def speak(self, inputs: Inputs, outcome: Outcome) -> Outcome:
-        """Add what the character says to the command: a new line takes the place of an old one.
-
-        A character that is hidden falls silent.
-        """
-        now = outcome.command.timestamp
-        line = inputs.line
-        if line is not None:
-            self._line, self._speech = line, SpeechIntent(line.utterance, now, line.profile)
-        over = self._speech is not None and now > self._speech.end + SUBTITLE_S
-        if over or inputs.clear or not outcome.command.visible:
-            self._line = self._speech = None
-        return replace(outcome, command=replace(outcome.command, speech=self._speech))
+    def _hint(self, decision: Outcome) -> str:
+        """Return what the player can do now; what the cube in view is comes first."""
+        if self.other_cube is not None:
+            return advice(self.other_cube, self.scenario.name, self.cube.name, self.fixed)
+        return LOOK_INSIDE if self._window.invites else decision.hint
 
     def animate(self, command: CharacterCommand) -> PosedCharacter:
         """Animate the character."""
         return self._animator.update(command)
 
-    def draw(
-        self,
-        frame: Frame,
-        state: CubeState,
-        controls: CubeControls,
-        outcome: Outcome,
-        posed: PosedCharacter,
-        interior: Interior | None = None,
-    ) -> NDArray[np.uint8] | None:
-        """Draw the picture; return None without a graphics context."""
-        body, blood = PosedBody(self.character, self._parts, posed), self._complexion.blood
-        return self._renderer.draw(frame, state, controls, outcome, body, interior, blood)
+    def draw(self, step: Step) -> NDArray[np.uint8] | None:
+        """Draw the picture of a step; return None without a graphics context."""
+        body = PosedBody(self.character, self._parts, step.posed)
+        return self._renderer.draw(step, body, self._complexion.blood)
 
     def drawn(self, step: Step) -> Step:
         """Return a step with its picture, which `step` left out."""
-        picture = self.draw(
-            step.frame, step.state, step.controls, step.outcome, step.posed, step.interior
-        )
-        return replace(step, picture=picture)
-
-    def _fitted(self, posed: PosedCharacter) -> PosedCharacter:
-        """Return a recorded pose for today's character, which may have got more morphs."""
-        morphs, count = posed.pose.morphs, len(self.character.morphs)
-        if morphs is None or len(morphs) >= count:
-            return posed
-        padded = np.concatenate([morphs, np.zeros(count - len(morphs))])
-        return replace(posed, pose=replace(posed.pose, morphs=padded))
+        appearance = step.appearance or self.see(step.frame, step.state, step.controls)
+        step = replace(step, appearance=appearance)
+        return replace(step, picture=self.draw(step))
 
     def close(self) -> None:
         """Release the graphics; a second call does nothing."""
         self._renderer.close()
-
-
-def _table_from_cube(state: CubeState, controls: CubeControls) -> NDArray[np.float64] | None:
-    """Return where a cube that is seen is on the table, (4, 4) [m]."""
-    table, cube = controls.camera_from_table, state.camera_from_cube
-    if table is None or cube is None or not controls.visible:
-        return None
-    return np.asarray(np.linalg.inv(table) @ cube)

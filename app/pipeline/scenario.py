@@ -3,42 +3,25 @@
 from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
-import numpy as np
-from numpy.typing import NDArray
-
 from cubeling.affect import Emotion, Personality
 from cubeling.app.errors import AppError
+from cubeling.app.pipeline.situation import Situation
 from cubeling.app.pipeline.spoken_line import SpokenLine
-from cubeling.app.pipeline.things import PosedBody, Thing
-from cubeling.characters import CharacterCommand, PosedCharacter, RootDelta
+from cubeling.app.pipeline.things import Thing
+from cubeling.characters import CharacterCommand, RootDelta
 from cubeling.characters.rendering import FloorPath
 from cubeling.tracking import CubeControls, CubeModel
 
 
 @dataclass(frozen=True)
 class Inputs:
-    """The inputs of a frame next to the camera's picture."""
+    """What the player asked for in a frame, besides what the cube tells."""
 
     clear: bool = False
     """Whether the player asked to start over: forget the path, the mood …"""
 
     scenario: str = ""
     """Name of the scenario that the player asked for, "" for the present one."""
-
-    actions: tuple[str, ...] = ()
-    """Names of the actions that the character can perform."""
-
-    walks: bool = True
-    """Whether the character walks and runs; else it hops."""
-
-    body_length: float = 0.0
-    """Length of the character on the table, from front to back [m]."""
-
-    cube: NDArray[np.float64] | None = None
-    """`table_from_cube`, (4, 4) [m]; None where the cube is not seen."""
-
-    body: PosedBody | None = None
-    """The character's body as after the previous frame; None in the first."""
 
     line: SpokenLine | None = None
     """What the character begins to say in this frame; None for nothing new."""
@@ -143,10 +126,8 @@ class Scenario(Protocol):
 
     def __init__(self, cube: CubeModel, settings: ScenarioSettings) -> None: ...
 
-    def update(
-        self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
-    ) -> Outcome:
-        """Decide on one frame; `character` is as after the previous frame, None in the first."""
+    def update(self, controls: CubeControls, situation: Situation, inputs: Inputs) -> Outcome:
+        """Decide on one frame."""
         ...
 
 

@@ -1,6 +1,6 @@
 """The result of one frame, and what a replay may provide instead of computing it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,9 +9,10 @@ from cubeling.affect import Emotion
 from cubeling.app.pipeline.cube_window import Interior
 from cubeling.app.pipeline.scenario import EmotionTarget, Outcome
 from cubeling.app.pipeline.spoken_line import SpokenLine
-from cubeling.characters import CharacterCommand, PosedCharacter
+from cubeling.characters import Character, CharacterCommand, PosedCharacter
 from cubeling.robot import Catalogue, Telemetry
 from cubeling.tracking import CubeControls, CubeState, Frame
+from cubeling.tracking.appearance import Appearance
 
 Rect = tuple[float, float, float, float]
 """Left, top, right and bottom of a rectangle in the picture."""
@@ -52,6 +53,9 @@ class Step:
     interior: Interior | None = None
     """What is seen in the cube; None while it is closed."""
 
+    appearance: Appearance | None = None
+    """What the picture tells beside the cube's pose; None where it was not measured."""
+
     @property
     def command(self) -> CharacterCommand:
         """What the character is asked to do."""
@@ -64,9 +68,11 @@ class Step:
 
     def messages(self) -> dict[str, object]:
         """Return the messages between camera and picture, by their topic in a recording."""
+        measured = {} if self.appearance is None else {"/picture/appearance": self.appearance}
         return {
             "/cube/state": self.state,
             "/cube/controls": self.controls,
+            **measured,
             "/character/command": self.command,
             "/character/pose": self.posed,
             "/robot/emotion": self.emotion,
@@ -83,11 +89,23 @@ class ReplayInputs:
     controls: CubeControls | None = None
     """What the hand does; None to compute it from the state."""
 
+    appearance: Appearance | None = None
+    """What the picture tells beside the cube's pose; None to measure it."""
+
     command: CharacterCommand | None = None
     """What the character is asked to do; None for the scenario's command."""
 
     posed: PosedCharacter | None = None
     """The character; None to animate it."""
+
+    def posed_for(self, character: Character) -> PosedCharacter | None:
+        """Return the recorded pose for today's character, which may have got more morphs."""
+        posed, count = self.posed, len(character.morphs)
+        morphs = None if posed is None else posed.pose.morphs
+        if posed is None or morphs is None or len(morphs) >= count:
+            return posed
+        padded = np.concatenate([morphs, np.zeros(count - len(morphs))])
+        return replace(posed, pose=replace(posed.pose, morphs=padded))
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,8 @@
 """Draws the picture of a step: who is on the table, who is in the cube, and their things."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,16 +11,41 @@ from numpy.typing import NDArray
 from cubeling.app.pipeline.cube_window import Interior
 from cubeling.app.pipeline.resident import MIN_SIZE
 from cubeling.app.pipeline.scenario import Outcome
+from cubeling.app.pipeline.step import Step
 from cubeling.app.pipeline.things import PosedBody
 from cubeling.characters import PosedCharacter
-from cubeling.characters.rendering import FULL, Quality, SceneCharacter
-from cubeling.tracking import CubeControls, CubeModel, CubeState, Frame, Intrinsics
+from cubeling.characters.rendering import FULL, Box, CameraView, Focus, Quality, SceneCharacter
+from cubeling.tracking import CubeModel, CubeState, Frame, Intrinsics
 
 if TYPE_CHECKING:
     import moderngl
 
-    from cubeling.app.pipeline.surroundings import Surroundings
     from cubeling.characters.rendering import Stage
+
+
+APERTURE_M = 0.002
+"""Diameter of the opening of a webcam's lens [m]: a focal length of 4 mm at f/2."""
+
+FOCUSING_S = 0.5
+"""Time constant with which the camera's focus follows the cube [s]."""
+
+
+class FocusDistance:
+    """Follows the distance of the cube, on which a camera focuses."""
+
+    def __init__(self) -> None:
+        self._distance = 0.0
+        self._time = 0.0
+
+    def update(self, state: CubeState) -> Focus | None:
+        """Return what is sharp while the cube is where it is; None before it was seen."""
+        pose = state.camera_from_cube
+        if pose is not None:
+            elapsed = state.timestamp - self._time
+            share = 1.0 - math.exp(-max(elapsed, 0.0) / FOCUSING_S) if self._distance else 1.0
+            self._distance += share * (float(pose[2, 3]) - self._distance)
+        self._time = state.timestamp
+        return Focus(self._distance, self._distance, APERTURE_M) if self._distance else None
 
 
 class StepRenderer:
@@ -46,15 +71,13 @@ class StepRenderer:
     ) -> None:
         self._context, self._intrinsics, self._realism = context, intrinsics, tuple(realism)
         self._stage = None if context is None else _stage_of(context, intrinsics)
-        self._surroundings: Surroundings | None = None
         self._quality = FULL
+        self._edge, self._focus_distance = 0.0, FocusDistance()
 
     def play(self, cube: CubeModel) -> None:
         """Begin with another cube: what the pictures have shown so far is forgotten."""
+        self._edge, self._focus_distance = cube.edge, FocusDistance()
         if self._stage is not None:
-            from cubeling.app.pipeline.surroundings import Surroundings
-
-            self._surroundings = Surroundings(cube, self._intrinsics, self._realism)
             self._stage.forget()
 
     def look_through(self, intrinsics: Intrinsics) -> None:
@@ -91,30 +114,37 @@ class StepRenderer:
             matrix, distortion = self._intrinsics.matrix, self._intrinsics.distortion
             self._stage.expect(frame.image, matrix, distortion)
 
-    def draw(
-        self,
-        frame: Frame,
-        state: CubeState,
-        controls: CubeControls,
-        outcome: Outcome,
-        body: PosedBody,
-        interior: Interior | None,
-        blood: float,
-    ) -> NDArray[np.uint8] | None:
-        """Draw the picture; return None without a graphics context.
+    def draw(self, step: Step, body: PosedBody, blood: float) -> NDArray[np.uint8] | None:
+        """Draw the picture of a step; return None without a graphics context.
 
-        `interior` is what is seen in the cube, None for a closed one, and `blood` that of
-        `Complexion`.
+        `body` is the character's, and `blood` that of `Complexion`.
         """
-        if self._stage is None or self._surroundings is None:
+        if self._stage is None:
             return None
-        view = self._surroundings.view(frame, state, controls, self._quality.matched)
-        seen = body.posed.visible and controls.camera_from_table is not None
-        characters = self._characters(outcome, body, interior, blood) if seen else []
-        if interior is not None and interior.box is not None:
-            view = replace(view, occluders=(interior.box,))
-        find_cover = partial(self._surroundings.cover, frame, state)
-        return self._stage.draw(view, characters, outcome.floor if seen else (), find_cover)
+        focus = self._focus_distance.update(step.state) if "focus" in self._realism else None
+        seen = body.posed.visible and step.controls.camera_from_table is not None
+        characters = self._characters(step.outcome, body, step.interior, blood) if seen else []
+        floor = step.outcome.floor if seen else ()
+        return self._stage.draw(self._view(step, focus), characters, floor)
+
+    def _view(self, step: Step, focus: Focus | None) -> CameraView:
+        """Return the camera's picture with all that is known of the scene in it."""
+        pose = step.state.camera_from_cube
+        box = None if step.interior is None else step.interior.box
+        if box is None and pose is not None:
+            box = Box(pose, self._edge)
+        view = CameraView(
+            step.frame.image,
+            self._intrinsics.matrix,
+            self._intrinsics.distortion,
+            step.controls.camera_from_table,
+            () if box is None else (box,),
+            focus=focus,
+        )
+        known = step.appearance
+        if known is None:
+            return view
+        return replace(view, hand=known.hand, light=known.light, softness=known.softness)
 
     def _characters(
         self, outcome: Outcome, body: PosedBody, interior: Interior | None, blood: float

@@ -1,6 +1,7 @@
 """Computing the channels of a session that holds only what came in."""
 
 from collections import defaultdict
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,7 +9,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.step import Step
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import Progress, run
-from cubeling.app.session import events, session_info
+from cubeling.app.session import SessionFile, session_info
 
 CAME_IN = ("mark ", "camera ", "paused", "resumed")
 """How the events begin that are not computed again: they came from the player or the camera."""
@@ -39,13 +40,14 @@ def compute_channels(
     KeyboardInterrupt
         Ctrl-C came before the end.
     """
-    info = session_info(path, salvage=salvage)
-    options = replace(info.options, record=complete, pictures=False, salvage=salvage)
-    came_in: defaultdict[float, list[str]] = defaultdict(list)
-    for time, event in events(path):
-        if event.startswith(CAME_IN):
-            came_in[time].append(event)
-    with open_session(options) as session:
+    with ExitStack() as closing:
+        replayed = closing.enter_context(SessionFile(path, salvage=salvage))
+        options = replace(replayed.info.options, record=complete, pictures=False, salvage=salvage)
+        came_in: defaultdict[float, list[str]] = defaultdict(list)
+        for time, event in replayed.events:
+            if event.startswith(CAME_IN):
+                came_in[time].append(event)
+        session = closing.enter_context(open_session(options, replayed=replayed))
 
         def note(step: Step) -> None:
             now = step.frame.timestamp

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,7 +16,7 @@ from cubeling.app.running.clock import Pace, SessionClock
 from cubeling.app.running.robots import RobotLine
 from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.scenarios import Scenario, ScenarioSettings, find_scenario, make_scenario
-from cubeling.app.session import SessionOptions
+from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.speaking.recorded import Speaker
 from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.status import EndCard
@@ -72,8 +73,8 @@ class OpenedSession:
     pace: Pace | None
     """Plays a recording at the speed at which it was recorded; None for every frame at once."""
 
-    start_overs: frozenset[float]
-    """In a replay, timestamps of the frames in which the player started over [s]."""
+    replayed: SessionFile | None
+    """The session that is replayed; None for another source."""
 
     replay_inputs: Iterator[ReplayInputs] | None
     """In a replay that does not start from the camera, the recorded messages of each frame."""
@@ -93,11 +94,18 @@ class OpenedSession:
     recording: "SessionRecording | None" = None
     """Records the session, or None."""
 
-    openings: frozenset[float] = frozenset()
-    """In a replay, timestamps of the frames in which the player opened or closed the cube [s]."""
-
     recorded: list[Path] = field(default_factory=list)
     """The recordings that have been completed before the end of the session."""
+
+    @cached_property
+    def start_overs(self) -> frozenset[float]:
+        """In a replay, timestamps of the frames in which the player started over [s]."""
+        return frozenset() if self.replayed is None else self.replayed.start_overs
+
+    @cached_property
+    def openings(self) -> frozenset[float]:
+        """In a replay, timestamps of the frames in which the cube was opened or closed [s]."""
+        return frozenset() if self.replayed is None else self.replayed.openings
 
     @property
     def keeps_scenario(self) -> bool:

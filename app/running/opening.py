@@ -18,9 +18,7 @@ from cubeling.app.running.option_checks import check_output_paths, check_part
 from cubeling.app.running.robots import RobotLine, is_real_robot
 from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.scenarios import scenario_cube
-from cubeling.app.session import SessionOptions
-from cubeling.app.session.inputs import recorded_inputs
-from cubeling.app.session.replay_inputs import read_replay_inputs
+from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.speaking.opening import open_speaker
 from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.status import EndCard
@@ -47,6 +45,7 @@ def open_session(
     options: SessionOptions,
     *,
     source: FrameSource | None = None,
+    replayed: SessionFile | None = None,
     screen: Screen | None = None,
     player: "PlayerPublisher | None" = None,
     ending: EndCard | None = None,
@@ -62,6 +61,9 @@ def open_session(
         What the user asks for.
     source
         Frames to use instead of those that `options` names; the caller closes it.
+    replayed
+        The session that `options` names as the source, opened; the caller closes it. None to open
+        it.
     screen
         Where the steps go, instead of a window or a file; they have no pictures then. The caller
         closes it.
@@ -123,15 +125,16 @@ def open_session(
             controller=controller,
             realism=options.realism,
             inside=options.inside,
+            measured=options.appearance,
         )
         closing.callback(playground.close)
         if options.windowed or source.live:  # else nobody waits for a frame
             prepare_gestures(character)
-        is_session = options.source.endswith(".mcap")
-        came_in = recorded_inputs(Path(options.source)) if is_session else {}
+        if replayed is None and options.source.endswith(".mcap"):
+            replayed = closing.enter_context(SessionFile(Path(options.source)))
         replay_inputs = None
-        if options.stage != "camera":
-            replay_inputs = read_replay_inputs(options.source, options.stage)
+        if options.stage != "camera" and replayed is not None:
+            replay_inputs = replayed.replay_inputs(options.stage)
         wire, clock = WireTap(), SessionClock()
         recording = None
         if options.record is not None:
@@ -149,7 +152,8 @@ def open_session(
             )
         pace = _pace(options, source, player)
         stepped = pace is None and not source.live
-        speaker = open_speaker(options, character, waits=stepped)
+        lines = None if replayed is None else replayed.lines
+        speaker = open_speaker(options, character, lines, waits=stepped)
         closing.callback(speaker.close)
         robot = closing.enter_context(
             RobotLine.open(options.robot, clock, wire, options.robot_settings, stepped=stepped)
@@ -167,14 +171,13 @@ def open_session(
             clock=clock,
             player=player,
             pace=pace,
-            start_overs=frozenset(time for time, each in came_in.items() if each.clear),
+            replayed=replayed,
             replay_inputs=replay_inputs,
             preferences=preferences,
             monitor=monitor,
             ending=ending,
             first_source=source,
             recording=recording,
-            openings=frozenset(time for time, each in came_in.items() if each.inside),
         )
         closing.callback(session.close)
         closing.callback(clock.release)  # the robot's connection is closed in real time

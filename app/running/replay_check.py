@@ -4,7 +4,6 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from itertools import zip_longest
-from pathlib import Path
 
 from rich.table import Table
 
@@ -13,8 +12,8 @@ from cubeling.app.pipeline.step import Step
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import Progress
-from cubeling.app.session import SessionOptions, messages
-from cubeling.app.session.encoding import MESSAGE_TYPES, encode, upgraded
+from cubeling.app.session import SessionFile, SessionOptions
+from cubeling.app.session.encoding import APPEARANCE_TOPIC, CHANNEL_TYPES, encode, upgraded
 
 
 @dataclass
@@ -37,7 +36,9 @@ class ComparisonResult:
 
     def __rich__(self) -> Table:
         table = Table("channel", "messages", "different", "first at")
-        for topic in MESSAGE_TYPES:
+        for topic in CHANNEL_TYPES:
+            if not self.counts[topic]:
+                continue
             first = self.first.get(topic)
             first_at = "" if first is None else f"{first:.3f} s"
             table.add_row(topic, str(self.counts[topic]), str(self.different[topic]), first_at)
@@ -45,18 +46,27 @@ class ComparisonResult:
 
 
 def check_session(
-    path: Path, options: SessionOptions, progress: Progress | None = None
+    session: SessionFile, options: SessionOptions, progress: Progress | None = None
 ) -> ComparisonResult:
     """Process a session's frames again and compare every message with the recorded one."""
     result = ComparisonResult()
-    options = replace(options, pictures=False, robot="none", record=None, output=None)
-    recorded = (
-        (topic, time, upgraded(topic, data)) for topic, time, data in messages(path, *MESSAGE_TYPES)
+    options = replace(
+        options,
+        source=str(session.path),
+        pictures=False,
+        appearance=session.has(APPEARANCE_TOPIC),
+        robot="none",
+        record=None,
+        output=None,
     )
-    with open_session(options) as session:
+    recorded = (
+        (topic, time, upgraded(topic, data))
+        for topic, time, data in session.messages(*CHANNEL_TYPES)
+    )
+    with open_session(options, replayed=session) as opened:
         made = (
             (topic, step.frame.timestamp, encode(message))
-            for step in _steps(session, progress)
+            for step in _steps(opened, progress)
             for topic, message in step.messages().items()
         )
         for old, new in zip_longest(recorded, made):

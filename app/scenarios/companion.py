@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 from cubeling.affect import Personality
 from cubeling.app.pipeline.registry import SUMMARIES
 from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
+from cubeling.app.pipeline.situation import Situation
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
 from cubeling.characters import (
     ActionIntent,
     CharacterCommand,
     LocomotionIntent,
-    PosedCharacter,
     RootDelta,
 )
 from cubeling.tracking import CubeControls, CubeModel
@@ -67,9 +67,7 @@ class Companion:
         self._turns = settings.turns
         self._mood.adjust(settings.personality or Personality.load(self.personality))
 
-    def update(
-        self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
-    ) -> Outcome:
+    def update(self, controls: CubeControls, situation: Situation, inputs: Inputs) -> Outcome:
         """Decide on one frame; see `Scenario.update`."""
         if inputs.clear:
             self._mood.reset()

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from cubeling.affect import Personality
 from cubeling.app.pipeline.registry import SUMMARIES
 from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
+from cubeling.app.pipeline.situation import Situation
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
 from cubeling.app.scenarios.pursuit import Pursuit
@@ -61,19 +62,17 @@ class Follow:
         self._dial.use(settings.speed_map)
         self._mood.adjust(settings.personality or Personality.load(self.personality))
 
-    def update(
-        self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
-    ) -> Outcome:
+    def update(self, controls: CubeControls, situation: Situation, inputs: Inputs) -> Outcome:
         """Decide on one frame; see `Scenario.update`."""
         if inputs.clear:
             self._mood.reset()
         speed = self._dial.update(controls.camera_angle, controls.timestamp)
         visible = self._presence.update(controls)
-        shake_action = self._react_to_shake(controls, character, inputs)
+        shake_action = self._react_to_shake(controls, situation)
         # As if cube and character were discs, so that the character does not enter the cube.
-        clearance = self._half_edge + inputs.body_length / 2
-        target = _near_side(controls.position, character, clearance)
-        if not inputs.walks and speed <= IDLE_SPEED:
+        clearance = self._half_edge + situation.body_length / 2
+        target = _near_side(controls.position, situation.character, clearance)
+        if not situation.walks and speed <= IDLE_SPEED:
             target = None  # a character that hops does so at any speed
         command = CharacterCommand(
             timestamp=controls.timestamp,
@@ -83,24 +82,25 @@ class Follow:
         )
         # A hidden character does nothing that changes the mood.
         action, mood_speed = (shake_action or "idle", speed) if visible else ("idle", 0.0)
-        events = self._pursuit.update(controls, character, clearance, mood_speed > IDLE_SPEED)
+        events = self._pursuit.update(
+            controls, situation.character, clearance, mood_speed > IDLE_SPEED
+        )
         emotion = self._mood.update(
             controls, action, speed=mood_speed, events=(*events, *inputs.events)
         )
-        icon = gait(speed, inputs.walks)
+        icon = gait(speed, situation.walks)
         return Outcome(command, emotion, _hint(controls, icon), icon, events=events)
 
-    def _react_to_shake(
-        self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
-    ) -> str:
+    def _react_to_shake(self, controls: CubeControls, situation: Situation) -> str:
         """Return the action that answers a shake until it is over, or ""."""
-        known = [action for action in SHAKE_ACTIONS if action in inputs.actions]
+        known = [action for action in SHAKE_ACTIONS if action in situation.actions]
         if controls.shaken and known and self._shake_action is None:
             self._shake_action = known[self._shakes % len(known)], False
             self._shakes += 1
         if self._shake_action is None:
             return ""
         name, begun = self._shake_action
+        character = situation.character
         performing = character is not None and character.state == name
         self._shake_action = None if begun and not performing else (name, begun or performing)
         return name if self._shake_action else ""

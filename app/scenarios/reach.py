@@ -5,6 +5,7 @@ import numpy as np
 from cubeling.affect import Personality
 from cubeling.app.pipeline.registry import SUMMARIES
 from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
+from cubeling.app.pipeline.situation import Situation
 from cubeling.app.pipeline.things import PosedBody
 from cubeling.app.scenarios.follow import PLAYER_POSITION, gait
 from cubeling.app.scenarios.mood import MoodController
@@ -24,7 +25,6 @@ from cubeling.characters import (
     ActionIntent,
     CharacterCommand,
     LocomotionIntent,
-    PosedCharacter,
     RootDelta,
 )
 from cubeling.tracking import CubeControls, CubeModel
@@ -106,27 +106,25 @@ class Reach:
         """Play on with other settings."""
         self._mood.adjust(settings.personality or Personality.load(self.personality))
 
-    def update(
-        self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
-    ) -> Outcome:
+    def update(self, controls: CubeControls, situation: Situation, inputs: Inputs) -> Outcome:
         """Decide on one frame; see `Scenario.update`."""
-        now, body = controls.timestamp, inputs.body
+        now, body = controls.timestamp, situation.body
         if inputs.clear:
             self._mood.reset()
         visible = self._presence.update(controls)
-        if inputs.cube is not None:
-            self._cube = inputs.cube
-            self._gifts.lay_out(inputs.cube[:3, 3])
-            self._gifts.make_way(inputs.cube[:3, 3], now)
+        if situation.cube is not None:
+            self._cube = situation.cube
+            self._gifts.lay_out(situation.cube[:3, 3])
+            self._gifts.make_way(situation.cube[:3, 3], now)
         if inputs.clear or controls.shaken:
             self._gifts.scatter(body, now)
         events: tuple[str, ...] = ()
         scene = None
         if visible and body is not None and self._cube is not None:
-            scene, events = self._decide(controls, inputs, body, self._cube)
+            scene, events = self._decide(controls, situation, body, self._cube)
         going = LocomotionIntent(facing=PLAYER_POSITION)
         if scene is not None and body is not None:
-            going = _going(scene, body, inputs, self._edge)
+            going = _going(scene, body, situation.walks, self._edge)
         stands = ActionIntent("idle") if going.target is None else None
         behaviour = self._hands.update(now, scene, body)
         command = CharacterCommand(now, going, stands, visible=visible, behaviour=behaviour)
@@ -134,15 +132,15 @@ class Reach:
             controls, "idle", speed=going.speed, events=(*events, *inputs.events)
         )
         doing = "watch" if scene is None else scene.doing
-        icon = gait(going.speed, inputs.walks) if going.speed else ICONS.get(doing, doing)
+        icon = gait(going.speed, situation.walks) if going.speed else ICONS.get(doing, doing)
         hint = _hint(controls, doing, self._gifts.named)
         return Outcome(command, emotion, hint, icon, events=events, things=self._gifts.things(now))
 
     def _decide(
-        self, controls: CubeControls, inputs: Inputs, body: PosedBody, cube: Point
+        self, controls: CubeControls, situation: Situation, body: PosedBody, cube: Point
     ) -> tuple[ReachScene, tuple[str, ...]]:
         """Return what it does, with what, and what has just happened."""
-        prospect = _prospect(controls, inputs, body, cube, self._edge)
+        prospect = _prospect(controls, situation, body, cube, self._edge)
         events: tuple[str, ...] = ()
         self._gifts.end_pauses(prospect.now)
         if self._gifts.busy:
@@ -187,7 +185,7 @@ class Reach:
 
 
 def _prospect(
-    controls: CubeControls, inputs: Inputs, body: PosedBody, cube: Point, edge: float
+    controls: CubeControls, situation: Situation, body: PosedBody, cube: Point, edge: float
 ) -> Prospect:
     """Return what the character knows about the cube at its last place, (4, 4)."""
     touch = nearest_point_of_cube(cube, edge, body.chest)
@@ -199,7 +197,7 @@ def _prospect(
     touching = not body.has_hands or body.hand_distance(touch) < body.parts.touching
     return Prospect(
         now=controls.timestamp,
-        seen=inputs.cube is not None,
+        seen=situation.cube is not None,
         cube=cube[:3, 3],
         touch=touch,
         effort=effort,
@@ -209,9 +207,9 @@ def _prospect(
     )
 
 
-def _going(scene: ReachScene, body: PosedBody, inputs: Inputs, edge: float) -> LocomotionIntent:
+def _going(scene: ReachScene, body: PosedBody, walks: bool, edge: float) -> LocomotionIntent:
     """Return where to go, or where to turn to."""
-    here, walks = body.place, inputs.walks
+    here = body.place
     if scene.stand is not None:
         target = around(here, way_to(here, scene.stand, 0.0, walks=walks), scene.cube)
     elif scene.doing == "come":

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from cubeling.affect import Personality
 from cubeling.app.pipeline.registry import SUMMARIES
 from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
+from cubeling.app.pipeline.situation import Situation
 from cubeling.app.scenarios.follow import PLAYER_POSITION, gait
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
@@ -74,9 +75,7 @@ class Sketch:
         self._dial.use(settings.speed_map)
         self._mood.adjust(settings.personality or Personality.load(self.personality))
 
-    def update(
-        self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
-    ) -> Outcome:
+    def update(self, controls: CubeControls, situation: Situation, inputs: Inputs) -> Outcome:
         """Decide on one frame; see `Scenario.update`."""
         if inputs.clear or controls.shaken:
             self._points, self._path = [], None
@@ -90,16 +89,18 @@ class Sketch:
         visible = self._presence.update(controls)
         command = CharacterCommand(
             timestamp=controls.timestamp,
-            locomotion=LocomotionIntent(speed, self._target(character), False, PLAYER_POSITION),
+            locomotion=LocomotionIntent(
+                speed, self._target(situation.character), False, PLAYER_POSITION
+            ),
             action=None if speed > IDLE_SPEED else ActionIntent("idle"),
             visible=visible,
         )
-        events = ("finished",) if visible and self._finishes_lap(character) else ()
+        events = ("finished",) if visible and self._finishes_lap(situation.character) else ()
         mood_speed = speed if visible else 0.0
         emotion = self._mood.update(
             controls, "idle", speed=mood_speed, events=(*events, *inputs.events)
         )
-        icon = gait(speed, inputs.walks)
+        icon = gait(speed, situation.walks)
         hint = self._hint(controls, speed)
         return Outcome(command, emotion, hint, icon, self._floor(), events)
 

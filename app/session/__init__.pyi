@@ -1,25 +1,19 @@
 from cubeling.app.session.codecs import check_codec as check_codec
-from cubeling.app.session.file_start import check_session_file as check_session_file
+from cubeling.app.session.file_start import open_session_file as open_session_file
 from cubeling.app.session.frames import (
     FrameEncoder as FrameEncoder,
     frame_encoder as frame_encoder,
-)
-from cubeling.app.session.inputs import (
-    opening_times as opening_times,
-    spoken_lines as spoken_lines,
-    start_over_times as start_over_times,
 )
 from cubeling.app.session.options import (
     SessionOptions as SessionOptions,
     check_stage as check_stage,
 )
-from cubeling.app.session.reading import (
+from cubeling.app.session.recorder import Recorder as Recorder
+from cubeling.app.session.session_file import (
     INSIDE_EVENT as INSIDE_EVENT,
     START_OVER_EVENT as START_OVER_EVENT,
+    SessionFile as SessionFile,
     SessionInfo as SessionInfo,
-    events as events,
-    has_channels as has_channels,
     messages as messages,
     session_info as session_info,
 )
-from cubeling.app.session.recorder import Recorder as Recorder

@@ -1,11 +1,13 @@
 """Encoding the messages of the pipeline, which are frozen dataclasses, as JSON with schemas."""
 
+import base64
 import dataclasses
 import json
 import types
 import typing
 from typing import Any, TypeVar
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,8 +15,15 @@ from cubeling.app.pipeline.scenario import EmotionTarget
 from cubeling.characters import CharacterCommand, Pose, PosedCharacter
 from cubeling.characters.speech import Samples
 from cubeling.tracking import CubeControls, CubeState
+from cubeling.tracking.appearance import Appearance
 
 T = TypeVar("T")
+
+SESSION_RECORD, FORMAT_KEY = "cubeling", "format"
+"""Name of a session's metadata, and the key of the version of its format."""
+
+SESSION_FORMAT = 1
+"""The version of the format that is written: all that changed it stands in `_upgraded`."""
 
 CLOCK_RECORD, CLOCK_ZERO = "cubeling clock", "zero_utc"
 """Name of a live session's metadata, and their key: when its timestamps were 0, by ISO 8601."""
@@ -39,11 +48,19 @@ MESSAGE_TYPES: dict[str, type[Any]] = {
     "/character/pose": PosedCharacter,
     "/robot/emotion": EmotionTarget,
 }
+"""The type of the messages on each channel that every session has."""
+
+APPEARANCE_TOPIC = "/picture/appearance"
+"""The channel of what the pictures tell beside the cube's pose, where pictures were drawn."""
+
+CHANNEL_TYPES: dict[str, type[Any]] = {**MESSAGE_TYPES, APPEARANCE_TOPIC: Appearance}
 """The type of the messages on each channel between camera and picture."""
 
 
 def encode(message: object) -> bytes:
     """Return a dataclass as JSON; numbers keep every bit, and NaN becomes null.
+
+    Arrays of bytes, as the share of a picture that a hand covers, are PNG files in base64.
 
     Joints (`Pose`) are rounded to single precision, as on the graphics card, and what is only noise
     of rounding to zero: it is not the same with every processor.
@@ -75,7 +92,7 @@ def upgraded(topic: str, document: bytes) -> bytes:
 
     A document that no version wrote is returned as it is.
     """
-    kind = MESSAGE_TYPES[topic]
+    kind = CHANNEL_TYPES[topic]
     try:
         content = json.loads(document)
         newer = _upgraded(kind, content)
@@ -95,8 +112,8 @@ def _upgraded(kind: type[Any], content: Any) -> Any:
 
     Before `affect.Emotion` held its word, an emotion had a label next to it, and the intents of a
     command were single fields, of which the oldest sessions lack some. A shake was a field of its
-    own among the controls. Sessions do not hold the version of the program that recorded them:
-    these fields tell the versions apart.
+    own among the controls. All that was before sessions held the version of their format: these
+    fields tell the versions apart.
     """
     if kind is CubeControls and "shaken" in content:
         controls = {key: value for key, value in content.items() if key != "shaken"}
@@ -135,6 +152,8 @@ def _plain(value: object) -> object:
         fields = dataclasses.fields(value)
         return {field.name: _plain(getattr(value, field.name)) for field in fields}
     if isinstance(value, np.ndarray):
+        if value.dtype == np.uint8:
+            return base64.b64encode(cv2.imencode(".png", value)[1].tobytes()).decode()
         return value.tolist() if np.isfinite(value).all() else _with_gaps(value)
     if isinstance(value, tuple | list):
         return [_plain(item) for item in value]
@@ -170,12 +189,20 @@ def _typed(kind: Any, value: Any) -> Any:
         choices = [choice for choice in typing.get_args(kind) if choice is not type(None)]
         return None if value is None else _typed(choices[0], value)
     if origin is np.ndarray:
-        return np.array(value, float)
+        return np.array(value, float) if isinstance(value, list) else _image(value)
     if origin is tuple:
         return tuple(_typed(typing.get_args(kind)[0], item) for item in value)
     if kind is float:
         return float("nan") if value is None else float(value)
     return value
+
+
+def _image(text: str) -> NDArray[np.uint8]:
+    """Return the bytes (height, width) in a PNG file in base64."""
+    image = cv2.imdecode(np.frombuffer(base64.b64decode(text), np.uint8), cv2.IMREAD_GRAYSCALE)
+    if image is None:
+        raise ValueError("not a PNG file in base64")
+    return np.asarray(image, np.uint8)
 
 
 def _schema(kind: Any) -> dict[str, Any]:
@@ -186,6 +213,8 @@ def _schema(kind: Any) -> dict[str, Any]:
     origin = typing.get_origin(kind)
     if origin in (typing.Union, types.UnionType):
         return {"anyOf": [_schema(choice) for choice in typing.get_args(kind)]}
+    if kind == NDArray[np.uint8]:
+        return {"type": "string", "contentEncoding": "base64", "contentMediaType": "image/png"}
     if origin is np.ndarray:
         return {"type": "array"}
     if origin is tuple:

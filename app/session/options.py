@@ -9,7 +9,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import REALISM_CHOICES
 from cubeling.characters.speech import DEFAULT_PROFILE, SpeechProfile
 
-START_STAGES = ("camera", "state", "controls", "command", "pose")
+START_STAGES = ("camera", "state", "controls", "appearance", "command", "pose")
 """The stages that a replay can start from; each takes one channel more as recorded."""
 
 
@@ -98,6 +98,9 @@ class SessionOptions:
     pictures: bool = True
     """Whether to draw."""
 
+    appearance: bool = False
+    """Whether what pictures tell of hand, light and softness is measured although none is drawn."""
+
     muted: bool = False
     """Whether the session is silent: nothing is heard, and a video has no sound."""
 
@@ -163,12 +166,14 @@ class SessionOptions:
             "personality": self.personality or "",
             "look": self.look,
             "inside": self.inside,
+            "realism": ",".join(self.realism),
             "source": source.split("://")[0] if "://" in source else Path(source).name,
         }
 
     @classmethod
     def from_metadata(cls, metadata: Mapping[str, str], source: str) -> Self:
         """Return the settings that `metadata` kept, to replay the recording `source`."""
+        realism = metadata.get("realism", ",".join(REALISM_CHOICES))
         return cls(
             scenario=metadata["scenario"],
             source=source,
@@ -182,6 +187,7 @@ class SessionOptions:
             personality=metadata.get("personality") or None,
             look=metadata.get("look", "auto"),
             inside=metadata.get("inside", "auto"),
+            realism=tuple(filter(None, realism.split(","))),
         )
 
 

@@ -21,12 +21,15 @@ from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.pipeline.step import Step
 from cubeling.app.session.encoding import (
+    CHANNEL_TYPES,
     CLOCK_RECORD,
     CLOCK_ZERO,
+    FORMAT_KEY,
     IMAGE_TOPIC,
     INPUTS_TOPIC,
     LINE_TOPIC,
-    MESSAGE_TYPES,
+    SESSION_FORMAT,
+    SESSION_RECORD,
     encode,
     encode_sound,
     schema,
@@ -42,7 +45,7 @@ MAX_QUEUED_WRITES = 256
 """Writes that may wait for a slow disk; with more, recording stops instead of delaying frames."""
 
 JSON_SCHEMAS = {
-    **{topic: (f"cubeling.{kind.__name__}", schema(kind)) for topic, kind in MESSAGE_TYPES.items()},
+    **{topic: (f"cubeling.{kind.__name__}", schema(kind)) for topic, kind in CHANNEL_TYPES.items()},
     INPUTS_TOPIC: ("cubeling.RecordedInputs", schema(RecordedInputs)),
     "/robot/wire": (
         "cubeling.Wire",
@@ -176,7 +179,9 @@ class Recorder(Closeable):
 
     def _start(self) -> None:
         self._writer.start(profile="", library="cubeling")
-        self._writer.add_metadata("cubeling", self._metadata)
+        self._writer.add_metadata(
+            SESSION_RECORD, {FORMAT_KEY: f"{SESSION_FORMAT}", **self._metadata}
+        )
 
     def _frame(self, frame: Frame) -> None:
         if frame.encoded is None:

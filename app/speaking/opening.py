@@ -1,9 +1,10 @@
 """Opening what the character of a session speaks with."""
 
+from collections.abc import Mapping
 from functools import lru_cache
-from pathlib import Path
 
-from cubeling.app.session import SessionOptions, spoken_lines
+from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.session import SessionOptions
 from cubeling.app.speaking.recorded import SILENT, RecordedSpeaker, Speaker
 from cubeling.characters import Character
 
@@ -11,7 +12,13 @@ DEFAULT_LANGUAGE = "en"
 """Language of what is said unless the user chooses one."""
 
 
-def open_speaker(options: SessionOptions, character: Character, *, waits: bool) -> Speaker:
+def open_speaker(
+    options: SessionOptions,
+    character: Character,
+    recorded: Mapping[float, SpokenLine] | None = None,
+    *,
+    waits: bool,
+) -> Speaker:
     """Return what speaks in a session; the caller closes it.
 
     A recording says what it has. Else a voice speaks if the user has chosen a language or lines, or
@@ -23,6 +30,9 @@ def open_speaker(options: SessionOptions, character: Character, *, waits: bool) 
         What the user asks for.
     character
         Who speaks.
+    recorded
+        What it says in the session that is replayed, by the frame in which it begins [s]; None for
+        another source.
     waits
         Whether the session is not in real time.
 
@@ -32,8 +42,8 @@ def open_speaker(options: SessionOptions, character: Character, *, waits: bool) 
         There are no such lines, or the user has chosen a language and no voice is installed.
     """
     asked = options.language is not None or options.lines is not None
-    if options.source.endswith(".mcap") and not asked:
-        return RecordedSpeaker(spoken_lines(Path(options.source)))
+    if recorded is not None and not asked:
+        return RecordedSpeaker(recorded)
     if options.language == SILENT or not (asked or options.windowed):
         return RecordedSpeaker({})
     from cubeling.app.speaking.lines import (

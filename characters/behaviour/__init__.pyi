@@ -17,7 +17,10 @@ from cubeling.characters.behaviour.gestures.collection import (
     gestures_in as gestures_in,
 )
 from cubeling.characters.behaviour.gestures.contacts import CONTACTS as CONTACTS
-from cubeling.characters.behaviour.gestures.directions import DIRECTIONS as DIRECTIONS
+from cubeling.characters.behaviour.gestures.directions import (
+    DIRECTIONS as DIRECTIONS,
+    across as across,
+)
 from cubeling.characters.behaviour.gestures.files import (
     GESTURE_SUFFIX as GESTURE_SUFFIX,
     load_gesture as load_gesture,

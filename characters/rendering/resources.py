@@ -128,7 +128,8 @@ class FrameResources:
     @cached_property
     def haze(self) -> Image | None:
         """What each sRGB value becomes in this picture, (256,); None if it is clear."""
-        return haze_table(self.softness)
+        soft = self.softness
+        return None if soft is None else haze_table(soft.haze, soft.paper)
 
     @cached_property
     def hidden_by_cubes(self) -> tuple[tuple[Rectangle, Image], ...]:

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from cubeling.characters.control.command import PosedCharacter
 from cubeling.characters.model.mesh import Mesh
-from cubeling.characters.rendering.projection import Rectangle
 from cubeling.characters.skeleton.pose import Array, Skeleton
 
 RIM_SHARE, WALL_SHARE = 0.055, 0.025
@@ -36,68 +35,72 @@ class Box:
         return self.opening > 0.0
 
 
-@dataclass(frozen=True)
-class Cover:
+class HandInFront(Protocol):
     """What is in front of a real cube, as the hand that holds it. It hides what is behind it."""
 
-    x: int
-    """First column of the camera's frame that `share` is of [px]."""
-
-    y: int
-    """First row [px]."""
-
-    share: NDArray[np.uint8]
-    """Share of each square of pixels that is covered, (height, width), 0…255."""
-
-    behind: Array
-    """A point of the nearest surface behind it, in the camera's frame, (3,) [m]."""
-
-    scale: int = 1
-    """Side of these squares [px]."""
-
-    slope: float = 1.0
-    """How steeply the share of a pixel rises where half is covered, relative to what is
-    interpolated between squares: an edge is sharper than they are large."""
+    @property
+    def x(self) -> int:
+        """First column of the camera's frame that `share` is of [px]."""
 
     @property
-    def area(self) -> Rectangle:
-        """Where it is in the frame."""
-        height, width = self.share.shape
-        return Rectangle(self.x, self.y, self.scale * width, self.scale * height)
+    def y(self) -> int:
+        """First row [px]."""
+
+    @property
+    def share(self) -> NDArray[np.uint8]:
+        """Share of each square of pixels that is covered, (height, width), 0…255."""
+
+    @property
+    def behind(self) -> Array:
+        """A point of the nearest surface behind it, in the camera's frame, (3,) [m]."""
+
+    @property
+    def scale(self) -> int:
+        """Side of these squares [px]."""
+
+    @property
+    def slope(self) -> float:
+        """How steeply a share rises at an edge, relative to what is interpolated of squares."""
 
 
-@dataclass(frozen=True)
-class MeasuredLight:
+class RoomLight(Protocol):
     """The light in the room, as it falls on something known in the camera's picture."""
 
-    to_light: Array
-    """Unit vector towards the key light, in the camera's frame, (3,)."""
+    @property
+    def to_light(self) -> Array:
+        """Unit vector towards the key light, in the camera's frame, (3,)."""
 
-    key: Array
-    """Light from there on a surface that faces it, (3,) linear RGB; 1 makes white just white."""
+    @property
+    def key(self) -> Array:
+        """Light from there on a surface that faces it, (3,) linear RGB; 1 makes white white."""
 
-    ambient: Array
-    """Light from all around, (3,) linear RGB."""
+    @property
+    def ambient(self) -> Array:
+        """Light from all around, (3,) linear RGB."""
 
-    weight: float = 1.0
-    """How far this light replaces the usual one, 0…1: less where its direction is uncertain."""
+    @property
+    def certainty(self) -> float:
+        """How certain its direction is, 0…1: an uncertain light does not replace the usual one."""
 
 
-@dataclass(frozen=True)
-class Softness:
+class Softness(Protocol):
     """How soft, noisy and hazy the camera's picture is; what is drawn becomes so too."""
 
-    blur: float
-    """Standard deviation of the blur of lens and sensor [px of the frame]."""
+    @property
+    def blur(self) -> float:
+        """Standard deviation of the blur of lens and sensor [px of the frame]."""
 
-    noise: float
-    """Standard deviation of the noise of a pixel, in values of 0…255."""
+    @property
+    def noise(self) -> float:
+        """Standard deviation of the noise of a pixel, in values of 0…255."""
 
-    haze: float = 0.0
-    """Share of the light of white paper that glare in lens and air adds to everything."""
+    @property
+    def haze(self) -> float:
+        """Share of the light of white paper that glare in lens and air adds to everything."""
 
-    paper: float = 1.0
-    """Light of that paper, linear; it stays as it is, and all that is darker comes nearer."""
+    @property
+    def paper(self) -> float:
+        """Light of that paper, linear; it stays as it is, and all that is darker comes nearer."""
 
 
 @dataclass(frozen=True)
@@ -146,10 +149,10 @@ class CameraView:
     occluders: tuple[Box, ...] = ()
     """Real cubes that hide what is behind them."""
 
-    cover: Cover | None = None
+    hand: HandInFront | None = None
     """The hand in front of the cube, if it is known."""
 
-    light: MeasuredLight | None = None
+    light: RoomLight | None = None
     """The light in the room, if it was measured; left out, it is estimated from the picture."""
 
     softness: Softness | None = None

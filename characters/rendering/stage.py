@@ -1,7 +1,8 @@
 """The picture: characters on the table in the camera's frame."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
+from typing import NamedTuple
 
 import moderngl
 import numpy as np
@@ -20,7 +21,6 @@ from cubeling.characters.rendering.quality import FULL, QUALITIES, Quality
 from cubeling.characters.rendering.resources import FrameResources
 from cubeling.characters.rendering.scene import (
     CameraView,
-    Cover,
     FloorPath,
     Scene,
     SceneCharacter,
@@ -31,8 +31,14 @@ from cubeling.characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
 
-COARSE_SOFTNESS = Softness(0.64, 0.0)
-"""Blur of a layer as coarse as the picture: it hides the steps along edges."""
+
+class CoarseSoftness(NamedTuple):
+    """Blur of a layer as coarse as the picture: it hides the steps along edges; a `Softness`."""
+
+    blur: float = 0.64
+    noise: float = 0.0
+    haze: float = 0.0
+    paper: float = 1.0
 
 
 class Stage:
@@ -119,22 +125,18 @@ class Stage:
         view: CameraView,
         characters: Sequence[SceneCharacter],
         floor: Sequence[FloorPath] = (),
-        find_cover: Callable[[], Cover | None] | None = None,
     ) -> Image:
         """Return the picture, (height, width, 3) uint8 BGR.
 
         Parameters
         ----------
         view
-            The camera's frame, its pinhole matrix and distortion, the pose of the table, and the
-            real cubes that hide what is behind them. Without a table, nothing is drawn.
+            The camera's frame, its pinhole matrix and distortion, the pose of the table, and what
+            else is known of the scene. Without a table, nothing is drawn.
         characters
             The posed characters on the table.
         floor
             Paths that are painted on the table, below the characters and their shadows.
-        find_cover
-            Finds `view.cover`, which is left out then. It is called once, while the driver draws
-            the characters: both take their time at once.
 
         Raises
         ------
@@ -142,12 +144,10 @@ class Stage:
             The frame is not an image, or a character has nothing to draw.
         """
         frame = self._frame(Scene(view, characters, floor))
-        if frame is not None:
-            self._draw_layer(frame)
-        found = view.cover if find_cover is None else find_cover()
         if frame is None:
             return self._undistorter.undistort(view)
-        cover = None if found is None else self._undistorter.cover_in_picture(found)
+        self._draw_layer(frame)
+        cover = None if view.hand is None else self._undistorter.cover_in_picture(view.hand)
         self._context.front_face = "cw"
         for each in self.passes:
             each.composite(frame, cover)
@@ -188,7 +188,7 @@ class Stage:
 
     def _softness(self, view: CameraView) -> Softness | None:
         """Return the blur and noise of what is drawn; a coarse layer is blurred to be smooth."""
-        return view.softness if self._quality.matched else COARSE_SOFTNESS
+        return view.softness if self._quality.matched else CoarseSoftness()
 
     def _frame(self, scene: Scene) -> FrameResources | None:
         """Return the resources to draw on the picture if there is a table."""

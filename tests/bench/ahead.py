@@ -147,9 +147,9 @@ def _frames(states: list[CubeState], ahead: float) -> Iterator[tuple[Array, Arra
             continue
         table = se3.inverse(controls.camera_from_table)
         soon = replace(controls, position=(table @ expected.camera_from_cube)[[0, 2], 3])
-        outcome = playground.decide(soon, Inputs())
         predicted = replace(state, camera_from_cube=expected.camera_from_cube)
-        posed = playground.animate(playground.attend(predicted, soon, outcome).command)
+        decision = playground.decide(predicted, soon, Inputs())
+        posed = playground.animate(playground.command(predicted, soon, decision, Inputs()))
         playground._posed = posed
         placed = posed.table_from_character @ posed.pose.globals(skeleton)[eye]
         looking = placed[:3, :3] @ rest.T @ (0.0, 0.0, 1.0)

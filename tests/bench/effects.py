@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from cubeling.app.pipeline.surroundings import APERTURE_M
+from cubeling.app.pipeline.step_renderer import APERTURE_M
 from cubeling.characters.model.character import Character
 from cubeling.characters.rendering import (
     FULL,

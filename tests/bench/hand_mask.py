@@ -22,7 +22,6 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from cubeling.app.pipeline.surroundings import cover_of
 from cubeling.characters.rendering.camera_picture.hand_cover import PictureCover
 from cubeling.characters.rendering.projection import Rectangle
 from cubeling.tracking.appearance.hand.finder import HandFinder
@@ -75,7 +74,7 @@ def covered(mask: HandMask | None, shape: tuple[int, ...]) -> Floats:
     if mask is None:
         return np.zeros(shape[:2], np.float32)
     whole = Rectangle(0, 0, shape[1], shape[0])
-    return np.float32(1 / 255) * PictureCover(whole, cover_of(mask), None).share_in(whole)
+    return np.float32(1 / 255) * PictureCover(whole, mask, None).share_in(whole)
 
 
 def overlap(found: Floats, true: Floats) -> float:

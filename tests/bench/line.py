@@ -20,6 +20,7 @@ from unittest.mock import patch
 import av
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
@@ -27,7 +28,6 @@ from cubeling.app.pipeline.choices import REALISM_CHOICES, realism_of
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import RobotView, Step
-from cubeling.app.pipeline.surroundings import Surroundings
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.scenarios import SCENARIOS
 from cubeling.app.session.bundled import bundled
@@ -35,11 +35,14 @@ from cubeling.app.sound import Mixer, SessionSound, SoundBank
 from cubeling.app.ui.cards.overlay import overlay, virtual_robot_side
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
 from cubeling.app.ui.video_file import AudioTrack
-from cubeling.characters.rendering import FULL, QUALITIES, Cover, Quality, create_context
-from cubeling.tracking import CubeState, Frame, open_source
+from cubeling.characters.rendering import FULL, QUALITIES, Quality, create_context
+from cubeling.tracking import CubeState, open_source
+from cubeling.tracking.appearance import HandFinder, HandMask
 
-Look = Callable[[Surroundings, Frame, CubeState], Cover | None]
-"""`Surroundings.cover`."""
+Image = NDArray[np.uint8]
+
+Look = Callable[[HandFinder, Image, CubeState], HandMask | None]
+"""`HandFinder.update`."""
 
 TARGET_MS = 25.0
 
@@ -69,7 +72,7 @@ def measure(
     sound = SessionSound(Mixer(SoundBank()))
     with (
         open_source(str(bundled(name))) as source,
-        patch.object(Surroundings, "cover", timed(Surroundings.cover, looks)),
+        patch.object(HandFinder, "update", timed(HandFinder.update, looks)),
         tempfile.TemporaryDirectory() as folder,
         av.open(str(Path(folder) / "sound.mp4"), "w") as file,
     ):
@@ -90,14 +93,15 @@ def measure(
             state = playground.track(frame)
             marks.append(time.perf_counter())
             controls = playground.gesture(state)
-            outcome = playground.decide(controls, Inputs())
+            outcome = playground.decide(state, controls, Inputs())
             marks.append(time.perf_counter())
             posed = playground.animate(outcome.command)
             marks.append(time.perf_counter())
-            picture = playground.draw(frame, state, controls, outcome, posed)
+            appearance = playground.see(frame, state, controls)
+            step = Step(frame, state, controls, outcome, posed, None, appearance=appearance)
+            picture = playground.draw(step)
             assert picture is not None
             marks.append(time.perf_counter())
-            step = Step(frame, state, controls, outcome, posed, picture)
             overlay(picture, step, robot, virtual_robot)
             marks.append(time.perf_counter())
             track.write_until(frame.timestamp)
@@ -139,9 +143,9 @@ def measure(
 def timed(look: Look, spans: list[float]) -> Look:
     """Return a function that does the same, and appends how long each call takes [s]."""
 
-    def look_timed(surroundings: Surroundings, frame: Frame, state: CubeState) -> Cover | None:
+    def look_timed(finder: HandFinder, image: Image, state: CubeState) -> HandMask | None:
         began = time.perf_counter()
-        found = look(surroundings, frame, state)
+        found = look(finder, image, state)
         spans.append(time.perf_counter() - began)
         return found
 

@@ -23,12 +23,12 @@ from rich.table import Table
 from cubeling.characters.model.character import Character
 from cubeling.characters.rendering import (
     QUALITIES,
-    Cover,
     Focus,
     SceneCharacter,
     Stage,
     create_context,
 )
+from cubeling.tracking.appearance import HandMask
 from tests.bench.picture import SIZE, scene
 
 MAX_GROWTH_BYTES = 20e6
@@ -106,7 +106,9 @@ def draw(context: moderngl.Context, seconds: float, report_s: float) -> Iterator
         stage.draw(
             replace(
                 view,
-                cover=Cover(500, 200, np.full((90, 80), 128, np.uint8), np.array([0.0, 0.0, 0.5])),
+                hand=HandMask(
+                    500, 200, np.full((90, 80), 128, np.uint8), np.array([0.0, 0.0, 0.5])
+                ),
                 focus=Focus(0.6, 0.6, 0.01 * rng.random()),
             ),
             [_placed(actor, rng) for actor in shown],

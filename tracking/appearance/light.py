@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cubeling.tracking.appearance.light_fit import MeasuredLight
+from cubeling.tracking.appearance.appearance import MeasuredLight
 from cubeling.tracking.appearance.patch_memory import MEMORY_S, ExposureGain, PatchMemory
 from cubeling.tracking.appearance.patches import PaperSampler
 from cubeling.tracking.cube.marker import cell_size

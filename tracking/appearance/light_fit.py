@@ -1,9 +1,8 @@
 """Fitting ambient light and one direction to patches of paper."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from cubeling.tracking.appearance.appearance import MeasuredLight
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.arrays import Array
 
@@ -64,28 +63,6 @@ DIRECTIONS, DISC = sphere(128), _disc()
 REFINED_SPREADS, MIN_REFINED, MAX_REFINED = 2.5, np.radians(12.0), np.radians(50.0)
 """How far around the mean direction it is refined, in standard deviations, and the least and the
 most of it [rad]: no less than the distance of two directions, and only where one is the best."""
-
-
-@dataclass(frozen=True)
-class MeasuredLight:
-    """Light from one direction, and from all around."""
-
-    to_light: Array
-    """Unit vector towards the key light, in the camera's frame, (3,)."""
-
-    key: Array
-    """Irradiance from it on a surface that faces it, linear RGB, (3,); 1 makes a white surface just
-    white."""
-
-    ambient: Array
-    """Irradiance from all around, linear RGB, (3,)."""
-
-    certainty: float
-    """How well the faces seen so far determine the direction, 0…1.
-
-    One less the spread of the directions that explain the paper, as a share of the spread before
-    anything was seen. At 0.5 that is about 30°, and `to_light` is half a guess.
-    """
 
 
 def fit_patches(normals: Array, irradiance: Array, weights: Array, up: Array) -> MeasuredLight:

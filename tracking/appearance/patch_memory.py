@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from cubeling.tracking.appearance.appearance import MeasuredLight
 from cubeling.tracking.appearance.colour_space import LINEAR_FROM_SRGB
-from cubeling.tracking.appearance.light_fit import SHADOW_SHARE, MeasuredLight, fit_patches, sphere
+from cubeling.tracking.appearance.light_fit import SHADOW_SHARE, fit_patches, sphere
 from cubeling.tracking.appearance.patches import MAX_VALUE, Patches
 from cubeling.tracking.geometry.arrays import Array, Image
 

@@ -1,12 +1,13 @@
 """How soft, noisy and hazy a camera's picture is, measured on the borders of a cube's markers."""
 
 import math
-from dataclasses import astuple, dataclass, replace
+from dataclasses import astuple, replace
 from functools import cache
 
 import cv2
 import numpy as np
 
+from cubeling.tracking.appearance.appearance import PictureQuality
 from cubeling.tracking.cube.faces import FacePlanes
 from cubeling.tracking.cube.marker import cell_size
 from cubeling.tracking.cube.model import CubeModel
@@ -80,23 +81,6 @@ def _normalize(profiles: Array) -> Array:
     return np.asarray(
         centred / np.maximum(np.linalg.norm(centred, axis=-1, keepdims=True), 1e-9), np.float64
     )
-
-
-@dataclass(frozen=True)
-class PictureQuality:
-    """How soft, noisy and hazy a picture is."""
-
-    blur: float
-    """Standard deviation of the blur that lens and sensor add to sharp edges [px]."""
-
-    noise: float
-    """Standard deviation of the noise of each pixel, in grey values of 0…255."""
-
-    haze: float = 0.0
-    """Share of the light of paper that glare in lens and air adds to everything."""
-
-    paper: float = 1.0
-    """Light of the paper, linear; 1 is the brightest white."""
 
 
 class QualityMeter:

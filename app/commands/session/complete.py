@@ -21,10 +21,11 @@ def complete_session(path: Path, *, salvage: bool = False) -> Iterator[Path]:
     KeyboardInterrupt
         Ctrl-C ended the computation.
     """
-    from cubeling.app.session import has_channels, session_info
+    from cubeling.app.session import SessionFile
 
-    duration = session_info(path, salvage=salvage).duration
-    if has_channels(path):
+    with SessionFile(path, salvage=salvage) as session:
+        duration, is_complete = session.info.duration, session.has_channels
+    if is_complete:
         yield path
         return
     # They load all that plays a session, which most sessions do not need here.

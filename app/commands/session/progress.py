@@ -20,7 +20,7 @@ from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.running.summary import Summary
-from cubeling.app.session import SessionOptions, session_info
+from cubeling.app.session import SessionFile, SessionOptions, session_info
 from cubeling.app.ui.notice import lens_notice
 from cubeling.app.ui.playback.status import EndCard
 from cubeling.tracking import FrameSource
@@ -37,6 +37,7 @@ def play_session(
     title: str,
     *,
     source: FrameSource | None = None,
+    replayed: SessionFile | None = None,
     player: "PlayerPublisher | None" = None,
     ending: EndCard | None = None,
     preferences: PreferenceStore | None = None,
@@ -52,7 +53,12 @@ def play_session(
         if options.record is not None:
             at_end.callback(report_recording, options.record, console)
         with open_session(
-            options, source=source, player=player, ending=ending, preferences=preferences
+            options,
+            source=source,
+            replayed=replayed,
+            player=player,
+            ending=ending,
+            preferences=preferences,
         ) as session:
             at_end.callback(report_kept, session, console)
             if options.intrinsics is None and session.source.intrinsics is None:

@@ -71,7 +71,7 @@ def replay(
         typer.Option(
             "--from",
             help="Take the recorded channels up to this one, and compute the others: camera "
-            "(compute all), state, controls, command or pose.",
+            "(compute all), state, controls, appearance, command or pose.",
         ),
     ] = "camera",
     fast: Annotated[
@@ -103,75 +103,76 @@ def replay(
     Example: [cyan]cubeling replay recordings/companion.mcap --output companion.mp4[/]
     """
     from cubeling.app.running.option_checks import check_output_paths, check_part
-    from cubeling.app.session import SessionOptions, check_session_file, check_stage
+    from cubeling.app.session import SessionOptions, check_stage, open_session_file
 
-    check_session_file(session)
-    if scenario:
-        check_scenario(scenario)
-    if controller:
-        check_controller(controller)
-    check_stage(stage)
-    if inside:
-        inside_of(inside)
-    chosen_realism, chosen_quality = realism_of(realism), checked_quality(quality)
-    check_output_paths(
-        SessionOptions(
-            scenario=scenario or "",
-            source=str(session),
+    with ExitStack() as closing:
+        opened = closing.enter_context(open_session_file(session))
+        if scenario:
+            check_scenario(scenario)
+        if controller:
+            check_controller(controller)
+        check_stage(stage)
+        if inside:
+            inside_of(inside)
+        chosen_realism, chosen_quality = realism_of(realism), checked_quality(quality)
+        check_output_paths(
+            SessionOptions(
+                scenario=scenario or "",
+                source=str(session),
+                record=record,
+                codec=codec,
+                output=output,
+                overwrite=overwrite,
+            )
+        )
+        # Nothing above needs numpy or OpenCV: what is misspelt is refused before they are loaded.
+        from cubeling.app.commands.session.progress import ProgressLines, play_session
+        from cubeling.app.running.replay_check import check_session
+        from cubeling.app.session import SessionFile
+
+        file = closing.enter_context(SessionFile(session, salvage=salvage, opened=opened))
+        info, recorded = file.info, file.info.options
+        options = replace(
+            recorded,
+            scenario=scenario or recorded.scenario,
+            character=character or recorded.character,
+            controller=controller or recorded.controller,
+            motions=tuple(motions) if motions else () if controller else recorded.motions,
+            idle=idle or recorded.idle,
+            personality=personality or recorded.personality,
+            robot=robot,
+            robot_settings=robot_settings,
             record=record,
             codec=codec,
             output=output,
             overwrite=overwrite,
+            pictures=pictures and not check and (output is not None or has_display()),
+            realism=recorded.realism if check else chosen_realism,
+            inside=inside_of(inside or recorded.inside),
+            quality=chosen_quality,
+            sounds=sounds,
+            fast=fast,
+            salvage=salvage,
+            stage=stage,
+            start_s=start,
+            end_s=end,
+            loop=loop,
+            folder=folder,
         )
-    )
-    # Nothing above needs numpy or OpenCV: what is misspelt is refused before they are loaded.
-    from cubeling.app.commands.session.progress import ProgressLines, play_session
-    from cubeling.app.running.replay_check import check_session
-    from cubeling.app.session import session_info
-
-    info = session_info(session, salvage=salvage)
-    recorded = info.options
-    options = replace(
-        recorded,
-        scenario=scenario or recorded.scenario,
-        character=character or recorded.character,
-        controller=controller or recorded.controller,
-        motions=tuple(motions) if motions else () if controller else recorded.motions,
-        idle=idle or recorded.idle,
-        personality=personality or recorded.personality,
-        robot=robot,
-        robot_settings=robot_settings,
-        record=record,
-        codec=codec,
-        output=output,
-        overwrite=overwrite,
-        pictures=pictures and not check and (output is not None or has_display()),
-        realism=chosen_realism,
-        inside=inside_of(inside or recorded.inside),
-        quality=chosen_quality,
-        sounds=sounds,
-        fast=fast,
-        salvage=salvage,
-        stage=stage,
-        start_s=start,
-        end_s=end,
-        loop=loop,
-        folder=folder,
-    )
-    if check and (start or end is not None):
-        raise AppError("--check compares a whole session: leave out --start and --end")
-    check_output_paths(options)
-    check_part(options)
-    with ExitStack() as closing:
-        complete = session
-        if check or stage != "camera":
+        if check and (start or end is not None):
+            raise AppError("--check compares a whole session: leave out --start and --end")
+        check_output_paths(options)
+        check_part(options)
+        if (check or stage != "camera") and not file.has_channels:
             complete = closing.enter_context(complete_session(session, salvage=salvage))
+            file = closing.enter_context(SessionFile(complete))
         if check:
-            result = check_session(
-                complete, options, ProgressLines(f"checking {session.name}", info.duration)
-            )
+            progress = ProgressLines(f"checking {session.name}", info.duration)
+            result = check_session(file, options, progress)
             Console().print(result)
             raise typer.Exit(0 if result.identical else 1)
-        options, kept = preferences.open(replace(options, source=str(complete)))
+        options, kept = preferences.open(replace(options, source=str(file.path)))
         line = closing.enter_context(publisher(mqtt, player, site, password_file, ca))
-        play_session(options, f"replaying {session.name}", player=line, preferences=kept)
+        play_session(
+            options, f"replaying {session.name}", replayed=file, player=line, preferences=kept
+        )

@@ -5,7 +5,14 @@ from itertools import pairwise
 from typing import Any, Literal
 
 from cubeling.app.gesture_editor.editing.document import GestureDocument, Key, Row
-from cubeling.characters.behaviour import SECTORS_X, SECTORS_Y, BodyKey, HandKey, SymbolicGesture
+from cubeling.characters.behaviour import (
+    SECTORS_X,
+    SECTORS_Y,
+    BodyKey,
+    HandKey,
+    SymbolicGesture,
+    across,
+)
 
 Phase = Literal["preparation", "stroke", "hold", "retraction"]
 PHASES: tuple[Phase, ...] = ("preparation", "stroke", "hold", "retraction")
@@ -64,6 +71,23 @@ def change_place(document: GestureDocument, **fields: Any) -> GestureDocument:
         )
         fields = {**fields, "contact": "", "offset": (x, y, z)}
     return change_key(document, place=replace(key.place, **fields))
+
+
+def change_direction(
+    document: GestureDocument, field: Literal["palm", "fingers"], words: str
+) -> GestureDocument:
+    """Change where the palm faces or the fingers point.
+
+    The other of the two stays, unless both would be along one line: no hand can do that.
+    """
+    key = document.hand_key
+    if key is None:
+        return document
+    other: Literal["palm", "fingers"] = "fingers" if field == "palm" else "palm"
+    kept = getattr(key, other)
+    if not across(words, kept, left=True):
+        kept = next(each for each in ("forward", "up") if across(words, each, left=True))
+    return change_key(document, **{field: words, other: kept})
 
 
 def add_key(document: GestureDocument, at: float) -> GestureDocument:

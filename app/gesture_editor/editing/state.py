@@ -1,4 +1,4 @@
-"""The state of the editor: the document, its history, and what the mouse and the keys are at."""
+"""The state of the editor: the document, its history, and what the user is at."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -9,7 +9,7 @@ from cubeling.app.gesture_editor.editing.document import EMPTY, GestureDocument
 MAX_UNDO = 200
 """Steps that are kept."""
 
-CardName = Literal["", "open", "import", "save as", "replace", "unsaved", "contact", "keys"]
+CardName = Literal["", "open", "import", "save as", "replace", "unsaved", "keys"]
 """What may lie over the window."""
 
 
@@ -88,23 +88,14 @@ class EditorState:
     sectors_shown: bool = False
     """Whether the gesture space is drawn over the character."""
 
-    pointer: tuple[float, float] = (-1.0, -1.0)
-    """Where the mouse is, in units of the canvas."""
-
-    shift: bool = False
-    """Whether Shift was held when the button of the mouse went down."""
-
-    held: str = ""
-    """Name of the widget on which the button of the mouse went down; "" if it is up."""
+    held: int = 0
+    """Which widget is dragged or typed into, by Dear ImGui's number; 0 for none."""
 
     grip: GestureDocument | None = None
-    """The document when it went down."""
-
-    focus: str = ""
-    """Name of the text field that takes what is typed; "" for none."""
+    """The document when that began: all that is done meanwhile is one step of undo."""
 
     texts: tuple[tuple[str, str], ...] = ()
-    """What stands in text fields, by their names."""
+    """What stands in the text fields of cards, by their names."""
 
     card: CardName = ""
     """What lies over the window."""
@@ -156,6 +147,28 @@ def committed(before: EditorState, after: EditorState) -> EditorState:
     return replace(after, past=(before.document, *before.past)[:MAX_UNDO], future=())
 
 
+def settled(before: EditorState, after: EditorState, held: int) -> EditorState:
+    """Return the state after a frame, with its steps of undo.
+
+    Parameters
+    ----------
+    before, after
+        The editor before and after what was done in the frame.
+    held
+        Which widget is dragged or typed into now; 0 for none.
+    """
+    if held and held == before.held:
+        return after
+    began = before if before.grip is None else replace(before, document=before.grip)
+    if not held:
+        return replace(committed(began, after), held=0, grip=None)
+    # What was typed ends as a step of its own when the mouse takes something else.
+    ended = committed(began, before)
+    if after.past is before.past:
+        after = replace(after, past=ended.past, future=ended.future)
+    return replace(after, held=held, grip=before.document)
+
+
 def undo(state: EditorState) -> EditorState:
     """Go back one step."""
     if not state.past:
@@ -176,13 +189,13 @@ def redo(state: EditorState) -> EditorState:
 
 def asked(state: EditorState, request: Request) -> EditorState:
     """Ask the outside for something."""
-    return replace(state, requests=(*state.requests, request), card="", focus="")
+    return replace(state, requests=(*state.requests, request), card="")
 
 
 def unless_unsaved(state: EditorState, request: Request) -> EditorState:
     """Ask the outside for something, or the user first if changes would be lost."""
     if state.changed:
-        return replace(state, card="unsaved", wanted=request, focus="")
+        return replace(state, card="unsaved", wanted=request)
     return asked(state, request)
 
 
@@ -190,7 +203,7 @@ def fresh(state: EditorState, document: GestureDocument, message: str) -> Editor
     """Return the state with a document that was just opened: it is saved, and has no history."""
     return replace(
         state, document=document, saved=document, past=(), future=(), time=0.0, playing=True,
-        message=message, alarming=False, card="", texts=(), focus="",
+        message=message, alarming=False, card="", texts=(),
     )  # fmt: skip
 
 

@@ -1,6 +1,10 @@
-"""The words for hands in the editor."""
+"""The words for hands and rows in the editor."""
 
+from cubeling.app.gesture_editor.editing.document import Row
 from cubeling.characters.behaviour import DIRECTIONS
+
+ROW_NAMES: dict[Row, str] = {"right": "Right hand", "left": "Left hand", "body": "Trunk and head"}
+"""What each row of the time line is called."""
 
 OPPOSITES = {
     "up": "down", "down": "up", "in": "out", "out": "in", "forward": "back", "back": "forward",

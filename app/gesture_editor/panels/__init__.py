@@ -1,1 +1,1 @@
-"""What the window shows: the time line, the inspector, cards and bars, of widgets."""
+"""What the window shows, by Dear ImGui: bars, the inspector, the time line and cards."""

@@ -1,226 +1,234 @@
 """The panel at the right: the selected key, and how the gesture is performed."""
 
-from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
+from imgui_bundle import imgui
+
+from cubeling.app.gesture_editor.editing import actions
 from cubeling.app.gesture_editor.editing.document import GestureDocument
-from cubeling.app.gesture_editor.editing.edits import change_key, change_place, move_key
-from cubeling.app.gesture_editor.editing.state import EditorState, edited
-from cubeling.app.gesture_editor.editing.words import DIRECTION_NAMES, PATH_NAMES, combined
-from cubeling.app.gesture_editor.panels.body_panel import (
-    BUTTON_PX,
-    COLUMN,
-    LEFT,
-    MIDDLE,
-    RIGHT,
-    body_sliders,
-    expressivity_sliders,
+from cubeling.app.gesture_editor.editing.edits import (
+    change_direction,
+    change_expressivity,
+    change_gesture,
+    change_key,
+    change_place,
+    move_key,
+    performed_by,
+    performers,
 )
-from cubeling.app.gesture_editor.panels.fields import Slider
-from cubeling.app.gesture_editor.panels.space_map import SpaceMap
-from cubeling.app.gesture_editor.panels.time_line_parts import ROW_NAMES
-from cubeling.app.gesture_editor.panels.widgets import (
-    LARGE,
-    NORMAL,
-    SMALL,
-    SUBTLE,
-    Button,
-    Label,
-    Rect,
-    Widget,
-    button_row,
+from cubeling.app.gesture_editor.editing.words import (
+    DIRECTION_NAMES,
+    PATH_NAMES,
+    ROW_NAMES,
+    combined,
 )
-from cubeling.characters.behaviour import SECTORS_Z, HandKey
+from cubeling.app.gesture_editor.panels.space_map import space_map
+from cubeling.app.gesture_editor.panels.ui import LARGE, SMALL, SUBTLE, Ui
+from cubeling.characters.behaviour import CONTACTS, NEUTRAL, SECTORS_Z, HandKey
 from cubeling.characters.motion import HAND_SHAPES
+
+WIDTH, COLUMN, GUTTER = 456.0, 220.0, 16.0
+"""Width of the panel's content, of one of its two columns, and between them [design units]."""
+
+LEFT = 14.0
+"""Where the first column begins [design units]."""
+
+MAP_HEIGHT = 244.0
+"""Height of the map [design units]."""
+
+LABEL_WIDTH = 62.0
+"""Room for words before a row of buttons, as before the rows of the map [design units]."""
 
 MAX_RADIUS, MAX_TURNS = 0.6, 8.0
 """Greatest amplitude of a path, over the length of the arm, and most turns."""
 
+PARAMETERS = (
+    ("spatial", "Extent", -1.0), ("openness", "Openness", 0.0), ("power", "Power", 0.0),
+    ("fluidity", "Fluidity", -1.0), ("bias", "Bias", -1.0), ("tension", "Tension", -1.0),
+)  # fmt: skip
+"""Field of `GestureExpressivity`, its name, and its least value; the greatest is 1."""
 
-def inspector(state: EditorState) -> list[Widget]:
-    """Return the widgets of the panel."""
-    document = state.document
-    if document.body_key is not None:
-        widgets = body_sliders(document.body_key)
-    elif document.row == "body":
-        words = ("Add a key to lean, turn,", "shrug or nod with the stroke.")
-        widgets = _hint(LEFT, words)
+BODY_LIMITS: dict[str, tuple[str, float]] = {
+    "lean_deg": ("Lean forward", 45.0),
+    "side_deg": ("Lean to its left", 30.0),
+    "turn_deg": ("Turn to its left", 45.0),
+    "shrug": ("Shrug", 1.0),
+    "nod_deg": ("Head down", 45.0),
+    "tilt_deg": ("Head to its left", 30.0),
+    "shake_deg": ("Head turns left", 60.0),
+}
+"""Fields of `BodyKey` with their names and greatest values; the least is the opposite."""
+
+
+def inspector(ui: Ui) -> None:
+    """Draw the selected key, and below it what is true of the whole gesture."""
+    document = ui.state.document
+    _heading(ui, document)
+    if document.row == "body":
+        _body(ui, document)
     else:
-        widgets = [*_place(document), *_shape(document)]
-    return [*_heading(document), *widgets, *expressivity_sliders(document.gesture.expressivity)]
+        imgui.begin_group()
+        _place(ui, document)
+        imgui.end_group()
+        with ui.column(LEFT + COLUMN + GUTTER):
+            _hand(ui, document.hand_key)
+        if document.hand_key is not None:
+            _path(ui, document.hand_key)
+    _gesture(ui)
 
 
-def _heading(document: GestureDocument) -> list[Widget]:
+def _heading(ui: Ui, document: GestureDocument) -> None:
     count, name = len(document.keys), ROW_NAMES[document.row]
     words = f"{name}: no key yet" if not count else f"{name}, key {document.index + 1} of {count}"
-    widgets: list[Widget] = [Label("heading", (LEFT, 84.0, 250.0, 0.0), words, LARGE)]
-    if count:
-        at = document.keys[min(document.index, count - 1)].at
-        widgets.append(
-            Slider(
-                "at",
-                (MIDDLE, 66.0, COLUMN, BUTTON_PX),
-                "Time in stroke",
-                at,
-                0.0,
-                1.0,
-                lambda state, value: edited(state, move_key(state.document, value)),
-                step=0.01,
-                label_width=96.0,
-            )
-        )
-    return widgets
+    ui.label(words, size=LARGE)
+    if not actions.has_key(document):
+        return
+    with ui.column(LEFT + COLUMN + GUTTER):
+        at = document.keys[document.index].at
+        moved = ui.slider("at", "Time in stroke", at, (0.0, 1.0), COLUMN, step=0.01)
+        if moved is not None:
+            ui.edit(move_key(ui.state.document, moved))
 
 
-def _place(document: GestureDocument) -> list[Widget]:
-    """Return the map, the distance from the body, and what the hand touches."""
-    key, left = document.hand_key, document.row == "left"
-    place = None if key is None else key.place
-    chosen = () if place is None or place.contact else (place.z,)
-    touched = "nothing" if place is None or not place.contact else place.contact
-    wide = MIDDLE - 16 - LEFT
-
-    def to_sector(state: EditorState, x: str, y: str) -> EditorState:
-        return edited(state, change_place(state.document, x=x, y=y))
-
-    def to_depth(state: EditorState, z: str) -> EditorState:
-        return edited(state, change_place(state.document, z=z))
-
-    options = tuple((each, each[1:]) for each in SECTORS_Z)
-    return [
-        SpaceMap("map", (LEFT, 94.0, wide, 218.0), place, left, to_sector),
-        Label("z", (LEFT, 337.0, 56.0, 0.0), "Distance", SMALL, SUBTLE),
-        *button_row("z", (LEFT + 62, 320.0, wide - 62, BUTTON_PX), options, chosen, to_depth),
-        Label("touches", (LEFT, 365.0, 56.0, 0.0), "Touches", SMALL, SUBTLE),
-        Button(
-            "contact",
-            (LEFT + 62, 348.0, wide - 62, BUTTON_PX),
-            touched,
-            lambda state: replace(state, card="contact"),
-            enabled=key is not None,
-            chosen=touched != "nothing",
-            size=SMALL,
-        ),
-    ]
+def _body(ui: Ui, document: GestureDocument) -> None:
+    """Draw the sliders of trunk, shoulders and head."""
+    if document.body_key is None:
+        ui.label("Add a key to lean, turn, shrug or nod with the stroke.", SUBTLE)
+        return
+    for name, (words, high) in BODY_LIMITS.items():
+        degrees = name.endswith("_deg")
+        value = ui.slider(
+            name, words, getattr(document.body_key, name), (-high if degrees else 0.0, high), WIDTH,
+            step=1.0 if degrees else 0.05, words="%.0f°" if degrees else "%.2f", label_width=140.0,
+        )  # fmt: skip
+        if value is not None:
+            _change(ui, **{name: value})
 
 
-def _shape(document: GestureDocument) -> list[Widget]:
-    """Return the shape of the hand, its directions, and the path to it."""
+def _place(ui: Ui, document: GestureDocument) -> None:
+    """Draw the map, the distance from the body, and what the hand touches."""
     key = document.hand_key
+    place = None if key is None else key.place
+    sector = space_map(ui, place, COLUMN, MAP_HEIGHT, left=document.row == "left")
+    if sector is not None:
+        ui.edit(change_place(ui.state.document, x=sector[0], y=sector[1]))
+    chosen = () if place is None or place.contact else (place.z,)
+    depths = [(each, each[1:]) for each in SECTORS_Z]
+    _side_label(ui, "Distance")
+    imgui.begin_group()
+    depth = ui.choose("z", depths, chosen, COLUMN - LABEL_WIDTH, 3)
+    imgui.end_group()
+    if depth is not None:
+        ui.edit(change_place(ui.state.document, z=depth))
+    _side_label(ui, "Touches")
+    imgui.begin_disabled(place is None)
+    imgui.set_next_item_width((COLUMN - LABEL_WIDTH) * ui.unit)
+    touched = "" if place is None else place.contact
+    with ui.font(SMALL):
+        if imgui.begin_combo("##contact", touched or "nothing", imgui.ComboFlags_.height_large):
+            for name in ("", *CONTACTS):
+                if imgui.selectable(name or "nothing", name == touched)[0]:
+                    ui.edit(change_place(ui.state.document, contact=name))
+                ui.note(f"touch:{name}")
+            imgui.end_combo()
+        else:
+            ui.note("contact")
+    imgui.end_disabled()
+
+
+def _side_label(ui: Ui, words: str) -> None:
+    """Write what a row is about, before it."""
+    x, y = imgui.get_cursor_pos()
+    with ui.font(SMALL):
+        imgui.align_text_to_frame_padding()
+        ui.label(words, SUBTLE)
+    imgui.same_line()
+    imgui.set_cursor_pos((x + LABEL_WIDTH * ui.unit, y))
+
+
+def _hand(ui: Ui, key: HandKey | None) -> None:
+    """Draw the shape of the hand, and its two directions."""
     if key is None:
-        return _hint(MIDDLE, ("Click a sector of the map:", "the hand goes there."))
-    shapes = tuple((each, each) for each in HAND_SHAPES)
-    widgets: list[Widget] = [
-        Label("shape", (MIDDLE, 108.0, COLUMN, 0.0), "Hand shape", SMALL, SUBTLE),
-        *button_row(
-            "shape",
-            (MIDDLE, 114.0, COLUMN, BUTTON_PX),
-            shapes,
-            (key.shape,),
-            lambda state, value: _changed(state, shape=value),
-            columns=4,
-        ),
-    ]
-    for field, words, top in (("palm", "Palm faces", 210.0), ("fingers", "Fingers point", 288.0)):
-        widgets += _directions(field, words, top, key)
-    return [*widgets, *_path(key)]
+        ui.space(40.0)
+        ui.label("Click a sector of the map:\nthe hand goes there.", SUBTLE)
+        return
+    ui.label("Hand shape", SUBTLE, SMALL)
+    shapes = [(each, each) for each in HAND_SHAPES]
+    shape = ui.choose("shape", shapes, (key.shape,), COLUMN, 3)
+    if shape is not None:
+        _change(ui, shape=shape)
+    directions: tuple[tuple[Literal["palm", "fingers"], str], ...]
+    directions = ("palm", "Palm faces"), ("fingers", "Fingers point")
+    for field, words in directions:
+        ui.space(12.0)
+        ui.label(words, SUBTLE, SMALL)
+        with ui.font(SMALL):
+            hint = "Shift: two at once"
+            imgui.same_line(COLUMN * ui.unit - imgui.calc_text_size(hint).x)
+            ui.label(hint, SUBTLE, SMALL)
+        present = str(getattr(key, field))
+        chosen = ui.choose(field, DIRECTION_NAMES, tuple(present.split("-")), COLUMN, 3)
+        if chosen is not None:
+            direction = combined(present, chosen, added=imgui.get_io().key_shift)
+            ui.edit(change_direction(ui.state.document, field, direction))
 
 
-def _directions(field: str, words: str, top: float, key: HandKey) -> list[Widget]:
-    """Return the six directions; with Shift, two of them are combined."""
-
-    def choose(state: EditorState, value: str) -> EditorState:
-        present = state.document.hand_key
-        old = "" if present is None else str(getattr(present, field))
-        return _changed(state, **{field: combined(old, value, added=state.shift)})
-
-    rect: Rect = (MIDDLE, top + 6, COLUMN, BUTTON_PX)
-    chosen = tuple(str(getattr(key, field)).split("-"))
-    return [
-        Label(f"{field} label", (MIDDLE, top, COLUMN, 0.0), words, SMALL, SUBTLE),
-        Label(
-            f"{field} shift",
-            (MIDDLE, top, COLUMN, 0.0),
-            "Shift: two at once",
-            12.0,
-            SUBTLE,
-            "right",
-        ),
-        *button_row(field, rect, DIRECTION_NAMES, chosen, choose, columns=3),
-    ]
-
-
-def _path(key: HandKey) -> list[Widget]:
-    """Return how the hand gets here from the key before."""
-
-    def radius(axis: int) -> Any:
-        def change(state: EditorState, value: float) -> EditorState:
-            present = state.document.hand_key
-            new = list((0.0, 0.0, 0.0) if present is None else present.radius)
-            new[axis] = value
-            return _changed(state, radius=tuple(new))
-
-        return change
-
-    wide = (RIGHT - LEFT - 62 - 24) / 3
-    widgets: list[Widget] = [
-        Label("path", (LEFT, 397.0, 56.0, 0.0), "Path here", SMALL, SUBTLE),
-        *button_row(
-            "path",
-            (LEFT + 62, 380.0, 246.0, BUTTON_PX),
-            PATH_NAMES,
-            (key.path,),
-            _with_path,
-        ),
-        Slider(
-            "turns",
-            (LEFT + 326, 380.0, RIGHT - LEFT - 326, BUTTON_PX),
-            "Turns",
-            key.turns,
-            0.0,
-            MAX_TURNS,
-            lambda state, value: _changed(state, turns=value),
-            step=0.5,
-            label_width=40.0,
-            value_width=28.0,
-        ),
-        Label("radius", (LEFT, 425.0, 56.0, 0.0), "Radius", SMALL, SUBTLE),
-    ]
-    for axis, words in enumerate(("outward", "up", "forward")):
-        rect: Rect = (LEFT + 62 + axis * (wide + 12), 408.0, wide, BUTTON_PX)
-        low = -MAX_RADIUS
-        widgets.append(
-            Slider(
-                f"radius:{axis}",
-                rect,
-                words,
-                key.radius[axis],
-                low,
-                MAX_RADIUS,
-                radius(axis),
-                step=0.01,
-                label_width=52.0,
-                value_width=34.0,
-            )
-        )
-    return widgets
+def _path(ui: Ui, key: HandKey) -> None:
+    """Draw how the hand gets here from the key before."""
+    ui.space(10.0)
+    ui.label("Path to this key", SUBTLE, SMALL)
+    path = ui.choose("path", PATH_NAMES, (key.path,), WIDTH, len(PATH_NAMES))
+    if path is not None:
+        ui.state = actions.choose_path(ui.state, path)
+    imgui.begin_disabled(key.path in ("line", "keys"))  # they have no effect there
+    limits = -MAX_RADIUS, MAX_RADIUS
+    sliders = (
+        ("turns", "Turns", key.turns, (0.0, MAX_TURNS), 0.5, "%.1f"),
+        ("radius:0", "Outward", key.radius[0], limits, 0.01, "%.2f"),
+        ("radius:1", "Up", key.radius[1], limits, 0.01, "%.2f"),
+        ("radius:2", "Forward", key.radius[2], limits, 0.01, "%.2f"),
+    )
+    for number, (name, label, value, ends, step, words) in enumerate(sliders):
+        if number % 2:
+            imgui.same_line((LEFT + COLUMN + GUTTER) * ui.unit)
+        moved = ui.slider(name, label, value, ends, COLUMN, step=step, words=words)
+        if moved is None:
+            continue
+        if name == "turns":
+            _change(ui, turns=moved)
+        else:
+            radius = [moved if axis == number - 1 else old for axis, old in enumerate(key.radius)]
+            _change(ui, radius=tuple(radius))
+    imgui.end_disabled()
 
 
-def _with_path(state: EditorState, path: str) -> EditorState:
-    """Choose a path; one that would be a line gets a radius that can be seen."""
-    key = state.document.hand_key
-    if key is None or path == "line" or any(key.radius):
-        return _changed(state, path=path)
-    radius = {"circle": (0.15, 0.15, 0.0), "wave": (0.2, 0.0, 0.0)}.get(path, (0.0, 0.15, 0.0))
-    return _changed(state, path=path, radius=radius)
+def _gesture(ui: Ui) -> None:
+    """Draw who performs the gesture, and its expressivity."""
+    gesture = ui.state.document.gesture
+    ui.space(12.0)
+    imgui.separator()
+    ui.space(12.0)
+    ui.label("Expressivity", size=LARGE)
+    imgui.same_line((LEFT + WIDTH - 76.0) * ui.unit)
+    with ui.font(SMALL):
+        if ui.button("neutral", "neutral", 76.0, enabled=gesture.expressivity != NEUTRAL):
+            ui.edit(change_gesture(ui.state.document, expressivity=NEUTRAL))
+    for number, (name, label, low) in enumerate(PARAMETERS):
+        if number % 2:
+            imgui.same_line((LEFT + COLUMN + GUTTER) * ui.unit)
+        value = getattr(gesture.expressivity, name)
+        moved = ui.slider(name, label, value, (low, 1.0), COLUMN)
+        if moved is not None:
+            ui.edit(change_expressivity(ui.state.document, name, moved))
+    ui.space(8.0)
+    _side_label(ui, "Hands")
+    imgui.begin_group()
+    options = [(each, each) for each in ("right", "left", "both", "either")]
+    who = ui.choose("hand", options, (performers(gesture),), WIDTH - LABEL_WIDTH, 4)
+    imgui.end_group()
+    if who is not None:
+        ui.edit(performed_by(ui.state.document, who))
 
 
-def _hint(left: float, lines: tuple[str, ...]) -> list[Widget]:
-    return [
-        Label(f"hint:{number}", (left, 190.0 + 24 * number, COLUMN, 0.0), words, NORMAL, SUBTLE)
-        for number, words in enumerate(lines)
-    ]
-
-
-def _changed(state: EditorState, **changes: Any) -> EditorState:
-    return edited(state, change_key(state.document, **changes))
+def _change(ui: Ui, **fields: Any) -> None:
+    ui.edit(change_key(ui.state.document, **fields))

@@ -1,115 +1,113 @@
 """The gesture space as a map: the sectors across and up, around a figure that faces you."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
+from imgui_bundle import imgui
 
-from cubeling.app.gesture_editor.editing.state import EditorState
-from cubeling.app.gesture_editor.panels.widgets import ACCENT, CARD, SUBTLE, Look, Widget, rounded
-from cubeling.app.ui.canvas import Canvas
-from cubeling.app.ui.palette import INK, PAPER, RULE, between
+from cubeling.app.gesture_editor.panels.ui import ACCENT, SUBTLE, Rect, Ui
+from cubeling.app.ui.palette import INK, PAPER, RULE, between, bgr
+from cubeling.app.ui.panels.drawing.style import packed
 from cubeling.characters.behaviour import SECTORS_X, SECTORS_Y, Place
 
-LABEL_WIDTH, LABEL_HEIGHT = 62.0, 18.0
-"""Room for the names of rows, to the left, and of columns, above."""
+LABEL_WIDTH, LABEL_HEIGHT, LABEL_SIZE = 62.0, 20.0, 12.5
+"""Room for the names of rows, to the left, and of columns, above [design units]."""
 
-FIGURE = between(PAPER, INK, 0.16)
+CARD = bgr("#fffdf8")
+"""Background of the sectors."""
+
+FIGURE = between(PAPER, INK, 0.14)
 """Colour of the figure."""
 
-HAND_RADIUS = 8.0
-"""Of the disc that stands for the hand."""
+HAND_RADIUS = 7.5
+"""Of the disc that stands for the hand [design units]."""
 
 
-@dataclass(frozen=True)
-class SpaceMap(Widget):
-    """The sectors of a hand; a click or a drag puts the hand into one."""
+def space_map(
+    ui: Ui, place: Place | None, width: float, height: float, *, left: bool
+) -> tuple[str, str] | None:
+    """Draw the sectors of a hand; return the one that is clicked, or dragged to.
 
-    place: Place | None
-    """Where the hand is; None for nowhere."""
+    Parameters
+    ----------
+    ui
+        Where it is drawn.
+    place
+        Where the hand is; None for nowhere.
+    width, height
+        Size of the map [design units].
+    left
+        Whether it is the left hand, whose own side is to the right of the map.
+    """
+    columns = SECTORS_X[::-1] if left else SECTORS_X
+    origin, unit = imgui.get_cursor_screen_pos(), ui.unit
+    imgui.dummy((width * unit, height * unit))
+    grid = (
+        origin.x + LABEL_WIDTH * unit, origin.y + LABEL_HEIGHT * unit,
+        (width - LABEL_WIDTH) * unit, (height - LABEL_HEIGHT) * unit,
+    )  # fmt: skip
+    below = imgui.get_cursor_pos()
+    imgui.set_cursor_screen_pos(grid[:2])
+    imgui.invisible_button("map", grid[2:])
+    ui.map_held = imgui.is_item_active()
+    wide, high = grid[2] / len(columns), grid[3] / len(SECTORS_Y)
+    for row, y in enumerate(SECTORS_Y):
+        for column, x in enumerate(columns):
+            cell = grid[0] + column * wide, grid[1] + row * high, wide, high
+            ui.places[f"sector:{x}:{y}"] = cell
+    shown = None if place is None or place.contact else ui.places[f"sector:{place.x}:{place.y}"]
+    _draw(ui, grid, columns, shown)
+    imgui.set_cursor_pos(below)
+    imgui.dummy((0.0, 0.0))
+    if not ui.map_held:
+        return None
+    mouse = imgui.get_mouse_pos()
+    column = int(np.clip((mouse.x - grid[0]) // wide, 0, len(columns) - 1))
+    row = int(np.clip((mouse.y - grid[1]) // high, 0, len(SECTORS_Y) - 1))
+    return columns[column], SECTORS_Y[row]
 
-    left_hand: bool
-    """Whether it is the left hand, whose own side is to the right of the map."""
 
-    change: Callable[[EditorState, str, str], EditorState]
-    """Puts the hand into a sector across and a sector up."""
+def _draw(ui: Ui, grid: Rect, columns: tuple[str, ...], shown: Rect | None) -> None:
+    """Draw the figure, the sectors with their names, and the hand."""
+    canvas, unit = imgui.get_window_draw_list(), ui.unit
+    left, top, width, height = grid
+    wide, high = width / len(columns), height / len(SECTORS_Y)
+    canvas.add_rect_filled((left, top), (left + width, top + height), packed(CARD), 8.0 * unit)
+    _figure(grid, wide, high, left + wide * (columns.index("XC") + columns.index("XOppC") + 1) / 2)
+    if shown is not None:
+        x, y = shown[:2]
+        color = packed(ACCENT, 0.35)
+        canvas.add_rect_filled((x + 1, y + 1), (x + wide - 1, y + high - 1), color, 5.0 * unit)
+    for number, name in enumerate(columns):
+        x = left + number * wide
+        place = x + wide / 2, top - 0.5 * LABEL_HEIGHT * unit
+        ui.write(name[1:], place, SUBTLE, LABEL_SIZE, 0.5)
+        if number:
+            canvas.add_line((x, top), (x, top + height), packed(RULE), unit)
+    for number, name in enumerate(SECTORS_Y):
+        y = top + number * high
+        ui.write(name[1:], (left - 8.0 * unit, y + high / 2), SUBTLE, LABEL_SIZE, 1.0)
+        if number:
+            canvas.add_line((left, y), (left + width, y), packed(RULE), unit)
+    if shown is not None:
+        middle = shown[0] + wide / 2, shown[1] + high / 2
+        canvas.add_circle_filled(middle, (HAND_RADIUS + 1.5) * unit, packed(CARD))
+        canvas.add_circle_filled(middle, HAND_RADIUS * unit, packed(ACCENT))
 
-    @property
-    def takes_mouse(self) -> bool:
-        """Always."""
-        return True
 
-    @property
-    def columns(self) -> tuple[str, ...]:
-        """Sectors across, from left to right on the map."""
-        return SECTORS_X[::-1] if self.left_hand else SECTORS_X
-
-    def draw(self, canvas: Canvas, look: Look) -> None:
-        """Draw the figure, the sectors, their names, and the hand."""
-        left, top, width, height = self._grid
-        wide, high = width / len(SECTORS_X), height / len(SECTORS_Y)
-        rounded(canvas, self._grid, 8, CARD)
-        self._figure(canvas)
-        if self.place is not None and not self.place.contact:
-            self._sector(canvas, self.place, wide, high)
-        for number, name in enumerate(self.columns):
-            x = left + (number + 0.5) * wide
-            canvas.text(x, top - 5, name[1:], 12, SUBTLE, "middle")
-            if number:
-                edge = left + number * wide
-                canvas.line([[edge, top], [edge, top + height]], RULE, 1.2)
-        for number, name in enumerate(SECTORS_Y):
-            y = top + (number + 0.5) * high
-            canvas.text(left - 7, y + 4, name[1:], 12, SUBTLE, "right")
-            if number:
-                edge = top + number * high
-                canvas.line([[left, edge], [left + width, edge]], RULE, 1.2)
-        self._hand(canvas)
-
-    def press(self, state: EditorState, x: float, y: float) -> EditorState:
-        """Put the hand into the sector under the mouse."""
-        return self.drag(state, x, y)
-
-    def drag(self, state: EditorState, x: float, y: float) -> EditorState:
-        """Put the hand into the sector under the mouse."""
-        left, top, width, height = self._grid
-        column = int(np.clip((x - left) / width * len(SECTORS_X), 0, len(SECTORS_X) - 1))
-        row = int(np.clip((y - top) / height * len(SECTORS_Y), 0, len(SECTORS_Y) - 1))
-        return self.change(state, self.columns[column], SECTORS_Y[row])
-
-    def center(self, x: str, y: str) -> tuple[float, float]:
-        """Return where the middle of a sector is on the canvas."""
-        left, top, width, height = self._grid
-        across = (self.columns.index(x) + 0.5) * width / len(SECTORS_X)
-        return left + across, top + (SECTORS_Y.index(y) + 0.5) * height / len(SECTORS_Y)
-
-    @property
-    def _grid(self) -> tuple[float, float, float, float]:
-        left, top, width, height = self.rect
-        return left + LABEL_WIDTH, top + LABEL_HEIGHT, width - LABEL_WIDTH, height - LABEL_HEIGHT
-
-    def _sector(self, canvas: Canvas, place: Place, wide: float, high: float) -> None:
-        x, y = self.center(place.x, place.y)
-        cell = (x - wide / 2 + 1, y - high / 2 + 1, wide - 2, high - 2)
-        rounded(canvas, cell, 5, between(CARD, ACCENT, 0.35))
-
-    def _hand(self, canvas: Canvas) -> None:
-        if self.place is None or self.place.contact:
-            return
-        x, y = self.center(self.place.x, self.place.y)
-        canvas.disc(x, y, HAND_RADIUS + 1.5, CARD)
-        canvas.disc(x, y, HAND_RADIUS, ACCENT)
-
-    def _figure(self, canvas: Canvas) -> None:
-        """Draw head, trunk and arms about the line between the two centres."""
-        left, top, width, height = self._grid
-        wide, high = width / len(SECTORS_X), height / len(SECTORS_Y)
-        middle = left + wide * (1 if self.left_hand else len(SECTORS_X) - 1)
-        canvas.disc(middle, top + 1.12 * high, 0.66 * high, FIGURE)
-        trunk = (middle - 0.4 * wide, top + 2.05 * high, 0.8 * wide, height - 2.05 * high)
-        rounded(canvas, trunk, 0.3 * wide, FIGURE)
-        for side in (-1, 1):
-            shoulder = [middle + side * 0.42 * wide, top + 2.45 * high]
-            elbow = [middle + side * 0.68 * wide, top + 4.2 * high]
-            wrist = [middle + side * 0.72 * wide, top + 5.6 * high]
-            canvas.line([shoulder, elbow, wrist], FIGURE, 0.24 * wide)
+def _figure(grid: Rect, wide: float, high: float, middle: float) -> None:
+    """Draw head, trunk and arms about the line between the two centres."""
+    canvas, color = imgui.get_window_draw_list(), packed(FIGURE)
+    _, top, _, height = grid
+    canvas.add_circle_filled((middle, top + 1.12 * high), 0.66 * high, color)
+    trunk = (middle - 0.4 * wide, top + 2.05 * high), (middle + 0.4 * wide, top + height)
+    canvas.add_rect_filled(*trunk, color, 0.3 * wide)
+    for side in (-1, 1):
+        arm = [
+            (middle + side * across * wide, top + down * high)
+            for across, down in ((0.5, 2.45), (0.7, 4.2), (0.74, 5.6))
+        ]
+        for start, end in pairwise(arm):
+            canvas.add_line(start, end, color, 0.22 * wide)
+        for joint in arm:
+            canvas.add_circle_filled(joint, 0.11 * wide, color)

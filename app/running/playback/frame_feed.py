@@ -5,7 +5,6 @@ from dataclasses import replace
 from itertools import islice
 
 from cubeling.app.running.opened_session import OpenedSession
-from cubeling.app.session.replay_inputs import read_replay_inputs
 from cubeling.tracking import Frame, Health, LiveFrames, StoredFrames, Timeline, open_source
 
 SCREEN_UPDATE_INTERVAL_S = 0.05
@@ -56,8 +55,8 @@ class FrameFeed:
         assert isinstance(session.source, StoredFrames), "only recordings are read again"
         session.source.skip(index)
         self._frames = iter(session.source)
-        if options.stage != "camera":
-            replay_inputs = read_replay_inputs(options.source, options.stage)
+        if options.stage != "camera" and session.replayed is not None:
+            replay_inputs = session.replayed.replay_inputs(options.stage)
             session.replay_inputs = islice(replay_inputs, index, None)
 
     def _next_live(self, source: LiveFrames) -> Frame | Health | None:

@@ -2,13 +2,11 @@
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.opening import is_seekable
 from cubeling.app.running.playback.frame_feed import FrameFeed
 from cubeling.app.running.playback.saved_states import SavedStates
-from cubeling.app.session import events
 from cubeling.app.ui.playback.status import PlaybackMark, Position
 from cubeling.tracking import Frame, Health, LiveFrames
 
@@ -216,6 +214,6 @@ class Transport:
 
     def _read_marks(self, first: float) -> tuple[PlaybackMark, ...]:
         """Return what happened in the recording, by its events."""
-        source = self._session.options.source
-        found = events(Path(source)) if source.endswith(".mcap") else []
+        replayed = self._session.replayed
+        found = [] if replayed is None else replayed.events
         return tuple(PlaybackMark(time - first, event) for time, event in found)

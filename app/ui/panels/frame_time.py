@@ -17,6 +17,7 @@ PARTS = {
     "capture": bgr("#2f6f8f"),
     "tracking": ACTION_COLORS["walk"],
     "gestures": ROBOT_COLOR,
+    "appearance": bgr("#8c6bb1"),
     "scenario": HAPPY,
     "animation": ACTION_COLORS["run"],
     "drawing": ACTION_COLORS["kiss"],

@@ -5,7 +5,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.rendering.camera_picture.light import LINEAR_FROM_SRGB
-from cubeling.characters.rendering.scene import Softness
 
 Image = NDArray[np.uint8]
 
@@ -13,16 +12,18 @@ MIN_HAZE = 0.0005
 """Less haze than this changes no value of a picture by more than two."""
 
 
-def haze_table(softness: Softness | None) -> Image | None:
+def haze_table(haze: float, paper: float) -> Image | None:
     """Return what each sRGB value becomes in a hazy picture, (256,), or None in a clear one.
 
-    >>> haze_table(Softness(0.5, 0.0, haze=0.1))[[0, 100, 255]].tolist()
+    `haze` and `paper` are those of `Softness`.
+
+    >>> haze_table(0.1, 1.0)[[0, 100, 255]].tolist()
     [89, 128, 255]
-    >>> haze_table(Softness(0.5, 0.0))
+    >>> haze_table(0.0, 1.0)
     """
-    if softness is None or softness.haze < MIN_HAZE:
+    if haze < MIN_HAZE:
         return None
-    light = softness.haze * softness.paper + (1.0 - softness.haze) * LINEAR_FROM_SRGB
+    light = haze * paper + (1.0 - haze) * LINEAR_FROM_SRGB
     return np.asarray(np.rint(np.interp(light, LINEAR_FROM_SRGB, np.arange(256.0))), np.uint8)
 
 

@@ -15,7 +15,7 @@ from cubeling.characters.rendering.projection import (
     project,
     usable_distortion,
 )
-from cubeling.characters.rendering.scene import Box, CameraView, MeasuredLight
+from cubeling.characters.rendering.scene import Box, CameraView, RoomLight
 from cubeling.characters.skeleton.pose import Array
 
 TO_LIGHT = np.array([-0.42, 1.0, 0.34]) / np.linalg.norm([-0.42, 1.0, 0.34])
@@ -26,6 +26,9 @@ where it is visible."""
 MIN_RISE = 0.6
 """Least height of the direction to a measured light: shadows are at most 1.3 times as long as what
 casts them."""
+
+DIRECTION_CERTAINTIES = 0.6, 0.8
+"""Certainties of a measured light's direction from which on it is used at all, and fully."""
 
 LUMA_WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
 """Weights of red, green and blue in luminance (Rec. 709)."""
@@ -62,7 +65,7 @@ class Light:
     """The light on a character, in linear RGB; 1 makes a white surface just white."""
 
     key: Array
-    """Linear RGB of the key light, (3,)."""
+    """Key light, (3,)."""
 
     sky: Array
     """Ambient light from the upper hemisphere, (3,)."""
@@ -78,7 +81,7 @@ class Light:
         """Light that a white sheet on the table reflects, (3,)."""
         return np.asarray(self.key * self.to_light[1] + self.sky)
 
-    def mix(self, other: "Light", share: float) -> "Light":
+    def mixed(self, other: "Light", share: float) -> "Light":
         """Return this light with a share of another one."""
         if share <= 0.0:
             return self
@@ -143,7 +146,7 @@ class LightEstimator:
         self,
         picture: NDArray[np.uint8],
         find_paper: Callable[[], Array | None] | None = None,
-        measured: MeasuredLight | None = None,
+        measured: RoomLight | None = None,
         camera_from_table: Array | None = None,
     ) -> Light:
         """Take a picture (height, width, 3) BGR into account and return the light.
@@ -171,11 +174,11 @@ class LightEstimator:
         target = 0.0
         if measured is not None and camera_from_table is not None:
             self._measured = self._on_table(measured, camera_from_table)
-            target = measured.weight
+            target = float(np.interp(measured.certainty, DIRECTION_CERTAINTIES, (0.0, 1.0)))
         if self._measured is None:
             return light
         self._share += self.SMOOTHING_SHARE * (target - self._share)
-        return light.mix(replace(self._measured, ground=light.ground), self._share)
+        return light.mixed(replace(self._measured, ground=light.ground), self._share)
 
     def _look(self, picture: NDArray[np.uint8], paper: Array | None) -> None:
         """Estimate the light in a picture, in which white paper has a colour if some was found."""
@@ -195,7 +198,7 @@ class LightEstimator:
         mean = LINEAR_FROM_SRGB[samples].mean(axis=0)
         self._seen_ground = np.maximum(mean, 0.25 * self.LUMINANCE_RANGE[0])
 
-    def _on_table(self, measured: MeasuredLight, camera_from_table: Array) -> Light:
+    def _on_table(self, measured: RoomLight, camera_from_table: Array) -> Light:
         """Return a measured light in the table frame, no darker or brighter than can be drawn."""
         to_light = camera_from_table[:3, :3].T @ measured.to_light
         to_light = to_light / np.linalg.norm(to_light)

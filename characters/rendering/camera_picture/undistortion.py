@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.rendering.camera_picture.hand_cover import Maps, PictureCover, cropped
+from cubeling.characters.rendering.camera_picture.hand_cover import Maps, PictureCover, covered_area
 from cubeling.characters.rendering.projection import Rectangle, is_pinhole, usable_distortion
-from cubeling.characters.rendering.scene import CameraView, Cover
+from cubeling.characters.rendering.scene import CameraView, HandInFront
 from cubeling.characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
@@ -55,7 +55,7 @@ class Undistorter:
             self._worker = ThreadPoolExecutor(1, "undistortion")
         view = CameraView(image, matrix, distortion, None)
         self.matrix_of(view)
-        self._ahead = view, self._worker.submit(self._undistort, view, self._maps)
+        self._ahead = view, self._worker.submit(self._undistorted, view, self._maps)
 
     def _finish(self) -> None:
         """Wait for the other thread: the buffers are in use until then."""
@@ -80,7 +80,7 @@ class Undistorter:
         """
         if view.image is None:
             return np.asarray(view.matrix, float)
-        image = _check(view.image)
+        image = _checked(view.image)
         if not is_pinhole(view.matrix):
             return np.eye(3)
         camera_key = _camera_key(view)
@@ -108,29 +108,26 @@ class Undistorter:
         if ahead is not None and _same_picture(ahead[0], view):
             return ahead[1].result()
         self.matrix_of(view)
-        return self._undistort(view, self._maps)
+        return self._undistorted(view, self._maps)
 
-    def _undistort(self, view: CameraView, maps: Maps | None) -> Image:
+    def _undistorted(self, view: CameraView, maps: Maps | None) -> Image:
         """Return the same, of a view that has an image, by the maps of its camera."""
         image = view.image
         assert image is not None
         if not is_pinhole(view.matrix):
-            return self._fit(image, (image.shape[1], image.shape[0]))
-        return image.copy() if maps is None else self._remap(image, *maps)
+            return self._fitted(image, (image.shape[1], image.shape[0]))
+        return image.copy() if maps is None else self._remapped(image, *maps)
 
-    def cover_in_picture(self, cover: Cover) -> PictureCover | None:
-        """Return the cover of the last view's frame as it is in the picture, or None outside of it.
+    def cover_in_picture(self, hand: HandInFront) -> PictureCover | None:
+        """Return the hand in the last view's frame as it is in the picture, or None outside of it.
 
         It has an empty rim, so that it ends softly.
         """
-        cover = cropped(cover)
-        if not cover.share.size:
+        covered = covered_area(hand)
+        if not covered.width:
             return None
-        around = self._area_in_picture(cover.area)
-        area = around.intersection(Rectangle(0, 0, *self._size))
-        if area is None:
-            return None
-        return PictureCover(area, cover, self._maps)
+        area = self._area_in_picture(covered).intersection(Rectangle(0, 0, *self._size))
+        return None if area is None else PictureCover(area, hand, self._maps)
 
     def _area_in_picture(self, part: Rectangle) -> Rectangle:
         """Return the area of the picture around a rectangle of the last view's frame."""
@@ -142,7 +139,7 @@ class Undistorter:
         high = np.ceil(points.max((0, 1))).astype(int) + 3
         return Rectangle(int(low[0]), int(low[1]), *(high - low).tolist())
 
-    def _remap(
+    def _remapped(
         self, image: Image, columns: NDArray[np.float32], rows: NDArray[np.float32]
     ) -> Image:
         """Return a picture whose pixels come from the given columns and rows of the frame."""
@@ -176,7 +173,7 @@ class Undistorter:
         )
         return fitted, (np.asarray(columns, np.float32), np.asarray(rows, np.float32))
 
-    def _fit(self, image: Image, frame_size: tuple[int, int]) -> Image:
+    def _fitted(self, image: Image, frame_size: tuple[int, int]) -> Image:
         """Scale a frame of an unknown camera to the picture."""
         if frame_size == self._size:
             return image.copy()
@@ -212,7 +209,7 @@ def _is_frame(image: Image) -> bool:
     return len(shape) == 3 and shape[2] == 3 and image.dtype == np.uint8 and 0 not in shape
 
 
-def _check(image: Image) -> Image:
+def _checked(image: Image) -> Image:
     if not _is_frame(image):
         raise CharacterError(
             f"cannot draw on an image of shape {image.shape} and type {image.dtype}: "

@@ -1,4 +1,4 @@
-"""An editor without a window, in a folder of its own."""
+"""Editors without a window, each in a folder of its own."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -9,6 +9,10 @@ import pytest
 from cubeling.app.gesture_editor.session import EditorSession
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.rendering import create_context
+from tools.gesture_tour import OffscreenEditor
+
+SMALL_PX = 620, 370
+"""Size of a window that costs little to draw, in which everything is half as large [px]."""
 
 
 @pytest.fixture(scope="session")
@@ -34,3 +38,21 @@ def opened(context: moderngl.Context, tmp_path: Path) -> Iterator[Callable[..., 
     yield open_editor
     for session in sessions:
         session.close()
+
+
+@pytest.fixture
+def editing(
+    context: moderngl.Context, opened: Callable[..., EditorSession]
+) -> Iterator[Callable[..., OffscreenEditor]]:
+    """Open an editor with its panels; all of them are closed at the end."""
+    editors: list[OffscreenEditor] = []
+
+    def open_editor(
+        name: str = "", character: str = "robot", size: tuple[int, int] = SMALL_PX
+    ) -> OffscreenEditor:
+        editors.append(OffscreenEditor(context, opened(name, character), size))
+        return editors[-1]
+
+    yield open_editor
+    for editor in editors:
+        editor.close()

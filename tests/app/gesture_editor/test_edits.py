@@ -14,12 +14,14 @@ from cubeling.app.gesture_editor.editing.timing import (
     phase_spans,
     stroke_for,
 )
+from cubeling.characters.behaviour import DIRECTIONS
 from cubeling.characters.behaviour.gestures.checking import check_gesture
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
 from cubeling.characters.behaviour.symbolic_gesture import SECTORS_X, SECTORS_Y, HandKey, Place
 
 shares = st.floats(-0.5, 1.5)
 seconds = st.floats(-1.0, 20.0)
+directions = st.sampled_from([*DIRECTIONS, "up-in"])
 EDITS = st.one_of(
     shares.map(lambda at: lambda each: edits.add_key(each, at)),
     shares.map(lambda at: lambda each: edits.move_key(each, at)),
@@ -31,6 +33,8 @@ EDITS = st.one_of(
     st.sampled_from(["", "chin", "hip"]).map(
         lambda name: lambda each: edits.change_place(each, contact=name)
     ),
+    directions.map(lambda words: lambda each: edits.change_direction(each, "palm", words)),
+    directions.map(lambda words: lambda each: edits.change_direction(each, "fingers", words)),
     st.tuples(st.sampled_from(edits.PHASES), seconds).map(
         lambda each: lambda document: edits.change_phase(document, *each)
     ),
@@ -89,6 +93,13 @@ def test_a_key_stays_between_its_neighbours():
     document = GestureDocument(replace(EMPTY.gesture, right=keys)).select("right", 1)
     assert edits.move_key(document, 2.0).hand_key == replace(keys[1], at=1.0 - edits.MIN_KEY_GAP)
     assert edits.move_key(document, -1.0).hand_key == replace(keys[1], at=edits.MIN_KEY_GAP)
+
+
+def test_fingers_turn_when_the_palm_would_be_along_them():
+    document = edits.change_direction(edits.add_key(EMPTY, 0.0), "fingers", "up")
+    turned = edits.change_direction(document, "palm", "down").hand_key
+    assert turned is not None
+    assert (turned.palm, turned.fingers) == ("down", "forward")
 
 
 def test_a_sector_ends_a_contact():

@@ -1,5 +1,6 @@
 """The editor's window, on a virtual display."""
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -14,8 +15,8 @@ ROOT = SCRIPT.parents[3]
 
 @pytest.mark.slow(reason="a window is opened")
 def test_a_gesture_is_made_and_saved_in_the_window(tmp_path):
-    if not VirtualScreen.installed():
-        pytest.skip("Xvfb is not installed")
+    if not VirtualScreen.installed() or shutil.which("xdotool") is None:
+        pytest.skip("Xvfb or xdotool is not installed")
     with VirtualScreen() as screen:
         done = subprocess.run(
             [sys.executable, str(SCRIPT), str(tmp_path)],

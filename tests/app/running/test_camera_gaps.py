@@ -10,13 +10,14 @@ from rich.console import Console
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.running.summary import Summary
-from cubeling.app.session import SessionOptions, events, messages, session_info
+from cubeling.app.session import SessionOptions, messages, session_info
 from cubeling.app.ui.cards.overlay import interrupted
 from cubeling.app.ui.notice import Notice, notice
 from cubeling.app.ui.screen import NullScreen
 from cubeling.tracking import TrackingError
 from cubeling.tracking.sources.base import LiveFrames
 from cubeling.tracking.sources.device import DeviceSetting, Health
+from tests.app import session_parts
 from tests.app.running.recorded_camera import RecordedCamera
 
 RUNNING = Health(
@@ -95,7 +96,9 @@ def test_a_lost_camera_is_reported_on_the_screen_and_the_session_continues(run_w
     assert titles == ["Camera lost: plug it in again"] * 3
     ((start, seconds),) = summary.gaps
     assert seconds == pytest.approx(3.0 + 1 / 30, abs=0.01)
-    recorded = [(time, event) for time, event in events(path) if event.startswith("camera")]
+    recorded = [
+        (time, event) for time, event in session_parts.events(path) if event.startswith("camera")
+    ]
     assert [event for _, event in recorded] == ["camera lost", "camera back"]
     assert [time for time, _ in recorded] == pytest.approx([start, start + seconds])
     summary.check()

@@ -91,7 +91,9 @@ def play_slowly(short_session):
         )
         with open_session(options, screen=screen) as session:
             pace = session.pace and Pace(session.pace.max_late, time, time.sleep)
-            summary = run(replace(session, pace=pace, start_overs=STARTED_OVER))
+            played = replace(session, pace=pace)
+            played.start_overs = STARTED_OVER
+            summary = run(played)
         return screen.steps, summary
 
     return run_session
@@ -129,10 +131,10 @@ def test_a_player_who_started_over_in_a_frame_that_is_left_out_does_so_in_the_ne
     cleared = []
     decide = Playground.decide
 
-    def note(self, controls, inputs):
+    def note(self, state, controls, inputs):
         if inputs.clear:
             cleared.append(controls.timestamp)
-        return decide(self, controls, inputs)
+        return decide(self, state, controls, inputs)
 
     monkeypatch.setattr(Playground, "decide", note)
     steps, _ = play_slowly()

@@ -45,5 +45,6 @@ def test_settings_change_while_playing_unless_it_is_recorded(short_session, tmp_
     assert last is not None
     assert (last.command.gaze is None) != recorded
     parts = set(session.monitor.times.means())
-    usual = {"capture", "tracking", "gestures", "scenario", "animation", "drawing", "robot"}
+    usual = {"capture", "tracking", "gestures", "appearance", "scenario", "animation", "drawing"}
+    usual |= {"robot"}
     assert parts == usual | {"showing", "other"} | ({"recording"} if recorded else set())

@@ -12,12 +12,12 @@ from cubeling.app.moods.robot_traces import read_robot_traces
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.running import runner
 from cubeling.app.running.opening import open_session
-from cubeling.app.running.replay_check import check_session
 from cubeling.app.running.runner import run
-from cubeling.app.session import SessionOptions, events, messages, session_info
+from cubeling.app.session import SessionOptions, messages, session_info
 from cubeling.app.ui.playback.requests import MarkMoment, Pause, Record, Seek, SeekTo, StepFrames
 from cubeling.robot.protocol.timing import FAILSAFE_AFTER as FAILSAFE_S
 from cubeling.tracking import Health
+from tests.app import session_parts
 from tests.app.running.player import Player
 from tests.app.running.recorded_camera import RecordedCamera
 
@@ -171,7 +171,7 @@ def test_a_recording_by_key_is_a_session_of_its_own(play, short_session):
     assert session_info(path).frames == 12
     assert start_of(path) == pytest.approx(10 / 30, abs=0.001)
     options = SessionOptions(scenario="companion", source=str(path))
-    assert check_session(path, options).identical
+    assert session_parts.check(path, options).identical
     assert player.indices[24:] == [24, 0]  # only after the recording
     assert player.notices == [
         f"Recording from the start: {path}",
@@ -192,7 +192,7 @@ def test_marks_by_key_are_events_of_the_recording(play):
     )
     player = play(*script, stage="camera")
     (path,) = player.session.recorded
-    marks = {name: time for time, name in events(path) if name.startswith("mark")}
+    marks = {name: time for time, name in session_parts.events(path) if name.startswith("mark")}
     assert marks == {"mark 1": pytest.approx(13 / 30), "mark 2": pytest.approx(17 / 30)}
     assert player.notices[0] == "Marks are kept in a recording: R begins one"
     assert player.notices[2:4] == ["Mark 1 at 0.1 s", "Mark 2 at 0.2 s"]
@@ -250,12 +250,12 @@ def test_a_pause_of_a_live_session_leaves_no_gap_and_keeps_the_robot(short_sessi
     stamps = [step.frame.timestamp for step in player.steps]
     np.testing.assert_allclose(np.diff(stamps), 1 / 30, atol=1e-4)
     assert len(stamps) == 15
-    assert check_session(path, replace(options, source=str(path), record=None)).identical
+    assert session_parts.check(path, replace(options, source=str(path), record=None)).identical
     assert states == ["ready"]
     wire = [time for _, time, _ in messages(path, "/robot/wire")]
     assert max(wire) < stamps[-1] + 1.0
     assert read_robot_traces(path)  # the robot was never lost, or its trace would end
-    assert [event for _, event in events(path) if event in ("paused", "resumed")] == [
+    assert [event for _, event in session_parts.events(path) if event in ("paused", "resumed")] == [
         "paused",
         "resumed",
     ]

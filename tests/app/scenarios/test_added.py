@@ -11,6 +11,7 @@ import pytest
 from cubeling import app
 from cubeling.app.pipeline.registry import added_scenarios
 from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.situation import Situation
 from cubeling.app.scenarios import make_scenario, scenario_names
 from cubeling.app.session import messages, session_info
 from cubeling.app.session.encoding import decode
@@ -64,7 +65,7 @@ def test_the_example_of_the_page_waves_and_cheers(install, hand):
     greet = make_scenario("greet")
 
     def action(controls):
-        return greet.update(controls, None, Inputs()).command.activity
+        return greet.update(controls, Situation(), Inputs()).command.activity
 
     assert action(hand.frame()) == "idle"
     assert action(hand.frame(resting=False, lifted=True)) == "wave"

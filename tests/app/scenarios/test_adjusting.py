@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from cubeling.affect import Personality
-from cubeling.app.scenarios import Inputs, ScenarioSettings, make_scenario
+from cubeling.app.scenarios import Inputs, ScenarioSettings, Situation, make_scenario
 from tests.app.conftest import FRAME
 
 
@@ -15,7 +15,7 @@ def made(name) -> Any:
 
 
 def play(scenario, frames):
-    return [scenario.update(controls, None, Inputs()) for controls in frames]
+    return [scenario.update(controls, Situation(), Inputs()) for controls in frames]
 
 
 def test_fewer_turns_change_the_intensity_faster_from_where_it_is(hand):

@@ -3,6 +3,7 @@
 import pytest
 
 from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.situation import Situation
 from cubeling.app.scenarios import make_scenario
 from cubeling.tracking import CubeModel
 
@@ -15,7 +16,7 @@ def companion():
 def play(companion, frames):
     outcome = None
     for controls in frames:
-        outcome = companion.update(controls, None, Inputs())
+        outcome = companion.update(controls, Situation(), Inputs())
     assert outcome is not None
     return outcome
 
@@ -52,8 +53,8 @@ def test_the_action_changes_only_when_the_cube_rests_again(companion, hand):
     play(companion, [hand.frame()])
     frames = hand.tip("front")
     for controls in frames[:-1]:
-        assert companion.update(controls, None, Inputs()).command.activity == "idle"
-    assert companion.update(frames[-1], None, Inputs()).command.activity == "kiss"
+        assert companion.update(controls, Situation(), Inputs()).command.activity == "idle"
+    assert companion.update(frames[-1], Situation(), Inputs()).command.activity == "kiss"
 
 
 def test_kisses_lead_from_angry_over_neutral_to_happy_and_shouts_back(companion, hand):
@@ -61,7 +62,7 @@ def test_kisses_lead_from_angry_over_neutral_to_happy_and_shouts_back(companion,
 
     def record(frames):
         for controls in frames:
-            label = companion.update(controls, None, Inputs()).emotion.emotion.label
+            label = companion.update(controls, Situation(), Inputs()).emotion.emotion.label
             if not labels or labels[-1] != label:
                 labels.append(label)
 

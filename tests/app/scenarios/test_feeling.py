@@ -11,6 +11,7 @@ from cubeling.affect.traits import AffectImpulse
 from cubeling.affect.words import closest_word
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import EmotionTarget, Inputs
+from cubeling.app.pipeline.situation import Situation
 from cubeling.app.pipeline.step import ReplayInputs
 from cubeling.app.running.robots import RobotLine
 from cubeling.app.scenarios import SCENARIOS, make_scenario
@@ -158,13 +159,13 @@ def follow(hand, *parts):
     """Return what is felt at the end of each part: seconds, and what changes at its start."""
     scenario, posed = make_scenario("follow"), None
     animator = Animator(Character.load("human")) if any("gestures" in f for _, f in parts) else None
-    known = Inputs(actions=animator.actions if animator else ())
+    actions = animator.actions if animator else ()
     felt = []
     for seconds, first in parts:
         for number in range(round(seconds * 10)):
             controls = hand.frame(**(first if number == 0 else {}))
             hand.frames += 2  # a camera of ten frames a second
-            outcome = scenario.update(controls, posed, known)
+            outcome = scenario.update(controls, Situation(posed, actions=actions), Inputs())
             posed = animator.update(outcome.command) if animator else None
         felt.append(outcome.emotion)
     return felt
@@ -221,10 +222,10 @@ def test_the_cube_out_of_sight_takes_no_runner_along(hand):
 def test_starting_over_forgets_what_was_felt(hand):
     for name in SCENARIOS:
         scenario = make_scenario(name)
-        home = scenario.update(hand.frame(), None, Inputs()).emotion
+        home = scenario.update(hand.frame(), Situation(), Inputs()).emotion
         for controls in [hand.frame(gestures=("shaken",)), *hand.tip("front"), *hand.wait(3)]:
-            target = scenario.update(controls, None, Inputs()).emotion
-        again = scenario.update(hand.frame(), None, Inputs(clear=True)).emotion
+            target = scenario.update(controls, Situation(), Inputs()).emotion
+        again = scenario.update(hand.frame(), Situation(), Inputs(clear=True)).emotion
         assert target.emotion != home.emotion
         assert again.emotion == home.emotion
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.situation import Situation
 from cubeling.app.scenarios import make_scenario
 from cubeling.app.scenarios.follow import SHAKE_ACTIONS
 from cubeling.characters import Animator, Character
@@ -20,8 +21,8 @@ class Play:
         asked, done = [], []
         for number in range(round(seconds * 30)):
             controls = self.hand.frame(**(first if number == 0 else {}))
-            inputs = Inputs(actions=self.animator.actions)
-            command = self.follow.update(controls, self.posed, inputs).command
+            situation = Situation(self.posed, actions=self.animator.actions)
+            command = self.follow.update(controls, situation, Inputs()).command
             self.posed = self.animator.update(command)
             asked.append(command.activity)
             done.append(self.posed.state)
@@ -47,10 +48,12 @@ def test_a_shake_during_an_action_changes_nothing(hand):
 
 def test_a_character_without_these_actions_ignores_a_shake(hand):
     follow = make_scenario("follow")
-    outcome = follow.update(hand.frame(gestures=("shaken",)), None, Inputs(actions=("kiss",)))
+    outcome = follow.update(
+        hand.frame(gestures=("shaken",)), Situation(actions=("kiss",)), Inputs()
+    )
     assert outcome.command.activity == "idle"
     turned = hand.frame(gestures=("shaken",), camera_angle=np.pi / 2)
     for _ in range(30):
-        outcome = follow.update(turned, None, Inputs())
+        outcome = follow.update(turned, Situation(), Inputs())
         turned = hand.frame()
     assert outcome.command.activity == "move"

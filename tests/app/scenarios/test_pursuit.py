@@ -9,6 +9,7 @@ import pytest
 import tests.sessions
 from cubeling.affect import Personality
 from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.situation import Situation
 from cubeling.app.scenarios import make_scenario
 from cubeling.app.scenarios.pursuit import IGNORED_S, Pursuit
 from cubeling.characters import Animator, Character, RootDelta
@@ -78,10 +79,10 @@ def test_nothing_happens_with_a_cube_that_is_not_seen(hand):
 def test_the_character_stops_before_it_stands_in_the_cube(hand, name):
     follow = make_scenario("follow")
     animator, posed = Animator(Character.load(name), place=RootDelta(-0.4, 0.0, 0.0)), None
-    inputs = Inputs(actions=animator.actions, walks=animator.walks, body_length=animator.length)
     icons, moods = set(), []
     for _ in range(30 * 8):
-        outcome = follow.update(hand.frame(camera_angle=1.5), posed, inputs)
+        situation = Situation(posed, None, animator.actions, animator.walks, animator.length)
+        outcome = follow.update(hand.frame(camera_angle=1.5), situation, Inputs())
         posed = animator.update(outcome.command)
         icons.add(outcome.icon)
         moods.append(outcome.emotion.emotion.valence)
@@ -106,14 +107,16 @@ def test_a_lap_that_is_finished_pleases(hand):
     sketch = make_scenario("sketch")
     corners = [np.array(c, float) for c in ((0.1, 0.1), (-0.1, 0.1), (-0.1, -0.1), (0.1, -0.1))]
     for corner in corners:
-        sketch.update(hand.frame(position=corner, resting=True), None, Inputs())
-    sketch.update(hand.frame(lifted=True, resting=False), None, Inputs())
+        sketch.update(hand.frame(position=corner, resting=True), Situation(), Inputs())
+    sketch.update(hand.frame(lifted=True, resting=False), Situation(), Inputs())
     moods = []
     for number in range(330):
         share = number / 300 * 4
         start, end = corners[int(share) % 4], corners[(int(share) + 1) % 4]
         walker = standing(*(start + (share % 1) * (end - start)))
-        moods.append(sketch.update(hand.frame(lifted=False), walker, Inputs()).emotion.emotion)
+        moods.append(
+            sketch.update(hand.frame(lifted=False), Situation(walker), Inputs()).emotion.emotion
+        )
     steps = np.diff([mood.valence for mood in moods])
     assert np.count_nonzero(steps > 0.1) == 1
     assert np.argmax(steps) == pytest.approx(300, abs=5)

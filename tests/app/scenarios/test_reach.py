@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from cubeling.app.pipeline.scenario import Inputs, ScenarioSettings
+from cubeling.app.pipeline.situation import Situation
 from cubeling.app.pipeline.things import GRIP, BodyParts, PosedBody, Thing
 from cubeling.app.scenarios.reach import HINTS, Reach
 from cubeling.app.scenarios.reach_behaviour import GESTURES
@@ -45,15 +46,15 @@ class Play:
         titles = []
         for _ in range(round(seconds * 30)):
             controls = self.hand.frame(position=cube[[0, 2], 3], **changes)
-            inputs = Inputs(
+            situation = Situation(
+                character=None if self.body is None else self.body.posed,
+                body=self.body,
                 actions=self.animator.actions,
                 walks=self.animator.walks,
                 body_length=self.animator.length,
                 cube=cube if controls.visible else None,
-                body=self.body,
             )
-            posed = None if self.body is None else self.body.posed
-            outcome = self.reach.update(controls, posed, inputs)
+            outcome = self.reach.update(controls, situation, Inputs())
             self.body = PosedBody(self.character, self.parts, self.animator.update(outcome.command))
             self.events += outcome.events
             self.outcomes.append(outcome)

@@ -2,15 +2,12 @@
 
 import itertools
 from dataclasses import astuple, replace
-from typing import Any, ClassVar
 
 import cv2
 import numpy as np
 import pytest
 
-from cubeling.app.pipeline import surroundings
 from cubeling.app.pipeline.playground import Playground
-from cubeling.app.pipeline.surroundings import Surroundings
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.scenarios import SCENARIOS
 from cubeling.app.session.bundled import bundled
@@ -44,22 +41,6 @@ def test_what_follows_a_checkpoint_is_the_same_every_time(name):
         assert messages(playground, frames[BEFORE:]) == first
 
 
-class NotedSurroundings(Surroundings):
-    """Keeps what it measures."""
-
-    noted: ClassVar[list[tuple[Any, ...]]] = []
-
-    def view(self, frame, state, controls, matched=True):
-        view = super().view(frame, state, controls, matched)
-        self.noted.append((view.light, view.softness, view.focus))
-        return view
-
-    def cover(self, frame, state):
-        cover = super().cover(frame, state)
-        self.noted.append((cover,))
-        return cover
-
-
 def darker(frame):
     """The frame as if a lamp had been switched off, and the lens was not clean."""
     image = cv2.convertScaleAbs(cv2.GaussianBlur(frame.image, (0, 0), 2.0), alpha=0.4)
@@ -76,7 +57,7 @@ def straight_and_after_a_seek():
         frames = list(itertools.islice(source, BEFORE + AFTER))
     context = create_context()
 
-    def pictures(later, **settings):
+    def steps(later, **settings):
         playground = Playground("companion", intrinsics, context=context, **settings)
         messages(playground, frames[:BEFORE])
         checkpoint = playground.checkpoint()
@@ -84,30 +65,28 @@ def straight_and_after_a_seek():
             playground.step(frame)
         if later:
             playground.restore(checkpoint)
-        yield from (playground.step(frame).picture for frame in frames[BEFORE:])
+        yield from (playground.step(frame) for frame in frames[BEFORE:])
         playground.close()
 
     def both(**settings):
         later = [darker(frame) for frame in frames[BEFORE:]]
-        return [list(pictures(each, **settings)) for each in ([], later)]
+        return [list(steps(each, **settings)) for each in ([], later)]
 
     yield both
     context.release()
 
 
 @pytest.mark.slow(reason="pictures are measured and drawn")
-def test_after_a_seek_what_is_measured_is_as_in_a_straight_run(
-    straight_and_after_a_seek, monkeypatch
-):
-    monkeypatch.setattr(surroundings, "Surroundings", NotedSurroundings)
-    NotedSurroundings.noted.clear()
-    straight_and_after_a_seek()
-    noted = [[each and astuple(each) for each in kept] for kept in NotedSurroundings.noted]
-    straight, after_a_seek = noted[: 2 * AFTER], noted[-2 * AFTER :]
+def test_after_a_seek_what_is_measured_is_as_in_a_straight_run(straight_and_after_a_seek):
+    straight, after_a_seek = (
+        [astuple(step.appearance) for step in steps] for steps in straight_and_after_a_seek()
+    )
     np.testing.assert_equal(after_a_seek, straight)
 
 
 @pytest.mark.slow(reason="pictures are drawn")
 def test_after_a_seek_the_pictures_are_as_in_a_straight_run(straight_and_after_a_seek):
-    straight, after_a_seek = straight_and_after_a_seek(realism=())
+    straight, after_a_seek = (
+        [step.picture for step in steps] for steps in straight_and_after_a_seek(realism=())
+    )
     np.testing.assert_array_equal(after_a_seek, straight)

@@ -10,7 +10,7 @@ from hypothesis import given, strategies as st
 
 from cubeling.affect import Emotion
 from cubeling.app.pipeline.scenario import EmotionTarget
-from cubeling.app.session.encoding import MESSAGE_TYPES, decode, encode, schema, upgraded
+from cubeling.app.session.encoding import CHANNEL_TYPES, decode, encode, schema, upgraded
 from cubeling.characters import (
     ActionIntent,
     CharacterCommand,
@@ -19,6 +19,7 @@ from cubeling.characters import (
     PosedCharacter,
 )
 from cubeling.tracking import CubeControls, CubeState
+from cubeling.tracking.appearance import Appearance, HandMask, PictureQuality
 
 NUMBERS = st.floats(-1e3, 1e3)
 
@@ -79,9 +80,19 @@ def test_noise_of_rounding_in_an_older_pose_is_no_difference():
     assert upgraded("/character/pose", old) == now
 
 
-@pytest.mark.parametrize("topic", MESSAGE_TYPES)
+def test_a_hand_is_the_same_after_decoding():
+    share = np.arange(60, dtype=np.uint8).reshape(6, 10)
+    hand = HandMask(3, 4, share, np.array([0.0, 0.1, 0.5]), 2, 1.5)
+    seen = decode(Appearance, encode(Appearance(hand, None, PictureQuality(0.7, 2.0), 1.5)))
+    assert seen.hand is not None
+    assert seen.hand.share.dtype == np.uint8
+    np.testing.assert_equal(dataclasses.astuple(seen.hand), dataclasses.astuple(hand))
+    assert (seen.light, seen.softness, seen.timestamp) == (None, PictureQuality(0.7, 2.0), 1.5)
+
+
+@pytest.mark.parametrize("topic", CHANNEL_TYPES)
 def test_every_message_type_has_a_json_schema(topic):
-    assert json.loads(schema(MESSAGE_TYPES[topic]))["type"] == "object"
+    assert json.loads(schema(CHANNEL_TYPES[topic]))["type"] == "object"
 
 
 @pytest.mark.parametrize("document", [b"", b"{", b"[]", b"3", b"{}"])

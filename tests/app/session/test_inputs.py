@@ -9,21 +9,16 @@ from cubeling.app.commands.session.complete import complete_session
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.running.opening import open_session
-from cubeling.app.running.replay_check import check_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import (
     SessionOptions,
-    has_channels,
     messages,
-    opening_times,
     session_info,
-    spoken_lines,
-    start_over_times,
 )
 from cubeling.app.session.encoding import INPUTS_TOPIC
-from cubeling.app.session.inputs import recorded_inputs
 from cubeling.app.speaking.recorded import RecordedSpeaker
 from cubeling.app.ui.screen import NullScreen
+from tests.app import session_parts
 from tools.session_copy import INPUT_TOPICS, copy_session, keep_inputs
 
 SPOKEN = Path(tests.sessions.__path__[0]) / "spoken.mcap"
@@ -46,7 +41,7 @@ class Presses(NullScreen):
 def full(tmp_path_factory, short_session):
     """A recorded session in which all comes in that can."""
     path = tmp_path_factory.mktemp("inputs") / "full.mcap"
-    (line,) = spoken_lines(SPOKEN).values()
+    (line,) = session_parts.lines(SPOKEN).values()
     options = SessionOptions(
         scenario="companion", source=str(short_session), record=path, pictures=False
     )
@@ -65,10 +60,10 @@ def full(tmp_path_factory, short_session):
 @pytest.mark.slow(reason="a session is computed twice")
 def test_a_session_with_inputs_of_every_kind_replays_bit_for_bit(full):
     times = [time for _, time, _ in messages(full, "/camera/image")]
-    assert start_over_times(full) == {times[START_OVER]}
-    assert opening_times(full) == {times[OPENED], times[CLOSED]}
-    assert list(spoken_lines(full)) == [times[HIDDEN], times[SHOWN]]
-    result = check_session(full, session_info(full).options)
+    assert session_parts.start_overs(full) == {times[START_OVER]}
+    assert session_parts.openings(full) == {times[OPENED], times[CLOSED]}
+    assert list(session_parts.lines(full)) == [times[HIDDEN], times[SHOWN]]
+    result = session_parts.check(full, session_info(full).options)
     assert result.identical
     assert set(result.counts.values()) == {60}
 
@@ -78,7 +73,7 @@ def test_from_what_came_in_the_same_session_is_computed(full, tmp_path, capsys):
     bare = tmp_path / "full.mcap"
     keep_inputs(full, bare)
     assert {topic for topic, _, _ in messages(bare)} == set(INPUT_TOPICS)
-    assert not has_channels(bare)
+    assert not session_parts.has_channels(bare)
     with complete_session(bare) as complete:
         assert complete.name == full.name
         assert list(messages(complete)) == list(messages(full))
@@ -92,7 +87,7 @@ def test_inputs_are_read_from_where_an_older_session_has_them(tmp_path):
     keep_inputs(SPOKEN, bare)
     assert not list(messages(SPOKEN, INPUTS_TOPIC))
     assert len(list(messages(bare, INPUTS_TOPIC))) == 3
-    old, new = recorded_inputs(SPOKEN), recorded_inputs(bare)
+    old, new = session_parts.inputs(SPOKEN), session_parts.inputs(bare)
     assert old == new
     assert [(each.inside, each.clear, each.speech is not None) for each in old.values()] == [
         (True, False, False),
@@ -101,12 +96,12 @@ def test_inputs_are_read_from_where_an_older_session_has_them(tmp_path):
     ]
 
 
-def test_inputs_that_no_recorder_wrote_are_refused_in_one_line(tmp_path, monkeypatch):
-    from cubeling.app.session import inputs
-
-    monkeypatch.setattr(inputs, "messages", lambda path, *topics: [(INPUTS_TOPIC, 0.0, b"[]")])
-    with pytest.raises(AppError, match="the session 'a': its inputs") as caught:
-        recorded_inputs(Path("a"))
+def test_inputs_that_no_recorder_wrote_are_refused_in_one_line(tmp_path):
+    bare, broken = tmp_path / "bare.mcap", tmp_path / "broken.mcap"
+    keep_inputs(SPOKEN, bare)
+    copy_session(bare, broken, lambda topic, _, data: b"[]" if topic == INPUTS_TOPIC else data)
+    with pytest.raises(AppError, match=r"broken\.mcap': its inputs") as caught:
+        session_parts.inputs(broken)
     assert "\n" not in str(caught.value)
 
 
@@ -136,7 +131,7 @@ def test_a_command_computes_the_channels_that_it_reads(
     if writes is not None and writes.endswith(".csv"):
         assert len((tmp_path / writes).read_text("utf-8").splitlines()) == 1 + 14
     elif writes is not None:
-        assert has_channels(tmp_path / writes)
+        assert session_parts.has_channels(tmp_path / writes)
     assert not list(tmp_path.glob("cubeling-*"))
 
 

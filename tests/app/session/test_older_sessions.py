@@ -10,17 +10,12 @@ from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.session import (
-    events,
-    has_channels,
     messages,
-    opening_times,
     session_info,
-    spoken_lines,
-    start_over_times,
 )
 from cubeling.app.session.encoding import MESSAGE_TYPES, decode
-from cubeling.app.session.replay_inputs import read_replay_inputs
 from cubeling.tracking import open_source
+from tests.app import session_parts
 from tests.app.session.test_replay import assert_close
 from tests.examples import some
 
@@ -53,7 +48,7 @@ def test_every_message_of_an_older_session_is_read_as_todays(name):
     assert path.stat().st_size <= 100_000
     info = session_info(path)
     assert (info.options.scenario, info.frames, round(info.duration, 1)) == (scenario, FRAMES, 1.9)
-    assert has_channels(path)
+    assert session_parts.has_channels(path)
     read = {
         topic: [decode(kind, data) for _, _, data in messages(path, topic)]
         for topic, kind in MESSAGE_TYPES.items()
@@ -69,7 +64,7 @@ def test_every_message_of_an_older_session_is_read_as_todays(name):
 @pytest.mark.parametrize("name", SESSIONS)
 def test_an_older_session_is_played_from_what_it_recorded(name, start):
     path = FOLDER / f"{name}.mcap"
-    recorded = read_replay_inputs(str(path), start)
+    recorded = iter(session_parts.replay_inputs(path, start))
     with open_source(str(path)) as source:
         intrinsics = intrinsics_for(source.intrinsics, source.size)
         playground = Playground(session_info(path).options.scenario, intrinsics)
@@ -82,10 +77,14 @@ def test_an_older_session_is_played_from_what_it_recorded(name, start):
 def test_an_older_session_whose_character_speaks_is_replayed():
     """Bit for bit where processors round alike: its pictures are those that its program saw."""
     path = FOLDER / "spoken.mcap"
-    lines, cleared, opened = spoken_lines(path), start_over_times(path), opening_times(path)
+    lines, cleared, opened = (
+        session_parts.lines(path),
+        session_parts.start_overs(path),
+        session_parts.openings(path),
+    )
     (line,) = lines.values()
     assert (line.utterance.text, line.rate, len(line.samples)) == ("Hello there!", 16000, 9600)
-    assert events(path) == [
+    assert session_parts.events(path) == [
         (*opened, "cube opened or closed"),
         (*cleared, "start over"),
     ]

@@ -11,22 +11,20 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.running.opening import intrinsics_for, open_session
-from cubeling.app.running.replay_check import check_session
 from cubeling.app.running.runner import run
 from cubeling.app.scenarios import SCENARIOS
 from cubeling.app.session import (
     SessionOptions,
     messages,
-    opening_times,
     session_info,
-    start_over_times,
 )
 from cubeling.app.session.bundled import bundled
-from cubeling.app.session.encoding import MESSAGE_TYPES, encode
+from cubeling.app.session.encoding import APPEARANCE_TOPIC, MESSAGE_TYPES, decode, encode
 from cubeling.app.session.options import START_STAGES
-from cubeling.app.session.replay_inputs import read_replay_inputs
 from cubeling.app.ui.screen import NullScreen
 from cubeling.tracking import open_source
+from cubeling.tracking.appearance import Appearance
+from tests.app import session_parts
 from tests.conftest import FIRST_S
 from tests.examples import some
 
@@ -50,12 +48,12 @@ def test_a_recording_replayed_twice_gives_identical_channels(computed_session, n
     assert again == list(itertools.islice(once, FRAMES * len(MESSAGE_TYPES)))
 
 
-@pytest.mark.parametrize("start", START_STAGES)
+@pytest.mark.parametrize("start", [each for each in START_STAGES if each != "appearance"])
 def test_a_replay_may_start_from_any_stage(short_session, start):
     """What comes after the start is computed again, and is the same."""
     with open_source(str(short_session)) as source:
         playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
-        recorded = iter(()) if start == "camera" else read_replay_inputs(str(short_session), start)
+        recorded = iter(session_parts.replay_inputs(short_session, start))
         made = [
             (topic, step.frame.timestamp, encode(message))
             for frame in source
@@ -65,9 +63,34 @@ def test_a_replay_may_start_from_any_stage(short_session, start):
     assert made == list(messages(short_session, *MESSAGE_TYPES))
 
 
+@pytest.mark.slow(reason="pictures are measured and drawn, twice")
+def test_what_the_pictures_told_is_recorded_and_replayed(tmp_path, short_session):
+    path, video = tmp_path / "seen.mcap", tmp_path / "seen.mp4"
+    options = SessionOptions(
+        scenario="companion", source=str(short_session), robot="none", record=path, output=video
+    )
+    with open_session(replace(options, end_s=0.6)) as session:
+        run(session)
+    result = session_parts.check(path, session_info(path).options)
+    assert result.identical
+    assert result.counts[APPEARANCE_TOPIC] == result.counts["/cube/state"] > 10
+    recorded = list(session_parts.replay_inputs(path, "appearance"))
+    assert [type(each.appearance) for each in recorded] == [Appearance] * len(recorded)
+    assert recorded[-1].command is None
+    last = recorded[-1].appearance
+    assert last is not None
+    assert last.light is not None
+    assert decode(Appearance, encode(last)).light is not None
+
+
+def test_a_session_without_pictures_cannot_start_from_what_they_told(short_session):
+    with pytest.raises(AppError, match="no recorded channels to start from 'appearance'"):
+        session_parts.replay_inputs(short_session, "appearance")
+
+
 def test_an_unknown_start_is_refused(short_session):
     with pytest.raises(AppError, match="choose one of camera"):
-        read_replay_inputs(str(short_session), "middle")
+        session_parts.replay_inputs(short_session, "middle")
 
 
 @pytest.mark.slow(reason="a session is played and checked")
@@ -87,8 +110,8 @@ def test_a_player_who_starts_over_does_so_in_the_replay(tmp_path, short_session)
     )
     with open_session(options, screen=Presses()) as session:
         run(session)
-    assert len(start_over_times(path)) == 1
-    assert check_session(path, replace(options, source=str(path))).identical
+    assert len(session_parts.start_overs(path)) == 1
+    assert session_parts.check(path, replace(options, source=str(path))).identical
 
 
 @pytest.mark.slow(reason="a session is played and replayed")
@@ -113,12 +136,12 @@ def test_a_player_who_looks_into_the_cube_does_so_in_the_replay(tmp_path, short_
         run(session)
     assert max(player.openings) == 1.0
     assert player.openings[-1] == 0.0
-    assert len(opening_times(path)) == 2
+    assert len(session_parts.openings(path)) == 2
     again = replace(session_info(path).options, robot="none", pictures=False)
     with open_session(again, screen=nobody) as session:
         run(session)
     assert nobody.openings == player.openings
-    assert check_session(path, again).identical
+    assert session_parts.check(path, again).identical
 
 
 def assert_close(topic, time, one, other):

@@ -1,5 +1,6 @@
 """Sessions on disk: exact, append-only, and readable after damage."""
 
+import io
 from functools import cache
 
 import numpy as np
@@ -7,11 +8,13 @@ import pytest
 
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.step import ReplayInputs
-from cubeling.app.session import Recorder, events, frame_encoder, messages, session_info
+from cubeling.app.session import Recorder, SessionFile, frame_encoder, messages, session_info
 from cubeling.app.session.codecs import CODECS
+from cubeling.app.session.encoding import FORMAT_KEY, SESSION_FORMAT
 from cubeling.tracking import CubeState, CubeTracker, Frame, Intrinsics
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.synthetic import open_synthetic
+from tests.app import session_parts
 
 SIZE = (64, 48)
 
@@ -81,7 +84,37 @@ def test_a_session_describes_itself(recorded):
         2.0,
         len(frames_written),
     )
-    assert events(path)[0] == (0.0, "started")
+    assert session_parts.events(path)[0] == (0.0, "started")
+
+
+def test_a_session_says_the_version_of_its_format(recorded):
+    path, _ = recorded("jpeg", count=4)
+    with SessionFile(path) as session:
+        assert session.format == SESSION_FORMAT
+
+
+@pytest.mark.parametrize("version", [f"{SESSION_FORMAT + 1}", "new"])
+def test_a_session_of_a_newer_version_is_refused_in_one_line(tmp_path, version):
+    path = tmp_path / "newer.mcap"
+    with Recorder(path, {"scenario": "follow", FORMAT_KEY: version}) as recorder:
+        recorder.event("started", 0.0)
+        recorder._steps = 1  # a file without a frame is not kept
+    with pytest.raises(AppError, match=rf"the format {version}, .* reads up to {SESSION_FORMAT}"):
+        session_info(path)
+
+
+def test_a_replay_opens_its_session_twice(cubeling, recorded, monkeypatch):
+    """Once for all that stands in it, and once for the camera's frames."""
+    path, _ = recorded("jpeg", count=4)
+    opened, real_open = [], io.open
+
+    def noting(file, *given, **more):
+        opened.append(file)
+        return real_open(file, *given, **more)
+
+    monkeypatch.setattr(io, "open", noting)
+    assert cubeling("replay", path, "--no-pictures", "--robot", "none")[0] == 0
+    assert opened.count(path) == 2
 
 
 def test_a_session_lasts_as_long_as_its_frames(recorded):

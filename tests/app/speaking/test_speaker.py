@@ -8,14 +8,14 @@ import pytest
 
 from cubeling.app.running.frame_loop import FrameLoop
 from cubeling.app.running.opening import open_session
-from cubeling.app.running.replay_check import check_session
 from cubeling.app.running.runner import run
 from cubeling.app.running.summary import Summary
-from cubeling.app.session import SessionOptions, messages, spoken_lines
+from cubeling.app.session import SessionOptions, messages
 from cubeling.app.session.encoding import decode
 from cubeling.app.speaking import opening, voices
 from cubeling.characters import Character, CharacterCommand, CharacterError
 from cubeling.characters.speech.voices import Voice, VoiceError
+from tests.app import session_parts
 
 BUZZ = """
 import json, math, struct, sys
@@ -61,18 +61,18 @@ def said_in(path: Path) -> list[str]:
 @pytest.mark.slow(reason="a session is recorded and checked")
 def test_a_session_with_speech_replays_byte_for_byte_without_a_voice(spoken, monkeypatch):
     assert said_in(spoken)
-    assert [line.utterance.text for line in spoken_lines(spoken).values()] == said_in(spoken)
+    assert [line.utterance.text for line in session_parts.lines(spoken).values()] == said_in(spoken)
 
     def gone():
         raise VoiceError("no voice")
 
     monkeypatch.setattr(voices, "espeak", gone)
     options = SessionOptions(scenario="companion", source=str(spoken))
-    assert check_session(spoken, options).identical
+    assert session_parts.check(spoken, options).identical
 
 
 def test_a_recorded_line_keeps_its_sound(spoken):
-    line = next(iter(spoken_lines(spoken).values()))
+    line = next(iter(session_parts.lines(spoken).values()))
     assert line.rate == 16000
     assert len(line.samples) == 800 * len(line.utterance.text)
     assert abs(line.samples).max() == pytest.approx(9000 / 2**15, rel=1e-3)
@@ -99,7 +99,7 @@ def test_a_voice_that_always_dies_is_given_up_and_the_session_goes_on(
 
 
 def test_a_line_that_begins_in_a_frame_that_is_left_out_begins_in_the_next(spoken):
-    begin = min(spoken_lines(spoken))
+    begin = min(session_parts.lines(spoken))
     options = SessionOptions(scenario="companion", source=str(spoken), robot="none", pictures=False)
     with open_session(options) as session:
         loop = FrameLoop(session, Summary("companion"))

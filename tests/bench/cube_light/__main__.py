@@ -28,8 +28,8 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
+from cubeling.tracking.appearance.appearance import MeasuredLight
 from cubeling.tracking.appearance.light import LightMeter
-from cubeling.tracking.appearance.light_fit import MeasuredLight
 from cubeling.tracking.cube.model import CubeModel, aruco_dictionary
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.frame import Frame

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.session import events
+from tests.app import session_parts
 from tests.campaigns.afternoon.desktop import AfternoonError, Desktop, Program, wait_for
 from tests.campaigns.afternoon.phone import PhoneServer
 
@@ -123,7 +123,7 @@ def record_and_replay(afternoon: Afternoon) -> None:
         afternoon.look("recorded")
         _quit(afternoon, program)
     recording = afternoon.files(".mcap")[-1]
-    _expect("mark 1" in [name for _, name in events(recording)], "B marks a moment")
+    _expect("mark 1" in [name for _, name in session_parts.events(recording)], "B marks a moment")
     with desktop.start("replay", recording, "--check", folder=afternoon.folder) as program:
         _expect(program.end() == 0, f"the recording replays exactly: {program.printed}")
     with desktop.start("replay", recording, folder=afternoon.folder) as program:

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from cubeling.characters.model.mesh import Material
-from cubeling.characters.rendering import QUALITIES, Cover, SceneCharacter, Stage
+from cubeling.characters.rendering import QUALITIES, SceneCharacter, Stage
 from cubeling.characters.rendering.projection import project
 from cubeling.characters.rendering.scene import RIM_SHARE, WALL_SHARE
+from cubeling.tracking.appearance import HandMask
 from tests.examples import some
 
 EDGE = 0.06
@@ -262,8 +263,8 @@ def test_a_hand_in_front_hides_room_and_character(stage, view, opened, pawn):
     box = opened()
     column = round(float(pixels(view, box, [[0.0, 0.0, 0.0]])[0, 0]))
     behind = 0.85 * box.camera_from_box[:3, 3]
-    hand = Cover(column - 15, 0, np.full((180, 30), 255, np.uint8), behind)
-    shown = replace(view, occluders=(box,), cover=hand)
+    hand = HandMask(column - 15, 0, np.full((180, 30), 255, np.uint8), behind)
+    shown = replace(view, occluders=(box,), hand=hand)
     picture = stage.draw(shown, [resident(pawn, view, box)])
     inside = np.s_[:, column - 14 : column + 14]
     assert np.array_equal(picture[inside], view.image[inside])

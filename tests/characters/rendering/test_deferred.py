@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from cubeling.characters.model.mesh import Material, ToonShading
-from cubeling.characters.rendering import QUALITIES, Cover, Stage
+from cubeling.characters.rendering import QUALITIES, Stage
 from cubeling.characters.rendering.deferred.buffers import surface_records
 from cubeling.characters.rendering.passes.deferred import lighting
+from cubeling.tracking.appearance import HandMask
 from tests.characters.rendering.shapes import Still, plate
 from tests.characters.rendering.watch import WatchPass
 
@@ -52,8 +53,8 @@ def test_lit_later_the_picture_is_the_same(stage, deferred, view, pawn, cube, ch
 
 
 def test_the_hand_hides_what_is_lit_later(deferred, view, pawn):
-    cover = Cover(150, 0, np.full((180, 60), 255, np.uint8), np.array([0.0, 0.0, 0.3]))
-    hidden = deferred.draw(replace(view, cover=cover), [pawn.posed()])
+    cover = HandMask(150, 0, np.full((180, 60), 255, np.uint8), np.array([0.0, 0.0, 0.3]))
+    hidden = deferred.draw(replace(view, hand=cover), [pawn.posed()])
     assert np.array_equal(hidden[:, 151:209], view.image[:, 151:209])
 
 

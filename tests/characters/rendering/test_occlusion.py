@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given, strategies as st
 
 from cubeling.characters.rendering import Box
-from cubeling.characters.rendering.camera_picture.hand_cover import PictureCover
+from cubeling.characters.rendering.camera_picture.hand_cover import PictureCover, covered_area
 from cubeling.characters.rendering.camera_picture.hidden_table import hidden_table
 from cubeling.characters.rendering.camera_picture.occlusion import UNIT_CUBE, hidden_by_cube
 from cubeling.characters.rendering.projection import Rectangle
-from cubeling.characters.rendering.scene import Cover
+from cubeling.tracking.appearance import HandMask
 
 MATRIX = np.array([[300.0, 0, 159.5], [0, 300.0, 89.5], [0, 0, 1]])
 PART = Rectangle(40, 20, 200, 120)
@@ -62,18 +62,20 @@ def test_a_cube_behind_the_camera_is_clipped_at_the_near_plane():
 @pytest.mark.parametrize("scale", [1, 2, 5])
 def test_a_hand_is_the_same_without_a_lens_and_with_one_that_bends_nothing(scale):
     share = np.random.default_rng(scale).integers(0, 256, (24, 31), np.uint8)
-    cover = Cover(35, 10, share, np.array([0.0, 0.0, 0.5]), scale, 2.0)
+    cover = HandMask(35, 10, share, np.array([0.0, 0.0, 0.5]), scale, 2.0)
     rows, columns = np.mgrid[:180, :320].astype(np.float32)
-    plain, bent = (PictureCover(cover.area, cover, maps) for maps in (None, (columns, rows)))
+    plain, bent = (
+        PictureCover(covered_area(cover), cover, maps) for maps in (None, (columns, rows))
+    )
     assert np.array_equal(plain.share_in(PART), bent.share_in(PART))
 
 
 def test_a_cube_and_a_hand_hide_the_table_independently_of_each_other():
     box = box_at((0, 0, 0), (0.0, 0.0, 0.5))
     place = Rectangle(110, 60, 100, 60)
-    cover = Cover(155, 70, np.full((40, 90), 128, np.uint8), np.array([0.0, 0.0, 0.5]))
+    cover = HandMask(155, 70, np.full((40, 90), 128, np.uint8), np.array([0.0, 0.0, 0.5]))
     cube = place, hidden_by_cube(box, MATRIX, place)
-    hand = PictureCover(cover.area, cover, None)
+    hand = PictureCover(covered_area(cover), cover, None)
     hidden = hidden_table([cube], hand, PART)
     assert hidden is not None
     of_cube = mask(box)

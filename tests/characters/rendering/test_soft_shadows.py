@@ -8,10 +8,11 @@ import pytest
 
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.mesh import Material
-from cubeling.characters.rendering import QUALITIES, Effect, MeasuredLight, Quality, Stage
+from cubeling.characters.rendering import QUALITIES, Effect, Quality, Stage
 from cubeling.characters.rendering.deferred.lamp import LAMP_DISTANCE_M, LAMP_WIDTH_M
 from cubeling.characters.rendering.passes.deferred import visibility
 from cubeling.characters.rendering.passes.deferred.soft_shadows import TABLE_SIDE, SoftShadowPass
+from cubeling.tracking.appearance import MeasuredLight
 from tests.bench.effects import close_up
 from tests.bench.picture import SIZE, scene
 from tests.characters.rendering.shapes import Still, plate
@@ -38,7 +39,7 @@ def left(ctx, view):
     stage.quality = QUALITIES["rich"]
     (shadows,) = (each for each in stage.passes if isinstance(each, SoftShadowPass))
     overhead = view.camera_from_table[:3, :3] @ [0.0, 1.0, 0.0]
-    lit = replace(view, light=MeasuredLight(overhead, np.full(3, 0.7), np.full(3, 0.3)))
+    lit = replace(view, light=MeasuredLight(overhead, np.full(3, 0.7), np.full(3, 0.3), 1.0))
 
     def below(*panes):
         for _ in range(120):  # the light changes to the measured one smoothly

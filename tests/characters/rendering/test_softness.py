@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from cubeling.characters.rendering import Softness
+from cubeling.tracking.appearance import PictureQuality
 
 
 def test_a_character_gets_the_blur_of_the_picture(stage, view, pawn):
@@ -17,8 +17,12 @@ def test_a_character_gets_the_blur_of_the_picture(stage, view, pawn):
         return float(np.median(np.ptp(red, axis=1) / slope))
 
     sharp = width_of_edges(stage.draw(view, [pawn.posed()]))
-    same = width_of_edges(stage.draw(replace(view, softness=Softness(0.3, 0.0)), [pawn.posed()]))
-    soft = width_of_edges(stage.draw(replace(view, softness=Softness(1.2, 0.0)), [pawn.posed()]))
+    same = width_of_edges(
+        stage.draw(replace(view, softness=PictureQuality(0.3, 0.0)), [pawn.posed()])
+    )
+    soft = width_of_edges(
+        stage.draw(replace(view, softness=PictureQuality(1.2, 0.0)), [pawn.posed()])
+    )
     assert same == pytest.approx(sharp, rel=0.02)
     assert soft > 1.5 * sharp
 
@@ -26,7 +30,7 @@ def test_a_character_gets_the_blur_of_the_picture(stage, view, pawn):
 def test_a_character_gets_the_noise_of_the_picture(stage, view, pawn):
     clean = stage.draw(view, [pawn.posed()]).astype(int)
     first, second = (
-        stage.draw(replace(view, softness=Softness(0.3, 5.0)), [pawn.posed()]).astype(int)
+        stage.draw(replace(view, softness=PictureQuality(0.3, 5.0)), [pawn.posed()]).astype(int)
         for _ in range(2)
     )
     red = clean[..., 2] - clean[..., 1] > 60
@@ -41,7 +45,7 @@ def test_a_character_gets_the_noise_of_the_picture(stage, view, pawn):
 
 def test_a_character_is_in_the_haze_of_the_picture(stage, view, pawn):
     clear = stage.draw(view, [pawn.posed()]).astype(int)
-    hazy = stage.draw(replace(view, softness=Softness(0.3, 0.0, 0.2, 0.8)), [pawn.posed()])
+    hazy = stage.draw(replace(view, softness=PictureQuality(0.3, 0.0, 0.2, 0.8)), [pawn.posed()])
     drawn = (clear != view.image).any(-1) & (clear[..., 2] > clear[..., 1] + 60)
     green = hazy[..., 1][drawn].astype(int)
     assert (clear[..., 1][drawn] < 80).any()
@@ -57,7 +61,7 @@ def test_a_character_is_in_the_haze_of_the_picture(stage, view, pawn):
 def test_a_shadow_leaves_the_haze_over_the_table(stage, view, pawn):
     dark = replace(view, image=np.full_like(view.image, 120))
     clear, hazy = (
-        stage.draw(replace(dark, softness=Softness(0.3, 0.0, haze, 0.8)), [pawn.posed()])
+        stage.draw(replace(dark, softness=PictureQuality(0.3, 0.0, haze, 0.8)), [pawn.posed()])
         for haze in (0.0, 0.2)
     )
     table = hazy.astype(int).std(-1) < 1  # grey, unlike the pawn
@@ -68,7 +72,7 @@ def test_a_shadow_leaves_the_haze_over_the_table(stage, view, pawn):
 
 def test_a_clear_picture_is_drawn_as_without_haze(stage, view, pawn):
     first, second = (
-        stage.draw(replace(view, softness=Softness(0.3, 0.0, haze, 0.8)), [pawn.posed()])
+        stage.draw(replace(view, softness=PictureQuality(0.3, 0.0, haze, 0.8)), [pawn.posed()])
         for haze in (0.0, 0.0004)
     )
     assert np.array_equal(first, second)

@@ -12,13 +12,12 @@ from cubeling.characters.errors import CharacterError
 from cubeling.characters.rendering import (
     QUALITIES,
     CameraView,
-    Cover,
-    MeasuredLight,
     SceneCharacter,
     Stage,
 )
 from cubeling.characters.rendering.passes.hand_occlusion import HAND_DEPTH_M
 from cubeling.characters.rendering.passes.render_pass import RenderPass
+from cubeling.tracking.appearance import HandMask, MeasuredLight
 from tests.characters.rendering.shapes import LOOP
 from tests.examples import some
 
@@ -94,12 +93,12 @@ def test_a_pawn_in_front_of_the_cube_is_not_hidden(stage, view, pawn, cube):
 
 def band(distance, share=255):
     """A cover of some columns right of the middle, from top to bottom."""
-    return Cover(150, 0, np.full((180, 60), share, np.uint8), np.array([0.0, 0.0, distance]))
+    return HandMask(150, 0, np.full((180, 60), share, np.uint8), np.array([0.0, 0.0, distance]))
 
 
 def test_a_hand_hides_pawn_shadow_and_path(stage, view, pawn):
     free = stage.draw(view, [pawn.posed()], [LOOP])
-    hidden = stage.draw(replace(view, cover=band(0.3)), [pawn.posed()], [LOOP])
+    hidden = stage.draw(replace(view, hand=band(0.3)), [pawn.posed()], [LOOP])
     inside = np.s_[:, 151:209]
     assert np.abs(free.astype(int) - view.image)[inside].max() > 60
     assert np.array_equal(hidden[inside], view.image[inside])
@@ -107,30 +106,17 @@ def test_a_hand_hides_pawn_shadow_and_path(stage, view, pawn):
     assert np.array_equal(hidden[:, outside], free[:, outside])
 
 
-def test_a_hand_may_be_found_while_the_pawn_is_drawn(stage, view, pawn):
-    given = stage.draw(replace(view, cover=band(0.3)), [pawn.posed()], [LOOP])
-    found = stage.draw(view, [pawn.posed()], [LOOP], lambda: band(0.3))
-    assert np.array_equal(found, given)
-
-
-def test_the_hand_is_looked_for_in_every_frame(stage, view, pawn):
-    looked = []
-    for table in (view.camera_from_table, None):
-        stage.draw(replace(view, camera_from_table=table), [], (), lambda: looked.append(1))
-    assert len(looked) == 2
-
-
 def test_a_path_behind_the_hand_is_not_seen(stage, view):
     behind = replace(LOOP, points=np.array([[0.03, 0.0], [0.04, 0.03]]))
     assert not np.array_equal(stage.draw(view, [], [behind]), view.image)
-    whole = Cover(0, 0, np.full((180, 320), 255, np.uint8), np.array([0.0, 0.0, 0.3]))
-    hidden = stage.draw(replace(view, cover=whole), [], [behind])
+    whole = HandMask(0, 0, np.full((180, 320), 255, np.uint8), np.array([0.0, 0.0, 0.3]))
+    hidden = stage.draw(replace(view, hand=whole), [], [behind])
     assert np.array_equal(hidden, view.image)
 
 
 def test_half_a_hand_hides_half_of_the_pawn(stage, view, pawn):
     free = stage.draw(view, [pawn.posed()]).astype(int)
-    half = stage.draw(replace(view, cover=band(0.3, share=128)), [pawn.posed()]).astype(int)
+    half = stage.draw(replace(view, hand=band(0.3, share=128)), [pawn.posed()]).astype(int)
     red = free[..., 2] - free[..., 1] > 60
     red[:, :152], red[:, 208:], red[80:] = False, False, False  # its shadow is further down
     mean = (free + view.image) / 2
@@ -140,7 +126,7 @@ def test_half_a_hand_hides_half_of_the_pawn(stage, view, pawn):
 
 def test_a_pawn_in_front_of_the_hand_is_not_hidden(stage, view, pawn):
     free = stage.draw(view, [pawn.posed()]).astype(int)
-    seen = stage.draw(replace(view, cover=band(0.6)), [pawn.posed()]).astype(int)
+    seen = stage.draw(replace(view, hand=band(0.6)), [pawn.posed()]).astype(int)
     red = free[..., 2] - free[..., 1] > 60
     assert np.array_equal(seen[red], free[red])
 
@@ -149,13 +135,13 @@ def test_a_pawn_in_front_of_the_hand_is_not_hidden(stage, view, pawn):
 def test_an_empty_cover_changes_nothing_wherever_it_is(stage, view, pawn, corner):
     free = stage.draw(view, [pawn.posed()], [LOOP])
     x, y = corner
-    empty = Cover(x, y, np.zeros((50, 60), np.uint8), np.array([0.0, 0.0, 0.3]))
-    assert np.array_equal(stage.draw(replace(view, cover=empty), [pawn.posed()], [LOOP]), free)
+    empty = HandMask(x, y, np.zeros((50, 60), np.uint8), np.array([0.0, 0.0, 0.3]))
+    assert np.array_equal(stage.draw(replace(view, hand=empty), [pawn.posed()], [LOOP]), free)
 
 
 def test_a_measured_light_turns_the_shadow(stage, view, pawn):
     from_the_right = view.camera_from_table[:3, :3] @ [0.6, 0.8, 0.0]
-    light = MeasuredLight(from_the_right, np.full(3, 0.8), np.full(3, 0.2))
+    light = MeasuredLight(from_the_right, np.full(3, 0.8), np.full(3, 0.2), 1.0)
     for _ in range(80):
         picture = stage.draw(replace(view, light=light), [pawn.posed()])
     lit = picture.astype(float).mean(axis=2) / view.image.mean(axis=2)
@@ -260,7 +246,7 @@ def test_hundreds_of_pictures_leak_no_memory(ctx, view, pawn, cube, pictures):
     def draw(frames):
         for frame in range(frames):
             share = np.full((20 + frame % 60, 30), 255, np.uint8)
-            seen = replace(small, cover=Cover(frame % 300, 60, share, np.array([0.0, 0.0, 0.3])))
+            seen = replace(small, hand=HandMask(frame % 300, 60, share, np.array([0.0, 0.0, 0.3])))
             stage.draw(seen, [pawn.posed(0.01 * frame, at=(0.0004 * frame - 0.1, 0.0))], [LOOP])
         gc.collect()
 
@@ -347,6 +333,6 @@ def test_a_hand_is_before_or_behind_all_of_a_pawn(stage, view, pawn, behind_m, h
     free = stage.draw(view, [pawn.posed()]).astype(int)
     red = free[..., 2] - free[..., 1] > 60
     beside = view.camera_from_table @ [0.3, 0.0, HAND_DEPTH_M - behind_m, 1.0]
-    whole = Cover(0, 0, np.full((180, 320), 255, np.uint8), beside[:3])
-    seen = stage.draw(replace(view, cover=whole), [pawn.posed()])
+    whole = HandMask(0, 0, np.full((180, 320), 255, np.uint8), beside[:3])
+    seen = stage.draw(replace(view, hand=whole), [pawn.posed()])
     assert np.array_equal(seen[red], view.image[red] if hidden else free[red])

@@ -17,7 +17,7 @@ from cubeling.characters.rendering.camera_picture.light import (
 )
 from cubeling.characters.rendering.camera_picture.undistortion import Undistorter
 from cubeling.characters.rendering.context import create_context
-from cubeling.characters.rendering.scene import Cover, MeasuredLight
+from cubeling.tracking.appearance import HandMask, MeasuredLight
 
 SIZE = (320, 180)
 BENT = np.array([0.12, -0.2, 0.001, -0.002, 0.05])
@@ -121,7 +121,7 @@ def test_a_frame_that_cannot_be_drawn_is_refused_when_it_is_drawn(view):
 def test_a_cover_lies_on_the_same_pixels_as_the_picture(view, distortion, size):
     frame = np.zeros((180, 320, 3), np.uint8)
     cv2.circle(frame, (250, 140), 20, (255, 255, 255), -1, cv2.LINE_AA)
-    cover = Cover(
+    cover = HandMask(
         220, 110, np.ascontiguousarray(frame[110:175, 220:290, 0]), np.array([0.0, 0.0, 0.5])
     )
     undistorter = Undistorter(size)
@@ -139,20 +139,21 @@ def test_an_empty_rim_of_a_cover_is_left_out(view):
     share[40:50, 60:80] = 255
     undistorter = Undistorter(SIZE)
     undistorter.undistort(view)
-    found = undistorter.cover_in_picture(Cover(100, 50, share, np.array([0.0, 0.0, 0.5])))
+    found = undistorter.cover_in_picture(HandMask(100, 50, share, np.array([0.0, 0.0, 0.5])))
     assert found is not None
     assert found.area.height < 20
     assert found.area.width < 30
     share = found.share_in(found.area)
     assert (share[90 - found.area.y, 160 - found.area.x], share[0, 0]) == (255, 0)
     assert (
-        undistorter.cover_in_picture(Cover(100, 50, 0 * share, np.array([0.0, 0.0, 0.5]))) is None
+        undistorter.cover_in_picture(HandMask(100, 50, 0 * share, np.array([0.0, 0.0, 0.5])))
+        is None
     )
 
 
 def test_a_low_light_is_raised_so_that_shadows_stay_short(view):
     low = view.camera_from_table[:3, :3] @ [1.0, -0.1, 0.0]
-    measured = MeasuredLight(low / np.linalg.norm(low), np.full(3, 0.7), np.full(3, 0.3))
+    measured = MeasuredLight(low / np.linalg.norm(low), np.full(3, 0.7), np.full(3, 0.3), 1.0)
     estimate = LightEstimator()
     for _ in range(150):
         light = estimate.update(view.image, None, measured, view.camera_from_table)
@@ -160,7 +161,7 @@ def test_a_low_light_is_raised_so_that_shadows_stay_short(view):
     assert light.to_light[0] > 0.7
     assert light.white == pytest.approx(0.7 * MIN_RISE + 0.3, rel=0.01)
     guess = LightEstimator().update(view.image)
-    uncertain = replace(measured, weight=0.0)
+    uncertain = replace(measured, certainty=0.0)
     first = LightEstimator().update(view.image, None, uncertain, view.camera_from_table)
     assert np.array_equal(first.to_light, guess.to_light)
     for _ in range(150):
@@ -182,7 +183,7 @@ def test_a_darker_and_redder_picture_gives_a_darker_and_redder_light(view):
 def test_a_character_is_as_dark_as_the_paper_in_a_dark_room(view, is_measured):
     room, dim = np.full((180, 320, 3), 20, np.uint8), 0.04
     measured = MeasuredLight(
-        view.camera_from_table[:3, 1], np.full(3, dim / 2), np.full(3, dim / 2)
+        view.camera_from_table[:3, 1], np.full(3, dim / 2), np.full(3, dim / 2), 1.0
     )
     estimate = LightEstimator()
     paper = np.full(3, dim * estimate.PAPER_ALBEDO)

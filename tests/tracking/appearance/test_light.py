@@ -8,8 +8,9 @@ import cv2
 import numpy as np
 import pytest
 
+from cubeling.tracking.appearance.appearance import MeasuredLight
 from cubeling.tracking.appearance.light import LightMeter
-from cubeling.tracking.appearance.light_fit import MeasuredLight, fit_light, fit_patches
+from cubeling.tracking.appearance.light_fit import fit_light, fit_patches
 from cubeling.tracking.appearance.patches import PAPER_ALBEDO, PaperSampler, white_points
 from cubeling.tracking.cube.faces import FacePlanes, face_frame
 from cubeling.tracking.cube.marker import cell_size

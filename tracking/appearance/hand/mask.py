@@ -25,12 +25,16 @@ class HandMask:
     share: NDArray[np.uint8]
     """Share of each square of pixels that the hand covers, 0…255, (height, width)."""
 
-    scale: int
-    """Side of these squares [px]."""
-
     behind: Array
     """The nearest point of the cube that the hand hides, in the camera's frame, (3,) [m]: the hand
     is nearer. The cube's centre where the hand hides no face."""
+
+    scale: int = 1
+    """Side of these squares [px]."""
+
+    slope: float = 1.0
+    """How steeply the share of a pixel rises where half is covered, relative to what is
+    interpolated between squares: an edge is sharper than they are large."""
 
     def moved(self, right: int, down: int, step: Array) -> "HandMask":
         """Return the same after a move, `step`, (3,) in metres, by some pixels of the image."""

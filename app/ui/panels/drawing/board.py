@@ -19,7 +19,13 @@ from cubeling.app.ui.panels.drawing.places import (
     place_at,
     place_of,
 )
-from cubeling.app.ui.panels.drawing.style import TITLE_SIZE, load_fonts, packed, use_card_style
+from cubeling.app.ui.panels.drawing.style import (
+    TITLE_SIZE,
+    load_fonts,
+    packed,
+    use_card_style,
+    use_plot_style,
+)
 from cubeling.app.ui.panels.drawing.widgets import draw_widgets
 from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.requests import SessionRequest
@@ -87,6 +93,7 @@ class PanelBoard:
     def __init__(self, monitor: SessionMonitor, preferences: PreferenceStore) -> None:
         self._monitor, self._preferences = monitor, preferences
         implot.create_context()
+        use_plot_style()
         load_fonts()
         self._scale = 0.0
         self._display: Size = (0.0, 0.0)

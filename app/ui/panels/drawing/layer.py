@@ -5,7 +5,6 @@ a few times a second. So they are drawn into a texture again when something is t
 frame shows the texture.
 """
 
-import ctypes
 from typing import Any
 
 # imgui-bundle contains the GLFW library that both must share, and sets its path on import.
@@ -14,7 +13,7 @@ import glfw
 import moderngl
 
 from cubeling.app.preferences import PreferenceStore
-from cubeling.app.ui.canvas import PICTURE_HEIGHT
+from cubeling.app.ui.panels.drawing.backend import ImGuiBackend, ui_scale
 from cubeling.app.ui.panels.drawing.board import PanelBoard
 from cubeling.app.ui.panels.drawing.places import Rect
 from cubeling.app.ui.panels.monitor import SessionMonitor
@@ -40,9 +39,6 @@ void main() { color = texture(panels, place); }
 
 REFRESH_INTERVAL_S = 0.2
 """Time between two contents of the panels: nobody can read numbers that change faster."""
-
-MIN_CARD_SHARE = 0.7
-"""Size of a design unit on a panel next to that on a card, at least."""
 
 PREMULTIPLIED = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
 """How colours are blended that were multiplied by their opacity."""
@@ -71,12 +67,7 @@ class PanelLayer:
         preferences: PreferenceStore,
     ) -> None:
         self._window, self._context = window, context
-        imgui.create_context()  # it chains to the callbacks that are already set
-        imgui.get_io().set_ini_filename("")
-        address = ctypes.cast(window, ctypes.c_void_p).value
-        assert address is not None, "the window is open"
-        imgui.backends.glfw_init_for_opengl(address, True)
-        imgui.backends.opengl3_init("#version 330")
+        self._backend = ImGuiBackend(window)
         self._board = PanelBoard(monitor, preferences)
         self._program = context.program(
             vertex_shader=VERTEX_SHADER, fragment_shader=FRAGMENT_SHADER
@@ -147,9 +138,7 @@ class PanelLayer:
     def close(self) -> None:
         """Release what the panels need."""
         self._board.close()
-        imgui.backends.opengl3_shutdown()
-        imgui.backends.glfw_shutdown()
-        imgui.destroy_context()
+        self._backend.close()
         self._release_canvas()
         self._quad.release()
         self._program.release()
@@ -157,16 +146,12 @@ class PanelLayer:
     def _draw_panels(
         self, canvas: moderngl.Framebuffer, bottom: float, refresh: bool
     ) -> list[SessionRequest]:
-        imgui.backends.opengl3_new_frame()
-        imgui.backends.glfw_new_frame()
-        imgui.new_frame()
-        changes = self._board.draw(ui_scale(self._window), bottom, refresh=refresh)
-        imgui.render()
+        with self._backend.frame():
+            changes = self._board.draw(ui_scale(self._window), bottom, refresh=refresh)
         canvas.use()
         canvas.clear()
-        data = imgui.get_draw_data()
-        imgui.backends.opengl3_render_draw_data(data)
-        width, height = data.display_size
+        self._backend.render()
+        width, height = imgui.get_draw_data().display_size
         self._parts = [
             (left / width, 1.0 - (top + high) / height, wide / width, high / height)
             for left, top, wide, high in self._board.rects
@@ -190,16 +175,3 @@ class PanelLayer:
             self._canvas.release()
             self._texture.release()
             self._canvas = None
-
-
-def ui_scale(window: Any) -> float:
-    """Return how many of the window's coordinates a design unit has.
-
-    It is what the system asks for: 1 where it counts in larger points than pixels, as on macOS. A
-    large window has more, so that who stands before it can read the panels too.
-    """
-    scale, _ = glfw.get_window_content_scale(window)
-    pixels, _ = glfw.get_framebuffer_size(window)
-    points, height = glfw.get_window_size(window)
-    system = float(scale * points / pixels) if pixels and points else 1.0
-    return max(system, MIN_CARD_SHARE * height / PICTURE_HEIGHT)

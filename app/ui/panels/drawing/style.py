@@ -59,6 +59,10 @@ def use_card_style(scale: float) -> None:
     style.item_inner_spacing = ImVec2(6.0 * scale, 4.0 * scale)
     style.grab_min_size, style.scrollbar_size = 14.0 * scale, 10.0 * scale
     style.window_border_size = style.popup_border_size = 0.0
+
+
+def use_plot_style() -> None:
+    """Draw plots as the cards' curves: without a frame."""
     plot = implot.get_style()
     plot.plot_padding = ImVec2(0.0, 0.0)
     plot.plot_border_size = 0.0

@@ -1,6 +1,7 @@
 """Cards leave corners in which they hide something, and come back."""
 
 import itertools
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,9 +9,9 @@ import pytest
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import Step
 from cubeling.app.running.opening import intrinsics_for
-from cubeling.app.session.replay_inputs import read_replay_inputs
 from cubeling.app.ui.cards.layout import MIN_STAY_S, CardLayout, Corner, card_box
 from cubeling.tracking import open_source
+from tests.app import session_parts
 from tests.app.scripted import PICTURE_WIDTH, play_script
 from tests.examples import some
 
@@ -77,7 +78,7 @@ def subjects_of_recording(computed_session):
     path = str(computed_session("sketch"))
     with open_source(path) as source:
         playground = Playground("sketch", intrinsics_for(source.intrinsics, source.size))
-        recorded = read_replay_inputs(path, "command")
+        recorded = session_parts.replay_inputs(Path(path), "command")
         return [
             (frame.timestamp, playground.step(frame, replay=replay).subjects)
             for frame, replay in itertools.islice(zip(source, recorded, strict=True), 700)

@@ -10,7 +10,7 @@ import pytest
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.session.bundled import bundled
 from cubeling.tracking.appearance.hand.finder import MANY_FRAMES, HandFinder
-from cubeling.tracking.appearance.hand.mask import HandMask
+from cubeling.tracking.appearance.hand.mask import EDGE_SLOPE, HandMask
 from cubeling.tracking.appearance.hand.window import STILL_FRAMES, Stillness, WindowFinder
 from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.geometry.intrinsics import Intrinsics
@@ -321,7 +321,8 @@ def test_dark_fingers_on_ink_are_told_by_their_chroma():
 
 @pytest.mark.parametrize("x", [-103, 1279, 5000])
 def test_a_held_hand_may_leave_the_image(x):
-    found = covered(HandMask(x, 718, np.full((40, 50), 255, np.uint8), 3, np.zeros(3)), SHAPE)
+    share = np.full((40, 50), 255, np.uint8)
+    found = covered(HandMask(x, 718, share, np.zeros(3), 3, EDGE_SLOPE), SHAPE)
     assert found[:719].max(initial=0) < 1
     assert (found.max() > 0.9) == (x < 1280)
 

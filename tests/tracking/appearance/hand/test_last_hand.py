@@ -32,7 +32,7 @@ EDGE_PX = CUBE.edge * WIDE.matrix[0, 0] / POSE[2, 3]
 
 def mask(x: int = 600, y: int = 300, scale: int = 3, seed: int = 0) -> HandMask:
     share = np.random.default_rng(seed).integers(0, 256, (40, 50)).astype(np.uint8)
-    return HandMask(x, y, share, scale, POSE[:3, 3])
+    return HandMask(x, y, share, POSE[:3, 3], scale)
 
 
 def aside(right_px: float) -> np.ndarray:

@@ -1,18 +1,17 @@
 """What the drawing follows of the camera's picture, and that nothing else changes by it."""
 
 from dataclasses import replace
+from typing import cast
 
+import moderngl
 import numpy as np
 import pytest
 
 from cubeling.app.errors import AppError
+from cubeling.app.pipeline import step_renderer
 from cubeling.app.pipeline.choices import REALISM_CHOICES, realism_of
 from cubeling.app.pipeline.playground import Playground
-from cubeling.app.pipeline.surroundings import (
-    FOCUSING_S,
-    Autofocus,
-    Surroundings,
-)
+from cubeling.app.pipeline.step_renderer import FOCUSING_S, FocusDistance
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.tracking import CubeGestures, CubeTracker
 from cubeling.tracking.synthetic import open_synthetic
@@ -36,66 +35,75 @@ def seen(source):
     return found
 
 
-def last_view(source, seen, chosen):
-    surroundings = Surroundings(source.cube, source.intrinsics, chosen)
-    return [surroundings.view(*each) for each in seen][-1]
+def last_view(source, seen, chosen, monkeypatch):
+    """Return what a stage would draw of the last frame."""
+    views = []
+
+    class Noting:
+        def __init__(self, *given):
+            pass
+
+        def draw(self, view, characters, floor):
+            views.append(view)
+
+        def __getattr__(self, name):
+            return lambda *given: None
+
+    monkeypatch.setattr(step_renderer, "_stage_of", Noting)
+    context = cast(moderngl.Context, object())
+    playground = Playground(
+        "follow", source.intrinsics, cube=source.cube, context=context, realism=chosen
+    )
+    for frame, _, _ in seen:
+        playground.step(frame)
+    return views[-1]
 
 
-@pytest.mark.slow(reason="all is measured")
-def test_only_what_was_chosen_is_measured(source, seen):
-    plain = last_view(source, seen, ())
-    assert plain.cover is None
+def test_nothing_is_measured_that_was_not_chosen(source, seen, monkeypatch):
+    plain = last_view(source, seen, (), monkeypatch)
+    assert plain.hand is None
     assert plain.light is None
     assert plain.softness is None
     assert plain.focus is None
     assert len(plain.occluders) == 1
-    full = last_view(source, seen, tuple(REALISM_CHOICES))
+
+
+@pytest.mark.slow(reason="all is measured")
+def test_what_was_chosen_is_measured_and_handed_to_the_stage(source, seen, monkeypatch):
+    full = last_view(source, seen, tuple(REALISM_CHOICES), monkeypatch)
+    assert full.hand is None  # none is near
+    assert full.light.certainty > 0.0
     assert full.softness.blur == pytest.approx(0.5, abs=0.25)
     assert full.focus.nearest == pytest.approx(seen[-1][1].camera_from_cube[2, 3], rel=1e-3)
-    assert np.array_equal(full.image, plain.image)
-
-
-def test_softness_is_measured_only_where_the_drawing_follows_it(source, seen):
-    surroundings = Surroundings(source.cube, source.intrinsics, ("light", "softness"))
-    for frame, state, controls in seen:
-        coarse = surroundings.view(frame, state, controls, matched=False)
-    assert coarse.softness is None
-    assert coarse.light is not None
-    softness = [surroundings.view(*each).softness for each in seen][-1]
-    assert softness is not None
-    assert softness.blur == pytest.approx(0.5, abs=0.25)
-
-
-def test_no_hand_is_found_where_none_is_near(source, seen):
-    surroundings = Surroundings(source.cube, source.intrinsics, ("hand",))
-    assert all(surroundings.cover(frame, state) is None for frame, state, _ in seen)
 
 
 def test_the_picture_alone_depends_on_it(source, seen):
     intrinsics = intrinsics_for(source.intrinsics, source.size)
     plain, real = (
-        Playground("companion", intrinsics, realism=chosen)
+        Playground("companion", intrinsics, realism=chosen, measured=True)
         for chosen in ((), tuple(REALISM_CHOICES))
     )
     for frame, _, _ in seen[:20]:
         first, second = plain.step(frame), real.step(frame)
+        assert first.appearance is None
+        assert second.appearance is not None
         assert first.emotion == second.emotion
         assert np.array_equal(first.posed.pose.rotations, second.posed.pose.rotations)
 
 
 def test_the_focus_follows_the_cube_in_about_half_a_second(seen):
     state = seen[0][1]
-    autofocus = Autofocus()
-    assert autofocus.update(replace(state, camera_from_cube=None)) is None
-    near = autofocus.update(state)
+    focus = FocusDistance()
+    assert focus.update(replace(state, camera_from_cube=None)) is None
+    near = focus.update(state)
     assert near is not None
     further = state.camera_from_cube.copy()
     further[2, 3] += 0.2
     moved = replace(state, camera_from_cube=further, timestamp=state.timestamp + FOCUSING_S)
-    found = autofocus.update(moved)
+    found = focus.update(moved)
     assert found is not None
     assert found.nearest - near.nearest == pytest.approx(0.2 * (1 - np.exp(-1)))
-    lost = autofocus.update(replace(moved, camera_from_cube=None))
+    lost = focus.update(replace(moved, camera_from_cube=None))
     assert lost == found
 
 

@@ -4,11 +4,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.gesture_editor.panels.widgets import ACCENT
 from cubeling.characters.behaviour import (
     CENTRES_X_CM,
     CENTRES_Y_CM,
@@ -21,9 +19,6 @@ from cubeling.characters.behaviour import (
 from cubeling.characters.rendering import PortraitCamera
 
 Array = NDArray[np.float64]
-
-LINE_OPACITY, CELL_OPACITY = 0.4, 0.5
-"""How much the borders of sectors, and the sector of the hand, cover."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,27 +48,20 @@ class ShownSpace:
         pixels: Array = image[:, :2] / image[:, 2:]
         return pixels
 
-    def draw(self, picture: NDArray[np.uint8], place: Place | None) -> None:
-        """Draw the sectors at the distance of a place over a picture, in place."""
-        depth = CENTRES_Z_CM["ZMiddle" if place is None else place.z]
-        columns, rows = _edges(CENTRES_X_CM.values()), _edges(CENTRES_Y_CM.values())
+    def borders(self, depth: float) -> list[Array]:
+        """Return the borders of the sectors at a distance from the chest [cm], each (2, 2) [px]."""
         lines = [
-            *(((x, rows[0], depth), (x, rows[-1], depth)) for x in columns),
-            *(((columns[0], y, depth), (columns[-1], y, depth)) for y in rows),
+            *(((x, _ROWS[0], depth), (x, _ROWS[-1], depth)) for x in _COLUMNS),
+            *(((_COLUMNS[0], y, depth), (_COLUMNS[-1], y, depth)) for y in _ROWS),
         ]
-        drawn = picture.copy()
-        for line in lines:
-            cv2.polylines(drawn, [_fixed(self.pixels(line))], False, ACCENT, 1, cv2.LINE_AA, 4)
-        picture[:] = cv2.addWeighted(picture, 1 - LINE_OPACITY, drawn, LINE_OPACITY, 0.0)
-        if place is None or place.contact:
-            return
+        return [self.pixels(line) for line in lines]
+
+    def sector(self, place: Place) -> Array:
+        """Return the corners of the sector of a place, (4, 2) [px]."""
         across, up = list(CENTRES_X_CM).index(place.x), list(CENTRES_Y_CM).index(place.y)
-        corners = [
-            (columns[across + i], rows[up + j], depth) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1))
-        ]
-        drawn = picture.copy()
-        cv2.fillConvexPoly(drawn, _fixed(self.pixels(corners)), ACCENT, cv2.LINE_AA, 4)
-        picture[:] = cv2.addWeighted(picture, 1 - CELL_OPACITY, drawn, CELL_OPACITY, 0.0)
+        depth = CENTRES_Z_CM[place.z]
+        corners = ((0, 0), (1, 0), (1, 1), (0, 1))
+        return self.pixels([(_COLUMNS[across + i], _ROWS[up + j], depth) for i, j in corners])
 
 
 def _edges(centres: Iterable[float]) -> list[float]:
@@ -87,5 +75,5 @@ def _edges(centres: Iterable[float]) -> list[float]:
     return [2 * values[0] - between[0], *between, 2 * values[-1] - between[-1]]
 
 
-def _fixed(pixels: Array) -> NDArray[np.int32]:
-    return np.asarray(np.round(pixels * 16.0), np.int32)
+_COLUMNS, _ROWS = _edges(CENTRES_X_CM.values()), _edges(CENTRES_Y_CM.values())
+"""Borders of the sectors outward and up [cm]."""

@@ -1,0 +1,337 @@
+"""A recorded session: all that is read of it, except for the camera's frames."""
+
+import json
+import os
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import groupby
+from operator import itemgetter
+from pathlib import Path
+from typing import BinaryIO, Self
+
+from mcap.exceptions import McapError
+from mcap.reader import NonSeekingReader, SeekingReader
+from mcap.records import Chunk, DataEnd, Metadata
+from mcap.stream_reader import StreamReader
+from zstandard import ZstdError
+
+from cubeling.app.counted import counted
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.step import ReplayInputs
+from cubeling.app.session.encoding import (
+    APPEARANCE_TOPIC,
+    CHANNEL_TYPES,
+    CLOCK_RECORD,
+    CLOCK_ZERO,
+    FORMAT_KEY,
+    IMAGE_TOPIC,
+    INPUTS_TOPIC,
+    LINE_TOPIC,
+    MESSAGE_TYPES,
+    SESSION_FORMAT,
+    SESSION_RECORD,
+    decode,
+    decode_sound,
+)
+from cubeling.app.session.file_start import MCAP_MAGIC, open_session_file
+from cubeling.app.session.inputs import RecordedInputs
+from cubeling.app.session.options import START_STAGES, SessionOptions, check_stage
+from cubeling.characters import CharacterCommand, SpeechIntent
+
+START_OVER_EVENT = "start over"
+"""Event of a player who starts over."""
+
+INSIDE_EVENT = "cube opened or closed"
+"""Event of a player who asks to open the cube, or to close it."""
+
+READ_ERRORS = (McapError, EOFError, ValueError, struct.error, LookupError, OSError, ZstdError)
+"""What the MCAP reader raises for a damaged file: one that ends early, an index that points to no
+channel (KeyError) or before the file (OSError), a chunk that cannot be decompressed."""
+
+FIELD_OF_TOPIC = {
+    "/cube/state": "state",
+    "/cube/controls": "controls",
+    APPEARANCE_TOPIC: "appearance",
+    "/character/command": "command",
+    "/character/pose": "posed",
+}
+"""The field of `ReplayInputs` for each channel, in the order of the stages after the camera."""
+
+Message = tuple[str, float, bytes]
+"""Topic, timestamp [s] and document of a message."""
+
+
+@dataclass(frozen=True)
+class SessionInfo:
+    """What a recorded session says of itself."""
+
+    options: SessionOptions
+    """Its scenario, cube, character …, with itself as the source."""
+
+    frames: int
+    """Camera frames in the file."""
+
+    duration: float
+    """From the first to the last camera frame [s]; the robot's line may be recorded for longer."""
+
+    clock_zero: str
+    """When the timestamps of a live camera were 0, in UTC by ISO 8601; "" for other sources."""
+
+
+class SessionFile:
+    """A recorded session, opened once for all that is read of it; close it after use.
+
+    Parameters
+    ----------
+    path
+        The .mcap file.
+    salvage
+        Whether to take the intact part of a session that was cut off, instead of refusing it.
+    opened
+        The same file, as `open_session_file` returned it; None to open it.
+
+    Raises
+    ------
+    AppError
+        The file cannot be read, is no session, or was recorded by a newer version.
+    """
+
+    def __init__(
+        self, path: Path, *, salvage: bool = False, opened: BinaryIO | None = None
+    ) -> None:
+        self.path, self._salvage = path, salvage
+        self._file = opened or open_session_file(path)
+        self._is_whole = _is_whole(self._file)
+        self._metadata = _metadata(self._file)
+        version = self._metadata.get(SESSION_RECORD, {}).get(FORMAT_KEY, "0")
+        if not version.isdecimal() or int(version) > SESSION_FORMAT:
+            self.close()
+            raise AppError(
+                f"the session '{path}' has the format {version:.20}, and this Cubeling reads up to "
+                f"{SESSION_FORMAT}: update it"
+            )
+        self.format = int(version)
+        """The version of its format; 0 before there were versions."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file; a second call does nothing."""
+        self._file.close()
+
+    @cached_property
+    def info(self) -> SessionInfo:
+        """What the session says of itself.
+
+        Raises
+        ------
+        AppError
+            The file is damaged, names no scenario, or was cut off and is not to be salvaged.
+        """
+        if self._is_whole and not self._salvage:
+            frames, seconds = self._indexed_frames()
+        else:
+            frames, seconds = self._readable_frames()
+        about = self._metadata.get(SESSION_RECORD, {})
+        if "scenario" not in about:
+            raise AppError(f"'{self.path}' names no scenario: it was not recorded by Cubeling")
+        options = SessionOptions.from_metadata(about, str(self.path))
+        clock_zero = self._metadata.get(CLOCK_RECORD, {}).get(CLOCK_ZERO, "")
+        return SessionInfo(options, frames, seconds, clock_zero)
+
+    def messages(self, *topics: str) -> Iterator[Message]:
+        """Yield (topic, timestamp [s], bytes) in the order of the file, for some topics or all.
+
+        Of a file that was cut off, yield what can be read.
+        """
+        self._file.seek(0)
+        # The index of a whole session leads straight to the chunks that hold a topic.
+        reader_class = SeekingReader if self._is_whole else NonSeekingReader
+        reader = reader_class(self._file, validate_crcs=True)
+        try:
+            for _, channel, message in reader.iter_messages(
+                topics=topics or None, log_time_order=False
+            ):
+                yield channel.topic, message.log_time / 1e9, message.data
+        except READ_ERRORS:
+            return
+
+    def has(self, *topics: str) -> bool:
+        """Return whether there are messages on all of some channels."""
+        return all(next(self.messages(topic), None) is not None for topic in topics)
+
+    @property
+    def has_channels(self) -> bool:
+        """Whether it has every channel from the cube to the robot, or only what came in."""
+        return self.has(*MESSAGE_TYPES)
+
+    @cached_property
+    def events(self) -> list[tuple[float, str]]:
+        """The events, with their timestamps [s]."""
+        return [(time, json.loads(data)["event"]) for _, time, data in self.messages("/events")]
+
+    @cached_property
+    def inputs(self) -> dict[float, RecordedInputs]:
+        """What came in with the frames besides their pictures, by their timestamps [s].
+
+        Older sessions have no channel for it: what the player asked for is among their events, and
+        what a character says is in its command.
+
+        Raises
+        ------
+        AppError
+            A message is not what a recorder writes.
+        """
+        try:
+            found = {
+                time: decode(RecordedInputs, data) for _, time, data in self.messages(INPUTS_TOPIC)
+            }
+            return found or self._older_inputs()
+        except (ValueError, KeyError, TypeError) as error:
+            raise AppError(f"cannot read the session '{self.path}': its inputs: {error}") from error
+
+    @property
+    def start_overs(self) -> frozenset[float]:
+        """Timestamps of the frames in which the player started over [s]."""
+        return frozenset(time for time, each in self.inputs.items() if each.clear)
+
+    @property
+    def openings(self) -> frozenset[float]:
+        """Timestamps of the frames in which the player opened or closed the cube [s]."""
+        return frozenset(time for time, each in self.inputs.items() if each.inside)
+
+    @cached_property
+    def lines(self) -> dict[float, SpokenLine]:
+        """What the character says, by the frame in which it begins [s].
+
+        What was said is an input, so a replay needs no voice.
+        """
+        said = {time: each.speech for time, each in self.inputs.items() if each.speech}
+        lines: dict[float, SpokenLine] = {}
+        for _, time, data in self.messages(LINE_TOPIC) if said else ():
+            if (speech := said.get(time)) is not None:
+                from foxglove_schemas_protobuf.RawAudio_pb2 import RawAudio
+
+                audio = RawAudio.FromString(data)
+                sound = decode_sound(audio.data)
+                lines[time] = SpokenLine(speech.utterance, sound, audio.sample_rate, speech.profile)
+        return lines
+
+    def replay_inputs(self, start: str) -> Iterator[ReplayInputs]:
+        """Yield the recorded messages up to the stage `start`, for each frame.
+
+        Raises
+        ------
+        AppError
+            There is no such stage, or the session lacks its channel.
+        """
+        check_stage(start)
+        topics = tuple(FIELD_OF_TOPIC)[: START_STAGES.index(start)]
+        if not topics:  # from the camera on, nothing is taken as recorded
+            return iter(())
+        if not self.has(topics[-1]):
+            raise AppError(f"'{self.path}' has no recorded channels to start from '{start}'")
+        return self._replay_inputs(topics)
+
+    def _replay_inputs(self, topics: tuple[str, ...]) -> Iterator[ReplayInputs]:
+        for _, found in groupby(self.messages(*topics), key=itemgetter(1)):
+            fields = {
+                FIELD_OF_TOPIC[topic]: decode(CHANNEL_TYPES[topic], data)
+                for topic, _, data in found
+            }
+            yield ReplayInputs(**fields)
+
+    def _older_inputs(self) -> dict[float, RecordedInputs]:
+        happened = set(self.events)
+        speech: dict[float, SpeechIntent | None] = {}
+        if sounds := {time for _, time, _ in self.messages(LINE_TOPIC)}:
+            for _, time, document in self.messages("/character/command"):
+                if time in sounds:
+                    speech[time] = decode(CharacterCommand, document).speech
+        asked = {time for time, event in happened if event in (START_OVER_EVENT, INSIDE_EVENT)}
+        return {
+            time: RecordedInputs(
+                (time, START_OVER_EVENT) in happened,
+                (time, INSIDE_EVENT) in happened,
+                speech.get(time),
+                time,
+            )
+            for time in sorted(asked | speech.keys())
+        }
+
+    def _indexed_frames(self) -> tuple[int, float]:
+        """Return how many camera frames a whole session has, and their duration [s]."""
+        try:
+            self._file.seek(0)
+            reader = SeekingReader(self._file)
+            summary = reader.get_summary()
+            if summary is None or summary.statistics is None:
+                raise AppError(f"cannot read the session '{self.path}': it has no index")
+            ids = {channel.topic: number for number, channel in summary.channels.items()}
+            counts = summary.statistics.channel_message_counts
+            frames = counts.get(ids.get(IMAGE_TOPIC, -1), 0)
+            return frames, _end(reader, last=True) - _end(reader, last=False) if frames else 0.0
+        except READ_ERRORS as error:
+            raise AppError(f"cannot read the session '{self.path}': {error}") from error
+
+    def _readable_frames(self) -> tuple[int, float]:
+        """Return the same of what can be read; refuse it if it is not to be salvaged."""
+        times = [time for _, time, _ in self.messages(IMAGE_TOPIC)]
+        frames, seconds = len(times), times[-1] - times[0] if times else 0.0
+        if self._salvage:
+            return frames, seconds
+        if not frames:
+            raise AppError(
+                f"the session '{self.path}' was cut off before its first frame was whole"
+            )
+        raise AppError(
+            f"the session '{self.path}' was cut off: {counted(frames, 'frame')} ({seconds:.1f} s) "
+            "can be played with --salvage"
+        )
+
+
+def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:
+    """Return what a session says of itself; see `SessionFile` and `SessionFile.info`."""
+    with SessionFile(path, salvage=salvage) as session:
+        return session.info
+
+
+def messages(path: Path, *topics: str) -> Iterator[Message]:
+    """Yield the messages of a session; see `SessionFile.messages`."""
+    with SessionFile(path) as session:
+        yield from session.messages(*topics)
+
+
+def _end(reader: SeekingReader, *, last: bool) -> float:
+    """Return the timestamp of the first or last camera frame [s], from one chunk or few."""
+    _, _, message = next(reader.iter_messages(IMAGE_TOPIC, reverse=last))
+    return message.log_time / 1e9
+
+
+def _metadata(file: BinaryIO) -> dict[str, dict[str, str]]:
+    """Return the metadata of a session, which the recorder writes first."""
+    metadata: dict[str, dict[str, str]] = {}
+    file.seek(0)
+    try:
+        for record in StreamReader(file).records:
+            if isinstance(record, Metadata):
+                metadata[record.name] = record.metadata
+            elif isinstance(record, Chunk | DataEnd):
+                break
+    except READ_ERRORS:
+        pass  # what is whole of it
+    return metadata
+
+
+def _is_whole(file: BinaryIO) -> bool:
+    """Whether a file that begins with `MCAP_MAGIC` was written to its end."""
+    size = file.seek(0, os.SEEK_END)
+    file.seek(-min(size, len(MCAP_MAGIC)), os.SEEK_END)
+    return file.read() == MCAP_MAGIC and size > len(MCAP_MAGIC)
