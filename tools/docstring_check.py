@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
 
-ROOMS = ("affect", "tracking", "characters", "robot")
+ROOMS = ("affect", "tracking", "characters", "robot", "app")
 """Folders that are checked."""
 
 MAX_EMPTY_WORDS = 3

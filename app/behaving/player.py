@@ -82,10 +82,10 @@ class BehaviourFrame:
     """A frame of a performance."""
 
     posed: PosedCharacter
-    """The character."""
+    """The character with its pose and its place on the table."""
 
     performed: RealizedFrame
-    """What it does."""
+    """What it does in this frame for the active behaviours."""
 
     feedback: tuple[Feedback, ...]
     """What has happened since the last frame."""

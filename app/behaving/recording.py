@@ -31,7 +31,6 @@ class SpokenPart:
     """A speech, or what was heard of it."""
 
     line: SpokenLine
-    """What is said."""
 
     start: float
     """When it begins [s]."""
@@ -48,7 +47,7 @@ class BehaviourRecording:
     """Its poses, with the root where it stood."""
 
     feedback: tuple[Feedback, ...]
-    """What was reported."""
+    """All feedback of the standard, in the order of time."""
 
     speeches: dict[str, SpokenPart] = field(default_factory=dict)
     """What was said, by key."""

@@ -1,4 +1,4 @@
-"""`cubeling gesture`."""
+"""The commands of `cubeling gesture`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`cubeling gestures`."""
+"""The commands of `cubeling gestures`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`cubeling idle`."""
+"""The commands of `cubeling idle`."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ class AloneFigures:
     """Joints of a chain."""
 
     iterations: float
-    """Mean iterations."""
+    """Mean number of iterations of a solution."""
 
     single_ms: float
     """Median time of one chain [ms]."""

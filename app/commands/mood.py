@@ -1,4 +1,4 @@
-"""`cubeling mood`."""
+"""The commands of `cubeling mood`."""
 
 from pathlib import Path
 from typing import Annotated

@@ -68,13 +68,12 @@ class Performance:
     """What the preview performs; one that differs starts afresh."""
 
     gesture: SymbolicGesture
-    """The gesture."""
 
     hand: Hand
     """Which hand, if it is one-handed."""
 
     character: str
-    """Who performs it."""
+    """A bundled name, or a file."""
 
     @staticmethod
     def of(document: GestureDocument, character: str) -> "Performance":

@@ -70,13 +70,13 @@ class EditorWindow(WindowSurface):
 
     @property
     def session(self) -> EditorSession:
-        """The editor."""
+        """The session that it shows; there is one once it was opened."""
         assert self._session is not None, "it was opened"
         return self._session
 
     @property
     def view(self) -> EditorView:
-        """What shows it."""
+        """What draws the session; there is one once it was opened."""
         assert self._view is not None, "it was opened"
         return self._view
 

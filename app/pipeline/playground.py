@@ -326,7 +326,7 @@ class Playground:
         self._renderer.expect(frame)
 
     def track(self, frame: Frame) -> CubeState:
-        """Find the cube."""
+        """Find the cube in a frame; frames come in the order of time."""
         return self._tracker.update(frame)
 
     def gesture(self, state: CubeState) -> CubeControls:
@@ -375,7 +375,7 @@ class Playground:
         return LOOK_INSIDE if self._window.invites else decision.hint
 
     def animate(self, command: CharacterCommand) -> PosedCharacter:
-        """Animate the character."""
+        """Advance the character to the time of a command."""
         return self._animator.update(command)
 
     def draw(self, step: Step) -> NDArray[np.uint8] | None:

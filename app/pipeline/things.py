@@ -103,7 +103,6 @@ class PosedBody:
     """The character's body on the table, as after the previous frame."""
 
     character: Character
-    """The character."""
 
     parts: BodyParts
     """The parts of it that reach."""

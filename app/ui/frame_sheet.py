@@ -53,5 +53,5 @@ class FrameSheet:
             save(frame_sheet(self._path.stem, frames), self._path)
 
     def discard(self) -> None:
-        """Forget the pictures."""
+        """Forget the pictures: `close` then writes nothing."""
         self._open = False

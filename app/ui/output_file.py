@@ -105,5 +105,5 @@ class OutputFile(NullScreen):
             self._writer.write(picture, timestamp + number / ENDING_RATE)
 
     def close(self) -> None:
-        """Complete the file."""
+        """Complete the file; without it, it may not open."""
         self._writer.close()

@@ -1,4 +1,4 @@
-"""`cubeling character graph`."""
+"""The command `cubeling character graph`."""
 
 from __future__ import annotations
 

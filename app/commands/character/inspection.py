@@ -1,4 +1,4 @@
-"""`cubeling character inspect`."""
+"""The command `cubeling character inspect`."""
 
 from __future__ import annotations
 

@@ -20,7 +20,6 @@ class Fact:
     """A line with a name and a value."""
 
     name: str
-    """What it is."""
 
     value: str
     """The value with its unit."""
@@ -31,7 +30,7 @@ class Fact:
 
 @dataclass(frozen=True)
 class Note:
-    """A sentence."""
+    """A sentence over the width of a panel."""
 
     text: str
     """It is wrapped at the panel's width."""
@@ -54,7 +53,6 @@ class PlotCurve:
     """(n,); NaN leaves a gap."""
 
     color: Color
-    """Its colour."""
 
     width: float = 2.0
     """Width of its line [design units]."""
@@ -65,7 +63,6 @@ class Plot:
     """Curves over the same last seconds."""
 
     title: str
-    """What they show."""
 
     curves: tuple[PlotCurve, ...]
     """The first one lies below the others."""
@@ -91,7 +88,6 @@ class Share:
     """A part of a whole."""
 
     name: str
-    """What it is."""
 
     amount: float
     """How much of it there is."""
@@ -100,7 +96,6 @@ class Share:
     """The amount with its unit."""
 
     color: Color
-    """Its colour."""
 
 
 @dataclass(frozen=True)
@@ -119,10 +114,9 @@ class Choice:
     """The option that it changes."""
 
     name: str
-    """What it is."""
 
     value: str
-    """The present one."""
+    """The one that is chosen now."""
 
     choices: tuple[str, ...]
     """What can be chosen."""
@@ -142,16 +136,13 @@ class Slider:
     """The option that it changes."""
 
     name: str
-    """What it is."""
 
     value: float
-    """The present one."""
+    """Where it stands now, `low`…`high`."""
 
     low: float
-    """Smallest value."""
 
     high: float
-    """Largest value."""
 
     enabled: bool = True
     """Whether it can be changed now."""
@@ -168,7 +159,6 @@ class Switch:
     """The option that it changes."""
 
     name: str
-    """What it is."""
 
     value: bool
     """Whether it is on."""
@@ -199,7 +189,6 @@ class Panel:
     """Its name on the command line."""
 
     title: str
-    """Its title."""
 
     width: float
     """Its width [design units]."""

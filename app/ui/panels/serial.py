@@ -9,7 +9,7 @@ STATE_TONES: dict[str, Tone] = {"ready": "good", "lost": "bad"}
 """Tones of the link's states; the others are warnings."""
 
 SENDERS = {"tx": "to robot", "rx": "from robot"}
-"""Directions in words."""
+"""Words for the directions of bytes."""
 
 
 def content(monitor: SessionMonitor) -> tuple[Widget, ...]:

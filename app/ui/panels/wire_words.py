@@ -14,7 +14,7 @@ class Words(NamedTuple):
     """A message in words."""
 
     text: str
-    """What it says."""
+    """The message in a line of plain words."""
 
     routine: bool
     """Whether it is sent all the time, so that only the newest one matters."""

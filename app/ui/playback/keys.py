@@ -107,7 +107,7 @@ class KeyHelp:
     """The keys, or "…" between the first and the last."""
 
     help: str
-    """What they do."""
+    """What the card of keys says about them."""
 
 
 def find_binding(key: str, shift: bool = False) -> Binding | None:

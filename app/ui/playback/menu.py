@@ -33,7 +33,7 @@ class Menu:
         self._looking = True
 
     def update(self, choices: tuple[MenuChoice, ...], looking: bool) -> None:
-        """Show these choices."""
+        """Show these choices, or that they are still looked for."""
         columns: dict[str, list[MenuChoice]] = {}
         for choice in choices:
             column = columns.setdefault(choice.part, [])

@@ -157,7 +157,7 @@ class WindowSurface:
         self.poll()
 
     def poll(self) -> None:
-        """Process events."""
+        """Process the events of all windows."""
         glfw.poll_events()
 
     def press(self, key: int, *, shift: bool = False, repeated: bool = False) -> None:

@@ -148,11 +148,11 @@ class Window(WindowSurface):
         self._virtual_robot.close()
 
     def handle_key(self, key: str, *, shift: bool = False, repeated: bool = False) -> None:
-        """Handle a key."""
+        """Hand a key on to the layer over the picture."""
         self._layer.press(key, shift=shift, repeated=repeated)
 
     def handle_pointer(self, x: float, y: float) -> None:
-        """Handle the mouse."""
+        """Follow the mouse, in pixels of the picture."""
         scale = self._picture_scale
         self._pointer = x / scale, y / scale
         self._layer.point(*self._pointer)
