@@ -43,9 +43,10 @@ campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.behaviour --blocks 10000
 	$(BIN)/python -m tests.campaigns.drawing --minutes 1
 
-check: .venv/ready-dev  ## check formatting, lint, the floors of the rooms, and types
+check: .venv/ready-dev  ## check formatting, lint, docstrings, the floors of the rooms, and types
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
+	$(BIN)/python -m tools.docstring_check
 	$(BIN)/python -m tools.package_links
 	cd build/packages && ../../$(BIN)/lint-imports --config ../../.importlinter --cache-dir ../../.import_linter_cache
 	$(BIN)/mypy

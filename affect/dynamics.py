@@ -40,6 +40,7 @@ class Feelings:
         self._valence, self._arousal = home.valence, home.arousal
         self._label_set = personality.label_set
         self._next_word = self._word = self._label_set.start
+        # Infinitely long ago: the dwell time never holds back the first word.
         self._word_since = -math.inf
         self._movement = 0.0
         self._timestamp: float | None = None
@@ -66,18 +67,21 @@ class Feelings:
         """
         check_range(f"the weight of {action!r}", weight, -1.0, 1.0)
         check_range("the speed", speed, 0.0, math.inf)
-        elapsed = self._elapsed(timestamp)
+        # Before anything is changed: a refused update leaves the state as it was.
+        elapsed = self._time_since_update(timestamp)
         personality, gain = self.personality, self.personality.gain(action)
         self._movement = min(speed / TOP_SPEED, 1.0) * personality.movement
         home = personality.temperament
         strength = 1.0 + weight
         rate = gain.valence * strength / 2.0
-        self._valence = _decayed(
+        self._valence = _decay(
             self._valence, home.valence, rate, personality.valence_half_life, elapsed
         )
+        # With "magnitude" arousal is computed from valence and movement in `emotion`, and has no
+        # state.
         if personality.arousal == "own":
             rate, level = gain.arousal * strength / 2.0, home.arousal + self._movement
-            self._arousal = _decayed(
+            self._arousal = _decay(
                 self._arousal, level, rate, personality.arousal_half_life, elapsed
             )
         self._choose_word(timestamp)
@@ -105,8 +109,8 @@ class Feelings:
         """
         check_range(f"the strength of {event!r}", strength, 0.0, 1.0)
         impulse = self.personality.event(event).times(strength)
-        self._valence = _clamped(self._valence + impulse.valence)
-        self._arousal = _clamped(self._arousal + impulse.arousal)
+        self._valence = _clamp(self._valence + impulse.valence)
+        self._arousal = _clamp(self._arousal + impulse.arousal)
         return event in self.personality.events
 
     @property
@@ -114,20 +118,24 @@ class Feelings:
         """The emotion now; its word has hysteresis and dwell."""
         arousal = self._arousal
         if self.personality.arousal == "magnitude":
-            arousal = _clamped(max(abs(self._valence), self._movement))
+            arousal = _clamp(max(abs(self._valence), self._movement))
         return Emotion(self._valence, arousal, self._word)
 
     def _choose_word(self, now: float) -> None:
         """Choose the next word, and take it once the present one has lasted its dwell time."""
+        # The candidate has hysteresis against itself, not against the word that is shown: during
+        # the
+        # dwell time it goes on moving, and the newest one is taken at its end.
         labels, personality = self._label_set, self.personality
         self._next_word = labels.next(self._next_word, self.emotion, personality.hysteresis)
         if self._next_word == self._word or now - self._word_since < personality.dwell:
             return
+        # Robots have motions only from and to neutral: from happy to angry it passes the hub.
         through_hub = labels.hub not in (None, self._next_word, self._word)
         self._word = str(labels.hub) if through_hub else self._next_word
         self._word_since = now
 
-    def _elapsed(self, now: float) -> float:
+    def _time_since_update(self, now: float) -> float:
         last = now if self._timestamp is None else self._timestamp
         if not last <= now < math.inf:  # also refuses NaN
             raise AffectError(
@@ -138,17 +146,19 @@ class Feelings:
         return min(now - last, MAX_TIME_STEP_S)
 
 
-def _decayed(value: float, home: float, rate: float, half_life: float, elapsed: float) -> float:
+def _decay(value: float, home: float, rate: float, half_life: float, elapsed: float) -> float:
     """Return the value after `elapsed` [s]: the exact solution, clamped to −1…1.
 
     The solution is monotone, so clamping its end is exact too.
     """
+    # The limit of the formula below, which would divide by a decay of zero.
     if half_life == math.inf:
-        return _clamped(value + rate * elapsed)
+        return _clamp(value + rate * elapsed)
     decay = math.log(2.0) / half_life
+    # 1 − e^−x loses its digits for the small x of one frame; expm1 keeps them.
     share = -math.expm1(-decay * elapsed)
-    return _clamped(value + (home - value) * share + rate * share / decay)
+    return _clamp(value + (home - value) * share + rate * share / decay)
 
 
-def _clamped(value: float) -> float:
+def _clamp(value: float) -> float:
     return min(max(value, -1.0), 1.0)

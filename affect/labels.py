@@ -28,11 +28,11 @@ disgust are shown as angry: unpleasant and aroused. Sadness and surprise are sho
 neither the angry nor the happy motion fits them."""
 
 
-class Word(NamedTuple):
+class EmotionWord(NamedTuple):
     """A word for an emotion: one row of the table."""
 
     word: str
-    """The word."""
+    """As players and settings write it, in small letters; unique in the table."""
 
     valence: float
     """From unpleasant, −1, to pleasant, 1."""
@@ -50,70 +50,70 @@ class Word(NamedTuple):
 _CIRCLE_RADIUS = 0.8
 _DIAGONAL_OFFSET = round(_CIRCLE_RADIUS * math.sqrt(0.5), 3)
 
-WORD_TABLE: tuple[Word, ...] = (
+WORD_TABLE: tuple[EmotionWord, ...] = (
     # The three of the thesis (Fernández-Baena 2015, section 5.3). Robots receive these places;
     # which of the three is shown depends on the valence alone (`next_label`).
-    Word("neutral", 0.0, 0.0, "neutral", "thesis"),
-    Word("happy", 0.7, 0.6, "happy", "thesis"),
-    Word("angry", -0.7, 0.6, "angry", "thesis"),
+    EmotionWord("neutral", 0.0, 0.0, "neutral", "thesis"),
+    EmotionWord("happy", 0.7, 0.6, "happy", "thesis"),
+    EmotionWord("angry", -0.7, 0.6, "angry", "thesis"),
     # Words that robots have for their moods; afraid and disgusted as in OCC, the others are ours.
-    Word("sad", -0.6, -0.4, "sad", "words"),
-    Word("surprised", 0.1, 0.8, "surprised", "words"),
-    Word("afraid", -0.64, 0.6, "afraid", "words"),
-    Word("disgusted", -0.6, 0.3, "disgusted", "words"),
-    Word("excited", 0.6, 0.8, "happy", "words"),
-    Word("content", 0.6, -0.3, "happy", "words"),
-    Word("calm", 0.3, -0.6, "neutral", "words"),
-    Word("sleepy", 0.0, -0.9, "neutral", "words"),
-    Word("bored", -0.4, -0.6, "sad", "words"),
+    EmotionWord("sad", -0.6, -0.4, "sad", "words"),
+    EmotionWord("surprised", 0.1, 0.8, "surprised", "words"),
+    EmotionWord("afraid", -0.64, 0.6, "afraid", "words"),
+    EmotionWord("disgusted", -0.6, 0.3, "disgusted", "words"),
+    EmotionWord("excited", 0.6, 0.8, "happy", "words"),
+    EmotionWord("content", 0.6, -0.3, "happy", "words"),
+    EmotionWord("calm", 0.3, -0.6, "neutral", "words"),
+    EmotionWord("sleepy", 0.0, -0.9, "neutral", "words"),
+    EmotionWord("bored", -0.4, -0.6, "sad", "words"),
     # The eight directions of the circumplex (Russell 1980), 45° apart; the
     # radius and some of the words are ours.
-    Word("neutral", 0.0, 0.0, "neutral", "circumplex"),
-    Word("pleased", _CIRCLE_RADIUS, 0.0, "happy", "circumplex"),
-    Word("excited", _DIAGONAL_OFFSET, _DIAGONAL_OFFSET, "happy", "circumplex"),
-    Word("alert", 0.0, _CIRCLE_RADIUS, "surprised", "circumplex"),
-    Word("distressed", -_DIAGONAL_OFFSET, _DIAGONAL_OFFSET, "angry", "circumplex"),
-    Word("displeased", -_CIRCLE_RADIUS, 0.0, "angry", "circumplex"),
-    Word("depressed", -_DIAGONAL_OFFSET, -_DIAGONAL_OFFSET, "sad", "circumplex"),
-    Word("sleepy", 0.0, -_CIRCLE_RADIUS, "neutral", "circumplex"),
-    Word("relaxed", _DIAGONAL_OFFSET, -_DIAGONAL_OFFSET, "neutral", "circumplex"),
+    EmotionWord("neutral", 0.0, 0.0, "neutral", "circumplex"),
+    EmotionWord("pleased", _CIRCLE_RADIUS, 0.0, "happy", "circumplex"),
+    EmotionWord("excited", _DIAGONAL_OFFSET, _DIAGONAL_OFFSET, "happy", "circumplex"),
+    EmotionWord("alert", 0.0, _CIRCLE_RADIUS, "surprised", "circumplex"),
+    EmotionWord("distressed", -_DIAGONAL_OFFSET, _DIAGONAL_OFFSET, "angry", "circumplex"),
+    EmotionWord("displeased", -_CIRCLE_RADIUS, 0.0, "angry", "circumplex"),
+    EmotionWord("depressed", -_DIAGONAL_OFFSET, -_DIAGONAL_OFFSET, "sad", "circumplex"),
+    EmotionWord("sleepy", 0.0, -_CIRCLE_RADIUS, "neutral", "circumplex"),
+    EmotionWord("relaxed", _DIAGONAL_OFFSET, -_DIAGONAL_OFFSET, "neutral", "circumplex"),
     # Ekman's six basic emotions (1992). The plane hardly separates fear from anger (ALMA's places
     # are 0.13 apart; they differ in dominance), so ours are further apart: fear has more arousal.
-    Word("neutral", 0.0, 0.0, "neutral", "ekman"),
-    Word("happy", 0.7, 0.4, "happy", "ekman"),
-    Word("sad", -0.6, -0.5, "sad", "ekman"),
-    Word("angry", -0.75, 0.4, "angry", "ekman"),
-    Word("surprised", 0.1, 0.8, "surprised", "ekman"),
-    Word("afraid", -0.4, 0.8, "afraid", "ekman"),
-    Word("disgusted", -0.75, -0.05, "disgusted", "ekman"),
+    EmotionWord("neutral", 0.0, 0.0, "neutral", "ekman"),
+    EmotionWord("happy", 0.7, 0.4, "happy", "ekman"),
+    EmotionWord("sad", -0.6, -0.5, "sad", "ekman"),
+    EmotionWord("angry", -0.75, 0.4, "angry", "ekman"),
+    EmotionWord("surprised", 0.1, 0.8, "surprised", "ekman"),
+    EmotionWord("afraid", -0.4, 0.8, "afraid", "ekman"),
+    EmotionWord("disgusted", -0.75, -0.05, "disgusted", "ekman"),
     # The 22 emotions of Ortony, Clore and Collins (1988), and surprise and disgust; places:
     # pleasure and arousal of ALMA (Gebhard 2005), surprise and disgust by specification S18. Where
     # several share a place, the first stands for all.
-    Word("neutral", 0.0, 0.0, "neutral", "occ"),
-    Word("joy", 0.4, 0.2, "happy", "occ"),
-    Word("happy-for", 0.4, 0.2, "happy", "occ"),
-    Word("gratitude", 0.4, 0.2, "happy", "occ"),
-    Word("gratification", 0.6, 0.5, "happy", "occ"),
-    Word("admiration", 0.5, 0.3, "happy", "occ"),
-    Word("pride", 0.4, 0.3, "happy", "occ"),
-    Word("love", 0.3, 0.1, "happy", "occ"),
-    Word("hope", 0.2, 0.2, "happy", "occ"),
-    Word("satisfaction", 0.3, -0.2, "happy", "occ"),
-    Word("relief", 0.2, -0.3, "happy", "occ"),
-    Word("gloating", 0.3, -0.3, "happy", "occ"),
-    Word("distress", -0.4, -0.2, "sad", "occ"),
-    Word("pity", -0.4, -0.2, "sad", "occ"),
-    Word("disappointment", -0.3, 0.1, "sad", "occ"),
-    Word("shame", -0.3, 0.1, "sad", "occ"),
-    Word("remorse", -0.3, 0.1, "sad", "occ"),
-    Word("resentment", -0.2, -0.3, "sad", "occ"),
-    Word("anger", -0.51, 0.59, "angry", "occ"),
-    Word("reproach", -0.3, -0.1, "angry", "occ"),
-    Word("hate", -0.6, 0.6, "angry", "occ"),
-    Word("surprise", 0.1, 0.8, "surprised", "occ"),
-    Word("fear", -0.64, 0.6, "afraid", "occ"),
-    Word("fear-confirmed", -0.5, -0.3, "afraid", "occ"),
-    Word("disgust", -0.6, 0.3, "disgusted", "occ"),
+    EmotionWord("neutral", 0.0, 0.0, "neutral", "occ"),
+    EmotionWord("joy", 0.4, 0.2, "happy", "occ"),
+    EmotionWord("happy-for", 0.4, 0.2, "happy", "occ"),
+    EmotionWord("gratitude", 0.4, 0.2, "happy", "occ"),
+    EmotionWord("gratification", 0.6, 0.5, "happy", "occ"),
+    EmotionWord("admiration", 0.5, 0.3, "happy", "occ"),
+    EmotionWord("pride", 0.4, 0.3, "happy", "occ"),
+    EmotionWord("love", 0.3, 0.1, "happy", "occ"),
+    EmotionWord("hope", 0.2, 0.2, "happy", "occ"),
+    EmotionWord("satisfaction", 0.3, -0.2, "happy", "occ"),
+    EmotionWord("relief", 0.2, -0.3, "happy", "occ"),
+    EmotionWord("gloating", 0.3, -0.3, "happy", "occ"),
+    EmotionWord("distress", -0.4, -0.2, "sad", "occ"),
+    EmotionWord("pity", -0.4, -0.2, "sad", "occ"),
+    EmotionWord("disappointment", -0.3, 0.1, "sad", "occ"),
+    EmotionWord("shame", -0.3, 0.1, "sad", "occ"),
+    EmotionWord("remorse", -0.3, 0.1, "sad", "occ"),
+    EmotionWord("resentment", -0.2, -0.3, "sad", "occ"),
+    EmotionWord("anger", -0.51, 0.59, "angry", "occ"),
+    EmotionWord("reproach", -0.3, -0.1, "angry", "occ"),
+    EmotionWord("hate", -0.6, 0.6, "angry", "occ"),
+    EmotionWord("surprise", 0.1, 0.8, "surprised", "occ"),
+    EmotionWord("fear", -0.64, 0.6, "afraid", "occ"),
+    EmotionWord("fear-confirmed", -0.5, -0.3, "afraid", "occ"),
+    EmotionWord("disgust", -0.6, 0.3, "disgusted", "occ"),
 )
 """Every word, set by set."""
 
@@ -135,7 +135,7 @@ class LabelSet:
     """Whether valence alone decides, by the thresholds of the thesis."""
 
     start: str = "neutral"
-    """The initial label."""
+    """The label before any emotion has been felt; one of the set's words."""
 
     def next(self, label: str, emotion: Emotion, hysteresis: float) -> str:
         """Return the label that follows `label` at an emotion.

@@ -33,7 +33,7 @@ def face_intensities(intensities: Mapping[str, float]) -> dict[Face, float]:
         An emotion is not one of the 24.
     """
     shown: dict[Face, float] = dict.fromkeys(OCC_FACES.values(), 0.0)
-    for word, intensity in _checked(intensities).items():
+    for word, intensity in _check_intensities(intensities).items():
         shown[OCC_FACES[word]] = max(shown[OCC_FACES[word]], intensity)
     return shown
 
@@ -52,7 +52,7 @@ def shown_emotion(intensities: Mapping[str, float]) -> Emotion:
     AffectError
         An emotion is not one of the 24.
     """
-    known = _checked(intensities)
+    known = _check_intensities(intensities)
     if not any(known.values()):
         return NEUTRAL
     place = on_disc(
@@ -63,7 +63,7 @@ def shown_emotion(intensities: Mapping[str, float]) -> Emotion:
     return Emotion(place.valence, place.arousal, max(faces, key=lambda face: faces[face]))
 
 
-def _checked(intensities: Mapping[str, float]) -> dict[str, float]:
+def _check_intensities(intensities: Mapping[str, float]) -> dict[str, float]:
     """Return intensities within 0…1 of emotions that are known."""
     for word in intensities:
         if word not in _ROWS:

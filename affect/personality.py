@@ -34,7 +34,6 @@ class Personality:
     """
 
     name: str
-    """Its name."""
 
     description: str = ""
     """A sentence about it."""
@@ -97,18 +96,18 @@ class Personality:
 
     @property
     def label_set(self) -> LabelSet:
-        """Its label set."""
+        """The labels that a robot or an overlay shows for its emotions; see `labels`."""
         return label_set(self.labels)
 
     def gain(self, action: str) -> AffectImpulse:
         """Return the rate of an action of full intensity [1/s]; zero for an unknown action."""
-        return self._scaled(self.gains.get(action, AffectImpulse()))
+        return self._scale(self.gains.get(action, AffectImpulse()))
 
     def event(self, name: str) -> AffectImpulse:
         """Return how far an event moves the emotion; zero for an unknown event."""
-        return self._scaled(self.events.get(name, AffectImpulse()))
+        return self._scale(self.events.get(name, AffectImpulse()))
 
-    def _scaled(self, push: AffectImpulse) -> AffectImpulse:
+    def _scale(self, push: AffectImpulse) -> AffectImpulse:
         if self.ocean is None:
             return push
         good, bad = self.ocean.responses

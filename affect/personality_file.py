@@ -19,7 +19,7 @@ _NUMBER_FIELDS = {"hysteresis": "hysteresis", "dwell_s": "dwell"}
 _TABLE_KEYS = ("temperament", "half_life_s", "gains", "events", "movement", "ocean")
 
 
-def bundled() -> tuple[str, ...]:
+def bundled_names() -> tuple[str, ...]:
     """Return the names of the bundled personalities, that of the thesis first."""
     names = sorted(path.stem for path in BUNDLED_FOLDER.glob("*.toml"))
     return tuple(sorted(names, key=lambda name: name != "thesis"))
@@ -27,9 +27,9 @@ def bundled() -> tuple[str, ...]:
 
 def bundled_text(name: str) -> str:
     """Return the file of a bundled personality; raise AffectError if there is none."""
-    if name not in bundled():
+    if name not in bundled_names():
         raise AffectError(
-            f"there is no personality {name!r}: choose one of {', '.join(bundled())}, "
+            f"there is no personality {name!r}: choose one of {', '.join(bundled_names())}, "
             "or give a .toml file"
         )
     return (BUNDLED_FOLDER / f"{name}.toml").read_text(encoding="utf-8")

@@ -13,14 +13,14 @@ from cubeling.affect.words import WORD_PLACES
 
 
 @dataclass(frozen=True)
-class Box:
+class RegionBox:
     """A rectangle of the plane."""
 
     valence: tuple[float, float]
-    """Least and greatest."""
+    """Least and greatest valence, −1…1."""
 
     arousal: tuple[float, float]
-    """Least and greatest."""
+    """Least and greatest arousal, −1…1."""
 
     def contains(self, emotion: Emotion, margin: float = 0.0) -> bool:
         """Return whether an emotion belongs to it, or is nearer to it than a margin."""
@@ -49,8 +49,8 @@ class Sector:
         return radius >= self.inner - margin and beside * radius <= margin
 
 
-Region = Box | Sector
-"""Some emotions."""
+Region = RegionBox | Sector
+"""A part of the plane of valence and arousal that belongs to one word."""
 
 NEUTRAL_RADIUS = 0.25
 """Emotions nearer to the middle of the plane than this are neutral."""
@@ -68,7 +68,7 @@ def region_of(word: str) -> Region:
     >>> region_of("sad") == region_of("depressed")
     True
     >>> region_of("angry").contains(Emotion(-0.5, 0.4)), region_of("neutral")
-    (True, Box(valence=(-0.25, 0.25), arousal=(-0.25, 0.25)))
+    (True, RegionBox(valence=(-0.25, 0.25), arousal=(-0.25, 0.25)))
 
     Raises
     ------
@@ -79,7 +79,7 @@ def region_of(word: str) -> Region:
         raise AffectError(f"no emotion is called {word!r}; there are {', '.join(WORD_PLACES)}")
     valence, arousal = WORD_PLACES[word]
     if math.hypot(valence, arousal) < NEUTRAL_RADIUS:
-        return Box((-NEUTRAL_RADIUS, NEUTRAL_RADIUS), (-NEUTRAL_RADIUS, NEUTRAL_RADIUS))
+        return RegionBox((-NEUTRAL_RADIUS, NEUTRAL_RADIUS), (-NEUTRAL_RADIUS, NEUTRAL_RADIUS))
     eighth = math.tau / len(SECTOR_WORDS)
     turns = round(math.atan2(arousal, valence) / eighth)
     return Sector(math.remainder(turns * eighth, math.tau), eighth, NEUTRAL_RADIUS)

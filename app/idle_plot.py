@@ -78,7 +78,7 @@ def draw(database: IdleDatabase, title: str) -> Figure:
 
 def body_of(skeleton: Skeleton) -> Character:
     """Return the bundled character of a skeleton, or a figure of sticks."""
-    for name in Character.bundled():
+    for name in Character.bundled_names():
         character = Character.load(name)
         if skeleton_identity(character.skeleton) == skeleton_identity(skeleton):
             return character

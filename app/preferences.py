@@ -55,7 +55,7 @@ class Preferences:
     """How loud sounds are, 0…1."""
 
     muted: bool = False
-    """Whether nothing sounds."""
+    """Whether sounds and voices are off, whatever the volume."""
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.volume <= 1.0:

@@ -73,8 +73,8 @@ from cubeling.characters.motion.modifiers import (
     RootOffset as RootOffset,
     Stretch as Stretch,
     TimeCurve as TimeCurve,
+    TimeWindow as TimeWindow,
     Warped as Warped,
-    Window as Window,
 )
 from cubeling.characters.motion.motion import Motion as Motion, RootDelta as RootDelta
 from cubeling.characters.motion.schedule import (

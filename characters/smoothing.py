@@ -77,7 +77,7 @@ def smoothstep(u: _Value) -> _Value:
     return u * u * (3.0 - 2.0 * u)
 
 
-def gaussian_smoothed(values: NDArray[np.float64], deviation: float) -> NDArray[np.float64]:
+def gaussian_smooth(values: NDArray[np.float64], deviation: float) -> NDArray[np.float64]:
     """Return values (frames, …) under a Gaussian of a standard deviation [frames].
 
     Point reflection continues them at both ends: a body that enters or leaves keeps its speed.

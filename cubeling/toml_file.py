@@ -171,7 +171,7 @@ class TomlTable:
         return tuple(self._inner(*row, keys) for row in zip(rows, places, strict=True))
 
     def text(self, key: str, default: str | None = None) -> str:
-        """Return a text."""
+        """Return a text; refuse another type, and a missing one without a default."""
         value = self._values.get(key, default)
         if not isinstance(value, str):
             raise self.unlike(key, "a text")
@@ -189,7 +189,7 @@ class TomlTable:
         value = self._values.get(key, default)
         if not isinstance(value, str) or value not in choices:
             if near := _nearest(value, choices):
-                raise self._error(key, f" is {shown(value)}, which is not known; {near}")
+                raise self._error(key, f" is {excerpt(value)}, which is not known; {near}")
             known = ", ".join(filter(None, choices)) or "those that there are: none"
             raise self.unlike(key, f"one of {known}")
         return value
@@ -277,7 +277,7 @@ class TomlTable:
         if key not in self._values:
             return self._error(key, f" is missing; it must be {allowed}")
         value = self._values[key] if value is None else value
-        return self._error(key, f" must be {allowed}, not {shown(value)}")
+        return self._error(key, f" must be {allowed}, not {excerpt(value)}")
 
     def _typed(self, key: str, hint: Any) -> Any:
         """Return the value of a key as a type says, one of those that `fill` knows."""
@@ -324,10 +324,10 @@ class TomlTable:
         return ".".join(part for part in (self.place, key) if part)
 
 
-def shown(value: object) -> str:
+def excerpt(value: object) -> str:
     """Return a value for a message, at most `MAX_SHOWN_CHARS` long.
 
-    >>> shown([1, "a"]), shown("b" * 99)[:10]
+    >>> excerpt([1, "a"]), excerpt("b" * 99)[:10]
     ("[1, 'a']", "'bbbbbbbbb")
     """
     try:

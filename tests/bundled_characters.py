@@ -18,7 +18,7 @@ from cubeling.characters import Character
 from cubeling.characters.rendering.geometry import detail_levels
 from cubeling.characters.rendering.geometry.edge_collapse import Tolerance, collapsed_levels
 
-BUNDLED = Character.bundled()
+BUNDLED = Character.bundled_names()
 """Their names."""
 
 _read = Character.load

@@ -27,7 +27,7 @@ from cubeling.characters import (
     RootDelta,
 )
 from cubeling.characters.face.lids import Lids
-from cubeling.characters.rendering import SceneCharacter, Stage, View, create_context
+from cubeling.characters.rendering import CameraView, SceneCharacter, Stage, create_context
 from cubeling.characters.rendering.portrait import PAPER_BGR
 from cubeling.characters.rendering.portrait_camera import CharacterExtent, PortraitCamera
 
@@ -75,7 +75,7 @@ def draw_group(context: moderngl.Context, size: tuple[int, int] = (1100, 520)) -
     paper = np.full((size[1], size[0], 3), PAPER_BGR, np.uint8)
     stage = Stage(context, size)
     try:
-        view = View(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
+        view = CameraView(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
         return stage.draw(view, characters)
     finally:
         stage.release()
@@ -111,7 +111,7 @@ def _mood_pose(character: Character, label: str) -> Pose:
         for number in range(last + 1)
     ]
     lids = Lids.of(character.morphs)
-    return min(poses[first:], key=lambda pose: lids.closed(pose.morphs))
+    return min(poses[first:], key=lambda pose: lids.closure(pose.morphs))
 
 
 STANDING_MOODS = ("neutral", *SECTOR_WORDS)
@@ -163,11 +163,11 @@ if __name__ == "__main__":
     context = create_context()
     save(draw_group(context), FOLDER.parent / "cast.jpg", MAX_BYTES)
     sheets = ContactSheets(context)
-    moods = draw_moods(sheets, map(Character.load, Character.bundled()))
+    moods = draw_moods(sheets, map(Character.load, Character.bundled_names()))
     save(moods, FOLDER.parent / "moods-on-faces.jpg", MAX_BYTES)
-    standing = draw_standing(sheets, map(Character.load, Character.bundled()))
+    standing = draw_standing(sheets, map(Character.load, Character.bundled_names()))
     save(standing, FOLDER.parent / "moods-standing.jpg", MAX_BYTES)
     sheets.release()
     context.release()
-    for path in draw_cast(map(Character.load, Character.bundled())):
+    for path in draw_cast(map(Character.load, Character.bundled_names())):
         Console().print(f"{path.name}: {path.stat().st_size / 1e3:.0f} kB")

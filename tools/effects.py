@@ -16,12 +16,12 @@ from cubeling.characters import Character
 from cubeling.characters.control.command import PosedCharacter
 from cubeling.characters.rendering import (
     QUALITIES,
+    CameraView,
     Effect,
     Focus,
     Quality,
     SceneCharacter,
     Stage,
-    View,
     create_context,
 )
 from cubeling.tracking.geometry import se3
@@ -137,7 +137,7 @@ def _pair(context: moderngl.Context, shot: Shot) -> Image:
     return np.hstack([framed(*each) for each in zip(pictures, captions, strict=True)])
 
 
-def _scene(shot: Shot) -> tuple[View, Sequence[SceneCharacter]]:
+def _scene(shot: Shot) -> tuple[CameraView, Sequence[SceneCharacter]]:
     """Return a plain desk under a camera, and the characters of a shot on it."""
     character = Character.load(shot.character)
     if shot.opacity < 1.0:
@@ -160,7 +160,7 @@ def _scene(shot: Shot) -> tuple[View, Sequence[SceneCharacter]]:
     seen = table[:3, :3] @ [0.0, shot.look_at * shot.height, 0.0] + table[:3, 3]
     middle = np.array([width / 2, height / 2]) - focal * seen[:2] / seen[2]
     matrix = np.array([[focal, 0.0, middle[0]], [0.0, focal, middle[1]], [0.0, 0.0, 1.0]])
-    return View(_desk(), matrix, np.zeros(0), table, focus=shot.focus), actors
+    return CameraView(_desk(), matrix, np.zeros(0), table, focus=shot.focus), actors
 
 
 def _glass(character: Character, opacity: float) -> Character:

@@ -35,7 +35,7 @@ from cubeling.app.ui.cards.virtual_robot import VirtualRobot
 from cubeling.app.ui.gesture_sheets import draw_library, draw_settings
 from cubeling.app.ui.panels import PANELS
 from cubeling.app.ui.playback.layer import PlaybackLayer
-from cubeling.app.ui.playback.status import Mark, Position, SessionStatus
+from cubeling.app.ui.playback.status import PlaybackMark, Position, SessionStatus
 from cubeling.app.ui.window import Window
 from cubeling.characters import Character
 from cubeling.characters.rendering import create_context
@@ -92,7 +92,7 @@ def in_window(picture: Picture, scenario: str, now: float, length: float) -> Pic
     """Return a picture of a replay as the window shows it, paused."""
     layer = PlaybackLayer((scenario,), Path(), {})
     with SessionFile(bundled(scenario)) as session:
-        marks = tuple(Mark(time, event) for time, event in session.events)
+        marks = tuple(PlaybackMark(time, event) for time, event in session.events)
     position = Position(now, length, 0.0, length, marks=marks)
     layer.report(SessionStatus(scenario, paused=True, position=position))
     return layer.draw(picture)

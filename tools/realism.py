@@ -12,7 +12,7 @@ from rich.console import Console
 
 from cubeling.app.ui.contact_sheets import save
 from cubeling.characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
-from cubeling.characters.rendering import Box, SceneCharacter, Stage, View, create_context
+from cubeling.characters.rendering import Box, CameraView, SceneCharacter, Stage, create_context
 from cubeling.characters.rendering.camera_picture.haze import haze_table
 from cubeling.characters.rendering.camera_picture.light import LINEAR_FROM_SRGB
 from cubeling.tracking import CubeControls, CubeGestures, CubeState, CubeTracker, Frame
@@ -125,7 +125,7 @@ def _drawn(
         command = CharacterCommand(frame.timestamp, action=ActionIntent("idle"), gaze=gaze)
         posed = animator.update(command)
         found, pose = meter.update(frame, state, controls.camera_from_table), state.camera_from_cube
-        view = View(
+        view = CameraView(
             frame.image,
             source.intrinsics.matrix,
             source.intrinsics.distortion,

@@ -35,7 +35,7 @@ class Output(Protocol):
         ...
 
     def show(self, player: BehaviourPlayer, frame: BehaviourFrame) -> None:
-        """Show a frame."""
+        """Show a frame of the player, once; it may take as long as the display does."""
         ...
 
 
@@ -45,7 +45,7 @@ class NoOutput:
     closed = False
 
     def show(self, player: BehaviourPlayer, frame: BehaviourFrame) -> None:
-        """Do nothing."""
+        """Do nothing: the feedback goes to the clients alone."""
 
 
 class PictureScreen(Protocol):
@@ -61,7 +61,7 @@ class PictureScreen(Protocol):
         ...
 
     def poll(self) -> None:
-        """Process events."""
+        """Process the window's events, so that it can be closed."""
         ...
 
 

@@ -27,15 +27,15 @@ from cubeling.characters.behaviour import (
     NEUTRAL,
     Block,
     BmlWarning,
-    CharacterPerformer,
+    CharacterRealizer,
     Feedback,
     GestureCollection,
     GestureExpressivity,
-    Performed,
-    Performing,
+    NamedPlaces,
+    RealizationContext,
+    RealizedFrame,
     Realizer,
     Saying,
-    Surroundings,
     behaviours_of,
     numbers_of,
     parse,
@@ -82,10 +82,10 @@ class BehaviourFrame:
     """A frame of a performance."""
 
     posed: PosedCharacter
-    """The character."""
+    """The character with its pose and its place on the table."""
 
-    performed: Performed
-    """What it does."""
+    performed: RealizedFrame
+    """What it does in this frame for the active behaviours."""
 
     feedback: tuple[Feedback, ...]
     """What has happened since the last frame."""
@@ -118,24 +118,24 @@ class BehaviourPlayer:
         self._eye_height = _eye_height(character)
         places = {"viewer": VIEWER, "cube": CUBE, "left": LEFT, "right": RIGHT}
         places |= {name.lower(): place for name, place in (options.targets or {}).items()}
-        self.who = Performing(
+        self.who = RealizationContext(
             character,
-            GestureCollection.bundled(),
-            Surroundings(places),
+            GestureCollection.load_bundled(),
+            NamedPlaces(places),
             self._utterance,
             options.expressivity,
             lambda target, manner: self._ways.time(self._place, target, manner),
         )
         """The character, what it knows and where it is."""
         self._place = RootDelta()
-        self._performer = CharacterPerformer(self.who)
+        self._performer = CharacterRealizer(self.who)
         self.realizer = Realizer(self._performer)
         """What keeps the time of the blocks; `perform` gives it one."""
 
     def perform(self, document: str | bytes) -> None:
         """Accept a document of BML or FML; it counts from the next update on."""
         try:
-            self.realizer.perform(block_of(document))
+            self.realizer.accept(block_of(document))
         except CharacterError as error:
             self._refused.append(str(error))
 
@@ -145,7 +145,7 @@ class BehaviourPlayer:
         feedback = (*refused, *self.realizer.update(now))
         self._refused = []
         retime_speeches(self.realizer, self.who, now)
-        performed = self._performer.performed(self.realizer.active(now), now)
+        performed = self._performer.frame_of(self.realizer.active(now), now)
         posed = self._animator.update(command_of(performed, self.emotion, self.who))
         self._tell_place(posed)
         return BehaviourFrame(posed, performed, feedback)
@@ -158,7 +158,7 @@ class BehaviourPlayer:
         """Stand for a time before time 0, in frames of a rate [Hz]: eyes find the viewer."""
         for number in range(-round(seconds * rate), 0):
             now = number / rate
-            posed = self._animator.update(command_of(Performed(now), self.emotion, self.who))
+            posed = self._animator.update(command_of(RealizedFrame(now), self.emotion, self.who))
             self._tell_place(posed)
 
     def over(self, now: float) -> bool:
@@ -198,7 +198,9 @@ def block_of(document: str | bytes) -> Block:
     return behaviours_of(document) if is_fml else parse(document)
 
 
-def command_of(performed: Performed, emotion: Emotion | None, who: Performing) -> CharacterCommand:
+def command_of(
+    performed: RealizedFrame, emotion: Emotion | None, who: RealizationContext
+) -> CharacterCommand:
     """Return the command for what a character does in a frame; it looks at the viewer else."""
     viewer = who.surroundings.places.get("viewer")
     facing = viewer if performed.facing is None else performed.facing

@@ -24,7 +24,7 @@ from cubeling.app.speaking.view import View
 from cubeling.app.ui.clip_video import write_clip
 from cubeling.characters import Character, Clip, Pose, PosedCharacter, SpeechIntent
 from cubeling.characters.behaviour import Feedback
-from cubeling.characters.motion import rotations, stacked
+from cubeling.characters.motion import rotations, stack
 
 SETTLE_S = 2.0
 """Time before the first frame [s], which is not shown: eyes find the viewer."""
@@ -41,7 +41,6 @@ class SpokenPart:
     """A speech, or what was heard of it."""
 
     line: SpokenLine
-    """What is said."""
 
     start: float
     """When it begins [s]."""
@@ -58,7 +57,7 @@ class BehaviourRecording:
     """Its poses, with the root where it stood."""
 
     feedback: tuple[Feedback, ...]
-    """What was reported."""
+    """All feedback of the standard, in the order of time."""
 
     speeches: dict[str, SpokenPart] = field(default_factory=dict)
     """What was said, by key."""
@@ -183,7 +182,7 @@ def placed_pose(posed: PosedCharacter) -> Pose:
 
 
 def _clip(frames: Sequence[BehaviourFrame], rate: float, name: str) -> Clip:
-    poses = stacked([placed_pose(frame.posed) for frame in frames])
+    poses = stack([placed_pose(frame.posed) for frame in frames])
     return Clip(name, rate, poses, loop=False, root_motion=True)
 
 

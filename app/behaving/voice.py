@@ -43,11 +43,11 @@ class SilentSource:
         self.problem = problem
 
     def line(self, text: str, language: str) -> SpokenLine | None:
-        """Return None."""
+        """Return None: there is no voice, so speeches last as long as estimated."""
         return None
 
     def close(self) -> None:
-        """Do nothing."""
+        """Do nothing: nothing was opened."""
 
 
 class PatientSource:
@@ -85,7 +85,7 @@ class PatientSource:
             return None
 
     def close(self) -> None:
-        """Close what speaks."""
+        """Close the voice; a second call does nothing."""
         self._close()
 
 

@@ -1,4 +1,4 @@
-"""`cubeling behave`."""
+"""The command `cubeling behave`."""
 
 from __future__ import annotations
 

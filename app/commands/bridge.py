@@ -1,4 +1,4 @@
-"""`cubeling bridge`."""
+"""The command `cubeling bridge`."""
 
 from __future__ import annotations
 

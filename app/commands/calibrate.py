@@ -1,4 +1,4 @@
-"""`cubeling calibrate`."""
+"""The command `cubeling calibrate`."""
 
 from __future__ import annotations
 

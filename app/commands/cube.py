@@ -1,4 +1,4 @@
-"""`cubeling cube`."""
+"""The command `cubeling cube`."""
 
 from pathlib import Path
 from typing import Annotated

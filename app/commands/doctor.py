@@ -31,7 +31,6 @@ class Finding:
     """The result of one check."""
 
     name: str
-    """What was checked."""
 
     verdict: Literal["good", "missing", "bad"]
     """Cubeling runs without what is "missing", but not with what is "bad"."""

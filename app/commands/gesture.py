@@ -1,4 +1,4 @@
-"""`cubeling gesture`."""
+"""The commands of `cubeling gesture`."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def show(
     if output is not None:
         from cubeling.app.gesture_editor.sheet import draw_sheet
 
-        draw_sheet(output, gesture, character or list(Character.bundled()))
+        draw_sheet(output, gesture, character or list(Character.bundled_names()))
         print_written(str(output))
 
 

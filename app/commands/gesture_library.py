@@ -167,7 +167,7 @@ def _body(library: GestureLibrary) -> Character:
     from cubeling.characters.model import stick_figure
     from cubeling.characters.motion import skeleton_identity
 
-    for name in Character.bundled():
+    for name in Character.bundled_names():
         character = Character.load(name)
         if skeleton_identity(character.skeleton) == library.skeleton_identity:
             return character
@@ -178,7 +178,7 @@ def _file(library: Path) -> Path:
     """Return the file of a library; the one beside a bundled character of that name."""
     from cubeling.characters import Character
 
-    if str(library) not in Character.bundled() or library.exists():
+    if str(library) not in Character.bundled_names() or library.exists():
         return library
     return Path(str(resources.files("cubeling.characters") / "assets" / f"{library}.gestures"))
 

@@ -1,4 +1,4 @@
-"""`cubeling idle`."""
+"""The commands of `cubeling idle`."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ def _file(person: Path) -> Path:
     """Return the file of a person; the one beside a bundled character of that name."""
     from cubeling.characters import Character
 
-    if str(person) not in Character.bundled() or person.exists():
+    if str(person) not in Character.bundled_names() or person.exists():
         return person
     return Path(str(resources.files("cubeling.characters") / "assets" / f"{person}.idle"))
 

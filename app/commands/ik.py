@@ -1,4 +1,4 @@
-"""`cubeling ik`."""
+"""The command `cubeling ik`."""
 
 from typing import Annotated
 

@@ -11,7 +11,7 @@ from rich.table import Table
 from cubeling.characters.motion import (
     REACH_M,
     TOLERANCE,
-    Problem,
+    ReachingProblem,
     SingleChain,
     arc_targets,
     joint_change,
@@ -51,7 +51,7 @@ class AloneFigures:
     """Joints of a chain."""
 
     iterations: float
-    """Mean iterations."""
+    """Mean number of iterations of a solution."""
 
     single_ms: float
     """Median time of one chain [ms]."""
@@ -109,7 +109,7 @@ class SureFigures:
 
 def measure_alone(method: str, joints: int, count: int, seed: int = 0) -> AloneFigures:
     """Return the figures of a method alone, on chains of a size with random targets."""
-    problem = Problem.random(joints, count, np.random.default_rng(seed))
+    problem = ReachingProblem.random(joints, count, np.random.default_rng(seed))
     free, start, targets = problem.free, problem.start, problem.targets
     found = solve(free, targets, start, method=method, alone=True)
     limited = solve(problem.chains, targets, start, method=method, alone=True)
@@ -130,7 +130,7 @@ def measure_alone(method: str, joints: int, count: int, seed: int = 0) -> AloneF
 
 def measure_sure(method: str, joints: int, count: int, seed: int = 0) -> SureFigures:
     """Return the figures of a method within limits, with what all methods share."""
-    problem = Problem.random(joints, count, np.random.default_rng(seed))
+    problem = ReachingProblem.random(joints, count, np.random.default_rng(seed))
     chains, start, targets = problem.chains, problem.start, problem.targets
     alone = solve(chains, targets, start, method=method, alone=True)
     found = solve(chains, targets, start, method=method, seed=seed)
@@ -158,7 +158,7 @@ def shortest(action: Callable[[], object]) -> float:
     return min(times)
 
 
-def single_s(problem: Problem, method: str) -> float:
+def single_s(problem: ReachingProblem, method: str) -> float:
     """Return the median time of one chain [s]; by the scalar solver where there is one."""
     one, times = SingleChain(problem.free), []
     for target, start in zip(problem.targets[:_SINGLES], problem.start, strict=False):
@@ -172,7 +172,7 @@ def single_s(problem: Problem, method: str) -> float:
     return float(np.median(times))
 
 
-def zig_zag_near_base(problem: Problem, method: str, *, alone: bool) -> float:
+def zig_zag_near_base(problem: ReachingProblem, method: str, *, alone: bool) -> float:
     """Return the mean zig-zag of chains whose targets are near the base, without limits."""
     random = np.random.default_rng(1)
     directions = random.normal(size=(200, 3))
@@ -183,7 +183,7 @@ def zig_zag_near_base(problem: Problem, method: str, *, alone: bool) -> float:
     return float(zig_zag(found.positions)[found.solved].mean()) if found.solved.any() else np.nan
 
 
-def twist_along_paths(problem: Problem, method: str, random: np.random.Generator) -> float:
+def twist_along_paths(problem: ReachingProblem, method: str, random: np.random.Generator) -> float:
     """Return the twist in a step of a target, each solved from the same start [deg].
 
     99 % of the twists are smaller; without limits.
@@ -197,7 +197,9 @@ def twist_along_paths(problem: Problem, method: str, random: np.random.Generator
     return float(np.nanquantile(np.concatenate(twists), 0.99))
 
 
-def twist_while_following(problem: Problem, method: str, random: np.random.Generator) -> float:
+def twist_while_following(
+    problem: ReachingProblem, method: str, random: np.random.Generator
+) -> float:
     """Return the twist in a step of chains that follow targets, within limits [deg].
 
     99.9 % of the twists are smaller; the largest ones are jumps to another posture, where the

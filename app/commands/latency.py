@@ -1,4 +1,4 @@
-"""`cubeling latency`."""
+"""The command `cubeling latency`."""
 
 from __future__ import annotations
 

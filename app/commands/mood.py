@@ -1,4 +1,4 @@
-"""`cubeling mood`."""
+"""The commands of `cubeling mood`."""
 
 from pathlib import Path
 from typing import Annotated
@@ -7,7 +7,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from cubeling.affect import LABEL_SETS, LabelSet, Personality, bundled, bundled_text
+from cubeling.affect import LABEL_SETS, LabelSet, Personality, bundled_names, bundled_text
 from cubeling.app.commands.output import (
     PLOT_SUFFIXES,
     OverwriteOption,
@@ -120,7 +120,7 @@ def personality_(
     if name is not None:
         typer.echo(bundled_text(name), nl=False)
         return
-    for each in bundled():
+    for each in bundled_names():
         typer.echo(f"{each:8} {Personality.load(each).description}")
 
 

@@ -1,4 +1,4 @@
-"""`cubeling motions`."""
+"""The commands of `cubeling motions`."""
 
 from __future__ import annotations
 

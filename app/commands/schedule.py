@@ -1,4 +1,4 @@
-"""`cubeling schedule`."""
+"""The command `cubeling schedule`."""
 
 from __future__ import annotations
 

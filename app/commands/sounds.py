@@ -1,4 +1,4 @@
-"""`cubeling sounds`."""
+"""The command `cubeling sounds`."""
 
 from pathlib import Path
 from typing import Annotated

@@ -1,4 +1,4 @@
-"""`cubeling speak`."""
+"""The command `cubeling speak`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`cubeling speech`."""
+"""The commands of `cubeling speech`."""
 
 from __future__ import annotations
 

@@ -40,7 +40,6 @@ class ExportedSession:
     """A session to export, and its labels."""
 
     path: Path
-    """The session's file."""
 
     info: SessionInfo
     """What it says of itself."""

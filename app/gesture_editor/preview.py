@@ -23,17 +23,17 @@ from cubeling.characters import (
 from cubeling.characters.behaviour import (
     BehaviourIntent,
     GestureIntent,
+    GestureRealizer,
     Hand,
-    Performer,
     SymbolicGesture,
     natural_times,
 )
 from cubeling.characters.rendering import (
+    CameraView,
     CharacterExtent,
     PortraitCamera,
     SceneCharacter,
     Stage,
-    View,
 )
 
 Picture = NDArray[np.uint8]
@@ -68,13 +68,12 @@ class Performance:
     """What the preview performs; one that differs starts afresh."""
 
     gesture: SymbolicGesture
-    """The gesture."""
 
     hand: Hand
     """Which hand, if it is one-handed."""
 
     character: str
-    """Who performs it."""
+    """A bundled name, or a file."""
 
     @staticmethod
     def of(document: GestureDocument, character: str) -> "Performance":
@@ -123,7 +122,7 @@ class Preview:
         self._posed: PosedCharacter | None = None
         self._stage: Stage | None = None
         self._layers: dict[str, GestureLayer] = {}
-        self._performers: dict[str, Performer] = {}
+        self._performers: dict[str, GestureRealizer] = {}
         self._cameras: dict[tuple[str, tuple[int, int]], PortraitCamera] = {}
 
     def character(self, name: str) -> Character:
@@ -157,7 +156,7 @@ class Preview:
             self._stage = Stage(self._context, size)
         camera = self.camera(performance.character, size)
         paper = np.full((size[1], size[0], 3), BACKDROP_BGR, np.uint8)
-        view = View(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
+        view = CameraView(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
         character = self.character(performance.character)
         return self._stage.draw(view, [SceneCharacter(character, posed)])
 
@@ -193,9 +192,9 @@ class Preview:
             self._stage.release()
         self._stage = None
 
-    def _performer(self, name: str) -> Performer:
+    def _performer(self, name: str) -> GestureRealizer:
         if name not in self._performers:
-            self._performers[name] = Performer.of(self.character(name))
+            self._performers[name] = GestureRealizer.of(self.character(name))
         return self._performers[name]
 
     def _new_animator(self, name: str) -> Animator:

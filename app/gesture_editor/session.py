@@ -69,7 +69,7 @@ class EditorSession:
         self._store = GestureStore(folder)
         self._preview = Preview(context)
         self._preview.character(character)
-        known = Character.bundled()
+        known = Character.bundled_names()
         characters = known if character in known else (*known, character)
         self.state = EditorState(
             character=character, characters=tuple(characters), names=self._store.names

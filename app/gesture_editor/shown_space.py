@@ -32,7 +32,6 @@ class ShownSpace:
     """Where the character stands, (4, 4)."""
 
     camera: PortraitCamera
-    """Who sees it."""
 
     left: bool
     """Whether the space is that of the left hand."""

@@ -13,7 +13,7 @@ from cubeling.app.gesture_editor.panels.view import EditorView
 from cubeling.app.gesture_editor.session import EditorSession
 from cubeling.app.ui.panels.drawing.backend import ImGuiBackend, ui_scale
 from cubeling.app.ui.panels.drawing.style import rgba
-from cubeling.app.ui.window.surface import Surface
+from cubeling.app.ui.window.surface import WindowSurface
 
 FRAME_S = 1 / 30
 """Time between two pictures, at least [s]."""
@@ -28,8 +28,8 @@ MIN_SIZE = 640, 360
 """Least size of the window [screen coordinates]."""
 
 
-class EditorWindow(Surface):
-    """A window with an `EditorSession` in it; see `Surface` for who closes it.
+class EditorWindow(WindowSurface):
+    """A window with an `EditorSession` in it; see `WindowSurface` for who closes it.
 
     Parameters
     ----------
@@ -70,13 +70,13 @@ class EditorWindow(Surface):
 
     @property
     def session(self) -> EditorSession:
-        """The editor."""
+        """The session that it shows; there is one once it was opened."""
         assert self._session is not None, "it was opened"
         return self._session
 
     @property
     def view(self) -> EditorView:
-        """What shows it."""
+        """What draws the session; there is one once it was opened."""
         assert self._view is not None, "it was opened"
         return self._view
 

@@ -33,7 +33,7 @@ class PatternScreen(Protocol):
         """Show a picture of the pattern; it is on its way to the screen on return."""
 
     def poll(self) -> None:
-        """Process events."""
+        """Process the window's events, so that it can be closed."""
 
 
 class LatencySession:

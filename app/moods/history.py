@@ -53,7 +53,6 @@ class MoodHistory:
     """Name of the session's file."""
 
     info: SessionInfo
-    """The session's metadata."""
 
     recorded: EmotionTrack
     """The emotion that character and robot were asked to show."""

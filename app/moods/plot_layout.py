@@ -55,7 +55,6 @@ class EmotionCurve:
     """One of the emotions that are compared in a plot."""
 
     track: EmotionTrack
-    """Its values."""
 
     name: str
     """Its name in the legend."""

@@ -23,7 +23,7 @@ from cubeling.robot import (
 Array = NDArray[np.float64]
 
 UNKNOWN_EMOTION = (float("nan"), float("nan"))
-"""An unknown emotion."""
+"""Valence and arousal where nothing is known of the robot."""
 
 
 @dataclass(frozen=True)

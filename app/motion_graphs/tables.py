@@ -17,7 +17,7 @@ from cubeling.characters.motion import (
     PartGraphs,
     Requests,
     SplitComparison,
-    Summary,
+    TransitionSummary,
     common_requests,
     graph_requests,
     merge_answers,
@@ -170,7 +170,7 @@ def _table_3_3(tables: Tables, whole: Comparison, split: SplitComparison, stride
     found = {"SMG": whole.answers(standard, asked), "BPMG": split.answers(graphs, asked)}
     for method, printed in TABLE_3_3.items():
         for (origin, target), (duration, response) in printed.items():
-            own = found[method].get((origin, target), Summary(()))
+            own = found[method].get((origin, target), TransitionSummary(()))
             row = f"C{origin + 1} → C{target + 1}"
             ours = (own.duration, own.response) if own.outcomes else ("–", "–")
             tables.add("3.3", row, f"{method} duration", duration, ours[0])

@@ -31,7 +31,7 @@ class FrameTimes:
         self._last = now
 
     def end_frame(self) -> None:
-        """End a frame."""
+        """Keep the times of the frame, and forget those before the span."""
         self._frames.append((self._last, self._frame))
         self._frame = {}
         while self._last - self._frames[0][0] > self._span:

@@ -29,7 +29,7 @@ from cubeling.app.pipeline.speaking import Speaking
 from cubeling.app.pipeline.step import ReplayInputs, Step
 from cubeling.app.pipeline.step_renderer import StepRenderer
 from cubeling.app.pipeline.subjects import subjects
-from cubeling.app.pipeline.things import Body, BodyParts
+from cubeling.app.pipeline.things import BodyParts, PosedBody
 from cubeling.characters import (
     Animator,
     Character,
@@ -168,7 +168,7 @@ class Playground:
         self._begin_to_see(cube)
         self._animator, self._parts = animator, BodyParts.of(character, animator.scale)
         self._posed: PosedCharacter | None = None
-        self._body: Body | None = None
+        self._body: PosedBody | None = None
         self._attention = Attention(self._look, cube.edge)
         self._window = CubeWindow(cube, character, scenario.roles, self._inside)
         self._other_cube = OtherCube(cube, self.known_cubes)
@@ -292,7 +292,7 @@ class Playground:
         self.other_cube = self._other_cube.update(frame, state)
         self._lap("scenario")
         posed = replay.posed_for(self.character) or self.animate(command)
-        self._posed, self._body = posed, Body(self.character, self._parts, posed)
+        self._posed, self._body = posed, PosedBody(self.character, self._parts, posed)
         self._complexion.update(command.timestamp, command.emotion)
         interior = self._window.update(state, controls, command, inputs.inside)
         outcome = replace(decision, command=command, hint=self._hint(decision))
@@ -326,7 +326,7 @@ class Playground:
         self._renderer.expect(frame)
 
     def track(self, frame: Frame) -> CubeState:
-        """Find the cube."""
+        """Find the cube in a frame; frames come in the order of time."""
         return self._tracker.update(frame)
 
     def gesture(self, state: CubeState) -> CubeControls:
@@ -375,12 +375,12 @@ class Playground:
         return LOOK_INSIDE if self._window.invites else decision.hint
 
     def animate(self, command: CharacterCommand) -> PosedCharacter:
-        """Animate the character."""
+        """Advance the character to the time of a command."""
         return self._animator.update(command)
 
     def draw(self, step: Step) -> NDArray[np.uint8] | None:
         """Draw the picture of a step; return None without a graphics context."""
-        body = Body(self.character, self._parts, step.posed)
+        body = PosedBody(self.character, self._parts, step.posed)
         return self._renderer.draw(step, body, self._complexion.blood)
 
     def drawn(self, step: Step) -> Step:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.pipeline.things import Body
+from cubeling.app.pipeline.things import PosedBody
 from cubeling.characters import PosedCharacter
 from cubeling.tracking import CubeControls, CubeState
 
@@ -17,7 +17,7 @@ class Situation:
     character: PosedCharacter | None = None
     """The character as after the previous frame; None in the first."""
 
-    body: Body | None = None
+    body: PosedBody | None = None
     """Its body then, which tells how hard a place is to reach; None in the first frame."""
 
     actions: tuple[str, ...] = ()

@@ -23,7 +23,6 @@ class Step:
     """The result of one frame: every message of the pipeline."""
 
     frame: Frame
-    """The camera's picture."""
 
     state: CubeState
     """Where the cube is."""

@@ -12,9 +12,9 @@ from cubeling.app.pipeline.cube_window import Interior
 from cubeling.app.pipeline.resident import MIN_SIZE
 from cubeling.app.pipeline.scenario import Outcome
 from cubeling.app.pipeline.step import Step
-from cubeling.app.pipeline.things import Body
+from cubeling.app.pipeline.things import PosedBody
 from cubeling.characters import PosedCharacter
-from cubeling.characters.rendering import FULL, Box, Focus, Quality, SceneCharacter, View
+from cubeling.characters.rendering import FULL, Box, CameraView, Focus, Quality, SceneCharacter
 from cubeling.tracking import CubeModel, CubeState, Frame, Intrinsics
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ class StepRenderer:
             matrix, distortion = self._intrinsics.matrix, self._intrinsics.distortion
             self._stage.expect(frame.image, matrix, distortion)
 
-    def draw(self, step: Step, body: Body, blood: float) -> NDArray[np.uint8] | None:
+    def draw(self, step: Step, body: PosedBody, blood: float) -> NDArray[np.uint8] | None:
         """Draw the picture of a step; return None without a graphics context.
 
         `body` is the character's, and `blood` that of `Complexion`.
@@ -127,13 +127,13 @@ class StepRenderer:
         floor = step.outcome.floor if seen else ()
         return self._stage.draw(self._view(step, focus), characters, floor)
 
-    def _view(self, step: Step, focus: Focus | None) -> View:
+    def _view(self, step: Step, focus: Focus | None) -> CameraView:
         """Return the camera's picture with all that is known of the scene in it."""
         pose = step.state.camera_from_cube
         box = None if step.interior is None else step.interior.box
         if box is None and pose is not None:
             box = Box(pose, self._edge)
-        view = View(
+        view = CameraView(
             step.frame.image,
             self._intrinsics.matrix,
             self._intrinsics.distortion,
@@ -147,7 +147,7 @@ class StepRenderer:
         return replace(view, hand=known.hand, light=known.light, softness=known.softness)
 
     def _characters(
-        self, outcome: Outcome, body: Body, interior: Interior | None, blood: float
+        self, outcome: Outcome, body: PosedBody, interior: Interior | None, blood: float
     ) -> list[SceneCharacter]:
         """Return all that is drawn: the character on the table or in the cube, and its things."""
 

@@ -99,11 +99,10 @@ def _stand_distance(character: Character, scale: float) -> float:
 
 
 @dataclass(frozen=True)
-class Body:
+class PosedBody:
     """The character's body on the table, as after the previous frame."""
 
     character: Character
-    """The character."""
 
     parts: BodyParts
     """The parts of it that reach."""
@@ -153,7 +152,7 @@ class Body:
         table_from_toy = np.eye(4)
         palm = None if thing.hand is None else self.palm(thing.hand)
         table_from_toy[:3, 3] = thing.place if palm is None else palm - GRIP + thing.place
-        return toy(thing.name).placed(table_from_toy, self.posed.timestamp)
+        return toy(thing.name).place(table_from_toy, self.posed.timestamp)
 
     def _hand_points(self, side: Side) -> Point:
         joint, points = self.parts.hands[side]

@@ -62,7 +62,7 @@ class OpenedSession:
     """The robot that shows the emotions, or a stand-in."""
 
     wire: WireTap
-    """The robot's bytes."""
+    """Keeps the last bytes of the robot's line, for panels and recordings."""
 
     clock: SessionClock
     """The time that the robot lives by."""
@@ -167,7 +167,7 @@ class OpenedSession:
         if setting == "language":
             self.speaker.language = str(value)
         else:
-            self.speaker.profile = self.speaker.profile.changed(setting, value)
+            self.speaker.profile = self.speaker.profile.with_setting(setting, value)
         self.observe()
 
     def observe(self) -> None:

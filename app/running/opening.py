@@ -273,7 +273,7 @@ def intrinsics_for(intrinsics: Intrinsics | None, size: tuple[int, int]) -> Intr
             f"the calibration is for {intrinsics.size[0]}x{intrinsics.size[1]} pictures, "
             f"the camera gives {size[0]}x{size[1]}: calibrate it at this size"
         )
-    return intrinsics.scaled(size)
+    return intrinsics.scale(size)
 
 
 def check_start(options: SessionOptions, source: FrameSource) -> None:

@@ -107,7 +107,7 @@ class SessionRecording(Closeable):
         wire.record_to(self._recorder, since)
 
     def event(self, name: str, timestamp: float) -> None:
-        """Record an event."""
+        """Record an event by its name, at a time of the session [s]."""
         self._recorder.event(name, timestamp)
 
     def mark(self, timestamp: float) -> int:

@@ -140,6 +140,6 @@ class RobotLine(Closeable):
             self._robot.check()
 
     def close(self) -> None:
-        """Disconnect."""
+        """Disconnect; a second call does nothing."""
         self._closing.close()
         self._robot = None

@@ -39,7 +39,7 @@ class Summary:
     """Name of the scenario that it begins with."""
 
     frames: int = 0
-    """Frames so far."""
+    """Number of frames so far, those without a cube too."""
 
     left_out: int = 0
     """Frames of a recording that were left out, as the computer was too slow for all."""

@@ -6,11 +6,11 @@ from cubeling.affect import Personality
 from cubeling.app.pipeline.registry import SUMMARIES
 from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
 from cubeling.app.pipeline.situation import Situation
-from cubeling.app.pipeline.things import Body
+from cubeling.app.pipeline.things import PosedBody
 from cubeling.app.scenarios.follow import PLAYER_POSITION, gait
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
-from cubeling.app.scenarios.reach_behaviour import ReachingBody, Scene
+from cubeling.app.scenarios.reach_behaviour import ReachingBody, ReachScene
 from cubeling.app.scenarios.reach_catching import ARRIVED_M, Catching, Prospect
 from cubeling.app.scenarios.reach_gifts import Gifts
 from cubeling.app.scenarios.reach_places import (
@@ -137,8 +137,8 @@ class Reach:
         return Outcome(command, emotion, hint, icon, events=events, things=self._gifts.things(now))
 
     def _decide(
-        self, controls: CubeControls, situation: Situation, body: Body, cube: Point
-    ) -> tuple[Scene, tuple[str, ...]]:
+        self, controls: CubeControls, situation: Situation, body: PosedBody, cube: Point
+    ) -> tuple[ReachScene, tuple[str, ...]]:
         """Return what it does, with what, and what has just happened."""
         prospect = _prospect(controls, situation, body, cube, self._edge)
         events: tuple[str, ...] = ()
@@ -153,7 +153,7 @@ class Reach:
         there = stand is not None and gap(body.place, stand, 0.0) <= ARRIVED_M
         events += gifts.update(prospect.now, centre, body, free=free, there=there)
         doing = self._doing(free)
-        return Scene(
+        return ReachScene(
             doing=doing,
             cube=centre,
             touch=prospect.touch,
@@ -185,7 +185,7 @@ class Reach:
 
 
 def _prospect(
-    controls: CubeControls, situation: Situation, body: Body, cube: Point, edge: float
+    controls: CubeControls, situation: Situation, body: PosedBody, cube: Point, edge: float
 ) -> Prospect:
     """Return what the character knows about the cube at its last place, (4, 4)."""
     touch = nearest_point_of_cube(cube, edge, body.chest)
@@ -207,7 +207,7 @@ def _prospect(
     )
 
 
-def _going(scene: Scene, body: Body, walks: bool, edge: float) -> LocomotionIntent:
+def _going(scene: ReachScene, body: PosedBody, walks: bool, edge: float) -> LocomotionIntent:
     """Return where to go, or where to turn to."""
     here = body.place
     if scene.stand is not None:

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from cubeling.app.pipeline.things import GRIP, Body, Side
+from cubeling.app.pipeline.things import GRIP, PosedBody, Side
 from cubeling.app.scenarios.reach_intents import Ongoing, bundled_gesture, gesture_times
 from cubeling.app.scenarios.reach_places import Point, in_front, look_about
 from cubeling.characters.behaviour import (
@@ -43,7 +43,7 @@ HELD_GESTURES = ("shade", "search")
 
 
 @dataclass(frozen=True)
-class Scene:
+class ReachScene:
     """Where everything is that hands and eyes are for."""
 
     doing: str
@@ -80,7 +80,9 @@ class ReachingBody:
         self._heads: Ongoing[HeadIntent] = Ongoing()
         self._gazes: Ongoing[GazeIntent] = Ongoing()
 
-    def update(self, now: float, scene: Scene | None, body: Body | None) -> BehaviourIntent | None:
+    def update(
+        self, now: float, scene: ReachScene | None, body: PosedBody | None
+    ) -> BehaviourIntent | None:
         """Return what a frame asks of the body; without a scene it comes to rest."""
         intent = BehaviourIntent(
             gestures=self._gestures.update(now, _gesture(now, scene) if scene else None),
@@ -91,7 +93,7 @@ class ReachingBody:
         return None if intent == BehaviourIntent() else intent
 
 
-def _reach(now: float, scene: Scene, body: Body) -> ReachIntent | None:
+def _reach(now: float, scene: ReachScene, body: PosedBody) -> ReachIntent | None:
     doing, times = scene.doing, Times(now, now + REACH_S)
     if doing == "touch":
         power = min(max(scene.effort, 0.0), 1.0)
@@ -111,7 +113,7 @@ def _reach(now: float, scene: Scene, body: Body) -> ReachIntent | None:
     return None
 
 
-def _gesture(now: float, scene: Scene) -> GestureIntent | None:
+def _gesture(now: float, scene: ReachScene) -> GestureIntent | None:
     if scene.doing not in GESTURES:
         return None
     name = GESTURES[scene.doing]
@@ -122,7 +124,7 @@ def _gesture(now: float, scene: Scene) -> GestureIntent | None:
     return GestureIntent(name, gesture, times, hand)
 
 
-def _shake(now: float, scene: Scene) -> HeadIntent | None:
+def _shake(now: float, scene: ReachScene) -> HeadIntent | None:
     if scene.doing != "shrug":
         return None
     end = now + SHAKE_S
@@ -130,7 +132,7 @@ def _shake(now: float, scene: Scene) -> HeadIntent | None:
     return HeadIntent("shake", "SHAKE", times, repeats=SHAKES)
 
 
-def _gaze(now: float, scene: Scene, body: Body) -> GazeIntent | None:
+def _gaze(now: float, scene: ReachScene, body: PosedBody) -> GazeIntent | None:
     times = Times(now, now + LOOK_S)
     if scene.doing == "search":
         number = int(now / GLANCE_S)

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.pipeline.things import GRIP, Body, Side, Thing
+from cubeling.app.pipeline.things import GRIP, PosedBody, Side, Thing
 from cubeling.app.scenarios.reach_gift import Gift
 
 Point = NDArray[np.float64]
@@ -67,7 +67,7 @@ class Gifts:
                 for name, (x, z) in HOMES.items()
             ]
 
-    def scatter(self, body: Body | None, now: float) -> None:
+    def scatter(self, body: PosedBody | None, now: float) -> None:
         """Let all things hop home."""
         for gift in self._gifts:
             hand = gift.hand
@@ -126,7 +126,7 @@ class Gifts:
             self._begin("wait", now)
 
     def update(
-        self, now: float, cube: Point, body: Body, *, free: bool, there: bool
+        self, now: float, cube: Point, body: PosedBody, *, free: bool, there: bool
     ) -> tuple[str, ...]:
         """Advance by one frame; return its events: "taken", "given", "finished".
 
@@ -149,7 +149,7 @@ class Gifts:
             return self._put(cube, body, now)
         return ()
 
-    def _choose(self, cube: Point, body: Body, now: float) -> None:
+    def _choose(self, cube: Point, body: PosedBody, now: float) -> None:
         """Begin with the nearest thing that is not beside the cube."""
         here = body.place
         self.gift = min(
@@ -158,7 +158,7 @@ class Gifts:
         if self.gift is not None:
             self._begin("fetch", now)
 
-    def _grasp(self, body: Body, now: float) -> tuple[str, ...]:
+    def _grasp(self, body: PosedBody, now: float) -> tuple[str, ...]:
         gift, palm = self.gift, body.palm(self.hand)
         assert gift is not None
         if palm is None or not self._at_hand(palm, gift.place + GRIP, now):
@@ -167,7 +167,7 @@ class Gifts:
         self._begin("carry", now)
         return ("taken",)
 
-    def _put(self, cube: Point, body: Body, now: float) -> tuple[str, ...]:
+    def _put(self, cube: Point, body: PosedBody, now: float) -> tuple[str, ...]:
         gift, palm = self.gift, body.palm(self.hand)
         assert gift is not None
         spot = self._spot(gift, cube)
@@ -203,7 +203,7 @@ class Gifts:
             self.gift = None
 
 
-def _nearer_side(body: Body, place: Sequence[float] | Point) -> Side:
+def _nearer_side(body: PosedBody, place: Sequence[float] | Point) -> Side:
     """Return the hand on whose side a place is; the right one for a place ahead."""
     placed = body.posed.table_from_character
     across = float((np.asarray(place) - placed[:3, 3]) @ placed[:3, 0])

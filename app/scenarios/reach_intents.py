@@ -80,7 +80,7 @@ _STROKE = ("stroke_start", "stroke", "stroke_end")  # of `StrokeTimes`
 @cache
 def bundled_gesture(name: str) -> SymbolicGesture:
     """Return a bundled gesture by its name."""
-    return GestureCollection.bundled().get(name)
+    return GestureCollection.load_bundled().get(name)
 
 
 def gesture_times(gesture: SymbolicGesture, start: float, hold: float | None = None) -> StrokeTimes:

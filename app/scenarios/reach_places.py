@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.pipeline.things import Body
+from cubeling.app.pipeline.things import PosedBody
 from cubeling.characters.motion import ARRIVAL_DISTANCE_M
 
 Point = NDArray[np.float64]
@@ -92,7 +92,7 @@ def out_of(here: Point, cube: Point, edge: float) -> Point | None:
     return np.asarray(cube * [1.0, 0.0, 1.0] + edge * out)
 
 
-def look_about(body: Body, number: int) -> Point:
+def look_about(body: PosedBody, number: int) -> Point:
     """Return a point to look at, (3,) [m], the `number`-th of those around it."""
     placed = body.posed.table_from_character
     angle = LOOKS_RAD[number % len(LOOKS_RAD)]
@@ -101,7 +101,7 @@ def look_about(body: Body, number: int) -> Point:
     return np.asarray(body.place + LOOK_M * ahead + [0.0, LOOK_HEIGHTS_M[number % 2], 0.0])
 
 
-def in_front(body: Body, left: float, up: float, ahead: float) -> Point:
+def in_front(body: PosedBody, left: float, up: float, ahead: float) -> Point:
     """Return a point before a character, (3,) [m], by shares of its height."""
     placed, tall = body.posed.table_from_character, body.character.height
     return np.asarray((placed @ [left * tall, up * tall, ahead * tall, 1.0])[:3])

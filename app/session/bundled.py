@@ -1,4 +1,4 @@
-"""The bundled sessions."""
+"""The sessions that come with the package."""
 
 from pathlib import Path
 

@@ -96,7 +96,7 @@ class SessionOptions:
     """Whether `output` may exist; a recording is never overwritten."""
 
     pictures: bool = True
-    """Whether to draw."""
+    """Whether pictures are drawn; what needs only numbers leaves them out."""
 
     appearance: bool = False
     """Whether what pictures tell of hand, light and softness is measured although none is drawn."""

@@ -137,7 +137,7 @@ class Recorder(Closeable):
         self._json("/robot/wire", lambda: line, timestamp)
 
     def event(self, name: str, timestamp: float) -> None:
-        """Record an event."""
+        """Record an event by its name, at a time of the session [s]."""
         line = json.dumps({"event": name}).encode()
         self._json("/events", lambda: line, timestamp)
 

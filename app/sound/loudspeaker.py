@@ -92,7 +92,7 @@ class Loudspeaker:
         self._thread.start()
 
     def close(self) -> None:
-        """Fall silent."""
+        """Fall silent, within a bounded time."""
         self._closing.set()
         self._thread.join(CLOSE_TIMEOUT_S)
 

@@ -9,7 +9,7 @@ from cubeling.app.sound.loudspeaker import Loudspeaker
 from cubeling.app.sound.mixer import Mixer
 from cubeling.app.sound.synthesis import SAMPLE_RATE, Array
 from cubeling.characters import Character
-from cubeling.characters.speech import resampled
+from cubeling.characters.speech import resample
 
 SPEECH_GAIN = 0.9
 """Amplitude of speech beside the other sounds."""
@@ -96,4 +96,4 @@ class SessionSound:
 
 def at_sample_rate(line: SpokenLine) -> Array:
     """Return the sound of a line at `SAMPLE_RATE`, (n,)."""
-    return np.asarray(resampled(line.samples, line.rate, SAMPLE_RATE), float)
+    return np.asarray(resample(line.samples, line.rate, SAMPLE_RATE), float)

@@ -28,7 +28,7 @@ class Sound(NamedTuple):
     """One sound: how it is made, how loud it is, and what it is heard for."""
 
     make: Maker
-    """Its synthesis."""
+    """Synthesises one variant of it."""
 
     level: float
     """Loudness at full volume: RMS of its loudest 50 ms [dB of full scale]."""

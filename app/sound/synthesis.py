@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from cubeling.characters.motion import smoothstep
 
 SAMPLE_RATE = 48_000
-"""Samples a second."""
+"""Samples a second [Hz], of all sounds and of the output."""
 
 Array = NDArray[np.float64]
 

@@ -44,7 +44,7 @@ BEAT_S, WHOLE_S = 0.8, 1.3
 """Time from the beginning of a beat to what it stresses, and to its end [s]."""
 
 
-class LivePerformer:
+class LiveRealizer:
     """Animates a character by sound that comes in blocks, at `rate` [Hz]."""
 
     def __init__(
@@ -90,7 +90,7 @@ def speak_live(
     """
     from cubeling.app.ui.window.picture_window import PictureWindow  # needs a display's libraries
 
-    performer = LivePerformer(character, MICROPHONE_HZ, emotion, profile)
+    performer = LiveRealizer(character, MICROPHONE_HZ, emotion, profile)
     try:
         microphone = Microphone()
     except NoSoundError as error:

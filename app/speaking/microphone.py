@@ -54,7 +54,7 @@ class Microphone:
                 return np.concatenate(blocks)
 
     def close(self) -> None:
-        """Stop listening."""
+        """Stop listening; errors of the device are ignored, as it may be gone."""
         self._stream.close(ignore_errors=True)
 
     def _take(self, block: Any, _count: int, _time: Any, _status: Any) -> None:

@@ -24,7 +24,7 @@ from cubeling.characters import (
     RootDelta,
     SpeechIntent,
 )
-from cubeling.characters.motion import stacked
+from cubeling.characters.motion import stack
 from cubeling.characters.rendering import (
     CharacterExtent,
     joints_below,
@@ -79,7 +79,7 @@ def performed(character: Character, line: SpokenLine, direction: Direction, rate
         for number in range(-settling, count)
     ][settling:]
     name = line.utterance.text[:NAME_LETTERS] or "speech"
-    return Clip(name, rate, stacked(poses), loop=False)
+    return Clip(name, rate, stack(poses), loop=False)
 
 
 def sound_track(line: SpokenLine) -> Callable[[int], NDArray[np.float32]]:

@@ -58,7 +58,7 @@ class RecordedSpeaker:
         return self._lines.get(timestamp)
 
     def hear(self, step: Step) -> None:
-        """Do nothing."""
+        """Do nothing: what is said was recorded."""
 
     def close(self) -> None:
-        """Do nothing."""
+        """Do nothing: there is no voice to close."""

@@ -46,7 +46,7 @@ class Votes:
 
     @property
     def total(self) -> int:
-        """Number of answers."""
+        """Number of answers, those for neither video too."""
         return sum(astuple(self))
 
     @property
@@ -71,7 +71,7 @@ class Votes:
 
     @property
     def median(self) -> float:
-        """The median score."""
+        """The median of the scores, −2…2."""
         scores = [s for s, n in zip(ANSWER_SCORES, astuple(self), strict=True) for _ in range(n)]
         middle = self.total // 2
         return (scores[middle] + scores[-middle - 1]) / 2

@@ -111,7 +111,7 @@ class Canvas:
         part[:] = cv2.blendLinear(image[:rows, :columns], part, opacity, transparency)
 
     def disc(self, x: float, y: float, radius: float, color: Color) -> None:
-        """Fill a circle."""
+        """Fill a circle around a point [px]."""
         # Small circles of OpenCV's own look like polygons.
         self.fill(np.array([x, y]) + radius * UNIT_CIRCLE, color)
 

@@ -17,7 +17,7 @@ from cubeling.characters.behaviour import (
     GestureCollection,
     GestureExpressivity,
     GestureMotion,
-    Performer,
+    GestureRealizer,
     SymbolicGesture,
     apex_share,
 )
@@ -52,8 +52,8 @@ AZIMUTH_RAD = 0.25
 
 def draw_settings(path: Path, gesture: str = "BEAT_BOTH", character: str = "human") -> None:
     """Draw one gesture in five settings side by side, at three moments of its stroke."""
-    symbolic = GestureCollection.bundled().get(gesture)
-    performer = Performer.of(Character.load(character))
+    symbolic = GestureCollection.load_bundled().get(gesture)
+    performer = GestureRealizer.of(Character.load(character))
     with ExitStack() as closing:
         renderer = _renderer(closing)
         columns = []
@@ -66,11 +66,11 @@ def draw_settings(path: Path, gesture: str = "BEAT_BOTH", character: str = "huma
 
 def draw_library(path: Path, characters: Sequence[str] = ("human", "vleo", "robot")) -> None:
     """Draw the end of the stroke of every bundled gesture, on several characters."""
-    performers = [Performer.of(Character.load(name)) for name in characters]
+    performers = [GestureRealizer.of(Character.load(name)) for name in characters]
     with ExitStack() as closing:
         renderer = _renderer(closing)
         cells = []
-        for gesture in GestureCollection.bundled():
+        for gesture in GestureCollection.load_bundled():
             shown = []
             for performer in performers:
                 motion = performer.plan(gesture)
@@ -89,7 +89,7 @@ def _telling_moment(gesture: SymbolicGesture) -> float:
 
 def _pictures(
     renderer: PortraitRenderer,
-    performer: Performer,
+    performer: GestureRealizer,
     motion: GestureMotion,
     moments: Sequence[float],
 ) -> list[Image]:

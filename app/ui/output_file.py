@@ -106,7 +106,7 @@ class OutputFile(NullScreen):
             self._writer.write(picture, timestamp + number / ENDING_RATE)
 
     def close(self) -> None:
-        """Complete the file."""
+        """Complete the file; without it, it may not open."""
         self._writer.close()
 
 
@@ -155,5 +155,5 @@ class FrameSheet:
             save(frame_sheet(self._path.stem, frames), self._path)
 
     def discard(self) -> None:
-        """Forget the pictures."""
+        """Forget the pictures: `close` then writes nothing."""
         self._open = False

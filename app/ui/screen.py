@@ -41,7 +41,7 @@ class Screen(Protocol):
         """Whether the player has closed it."""
 
     def close(self) -> None:
-        """Close it."""
+        """Close it; a second call does nothing."""
 
 
 class NullScreen:
@@ -51,24 +51,24 @@ class NullScreen:
     closed = False
 
     def show(self, step: Step, robot: RobotView) -> Inputs:
-        """Do nothing."""
+        """Return what nobody asks for."""
         return Inputs()
 
     def preview(self, step: Step, robot: RobotView) -> None:
-        """Do nothing."""
+        """Do nothing: nobody looks."""
 
     def wait(self, notice: Notice | None) -> None:
-        """Do nothing."""
+        """Do nothing: nobody looks."""
 
     def take_requests(self) -> tuple[SessionRequest, ...]:
-        """Return nothing."""
+        """Return nothing, as nobody asks."""
         return ()
 
     def report(self, status: SessionStatus) -> None:
-        """Do nothing."""
+        """Do nothing: nobody looks."""
 
     def notify(self, words: str) -> None:
-        """Do nothing."""
+        """Do nothing: nobody looks."""
 
     def close(self) -> None:
-        """Do nothing."""
+        """Do nothing: nothing was opened."""

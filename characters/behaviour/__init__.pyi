@@ -27,7 +27,7 @@ from cubeling.characters.behaviour.gestures.files import (
     save_gesture as save_gesture,
 )
 from cubeling.characters.behaviour.gestures.motion import GestureMotion as GestureMotion
-from cubeling.characters.behaviour.gestures.planning import Performer as Performer
+from cubeling.characters.behaviour.gestures.planning import GestureRealizer as GestureRealizer
 from cubeling.characters.behaviour.gestures.recording import (
     gesture_from_recording as gesture_from_recording,
 )
@@ -55,18 +55,18 @@ from cubeling.characters.behaviour.intents import (
     StrokeTimes as StrokeTimes,
     Times as Times,
 )
-from cubeling.characters.behaviour.performing.character_performer import (
-    CharacterPerformer as CharacterPerformer,
+from cubeling.characters.behaviour.realization.character_realizer import (
+    CharacterRealizer as CharacterRealizer,
 )
-from cubeling.characters.behaviour.performing.performed import (
+from cubeling.characters.behaviour.realization.frame import (
     Manner as Manner,
-    Performed as Performed,
-    Performing as Performing,
+    RealizationContext as RealizationContext,
+    RealizedFrame as RealizedFrame,
     Saying as Saying,
 )
-from cubeling.characters.behaviour.performing.speech_kind import retime_speeches as retime_speeches
-from cubeling.characters.behaviour.performing.surroundings import (
-    Surroundings as Surroundings,
+from cubeling.characters.behaviour.realization.speech_kind import retime_speeches as retime_speeches
+from cubeling.characters.behaviour.realization.surroundings import (
+    NamedPlaces as NamedPlaces,
     numbers_of as numbers_of,
 )
 from cubeling.characters.behaviour.symbolic_gesture import (

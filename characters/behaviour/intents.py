@@ -30,7 +30,6 @@ class Times:
     """When the phases of something begin and end [s]: rising to `ready`, falling from `relax`."""
 
     start: float
-    """When it begins."""
 
     ready: float
     """When it is fully there."""
@@ -64,16 +63,14 @@ class GestureIntent:
     """Tells it from others, from frame to frame."""
 
     gesture: SymbolicGesture
-    """What it is."""
 
     times: StrokeTimes
-    """When."""
 
     hand: Hand = "right"
     """Which hand, if the gesture is one-handed."""
 
     expressivity: GestureExpressivity = NEUTRAL
-    """How."""
+    """How wide, fast, smooth and strong it is."""
 
 
 @dataclass(frozen=True)
@@ -87,13 +84,12 @@ class ReachIntent:
     """(x, y, z) in the table frame [m]; may move from frame to frame."""
 
     times: Times
-    """When."""
 
     kind: Literal["reach", "touch", "point", "grasp"] = "reach"
     """Palm there, fingertips there, index finger along the line to it, or a hand about it."""
 
     hand: Hand = "nearest"
-    """Which hand."""
+    """Which hand; "nearest": the one that reaches the target with less effort."""
 
     expressivity: GestureExpressivity = NEUTRAL
     """How: openness and power."""
@@ -110,7 +106,6 @@ class HeadIntent:
     """"NOD", "SHAKE", "TILT", "TOSS", "UP", "DOWN", "LEFT", "RIGHT" …"""
 
     times: StrokeTimes
-    """When."""
 
     amount: float = 0.5
     """How large, 0…1."""
@@ -127,7 +122,7 @@ class FaceIntent:
     """Tells it from others, from frame to frame."""
 
     names: tuple[str, ...]
-    """Expressions or morphs."""
+    """Names of expressions, or of morphs of the character's meshes."""
 
     weights: tuple[float, ...]
     """How much of each, 0…1."""
@@ -147,7 +142,6 @@ class GazeIntent:
     """(x, y, z) in the table frame [m]."""
 
     times: Times
-    """When."""
 
     influence: Influence = "NECK"
     """Which joints join in."""
@@ -164,7 +158,6 @@ class PostureIntent:
     """"STANDING", "CROUCHING", "SITTING", "LEANING_FORWARD", "ARMS_AKIMBO", "ARMS_CROSSED" …"""
 
     times: Times
-    """When."""
 
 
 @dataclass(frozen=True)
@@ -181,7 +174,7 @@ class BehaviourIntent:
     """Movements of the head; they add up."""
 
     faces: tuple[FaceIntent, ...] = ()
-    """Expressions."""
+    """Expressions of the face, each rising and falling by its own times."""
 
     gazes: tuple[GazeIntent, ...] = ()
     """Looks; the last one counts."""

@@ -20,7 +20,6 @@ class _Group:
     """Constraints of one kind that do not depend on each other."""
 
     kind: str
-    """Their kind."""
 
     joints: NDArray[np.intp]
     """The joints that turn, (n,)."""
@@ -66,18 +65,18 @@ class ConstrainedJoints:
         for group in self._groups:
             own = rest[group.joints]
             if group.kind == "aim":
-                aimed = self._aimed(turned, group, own)
+                aimed = self._aim_at(turned, group, own)
             else:
                 before = rotations.conjugate(rest[group.sources])
                 if group.kind == "roll":
-                    aimed = _rolled(rotations.multiply(local[group.sources], before), group, own)
+                    aimed = _roll(rotations.multiply(local[group.sources], before), group, own)
                 else:
                     delta = rotations.multiply(before, local[group.sources])
                     aimed = rotations.multiply(own, delta)
             local[group.joints] = rotations.slerp(own, aimed, group.weights)
         return turned
 
-    def _aimed(self, pose: Pose, group: _Group, own: Array) -> Array:
+    def _aim_at(self, pose: Pose, group: _Group, own: Array) -> Array:
         """Return the local rotations (n, 4) that point the axes to the sources."""
         placed = pose.globals(self._skeleton)
         frames = np.concatenate([placed, np.eye(4)[None]])[self._parents(group.joints), :3, :3]
@@ -94,7 +93,7 @@ class ConstrainedJoints:
         return np.array(self._skeleton.parents, np.intp)[joints]
 
 
-def _rolled(turns: Array, group: _Group, own: Array) -> Array:
+def _roll(turns: Array, group: _Group, own: Array) -> Array:
     """Return the local rotations (n, 4) of joints that roll by turns of their sources (n, 4)."""
     inside = rotations.multiply(rotations.conjugate(own), rotations.multiply(turns, own))
     swing = rotations.between(group.axes, rotations.rotate(inside, group.axes))

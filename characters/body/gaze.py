@@ -119,7 +119,7 @@ class Gaze:
         if target is not None:
             x, y, z = target.tolist()
             point = (x, y, z)
-        aim = self._aimed(joints, back, point)
+        aim = self._aim_at(joints, back, point)
         self.shift = 0.0 if aim is None or self._aim is None else math.dist(aim, self._aim)
         self._aim = aim
         turn = (0.0, 0.0) if aim is None else _head_turn(aim, held, head_share)
@@ -130,11 +130,13 @@ class Gaze:
         self._pitch, self._pitch_speed = damped_spring(
             self._pitch, self._pitch_speed, turn[1], elapsed, lag
         )
+        # Pitch is positive upwards, so a drop is subtracted.
         aimed = held[0] + self._yaw, held[1] + self._pitch - head_drop
         self._turned = rotate(body, _turn_between(held, aimed))
         if head_turn is not None and head_turn.any():
             x, y, z = head_turn.tolist()
             besides = from_rotation_vector(rotate(body, (x, y, z)))
+            # A nod from the left: about the chest's axes, wherever the head looks.
             both = multiply(besides, from_rotation_vector(self._turned))
             self._turned = to_rotation_vector(both)
         local, weights = pose.rotations.copy(), pose.morphs
@@ -151,7 +153,7 @@ class Gaze:
             self._morphs.look(weights, *self._morph_parts(joints, point, share, elapsed))
         return Pose(pose.translations, local, pose.scales, weights)
 
-    def _aimed(
+    def _aim_at(
         self, joints: HeadJoints, back: Quaternion, point: Vector | None
     ) -> tuple[float, float] | None:
         """Return yaw and pitch of a point relative to the chest; None if it is ignored.
@@ -184,6 +186,7 @@ class Gaze:
         facing = joints.head.facing
         from_head = conjugate(facing)
         back = multiply(from_head, conjugate(from_rotation_vector(self._turned)))
+        # Exact for any frame rate, unlike a constant share of each frame.
         kept = math.exp(-elapsed / EYE_LAG_S)
         places = joints.eye_places(self._turned)
         for number, eye in enumerate(joints.eyes):
@@ -194,7 +197,7 @@ class Gaze:
                 if self._look_at is None:
                     yaw, pitch = within_range(*asked, share)
                 else:
-                    yaw, pitch = self._look_at.mapped(*asked, "right" if number else "left")
+                    yaw, pitch = self._look_at.map_angles(*asked, "right" if number else "left")
                 target = yaw - held[0], pitch - held[1]
             before = self._eye_turns[number]
             yaw, pitch = (w + (b - w) * kept for w, b in zip(target, before, strict=True))
@@ -217,7 +220,7 @@ class Gaze:
             if self._look_at is None:
                 target = range_parts(*within_range(*asked, share))
             else:
-                target = self._look_at.mapped(*asked)
+                target = self._look_at.map_angles(*asked)
         kept = math.exp(-elapsed / EYE_LAG_S)
         yaw, pitch = (w + (b - w) * kept for w, b in zip(target, self._eye_turns[0], strict=True))
         self._eye_turns[0] = yaw, pitch
@@ -235,7 +238,10 @@ def _head_turn(
     )
     for angle, now, (low, high, most) in zip(aim, held, limits, strict=True):
         away = angle - now
+        # A bell: nothing of small turns, nearly all of large ones, and smooth between them.
         turn = away * most * (1.0 - math.exp(-((away / EYES_ALONE_RAD) ** 2)))
+        # The clamp is on where the head points, not on the turn: in an action it may be turned
+        # already.
         turns.append((min(max(now + turn, low), high) - now) * share)
     return turns[0], turns[1]
 

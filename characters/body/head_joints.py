@@ -28,7 +28,7 @@ between, its head's turns are more and more measured from the level."""
 
 
 @dataclass
-class Joint:
+class HeadJoint:
     """A joint on the way from the root to the head or an eye."""
 
     number: int
@@ -44,7 +44,7 @@ class Joint:
     """Its present rotation, in the character frame."""
 
     place: Vector = (0.0, 0.0, 0.0)
-    """Its present position."""
+    """Its present position in the character frame [m]."""
 
     scale: Vector = (1.0, 1.0, 1.0)
     """Its present scale, which stretches its children's translations."""
@@ -83,7 +83,7 @@ class HeadJoints:
         """The rotation of the chest; it is taken as level where a quadruped sits up."""
         base = self._line[0].parent
         facing = self._joints[base].facing if base >= 0 else IDENTITY
-        return _levelled(facing) if self._four_legs else facing
+        return _level(facing) if self._four_legs else facing
 
     def place(self, pose: Pose) -> None:
         """Compute the joints' rotations and positions in a pose."""
@@ -94,6 +94,7 @@ class HeadJoints:
             joint.turn, joint.place = own, shift
             if joint.parent >= 0:
                 above = self._joints[joint.parent]
+                # glTF: a parent's scale stretches where its children are, not how far they turn.
                 if scales is not None:
                     shift = [a * b for a, b in zip(shift, above.scale, strict=True)]
                 x, y, z = rotate(above.turn, shift)
@@ -129,20 +130,22 @@ class HeadJoints:
         for joint in self._line:
             self.turn(local, joint, (x, y, z))
 
-    def turn(self, local: Array, joint: Joint, turned: Vector) -> None:
+    def turn(self, local: Array, joint: HeadJoint, turned: Vector) -> None:
         """Turn a joint in local rotations by a rotation vector in the character frame."""
         if joint.parent >= 0:
             turned = rotate(conjugate(self._joints[joint.parent].turn), turned)
+        # From the left: the turn is in the parent's frame.
         local[joint.number] = multiply(from_rotation_vector(turned), local[joint.number].tolist())
 
 
-def _levelled(chest: Quaternion) -> Quaternion:
+def _level(chest: Quaternion) -> Quaternion:
     """Return the rotation of a chest that is level where it is as far up as `UPRIGHT_RAD`."""
     _, up, _ = rotate(chest, (0.0, 0.0, 1.0))
     raised = math.asin(min(max(up, -1.0), 1.0))
     if raised <= RAISED_RAD:
         return chest
     share = min((raised - RAISED_RAD) / (UPRIGHT_RAD - RAISED_RAD), 1.0)
+    # About +x by a positive angle +z turns down: it takes back what the chest is raised.
     return multiply(chest, from_rotation_vector((raised * share, 0.0, 0.0)))
 
 
@@ -152,7 +155,7 @@ def middle(places: Sequence[Vector]) -> Vector:
     return x, y, z
 
 
-def _with_ancestors(skeleton: Skeleton, joints: list[int]) -> list[Joint]:
+def _with_ancestors(skeleton: Skeleton, joints: list[int]) -> list[HeadJoint]:
     """Return joints with all their ancestors, parents first."""
     order = skeleton.with_ancestors(joints)
     place = {joint: number for number, joint in enumerate(order)} | {-1: -1}
@@ -160,7 +163,7 @@ def _with_ancestors(skeleton: Skeleton, joints: list[int]) -> list[Joint]:
     sizes = np.linalg.norm(matrices, axis=1, keepdims=True)
     rest = from_matrix(matrices / np.where(sizes > 0, sizes, 1.0)).tolist()
     return [
-        Joint(joint, place[skeleton.parents[joint]], conjugate(turned))
+        HeadJoint(joint, place[skeleton.parents[joint]], conjugate(turned))
         for joint, turned in zip(order, rest, strict=True)
     ]
 

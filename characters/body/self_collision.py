@@ -26,15 +26,13 @@ THRESHOLD, SCALE = 0.7, 0.9
 """Share of a limit from which values are damped, and λ of eq. 4.4."""
 
 
-def damped(
-    values: Array, limits: Array, threshold: float = THRESHOLD, scale: float = SCALE
-) -> Array:
+def damp(values: Array, limits: Array, threshold: float = THRESHOLD, scale: float = SCALE) -> Array:
     """Return values that stay within limits ≥ 0 (eq. 4.6); negative ones are unchanged.
 
     Printed, u and w jump at the threshold and end at λ · limit; here u falls from 1 to λ and w
     rises from 0 to 1.
 
-    >>> damped(np.array([0.6, 0.75, 0.9, 2.0]), np.ones(4)).round(6).tolist()
+    >>> damp(np.array([0.6, 0.75, 0.9, 2.0]), np.ones(4)).round(6).tolist()
     [0.6, 0.762059, 0.958125, 1.0]
     """
     start = threshold * limits
@@ -87,9 +85,9 @@ class SafeRanges:
                 touches = body.collides(kind.poses(space.restore(steps)), kind.skeleton)
                 if touches[1:].any():
                     limits[number] = steps[int(np.argmax(touches[1:])), number]
-        return SafeRanges(kind, space, lows, highs)._narrowed(clips, body, left)
+        return SafeRanges(kind, space, lows, highs)._narrow(clips, body, left)
 
-    def _narrowed(self, clips: Sequence[Pose], body: CapsuleBody, left: float) -> "SafeRanges":
+    def _narrow(self, clips: Sequence[Pose], body: CapsuleBody, left: float) -> "SafeRanges":
         """Return the widest of the ranges, all narrower by one factor, that leave so little."""
 
         def collisions(share: float) -> int:
@@ -109,7 +107,7 @@ class SafeRanges:
         """Return a pose (…) whose upper body stays within the ranges; nothing else changes."""
         vectors = self.kind.vectors(pose)
         at = self.space.project(vectors, len(self.high))
-        kept = -damped(-damped(at, self.high), -self.low)
+        kept = -damp(-damp(at, self.high), -self.low)
         if np.array_equal(kept, at):
             return pose
         moved = vectors + (kept - at) @ self.space.components[:, : len(self.high)].T

@@ -37,12 +37,12 @@ class PlacedBones:
     place: Array
     """Where the character stands, (3,) [m]."""
 
-    def carried(self, matrices: Array, first: slice) -> "PlacedBones":
+    def carry(self, matrices: Array, first: slice) -> "PlacedBones":
         """Return the bones moved rigidly by a matrix each, (bones, 3, 4)."""
         frames = self.frames.copy()
         frames[first] = matrices[first, :3, :3] @ frames[first]
         frames[first, :, 3] += matrices[first, :3, 3]
-        return replace(self, frames=frames, tails=moved(matrices, self.tails))
+        return replace(self, frames=frames, tails=transform_points(matrices, self.tails))
 
     def steps_from(self, before: "PlacedBones", steps: int, first: slice) -> tuple[Array, Array]:
         """Return frames and colliders at each of equal steps from an earlier placement to this.
@@ -109,7 +109,7 @@ class SpringFrames:
         self._part = SkeletonPart.of(skeleton, wanted)
         self._wanted = self._part.places(wanted)
 
-    def placed(self, pose: Pose, world_from_character: Array) -> PlacedBones:
+    def place_bones(self, pose: Pose, world_from_character: Array) -> PlacedBones:
         """Return where the pose has the bones."""
         bones, carriers = len(self.bones), len(self.bones) + len(self.shapes)
         placed = world_from_character[:3] @ self._part.globals(pose).take(self._wanted, 0)
@@ -119,8 +119,8 @@ class SpringFrames:
         if pose.scales is not None:
             reach = tails - frames[..., 3]
             lengths = np.maximum(np.linalg.norm(reach, axis=1, keepdims=True), 1e-9)
-            frames[..., :3], frames[..., 4] = _unscaled(frames[..., :3]), reach / lengths
-            centers[..., :3] = _unscaled(centers[..., :3])
+            frames[..., :3], frames[..., 4] = _unscale(frames[..., :3]), reach / lengths
+            centers[..., :3] = _unscale(centers[..., :3])
         first = self.levels[0].stop
         if first < bones:
             above = frames.take(self.parents[first:], 0)
@@ -132,13 +132,13 @@ class SpringFrames:
         )
 
 
-def moved(matrices: Array, points: Array) -> Array:
+def transform_points(matrices: Array, points: Array) -> Array:
     """Return points (…, 3) after matrices (…, 3 or 4, 4)."""
     moved: Array = (matrices[..., :3, :3] @ points[..., None])[..., 0] + matrices[..., :3, 3]
     return moved
 
 
-def _unscaled(matrices: Array) -> Array:
+def _unscale(matrices: Array) -> Array:
     """Return matrices (n, 3, 3) with columns of length one, as far as they have any."""
     unit: Array = matrices / np.maximum(np.linalg.norm(matrices, axis=1, keepdims=True), 1e-9)
     return unit

@@ -21,9 +21,9 @@ from cubeling.characters.body.spring_contacts import Contacts, with_length
 from cubeling.characters.body.spring_frames import (
     PlacedBones,
     SpringFrames,
-    moved,
     rigid_moves,
     rows,
+    transform_points,
 )
 from cubeling.characters.model.springs import REFERENCE_HEIGHT_M, SpringBone
 from cubeling.characters.skeleton import rotations
@@ -89,13 +89,15 @@ class SpringBody:
         elapsed
             Time since the last call [s].
         """
-        placed = self._frames.placed(pose, world_from_character)
+        placed = self._frames.place_bones(pose, world_from_character)
         if self._last is None:
+            # At rest at first: without a step before there is no speed.
             self._now = self._before = placed.tails
             before, elapsed = placed, SETTLING_STEPS / REFERENCE_RATE
         else:
-            before = self._carried(self._last, placed, elapsed)
+            before = self._carry(self._last, placed, elapsed)
         self._last = placed
+        # 1e-6: a frame of exactly 1/60 s is one step, whatever the rounding of its times.
         steps = max(math.ceil(elapsed * REFERENCE_RATE - 1e-6), 1)
         length = elapsed * REFERENCE_RATE / steps
         kept, falling, pulled, taken_along = self._step_factors(length)
@@ -122,34 +124,40 @@ class SpringBody:
         halves /= np.sqrt(2.0 * halves[:, 3:])
         return halves
 
-    def _carried(self, before: PlacedBones, now: PlacedBones, elapsed: float) -> PlacedBones:
+    def _carry(self, before: PlacedBones, now: PlacedBones, elapsed: float) -> PlacedBones:
         """Carry along what does not swing, tails included; return the earlier placement then."""
         first = self._frames.levels[0]
         if self._has_center:
             moves = rigid_moves(before.centers, now.centers)
-            before = self._moved_along(before, moves, self._frames.has_center)
+            before = self._move_along(before, moves, self._frames.has_center)
         ways = now.tails - before.tails
         squares, most = np.vecdot(ways, ways), (self._most_speed * elapsed) ** 2
         if squares.max() > most:
             jumps = squares > most
+            # Whole chains: a bone that is carried while its parent swings would tear them apart.
             chains = np.isin(self._frames.roots, self._frames.roots[jumps])
             moves = rigid_moves(before.frames[first], now.frames[first])
-            before = self._moved_along(before, moves[self._frames.roots], chains)
+            before = self._move_along(before, moves[self._frames.roots], chains)
             before = replace(before, place=now.place)
         return before
 
-    def _moved_along(
+    def _move_along(
         self, before: PlacedBones, moves: Array, which: NDArray[np.bool_]
     ) -> PlacedBones:
         matrices = np.where(which[:, None, None], moves, np.eye(3, 4))
-        self._now, self._before = moved(matrices, self._now), moved(matrices, self._before)
-        return before.carried(matrices, self._frames.levels[0])
+        self._now, self._before = (
+            transform_points(matrices, self._now),
+            transform_points(matrices, self._before),
+        )
+        return before.carry(matrices, self._frames.levels[0])
 
     def _free(self, length: float, kept: Array) -> Array:
         """Return where the tails' own speeds take them in a step, and forget the step before."""
         drift = self._now - self._before
         if length != self._step:
+            # Verlet has no speed but the last way, which belongs to the length of its own step.
             drift *= length / self._step
+        # A frame without time must not forget the speed.
         if length > 0.0:
             self._before, self._step = self._now, length
         drift *= kept
@@ -174,12 +182,14 @@ class SpringBody:
                 own[..., 3] += above[..., 3]
             origins, rest = own[..., 3], own[..., 4]
             way = with_length(free[level] + pulled[level] * rest - origins, reach)
+            # After the distance is restored, as in the specification; `push_out` keeps the distance
+            # itself.
             contacts = self._contacts[number]
             if contacts is not None:
                 contacts.push_out(way, origins, reach, colliders)
             np.add(origins, way, out=tails[level])
             if number + 1 < len(levels):
-                swung[level, :, :3] = _swung(own, self._frames.axes[level], way / reach)
+                swung[level, :, :3] = _swing(own, self._frames.axes[level], way / reach)
                 swung[level, :, 3] = origins
         return tails
 
@@ -200,7 +210,7 @@ class SpringBody:
         return self._factors[1]
 
 
-def _swung(frames: Array, axes: Array, aimed: Array) -> Array:
+def _swing(frames: Array, axes: Array, aimed: Array) -> Array:
     """Return the rotations of frames, (bones, 3, 3), turned by the smallest angle to `aimed`.
 
     A turn is two reflections: M + 2 b aᵀ − s (a + Mᵀb)ᵀ / (1 + rest·b), with a = Mᵀ rest, b the

@@ -15,7 +15,7 @@ from cubeling.characters.motion.trees.plan import (
     Plan,
     Row,
     StateGraph,
-    Transition,
+    StateTransition,
 )
 
 
@@ -33,8 +33,8 @@ def built_in_trees(character: Character) -> Plan:
     start, *others = states
     enter = {name: f"action == {name!r}" for name in others} | {"move": f"speed > {IDLE_SPEED}"}
     leave = dict.fromkeys(others, "action == 'idle'") | {"move": f"speed < {IDLE_SPEED}"}
-    changes = [Transition(start, name, _condition(enter[name]), 0.25) for name in others]
-    changes += [Transition(name, start, _condition(leave[name]), 0.25) for name in others]
+    changes = [StateTransition(start, name, _condition(enter[name]), 0.25) for name in others]
+    changes += [StateTransition(name, start, _condition(leave[name]), 0.25) for name in others]
     return Plan(character.name, None, StateGraph(states, start, tuple(changes)))
 
 

@@ -124,7 +124,7 @@ class PosedCharacter:
     """A character as it is to be drawn."""
 
     pose: Pose
-    """The joints."""
+    """Of its joints and morphs, all layers included."""
 
     table_from_character: NDArray[np.float64]
     """Where it stands, (4, 4): the character frame scaled to the table, turned and placed."""

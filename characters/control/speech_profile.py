@@ -140,7 +140,7 @@ class SpeechProfile:
         except OSError as error:
             raise CharacterError(f"{path}: cannot be written ({error.strerror})") from None
 
-    def changed(self, setting: str, value: str | float) -> SpeechProfile:
+    def with_setting(self, setting: str, value: str | float) -> SpeechProfile:
         """Return the profile with another value of a setting."""
         return replace(self, **{setting: value})  # type: ignore[arg-type]
 

@@ -53,7 +53,7 @@ class AccentBrows:
             if accent.strength >= MIN_STRENGTH and chosen < SHARE_OF_ACCENTS
         ]
 
-    def raised(self, time: float) -> float:
+    def height(self, time: float) -> float:
         """Return how far the brows are raised at a time of the utterance [s], 0…1."""
         return max((height * _bump(time - apex) for apex, height in self._raises), default=0.0)
 

@@ -95,12 +95,12 @@ class Complexion:
         elapsed = 0.0 if self._time is None else max(time - self._time, 0.0)
         self._time = time
         target = blood_of(emotion)
-        self._flush = _followed(self._flush, max(target, 0.0), elapsed)
-        self._pallor = _followed(self._pallor, max(-target, 0.0), elapsed)
+        self._flush = _follow(self._flush, max(target, 0.0), elapsed)
+        self._pallor = _follow(self._pallor, max(-target, 0.0), elapsed)
         return self.blood
 
 
-def _followed(value: float, target: float, elapsed: float) -> float:
+def _follow(value: float, target: float, elapsed: float) -> float:
     return low_pass(value, target, elapsed, RISE_S if target > value else FALL_S)
 
 

@@ -40,7 +40,7 @@ class FapTrack:
     """The parameters of a face over time."""
 
     rate: float
-    """Frames a second."""
+    """Frames a second, as the file's header says."""
 
     values: NDArray[np.int64]
     """(frames, 68), in the units of the standard; 0 is a face at rest."""

@@ -27,7 +27,7 @@ class JawJoint:
     def __bool__(self) -> bool:
         return self._joint is not None
 
-    def opened(self, pose: Pose, opening: float) -> Pose:
+    def open_by(self, pose: Pose, opening: float) -> Pose:
         """Return a pose with the jaw opened further, 0…1."""
         if self._joint is None or opening <= 0.0:
             return pose

@@ -50,7 +50,7 @@ class Lids:
     def __bool__(self) -> bool:
         return self.both is not None or self.sides.size > 0
 
-    def closed(self, weights: Array | None) -> float:
+    def closure(self, weights: Array | None) -> float:
         """Return how far morph weights (morphs,) close the eyes by these morphs."""
         if weights is None or not self:
             return 0.0

@@ -104,7 +104,7 @@ class SpeechDisplay:
         target, raised = _CLOSED, 0.0
         if utterance is not None and self._track is not None:
             time = now - start + LEAD_S
-            target, raised = self._track.at(time, emphasis), self._brows.raised(time)
+            target, raised = self._track.at(time, emphasis), self._brows.height(time)
         self._raised = max(raised, self._raised - elapsed / FALLING_S)  # also after a cut
         left = 1.0 - ease(min(self._since / self._length, 1.0), "cubic")
         self._shapes = target + left * (self._before - target)

@@ -12,7 +12,7 @@ from cubeling.registry import Registry
 
 
 @dataclass(frozen=True)
-class Performance:
+class RecordedMotion:
     """A recorded motion with the skeleton that its poses belong to."""
 
     skeleton: Skeleton
@@ -50,7 +50,7 @@ class MotionOptions:
 
 _FORMATS = "cubeling.characters.formats"
 
-MOTION_READERS = Registry[Callable[[Path, MotionOptions], Performance]](
+MOTION_READERS = Registry[Callable[[Path, MotionOptions], RecordedMotion]](
     {
         ".glb": f"{_FORMATS}.gltf.reading:load_motion",
         ".gltf": f"{_FORMATS}.gltf.reading:load_motion",
@@ -78,7 +78,7 @@ def load_motion(
     rate: float | None = None,
     scale: float | None = None,
     up: str | None = None,
-) -> Performance:
+) -> RecordedMotion:
     """Read one motion from a .bvh, .amc (with its .asf), .glb, .gltf, .vrm or .vrma file.
 
     Motion capture is returned in metres with +y up, with identity rest rotations. Its clips do
@@ -96,7 +96,7 @@ def load_motion(
         Frame rate of an .amc [Hz]; left out, what it states, or 120.
     scale, up
         Unit [m] and vertical axis ("y", "z", "-y", …) of a .bvh or .amc file; left out, they
-        are recognised, and `Performance.notes` says how.
+        are recognised, and `RecordedMotion.notes` says how.
 
     Raises
     ------
@@ -110,12 +110,12 @@ def load_motion(
         advice = conversion_advice(path)
         raise CharacterError(f"{path}: not a motion file of {known}; {advice}")
     stated = MotionOptions(name, None if skeleton is None else Path(skeleton), rate, scale, up)
-    performance = reader(path, stated)
-    if name not in (None, performance.clip.name):
+    recorded = reader(path, stated)
+    if name not in (None, recorded.clip.name):
         raise CharacterError(
-            f"{path}: has no clip {name!r}, only {performance.clip.name!r}; leave the name out"
+            f"{path}: has no clip {name!r}, only {recorded.clip.name!r}; leave the name out"
         )
-    return performance
+    return recorded
 
 
 def is_motion_only(path: "str | Path") -> bool:

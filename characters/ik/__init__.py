@@ -1,1 +1,1 @@
-"""Inverse kinematics."""
+"""Inverse kinematics: legs, arms and trunk of the characters, and general solvers."""

@@ -53,7 +53,7 @@ class LegIK:
 
     @property
     def count(self) -> int:
-        """Number of legs."""
+        """Number of legs, two or four."""
         return len(self.joints)
 
     @property

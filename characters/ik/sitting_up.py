@@ -42,7 +42,7 @@ class SittingUp:
     """What a four-legged skeleton turns when it sits up."""
 
     skeleton: Skeleton
-    """The whole skeleton."""
+    """The whole skeleton, of which it turns the trunk."""
 
     hind: LegIK
     """The hind legs; their paws stay where they are."""
@@ -89,14 +89,14 @@ class SittingUp:
         up = from_rotation_vector((-pitch, 0.0, 0.0))
         frames = self.hind.frames(pose)
         paws = [frames.positions[paw] for *_, paw, _ in self._legs]
-        raised = self._raised(frames, up, math.sin(pitch))
+        raised = self._raise(frames, up, math.sin(pitch))
         shown = self._with_hips(pose, raised)
         self._turn(shown.rotations, self.neck, 0, pitch * HEAD_SHARE)
         self._turn(shown.rotations, self.tail, len(self.neck), pitch * TAIL_SHARE)
         level = [conjugate(up)] * len(paws)
         return self.hind.bend(shown, raised, paws, level)
 
-    def _raised(self, frames: LegFrames, up: Quaternion, sine: float) -> LegFrames:
+    def _raise(self, frames: LegFrames, up: Quaternion, sine: float) -> LegFrames:
         """Return frames with the hips, and all they carry, turned about the thighs' middle."""
         (xs, ys, zs) = zip(*(frames.positions[thigh] for _, thigh, *_ in self._legs), strict=True)
         count = len(xs)

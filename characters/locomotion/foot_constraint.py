@@ -69,7 +69,7 @@ class FootOffset:
     y: float = 0.0
     """[m]."""
 
-    def shown(self, points: FootPoints, heel: bool) -> tuple[float, float]:
+    def shown_point(self, points: FootPoints, heel: bool) -> tuple[float, float]:
         """Return x, z of the shown heel or ball of a foot."""
         ball = points.ball[0] + self.x, points.ball[2] + self.z
         if not heel:
@@ -116,10 +116,11 @@ class FootConstraint:
         """Advance by a time [s] to the present points of the motion."""
         self.step_time_left = max(self.step_time_left - elapsed, 0.0)
         self._age += elapsed
-        decayed, before = self._decayed(), self._shown
+        decayed, before = self._decay(), self._shown
         self._shown = [a + b for a, b in zip(self._goal(points), decayed, strict=True)]
         self.offset = FootOffset(*self._shown)
         self._last_height = before[3]
+        # Two updates at one time, as after a seek, must not divide by zero.
         if elapsed > 0.0:
             moved = 0.0 if self._ball is None else math.dist(self._ball, points.ball)
             self._speed = moved / (elapsed * self._body_height)
@@ -145,15 +146,19 @@ class FootConstraint:
         """Hold the foot where it is shown: it lands, or rolls from heel to ball."""
         margin = _HEEL_MARGIN_HELD if self._heel else _HEEL_MARGIN_NEW
         heel = points.heel[1] + margin * self._body_height < points.ball[1]
+        # Rolling from heel to ball only moves the anchor; landing also starts a decay of the
+        # height.
         if self.held and self._heel == heel:
             return
         self._heel = heel
-        x, z = self.offset.shown(points, self._heel)
+        x, z = self.offset.shown_point(points, self._heel)
         self.anchor = x, z, points.heading + self.offset.yaw
         if not self.held:
             self.held = True
             self.offset.y = self._raised
             landing = [0.0, 0.0, 0.0, self.offset.y + points.height]
+            # Height only: x, z and heading are held exactly from the first frame on, so nothing
+            # slides.
             self._start_decay(landing, [0.0] * 4, _OFFSET_DECAY_S)
             self.step_time_left = 0.0
 
@@ -169,10 +174,11 @@ class FootConstraint:
         ]
         # It stood still while its motion rose already, and makes up for it, not to drag.
         self._shown[3] = max(self._shown[3], self._last_height)
+        # Never into the ground: while held, the offset fell as the motion rose.
         velocity[3] = max(velocity[3], 0.0)
         self._start_decay(self._shown, velocity, _QUICK_STEP_S if step else _OFFSET_DECAY_S)
         self.offset.y = self._shown[3]
-        self._last_stand = self.offset.shown(points, heel=False)
+        self._last_stand = self.offset.shown_point(points, heel=False)
         self._step_length = self.offset.length
         self.step_time_left = _QUICK_STEP_S if step else 0.0
 
@@ -185,9 +191,11 @@ class FootConstraint:
                 _STEP_HEIGHT_PER_LENGTH * self._step_length + _MIN_STEP_HEIGHT * self._body_height,
             )
             angle = math.pi * self.step_time_left / _QUICK_STEP_S
+            # sin² starts and ends without vertical speed, so that the foot neither jerks nor
+            # stamps.
             lowest = top * math.sin(angle) ** 2 - points.height
         elif not self.held:
-            x, z = self.offset.shown(points, heel=False)
+            x, z = self.offset.shown_point(points, heel=False)
             away = math.hypot(x - self._last_stand[0], z - self._last_stand[1]) / self._body_height
             fade = (_LIFT_FADE_END - away) / (_LIFT_FADE_END - _LIFT_FADE_START)
             raised = _LIFT_HEIGHT * self._body_height * min(away / _LIFT_DISTANCE, 1.0)
@@ -206,6 +214,8 @@ class FootConstraint:
         least = _CLEARANCE * self._body_height * share
         if least == 0.0 or height >= 2.0 * least:
             return 0.0
+        # A parabola that meets both lines smoothly: the foot is eased over the clearance, not
+        # clipped at it.
         return (2.0 * least - max(height, 0.0)) ** 2 / (4.0 * least)
 
     def may_land(self, points: FootPoints) -> bool:
@@ -220,7 +230,7 @@ class FootConstraint:
         self._old, self._old_velocity = list(old), velocity
         self._age, self._decay_time = 0.0, length
 
-    def _decayed(self) -> list[float]:
+    def _decay(self) -> list[float]:
         if self._age >= self._decay_time:
             return [0.0] * 4
         position, velocity = quintic_decay(self._age / self._decay_time)
@@ -234,6 +244,7 @@ class FootConstraint:
         if not self.held:
             return [0.0] * 4
         x, z, heading = self.anchor
+        # The shorter way round: headings jump by a turn behind the body.
         yaw = math.remainder(heading - points.heading, math.tau)
         if self._heel:
             dx, dz = points.ball[0] - points.heel[0], points.ball[2] - points.heel[2]
@@ -245,4 +256,5 @@ class FootConstraint:
 def rotate_yaw(x: float, z: float, yaw: float) -> tuple[float, float]:
     """Return x, z rotated about +y."""
     sine, cosine = math.sin(yaw), math.cos(yaw)
+    # About +y, from +z towards +x: the signs differ from those of the usual x, y plane.
     return cosine * x + sine * z, cosine * z - sine * x

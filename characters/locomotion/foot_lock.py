@@ -56,6 +56,7 @@ class FootLock:
         """
         frames = self.legs.frames(pose)
         points = self._foot_points(frames, place)
+        # All feet advance before any is let go: whether one may step depends on the others.
         for foot, own in zip(self.feet, points, strict=True):
             foot.advance(own, elapsed)
         if self._first_frame:
@@ -65,10 +66,11 @@ class FootLock:
         for foot, own, contact in zip(self.feet, points, down, strict=True):
             self._update(foot, own, contact, standing)
             foot.lift(own)
-        return self._bent(pose, frames, place, elapsed)
+        return self._bend(pose, frames, place, elapsed)
 
     def _update(self, foot: FootConstraint, points: FootPoints, down: bool, standing: bool) -> None:
         others_held = all(other.held for other in self.feet if other is not foot)
+        # One foot at a time; a body cannot stand on feet that are both stepping.
         step_back = standing and others_held
         if not down:
             foot.release(points, step=False)
@@ -97,7 +99,7 @@ class FootLock:
             feet.append(FootPoints(heel, ball))
         return feet
 
-    def _bent(self, pose: Pose, frames: LegFrames, place: RootDelta, elapsed: float) -> Pose:
+    def _bend(self, pose: Pose, frames: LegFrames, place: RootDelta, elapsed: float) -> Pose:
         """Return the pose with the feet's offsets, and a lower pelvis if they are far away."""
         least = _MIN_CHANGE * self._body_height
         changes = (
@@ -106,11 +108,13 @@ class FootLock:
             + abs(foot.offset.yaw) * _YAW_RADIUS * self._body_height
             for foot in self.feet
         )
+        # Most frames of an undisturbed walk: the motion's own legs, to the bit.
         if max(changes) < least:
             self._pelvis_drop = 0.0
             return pose
         ankles, turns = self._ankles(frames, place)
         needed = self._needed_drop(frames, ankles)
+        # Down fast, or the knee snaps straight; up slowly, as nothing but the look depends on it.
         lag = _PELVIS_DROP_LAG_S if needed > self._pelvis_drop else _PELVIS_RISE_LAG_S
         self._pelvis_drop = low_pass(self._pelvis_drop, needed, elapsed, lag)
         if self._pelvis_drop > least:
@@ -161,6 +165,7 @@ def _within_reach(
     away = math.dist(hip, wanted)
     moving = 0.0 if foot.held else min(foot.age / _SOFTENING_S, 1.0)
     limit = _SOFT_EXTENSION_HELD + moving * (_SOFT_EXTENSION_MOVING - _SOFT_EXTENSION_HELD)
+    # What the motion itself reaches is never shortened.
     start = max(limit * length, math.dist(hip, own))
     if away <= start:
         return wanted
@@ -178,6 +183,7 @@ def _rest_foot_points(legs: LegIK) -> tuple[list[list[Vector]], list[list[float]
     rest = legs.skeleton.rest.globals(legs.skeleton)
     ankle, ball = rest[legs.joints[:, 3]], rest[legs.joints[:, 4], :3, 3]
     heel = ankle[:, :3, 3] - 0.5 * (ball - ankle[:, :3, 3])
+    # On the ground, whatever the shoe: only its place behind the ankle is estimated.
     heel[:, 1] = 0.0
     points = np.stack([heel, ball], axis=1)
     local = (points - ankle[:, None, :3, 3]) @ ankle[:, :3, :3]

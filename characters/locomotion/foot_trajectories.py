@@ -66,7 +66,7 @@ class FootTrajectories:
         homes = [_mean_standing(each).tolist() for each in feet]
         return FootTrajectories(tuple(motions), bank, homes, legs, stance.tolist())
 
-    def mixed(
+    def mix(
         self, contributions: Sequence[tuple[int, float]], phase: float, share: float
     ) -> tuple[Pose, list[list[float]]]:
         """Return the mean of clips at a phase, and of ball, orientation and contact of each foot.
@@ -101,7 +101,7 @@ class FootTrajectories:
         for mixed, mixed_phase, contacts in self._last_mix:
             if mixed is contributions and mixed_phase == phase:
                 return contacts
-        return [foot[7] for foot in self.mixed(contributions, phase, 1.0)[1]]
+        return [foot[7] for foot in self.mix(contributions, phase, 1.0)[1]]
 
 
 def _foot_trajectory(clip: Clip, skeleton: Skeleton, legs: LegIK, stance: Array) -> Array:

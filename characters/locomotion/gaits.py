@@ -15,7 +15,7 @@ from cubeling.characters.motion.blend import Blend, BlendSpace1D, TimeScaled
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.motion.contacts import find_contacts
 from cubeling.characters.motion.motion import Motion
-from cubeling.characters.motion.phase import PhasedMotion, StaticPose, phased
+from cubeling.characters.motion.phase import PhasedMotion, StaticPose, with_phase
 from cubeling.characters.skeleton.pose import Pose, Skeleton
 from cubeling.characters.smoothing import interpolate
 
@@ -29,7 +29,7 @@ TOP_SPEED = 5.0
 """Largest Speed of AvatAR."""
 
 MAX_ANGULAR_RAD = math.pi / 2
-"""Largest Angular."""
+"""Largest value of AvatAR's parameter Angular [rad]."""
 
 MIN_CYCLE_LENGTH = 0.1
 """A cycle that goes less far is no gait [heights of the character]."""
@@ -168,4 +168,6 @@ class Gaits:
 def _phased_clips(
     clips: Mapping[str, Clip], names: Mapping[float, str], skeleton: Skeleton
 ) -> dict[float, PhasedMotion]:
-    return {knot: phased(clips[name], skeleton) for knot, name in names.items() if name in clips}
+    return {
+        knot: with_phase(clips[name], skeleton) for knot, name in names.items() if name in clips
+    }

@@ -41,7 +41,7 @@ class SteeringOutput:
 
 
 STANDSTILL = SteeringOutput(0.0, 0.0, 1.0)
-"""Standing still."""
+"""Neither goes nor turns, whatever was wished."""
 
 
 def has_arrived(distance: float, arrived: bool) -> bool:
@@ -80,19 +80,24 @@ class Steering:
         self._arrived = stop and has_arrived(distance, self._arrived)
         if self._arrived or distance == 0.0:
             return STANDSTILL
+        # AvatAR's Angular is positive to the right, yaw about +y is positive to the left.
         error = -place.bearing(*target)  # positive to the right
         if abs(error) < _MAX_REVERSING_ERROR:
             self._side = math.copysign(1.0, error)
         else:
+            # Straight behind, noise flips the sign of the error; keep turning the way it began.
             error = self._side * abs(error)
         # Radius of the circle through the target, tangent to the heading. A target inside
         # the tightest turning circle would be orbited for ever.
+        # At least 0.05: straight ahead the circle is a line, of infinite radius.
         needed = distance / (2 * max(math.sin(abs(error)), 0.05))
         speed = min(speed, self._fastest_within(needed))
         if stop:
             speed = min(speed, self._fastest_before(distance - ARRIVAL_DISTANCE_M))
+        # After both limits: with less it would stand before it arrives.
         speed = max(speed, IDLE_SPEED)
         circle = interpolate(speed, _CIRCLE_SPEEDS, self._circles)
+        # Where even the slowest circle is too wide, it takes shorter steps on it.
         stride = min(1.0, needed / (_RADIUS_MARGIN * circle))
         angular = min(max(_ANGULAR_PER_ERROR * error, -MAX_ANGULAR_RAD), MAX_ANGULAR_RAD)
         return SteeringOutput(speed, angular, stride)
@@ -106,5 +111,6 @@ class Steering:
         ahead = max(distance, 0.0) / self._scale
         slowest = self._gaits.pace(IDLE_SPEED)
         deceleration = self._gaits.pace(TOP_SPEED) / _STOPPING_TIME_S
+        # v² = v₀² + 2·a·s, backwards from the arrival.
         pace = math.sqrt(slowest**2 + 2 * deceleration * ahead)
         return self._gaits.speed(pace)

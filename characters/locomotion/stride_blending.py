@@ -33,7 +33,7 @@ class StrideBlend(PhaseDriven):
     """Clips mixed at one phase, with shorter strides and at another speed; `Cyclic`."""
 
     trajectories: FootTrajectories
-    """The clips."""
+    """Paths of the feet in each blended clip."""
 
     contributions: Sequence[tuple[int, float]]
     """Numbers of the mixed clips and their weights; positive, sum one."""
@@ -55,7 +55,7 @@ class StrideBlend(PhaseDriven):
 
     def at(self, phase: float) -> Pose:
         """Return the mixed pose at a phase."""
-        pose, feet = self.trajectories.mixed(self.contributions, phase, self.share)
+        pose, feet = self.trajectories.mix(self.contributions, phase, self.share)
         if len(self.contributions) == 1 and self.share == self.stride == 1.0:
             return pose
         return self.trajectories.legs.reach(pose, *self._feet(feet))
@@ -98,8 +98,8 @@ class StrideBlend(PhaseDriven):
             home = [sum(values) for values in zip(*homes, strict=True)]
             if self.share < 1.0:
                 higher = (y - home[1]) * self.share**_HEIGHT_EXPONENT
-                x, _, z, *facing = _interpolated(still, foot, self.share)
-                home = _interpolated(still, home, self.share)
+                x, _, z, *facing = _interpolate(still, foot, self.share)
+                home = _interpolate(still, home, self.share)
                 y = home[1] + higher
             faced = normalize(facing)
             if self.stride < 1.0:
@@ -123,7 +123,7 @@ class StrideBlend(PhaseDriven):
         )
 
 
-def _interpolated(still: Sequence[float], foot: Sequence[float], share: float) -> list[float]:
+def _interpolate(still: Sequence[float], foot: Sequence[float], share: float) -> list[float]:
     """Return values of a foot between those of the stance and those of the clips."""
     return [a + share * (b - a) for a, b in zip(still, foot, strict=False)]
 

@@ -1,5 +1,5 @@
 from cubeling.characters.formats.loading import (
-    Performance as Performance,
+    RecordedMotion as RecordedMotion,
     is_motion_only as is_motion_only,
     load_motion as load_motion,
 )

@@ -28,11 +28,11 @@ class SkinnedBody(Protocol):
 
     @property
     def skeleton(self) -> Skeleton:
-        """Its joints."""
+        """Joints, with the bind pose as their rest."""
 
     @property
     def meshes(self) -> Sequence[Mesh]:
-        """Its skinned geometry."""
+        """Meshes with joints and weights for each vertex."""
 
     @property
     def anatomy(self) -> Anatomy:
@@ -69,15 +69,15 @@ def _skins(meshes: Sequence[Mesh]) -> Iterator[tuple[NDArray[np.intp], Array]]:
 
 def with_bind_pose(character: SkinnedBody) -> Skeleton:
     """Return the skeleton with the turns of the bind pose at rest; bones keep their lengths."""
-    return _at_rest_as_bound(character.skeleton, character.meshes, character.anatomy.joints)
+    return _rest_from_bind_pose(character.skeleton, character.meshes, character.anatomy.joints)
 
 
-def bound_upright(skeleton: Skeleton, meshes: Sequence[Mesh]) -> Skeleton:
+def upright_bind_pose(skeleton: Skeleton, meshes: Sequence[Mesh]) -> Skeleton:
     """Return the same of a body whose parts are not known yet; feet may be elsewhere."""
-    return _at_rest_as_bound(skeleton, meshes, {})
+    return _rest_from_bind_pose(skeleton, meshes, {})
 
 
-def _at_rest_as_bound(
+def _rest_from_bind_pose(
     skeleton: Skeleton, meshes: Sequence[Mesh], parts: Mapping[str, int]
 ) -> Skeleton:
     rest = skeleton.rest.globals(skeleton)

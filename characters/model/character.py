@@ -11,9 +11,9 @@ import numpy as np
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.locomotion.gaits import Gaits
-from cubeling.characters.model.bind_pose import bound_upright
+from cubeling.characters.model.bind_pose import upright_bind_pose
 from cubeling.characters.model.constraints import JointConstraint
-from cubeling.characters.model.facing import turned_ahead
+from cubeling.characters.model.facing import turn_ahead
 from cubeling.characters.model.limb_ends import with_limb_ends
 from cubeling.characters.model.look_at import LookAt
 from cubeling.characters.model.mesh import Mesh
@@ -56,10 +56,10 @@ class Character:
     """Joints and rest pose."""
 
     clips: dict[str, Clip]
-    """Clips by name."""
+    """Clips by name, in the order of the file."""
 
     meshes: tuple[Mesh, ...]
-    """The skinned geometry."""
+    """Skinned meshes in the frame of the character [m]."""
 
     morphs: tuple[str, ...] = ()
     """Names of the morphs, in the order of the weights in `Pose.morphs`."""
@@ -100,14 +100,14 @@ class Character:
         Parameters
         ----------
         name_or_path
-            The name of a bundled character, one of `bundled()`, or the path of a file.
+            The name of a bundled character, one of `bundled_names()`, or the path of a file.
 
         Raises
         ------
         CharacterError
             If there is no such character or file, or it is not a skinned glTF.
         """
-        path, bundled = Path(name_or_path), Character.bundled()
+        path, bundled = Path(name_or_path), Character.bundled_names()
         reader = CHARACTER_READERS.get(path.suffix.lower())
         if reader is not None:
             return _with_sidecar(reader(path), path)
@@ -126,7 +126,7 @@ class Character:
             return _with_sidecar(CHARACTER_READERS[".glb"](file), file)
 
     @staticmethod
-    def bundled() -> tuple[str, ...]:
+    def bundled_names() -> tuple[str, ...]:
         """Return the names of the characters that come with the package."""
         assets = resources.files("cubeling.characters") / "assets"
         if not assets.is_dir():
@@ -170,7 +170,7 @@ class Character:
 
         Files may rest in mid-stride, so the pose in which the skin was bound is looked at too.
         """
-        upright = bound_upright(self.skeleton, self.meshes)
+        upright = upright_bind_pose(self.skeleton, self.meshes)
         poses = [self.skeleton] if upright is self.skeleton else [upright, self.skeleton]
         try:
             guesses = [Anatomy.guess(pose, self.semantics) for pose in poses]
@@ -237,7 +237,7 @@ def _with_sidecar(character: Character, path: Path) -> Character:
         found.skeleton, found.anatomy, found.meshes, found.clips
     )
     found = replace(found, skeleton=skeleton, meshes=meshes, clips=clips)
-    skeleton, clips = turned_ahead(found.skeleton, found.anatomy, found.clips)
+    skeleton, clips = turn_ahead(found.skeleton, found.anatomy, found.clips)
     found = replace(found, skeleton=skeleton, clips=clips, gestures=gestures_beside(path, skeleton))
     recordings = recordings_beside(path, found.skeleton)
     if not recordings:

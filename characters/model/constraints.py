@@ -17,7 +17,6 @@ class JointConstraint:
     """What another joint makes one do, as in the extension VRMC_node_constraint of glTF."""
 
     kind: ConstraintKind
-    """What it does."""
 
     joint: str
     """Name of the joint that is turned."""
@@ -31,7 +30,7 @@ class JointConstraint:
     weight: float = 1.0
     """Part of the way from its rest pose, 0…1."""
 
-    def renamed(self, names: Mapping[str, str]) -> "JointConstraint":
+    def with_names(self, names: Mapping[str, str]) -> "JointConstraint":
         """Return it for joints with new names, given by their old ones."""
         joint, source = (names.get(name, name) for name in (self.joint, self.source))
         return replace(self, joint=joint, source=source)
@@ -50,7 +49,7 @@ def constraint_levels(
     waiting, levels = list(constraints), []
     while waiting:
         pending = {each.joint for each in waiting}
-        ready = [each for each in waiting if not _followed(skeleton, each) & pending]
+        ready = [each for each in waiting if not _sources_of(skeleton, each) & pending]
         if not ready:
             names = ", ".join(sorted(pending))
             raise CharacterError(f"constraints of {names} follow each other; remove one of them")
@@ -59,7 +58,7 @@ def constraint_levels(
     return levels
 
 
-def _followed(skeleton: Skeleton, constraint: JointConstraint) -> set[str]:
+def _sources_of(skeleton: Skeleton, constraint: JointConstraint) -> set[str]:
     """Return the joints whose turns a constraint needs."""
     if constraint.kind != "aim":
         return {constraint.source}

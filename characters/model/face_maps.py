@@ -48,7 +48,7 @@ BLOOD_NAME = "blood"
 """Name of the picture of where blood shows."""
 
 SUFFIX = ".png"
-"""Of the pictures."""
+"""Ending of the files beside the table."""
 
 DEPTH_MM = 1.0
 """Height of white above mid-grey where the table does not say [mm]."""
@@ -65,7 +65,6 @@ class FaceTable:
     """The table [face] of a sidecar file."""
 
     maps: FaceMaps
-    """Its pictures."""
 
     meshes: tuple[str, ...]
     """Names of the meshes that they are for; empty for all with texture coordinates."""

@@ -16,7 +16,7 @@ from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 _UP = np.array([0.0, 1.0, 0.0])
 
 
-def turned_ahead(
+def turn_ahead(
     skeleton: Skeleton, anatomy: Anatomy, clips: Mapping[str, Clip]
 ) -> tuple[Skeleton, dict[str, Clip]]:
     """Return a skeleton and its clips turned about the vertical to face +z at rest.
@@ -28,14 +28,14 @@ def turned_ahead(
     if not upright or np.allclose(turn, rotations.IDENTITY):
         return skeleton, dict(clips)
     rooted = skeleton.has_root_motion and anatomy.joint("hips") != 0
-    turned = partial(_turned, parents=np.array(skeleton.parents), rooted=rooted, turn=turn)
+    turned = partial(_turn, parents=np.array(skeleton.parents), rooted=rooted, turn=turn)
     return (
         replace(skeleton, rest=turned(skeleton.rest)),
         {name: replace(clip, poses=turned(clip.poses)) for name, clip in clips.items()},
     )
 
 
-def _turned(pose: Pose, parents: NDArray[np.intp], rooted: bool, turn: Array) -> Pose:
+def _turn(pose: Pose, parents: NDArray[np.intp], rooted: bool, turn: Array) -> Pose:
     """Return poses (…, joints) turned about the origin; a root keeps its own axes."""
     translations, turns = pose.translations.copy(), pose.rotations.copy()
     carried = parents == 0 if rooted else parents < 0

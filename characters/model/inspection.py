@@ -37,17 +37,17 @@ class CharacterStats:
     vertices: int
     triangles: int
     materials: int
-    """Distinct materials."""
+    """Number of materials that differ."""
 
     textures: int
     """Distinct images of all kinds."""
 
     morphs: tuple[str, ...]
-    """Their names."""
+    """Names of the morph targets, each once."""
 
     @classmethod
     def of(cls, character: Character) -> "CharacterStats":
-        """Measure a character."""
+        """Measure a character in its bind pose."""
         materials = [mesh.material for mesh in character.meshes]
         textures = [image for each in materials for image in each.textures]
         return cls(
@@ -81,7 +81,6 @@ class ClipStats:
     """The movement of one clip."""
 
     clip: Clip
-    """The clip."""
 
     speed: float
     """Mean speed over the ground [m/s]; in place, over a ground that moves backward under it as a
@@ -94,7 +93,7 @@ class ClipStats:
     """Greatest distance of a joint between the first and the last frame [m]."""
 
     contacts: tuple[FootContactStats, ...]
-    """Of each foot."""
+    """One for each foot that was found."""
 
 
 @dataclass(frozen=True)
@@ -102,13 +101,12 @@ class Inspection:
     """The result of an inspection."""
 
     character: Character
-    """The character."""
 
     stats: CharacterStats
-    """Its size."""
+    """Numbers of joints, meshes, triangles and the like."""
 
     clips: tuple[ClipStats, ...]
-    """Its clips."""
+    """One for each clip of the character."""
 
     problems: tuple[str, ...]
     """Sentences for a person, the most important ones first."""
@@ -197,7 +195,7 @@ def _problems_of_clips(character: Character, clips: Sequence[ClipStats]) -> Iter
         yield "It has no clips: it can be posed and retargeted to, but plays nothing by itself."
     static = [stats.clip.name for stats in clips if stats.clip.duration == 0.0]
     if static:
-        yield f"{_named(static)} only one frame long and does not move."
+        yield f"{_subject_and_verb(static)} only one frame long and does not move."
     height = max(character.height, 1e-9)
     unclosed = [
         f"{stats.clip.name!r} ({100 * stats.loop_gap / height:.0f} % of its height)"
@@ -215,21 +213,21 @@ def _problems_of_clips(character: Character, clips: Sequence[ClipStats]) -> Iter
         if _GAIT_NAME.search(stats.clip.name) and not any(foot.landings for foot in stats.contacts)
     ]
     if without_contacts:
-        yield f"{_named(without_contacts)} named as a gait, but no foot steps in it."
+        yield f"{_subject_and_verb(without_contacts)} named as a gait, but no foot steps in it."
     treadmill = [
         stats.clip.name for stats in clips if stats.in_place and _GAIT_NAME.search(stats.clip.name)
     ]
     if treadmill:
         yield (
-            f"{_named(treadmill)} in place: `cubeling character locomotion` turns it into a walk "
-            "over the ground."
+            f"{_subject_and_verb(treadmill)} in place: `cubeling character locomotion` turns it "
+            "into a walk over the ground."
         )
 
 
-def _named(names: Sequence[str]) -> str:
+def _subject_and_verb(names: Sequence[str]) -> str:
     """Return the subject of a sentence about some clips, and its verb.
 
-    >>> _named(["Walk"]), _named(["Walk", "Run"])
+    >>> _subject_and_verb(["Walk"]), _subject_and_verb(["Walk", "Run"])
     ("The clip 'Walk' is", "The clips 'Walk', 'Run' are")
     """
     listed = ", ".join(repr(name) for name in names)

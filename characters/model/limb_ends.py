@@ -115,14 +115,14 @@ def _with_joints(poses: Pose, offsets: Array) -> Pose:
     """Return poses (…, joints) with more joints at the end, at offsets (n, 3) [m]."""
     leading = poses.translations.shape[:-2]
 
-    def extended(values: Array, more: Array) -> Array:
+    def extend(values: Array, more: Array) -> Array:
         tiled = np.broadcast_to(more, (*leading, *more.shape))
         return np.concatenate([values, tiled], axis=-2)
 
     scales = poses.scales
     return replace(
         poses,
-        translations=extended(poses.translations, offsets),
-        rotations=extended(poses.rotations, np.tile(rotations.IDENTITY, (len(offsets), 1))),
-        scales=None if scales is None else extended(scales, np.ones((len(offsets), 3))),
+        translations=extend(poses.translations, offsets),
+        rotations=extend(poses.rotations, np.tile(rotations.IDENTITY, (len(offsets), 1))),
+        scales=None if scales is None else extend(scales, np.ones((len(offsets), 3))),
     )

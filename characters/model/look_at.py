@@ -16,10 +16,10 @@ class RangeMap:
     output: float
     """Output for this angle: the turn of an eye's joint [rad], or the weight of a morph."""
 
-    def mapped(self, angle: float) -> float:
+    def map_angle(self, angle: float) -> float:
         """Return the output for an angle [rad] to either side.
 
-        >>> RangeMap(2.0, 0.5).mapped(-1.0), RangeMap(2.0, 0.5).mapped(3.0)
+        >>> RangeMap(2.0, 0.5).map_angle(-1.0), RangeMap(2.0, 0.5).map_angle(3.0)
         (-0.25, 0.5)
         """
         return min(max(angle / self.greatest, -1.0), 1.0) * self.output
@@ -39,19 +39,19 @@ class LookAt:
     """Of an eye that looks away from the nose; also of both by morphs."""
 
     down: RangeMap
-    """Downwards."""
+    """Range for looking downwards."""
 
     up: RangeMap
-    """Upwards."""
+    """Range for looking upwards."""
 
     eye_offset: Point | None = None
     """Middle of the eyes in the frame of the head's joint [m]; None if it is not stated."""
 
-    def mapped(self, yaw: float, pitch: float, side: str = "") -> tuple[float, float]:
+    def map_angles(self, yaw: float, pitch: float, side: str = "") -> tuple[float, float]:
         """Return what the eye of a side, or morphs, make of a yaw to the left and a pitch up.
 
         The angles are in radians. Yaw and pitch keep their signs.
         """
         inwards = yaw < 0 if side == "left" else yaw > 0
         across = self.inner if side and inwards else self.outer
-        return across.mapped(yaw), (self.up if pitch > 0 else self.down).mapped(pitch)
+        return across.map_angle(yaw), (self.up if pitch > 0 else self.down).map_angle(pitch)

@@ -152,7 +152,6 @@ class Mesh:
     """Texture coordinates, (vertices, 2), v down as in glTF, or None."""
 
     material: Material = field(default_factory=Material)
-    """The surface."""
 
     morphs: tuple[Morph, ...] = ()
-    """Its morph targets."""
+    """Morph targets, each with as many vertices as the mesh."""

@@ -78,7 +78,7 @@ class SpringBone:
     wind: float = 1.0
     """Part of the character's speed over the table that drags at the tail, 0…1."""
 
-    def renamed(self, names: Mapping[str, str]) -> "SpringBone":
+    def with_names(self, names: Mapping[str, str]) -> "SpringBone":
         """Return it for joints with new names, given by their old ones."""
         return replace(
             self,

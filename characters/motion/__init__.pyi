@@ -3,7 +3,7 @@ from cubeling.characters.ik.reaching.hand_shapes import HAND_SHAPES as HAND_SHAP
 from cubeling.characters.ik.reaching.hands import find_hand as find_hand
 from cubeling.characters.ik.solvers.measures import (
     REACH_M as REACH_M,
-    Problem as Problem,
+    ReachingProblem as ReachingProblem,
     arc_targets as arc_targets,
     joint_change as joint_change,
     target_path as target_path,
@@ -18,16 +18,16 @@ from cubeling.characters.ik.solvers.solving import (
     solve as solve,
 )
 from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M as ARRIVAL_DISTANCE_M
-from cubeling.characters.motion.baking import bake as bake, stacked as stacked
+from cubeling.characters.motion.baking import bake as bake, stack as stack
 from cubeling.characters.motion.motion import Motion as Motion
-from cubeling.characters.motion.phase import phased as phased
+from cubeling.characters.motion.phase import with_phase as with_phase
 from cubeling.characters.motion.schedule import Schedule as Schedule
 from cubeling.characters.motion.schedule_file import ScheduleReader as ScheduleReader
 from cubeling.characters.motion.trees.dot import to_dot as to_dot
 from cubeling.characters.motion.trees.plan import (
     Node as Node,
     Plan as Plan,
-    Transition as Transition,
+    StateTransition as StateTransition,
 )
 from cubeling.characters.skeleton import rotations as rotations
 from cubeling.characters.skeleton.pose import Array as Array, Skeleton as Skeleton
@@ -69,6 +69,7 @@ from cubeling.characters.synthesis.idle.database import (
     RestingPosture as RestingPosture,
 )
 from cubeling.characters.synthesis.idle.idle_motion import IdleMotion as IdleMotion
+from cubeling.characters.synthesis.idle.motion_texture import StretchStream as StretchStream
 from cubeling.characters.synthesis.idle.posture_space import PostureVectors as PostureVectors
 from cubeling.characters.synthesis.idle.recordings import (
     BALANCES as BALANCES,
@@ -79,7 +80,6 @@ from cubeling.characters.synthesis.idle.storage import (
     load_person as load_person,
     save_person as save_person,
 )
-from cubeling.characters.synthesis.idle.stretches import StretchStream as StretchStream
 from cubeling.characters.synthesis.idle.variations import COMPONENTS as COMPONENTS
 from cubeling.characters.synthesis.library import (
     DEFAULT_RATE_HZ as DEFAULT_RATE_HZ,
@@ -93,7 +93,7 @@ from cubeling.characters.synthesis.transitions.comparison import (
 from cubeling.characters.synthesis.transitions.evaluation import (
     Answers as Answers,
     Requests as Requests,
-    Summary as Summary,
+    TransitionSummary as TransitionSummary,
     graph_requests as graph_requests,
     merge_answers as merge_answers,
 )

@@ -1,4 +1,4 @@
-"""Motions as clips."""
+"""Sample motions at a fixed rate, and keep them as clips."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -21,10 +21,10 @@ def bake(motion: Motion, rate: float, seconds: float, name: str) -> Clip:
     places = [RootDelta()]
     for before, after in pairwise(times):
         places.append(places[-1].then(motion.travel(before, after)))
-    return placed_clip(name, rate, stacked([motion.sample(time) for time in times]), places)
+    return placed_clip(name, rate, stack([motion.sample(time) for time in times]), places)
 
 
-def stacked(frames: Sequence[Pose]) -> Pose:
+def stack(frames: Sequence[Pose]) -> Pose:
     """Return single poses as the frames of one, with the scales and morphs that any of them has."""
     poses = Pose.of_frames(frames)
     if any(pose.scales is not None for pose in frames):

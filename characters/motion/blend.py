@@ -63,7 +63,7 @@ class Blend(PhaseDriven):
     """
 
     members: tuple[Motion, ...]
-    """The mixed motions."""
+    """The motions that are mixed, one for each weight."""
 
     weights: tuple[float, ...]
     """Weight of each; none negative, sum one: see `shares`."""
@@ -153,7 +153,6 @@ class TimeScaled:
     """A cyclic motion at another speed and with another stride length; `Cyclic`."""
 
     motion: Cyclic
-    """The motion."""
 
     rate: float = 1.0
     """Factor of the speed; positive."""
@@ -172,7 +171,7 @@ class TimeScaled:
 
     def between(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two phases."""
-        return self.motion.between(start, end).scaled(self.stride)
+        return self.motion.between(start, end).scale(self.stride)
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s] since phase 0."""

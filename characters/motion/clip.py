@@ -26,7 +26,7 @@ class Clip:
     """(frames, joints, …); in a loop, the last frame equals the first, one cycle later."""
 
     loop: bool = True
-    """Whether it repeats."""
+    """Whether the frame after the last is the first."""
 
     root_motion: bool = False
     """Whether joint 0 is on the ground and carries the planar root motion; see `travel`."""
@@ -79,7 +79,7 @@ class Clip:
         if self.loop and self._last > 0:
             loops = math.floor(end / self.duration) - math.floor(start / self.duration)
             there = self._place(end)
-            return self._place(start).to(self.cycle.repeated(loops).then(there) if loops else there)
+            return self._place(start).to(self.cycle.repeat(loops).then(there) if loops else there)
         return self._place(start).to(self._place(end))
 
     @cached_property
@@ -141,4 +141,4 @@ class Clip:
     def _place(self, time: float) -> RootDelta:
         """Return where the root is at a time [s], relative to the start of the current loop."""
         frame, u = self.position(time)
-        return self._places[frame].interpolated(self._places[min(frame + 1, self._last)], u)
+        return self._places[frame].interpolate(self._places[min(frame + 1, self._last)], u)

@@ -15,7 +15,7 @@ class CrossFade:
     """A motion that is replaced by another one at a time."""
 
     first: Motion
-    """The motion before."""
+    """The motion that fades out."""
 
     second: Motion
     """The motion after; its time 0 is `start`."""

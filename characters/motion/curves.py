@@ -62,7 +62,7 @@ class FadeCurve:
     """Length of the fall, up to the end [s]; where both overlap, their product is taken."""
 
     shape: Ease = "gonio"
-    """Shape of both."""
+    """Shape of the rise and of the fall."""
 
     def __post_init__(self) -> None:
         _check_times("fade curve", self.shape, self.fade_in, self.fade_out)
@@ -149,7 +149,7 @@ class Product:
     """Product of several weights."""
 
     factors: tuple[Weight, ...]
-    """The factors."""
+    """Weights that are multiplied at each time."""
 
     def at(self, time: float, duration: float) -> float:
         """Return the value at a time [s] since the start."""

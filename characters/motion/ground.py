@@ -47,7 +47,7 @@ class Ground:
 
 
 FIXED_GROUND = Ground(np.zeros(2), 0.0)
-"""Ground at rest."""
+"""The ground below a motion that does not travel."""
 
 
 @dataclass(frozen=True)

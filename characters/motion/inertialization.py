@@ -21,7 +21,7 @@ class OffsetDecay:
     """An offset of any shape that decays to zero, with a given initial velocity."""
 
     offset: Array
-    """Its initial value."""
+    """Difference at time 0, which decays to zero."""
 
     velocity: Array
     """Its initial rate of change [1/s]."""
@@ -91,6 +91,7 @@ class Inertialization:
         """
         turns, later = (_rotation_offset(a, b) for a, b in zip(old, new, strict=True))
         spin = (_nearer(later, turns) - turns) / step
+        # A cut inside a clip would otherwise be played on as a velocity, and whirl the joint about.
         spin *= np.minimum(1.0, _MAX_JOINT_SPEED / np.maximum(_norm(spin), 1e-9))
         shifts, moved = (a.translations - b.translations for a, b in zip(old, new, strict=True))
         return Inertialization(
@@ -115,6 +116,8 @@ class Inertialization:
             morphs = np.maximum(own + offset, np.minimum(own, 0.0))  # as the new motion fades
         return Pose(
             pose.translations + self.translations.at(time),
+            # From the left: offsets are in the parent's frame, so the new motion may turn below
+            # them.
             rotations.multiply(turned, pose.rotations),
             scales,
             morphs,

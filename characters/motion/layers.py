@@ -103,7 +103,7 @@ class AdditiveLayer(_Layer):
         if weight == 0.0:
             return base
         over = self.over.sample(time)
-        return added(base, over, self._reference, _shares(self.mask, weight, over), weight)
+        return add(base, over, self._reference, _shares(self.mask, weight, over), weight)
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root of the base moves over the ground between two times [s]."""
@@ -150,7 +150,7 @@ def overlaid(base: Pose, over: Pose, shares: Array, morphs: float) -> Pose:
     )
 
 
-def added(base: Pose, over: Pose, reference: Pose, shares: Array, morphs: float) -> Pose:
+def add(base: Pose, over: Pose, reference: Pose, shares: Array, morphs: float) -> Pose:
     """Return the base plus shares (joints,) of the difference between `over` and the reference.
 
     Joints without a difference keep their exact values.

@@ -180,7 +180,7 @@ class Mirror:
         return RootDelta(-delta.x, delta.z, -delta.yaw)
 
     def clip(self, clip: Clip, name: str = "") -> Clip:
-        """Return a mirrored clip; `phased` then finds its footfalls."""
+        """Return a mirrored clip; `with_phase` then finds its footfalls."""
         return replace(clip, name=name or clip.name, poses=self.pose(clip.poses))
 
 

@@ -55,11 +55,10 @@ class Stretch:
 
 
 @dataclass(frozen=True)
-class Window:
+class TimeWindow:
     """A part of a motion; its first and last pose are held before and after it."""
 
     motion: Motion
-    """The motion."""
 
     start: float
     """Start of the part in the motion [s]."""
@@ -116,13 +115,14 @@ class Loop:
             return self.motion.travel(early, late)
         whole = self.motion.travel(0.0, self.duration)
         rest = self.motion.travel(early, self.duration)
-        return rest.then(whole.repeated(last - first - 1)).then(self.motion.travel(0.0, late))
+        return rest.then(whole.repeat(last - first - 1)).then(self.motion.travel(0.0, late))
 
     def _repetition(self, time: float) -> tuple[int, float]:
         """Return the number of the repetition at a time [s] and the time in it [s]."""
         if self.duration == 0.0:
             return 0, 0.0
         rounds = math.floor(time / self.duration)
+        # Rounding of the product may leave the interval by an ulp; the motion must not wrap there.
         return rounds, min(max(time - rounds * self.duration, 0.0), self.duration)
 
 
@@ -148,6 +148,7 @@ class RootOffset(TransformedMotion):
 
     def delta(self, delta: RootDelta) -> RootDelta:
         """Return a delta of the motion in the frame of the new place."""
+        # Conjugation: the same step, seen from the new place and heading.
         return self.offset.then(delta).then(self.offset.inverse())
 
 
@@ -160,7 +161,7 @@ class Filtered(TransformedMotion):
     """A motion whose poses go through a filter; `Cyclic`."""
 
     filter: PoseFilter
-    """The filter."""
+    """Called with each sampled pose."""
 
     def pose(self, pose: Pose) -> Pose:
         """Return a filtered pose."""
@@ -218,7 +219,6 @@ class Warped:
     """A motion whose time follows a curve."""
 
     motion: Motion
-    """The motion."""
 
     curve: TimeCurve
     """Maps times to times of the motion."""
@@ -244,5 +244,5 @@ def _finite(what: str, motion: Motion) -> None:
     if not math.isfinite(motion.duration):
         raise CharacterError(
             f"{what}: a {type(motion).__name__} of duration {motion.duration} s has no end; "
-            "take a Window of it"
+            "take a TimeWindow of it"
         )

@@ -99,7 +99,7 @@ class RootDelta:
         x, z = other.x - self.x, other.z - self.z
         return RootDelta(cosine * x - sine * z, sine * x + cosine * z, other.yaw - self.yaw)
 
-    def interpolated(self, other: "RootDelta", u: float) -> "RootDelta":
+    def interpolate(self, other: "RootDelta", u: float) -> "RootDelta":
         """Return the place a fraction u of the way to another, along a line."""
         return RootDelta(
             self.x + (other.x - self.x) * u,
@@ -107,12 +107,12 @@ class RootDelta:
             self.yaw + (other.yaw - self.yaw) * u,
         )
 
-    def repeated(self, times: int) -> "RootDelta":
+    def repeat(self, times: int) -> "RootDelta":
         """Return the delta composed with itself a whole number of times, in closed form.
 
         A negative number goes backward.
 
-        >>> square = RootDelta(z=1.0, yaw=math.pi / 2).repeated(4)
+        >>> square = RootDelta(z=1.0, yaw=math.pi / 2).repeat(4)
         >>> round(square.length, 9), round(square.yaw / math.pi, 9)
         (0.0, 2.0)
         """
@@ -126,7 +126,7 @@ class RootDelta:
         turned = RootDelta(yaw=(times - 1) * half).then(RootDelta(self.x * ratio, self.z * ratio))
         return RootDelta(turned.x, turned.z, times * self.yaw)
 
-    def scaled(self, factor: float) -> "RootDelta":
+    def scale(self, factor: float) -> "RootDelta":
         """Return the delta over a distance multiplied by a factor, with the same turn."""
         return RootDelta(self.x * factor, self.z * factor, self.yaw)
 

@@ -57,7 +57,7 @@ class PhasedMotion(PhaseDriven):
     """A looped motion with marks for its phase; `Cyclic`."""
 
     motion: Motion
-    """The looped motion."""
+    """What the phase runs through; the motion loops."""
 
     marks: tuple[float, ...] = ()
     """Times of phases 0, ½, 1, 1½ … over one loop of the motion [s]; empty: phase 0 at its start.
@@ -89,6 +89,7 @@ class PhasedMotion(PhaseDriven):
         (0.6, -0.8)
         """
         if not self.marks:
+            # Without marks phase 0 is the start of the loop.
             return phase * self.motion.duration
         loops, at = divmod(2 * phase, len(self.marks))
         mark = min(int(at), len(self.marks) - 1)
@@ -102,6 +103,7 @@ class PhasedMotion(PhaseDriven):
         gaps = [later - earlier for earlier, later in itertools.pairwise(times)]
         before = [gaps[-1], *gaps]
         after = [*gaps, gaps[0]]
+        # The harmonic mean keeps time monotone: a walk never runs backward between two steps.
         slopes = [2 * a * b / (a + b) for a, b in zip(before, after, strict=True)]
         return list(zip(times, slopes, strict=True))
 
@@ -111,7 +113,6 @@ class TransformedMotion(ABC):
     """Base of motions that change each pose and root delta of another motion; `Cyclic`."""
 
     motion: Motion
-    """The motion."""
 
     @property
     def duration(self) -> float:
@@ -153,17 +154,16 @@ class StaticPose:
     """A pose that is held; `Cyclic`, with a cycle of any length."""
 
     pose: Pose
-    """The pose."""
 
     duration: float
     """Length of its cycle [s], for blends."""
 
     def at(self, phase: float) -> Pose:
-        """Return the pose."""
+        """Return the pose, the same at every phase."""
         return self.pose
 
     def between(self, start: float, end: float) -> RootDelta:
-        """Return no movement."""
+        """Return no movement: a pose does not travel."""
         return RootDelta()
 
     sample = at
@@ -175,11 +175,10 @@ class UnphasedMotion:
     """A motion without an end, as a `Cyclic` whose phase is its time in seconds."""
 
     motion: Motion
-    """The motion."""
 
     @property
     def duration(self) -> float:
-        """Infinite."""
+        """Infinite, as it has no cycle that a blend could match."""
         return math.inf
 
     def at(self, phase: float) -> Pose:
@@ -248,7 +247,7 @@ def has_footfalls(motion: Motion) -> bool:
     return any(map(has_footfalls, members if inner is None else (inner,)))
 
 
-def phased(clip: Clip, skeleton: Skeleton) -> PhasedMotion:
+def with_phase(clip: Clip, skeleton: Skeleton) -> PhasedMotion:
     """Return a clip with its footfalls as marks, or without marks if it has no regular steps.
 
     On four legs the hind feet define the phase. Feet that land nearly together, as in a gallop or a

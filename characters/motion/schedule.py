@@ -96,7 +96,7 @@ class _Contribution:
     """Of its joints, (joints,)."""
 
     morph_weight: float
-    """Of its morphs."""
+    """Weight of its morphs, which fade apart from the joints."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ class Schedule:
     """
 
     actions: tuple[Action, ...]
-    """The actions."""
+    """In any order; where they overlap, their layers and weights decide."""
 
     rest: Pose
     """The skeleton's rest pose: shown by joints without actions, and reference of scales."""
@@ -126,7 +126,7 @@ class Schedule:
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]."""
         contributions = self._contributions(time)
-        return replace(_mixed(contributions), morphs=_mixed_morphs(contributions))
+        return replace(_mix(contributions), morphs=_mixed_morphs(contributions))
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
@@ -138,17 +138,17 @@ class Schedule:
 
     def without(self, name: str) -> "Schedule":
         """Return the schedule without an action, which disappears at once; see also `cut`."""
-        gone = self._named(name)
+        gone = self._action(name)
         return Schedule(tuple(a for a in self.actions if a is not gone), self.rest)
 
     def cut(self, name: str, time: float, fade: float = 0.25) -> "Schedule":
         """Return the schedule in which an action fades out from a time on [s], over `fade` [s]."""
-        old = self._named(name)
+        old = self._action(name)
         until = min(old.until, time + fade)
         new = replace(old, until=until, release=fade if until < old.until else old.release)
         return Schedule(tuple(new if a is old else a for a in self.actions), self.rest)
 
-    def _named(self, name: str) -> Action:
+    def _action(self, name: str) -> Action:
         for action in self.actions:
             if name and action.name == name:
                 return action
@@ -193,7 +193,7 @@ class Schedule:
                     f"{part.pose.rotations.shape[-2]} joints in a schedule of {joints}; "
                     "retarget the motion"
                 )
-            pose = _scaled(part.pose, self.rest, scale, action.scales)
+            pose = _scale(part.pose, self.rest, scale, action.scales)
             weights = part.weights * (weight * mask)
             yield _Contribution(pose, weights, part.morph_weight * weight * action.morphs)
 
@@ -255,7 +255,7 @@ class LiveSchedule:
         return self.schedule.travel(start, end)
 
 
-def _mixed(contributions: list[_Contribution]) -> Pose:
+def _mix(contributions: list[_Contribution]) -> Pose:
     """Return the weighted mean of poses, whose weights sum to one for each joint; no morphs."""
     share = np.stack([part.weights for part in contributions])
     turns = np.stack([part.pose.rotations for part in contributions])
@@ -291,7 +291,7 @@ def _mixed_morphs(contributions: list[_Contribution]) -> Array | None:
     return total
 
 
-def _scaled(pose: Pose, rest: Pose, scale: float, scales: Array | None) -> Pose:
+def _scale(pose: Pose, rest: Pose, scale: float, scales: Array | None) -> Pose:
     if scale == 1.0 and scales is None:
         return pose
     factor = (np.ones(rest.rotations.shape[-2]) if scales is None else scales)[:, None] * scale

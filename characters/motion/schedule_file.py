@@ -12,7 +12,7 @@ import numpy as np
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.motion.curves import Adsr, Ease, FadeCurve, Product, Weight
-from cubeling.characters.motion.modifiers import Filtered, PoseFilter, Stretch, Window
+from cubeling.characters.motion.modifiers import Filtered, PoseFilter, Stretch, TimeWindow
 from cubeling.characters.motion.motion import Motion
 from cubeling.characters.motion.schedule import Action, Schedule
 from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
@@ -60,13 +60,13 @@ Opener = Callable[[str], Motion]
 
 
 @dataclass
-class Element:
+class ScheduleElement:
     """An XML element, and where it begins."""
 
     tag: str
     attributes: Mapping[str, str]
     line: int
-    children: list["Element"] = field(default_factory=list)
+    children: list["ScheduleElement"] = field(default_factory=list)
     text: str = ""
 
 
@@ -121,16 +121,16 @@ class ScheduleReader:
         root = parse(text, origin)
         if root.tag != "blendingschedule":
             raise self._error(root, f"<{root.tag}> is not a <blendingschedule>")
-        self._known(root, ("actionpool", "activate"))
+        self._check_tag(root, ("actionpool", "activate"))
         pool: dict[str, Action] = {}
         for part in root.children:
             if part.tag == "actionpool":
-                self._known(part, ("blendingaction",))
+                self._check_tag(part, ("blendingaction",))
                 for each in part.children:
                     if self._name(each) in pool:
                         raise self._error(each, f"a second action {self._name(each)!r}; rename one")
                     pool[self._name(each)] = self._action(each)
-        actions = [self._activated(e, pool) for e in root.children if e.tag == "activate"]
+        actions = [self._activate(e, pool) for e in root.children if e.tag == "activate"]
         if not actions:
             raise self._error(root, "no action is activated; add <activate>")
         counts: dict[str, int] = {}
@@ -140,9 +140,9 @@ class ScheduleReader:
                 actions[number] = replace(action, name=f"{action.name} #{count}")
         return Schedule(tuple(actions), self._skeleton.rest)
 
-    def _action(self, element: Element) -> Action:
+    def _action(self, element: ScheduleElement) -> Action:
         """Return an action of the pool, which starts at 0."""
-        self._known(element, ("blendingparams", "blendableobject"))
+        self._check_tag(element, ("blendingparams", "blendableobject"))
         motion = self._object(self._one(element, "blendableobject"))
         found = [each for each in element.children if each.tag == "blendingparams"]
         if len(found) > 1:
@@ -162,37 +162,39 @@ class ScheduleReader:
             name=self._name(element),
         )
 
-    def _activated(self, element: Element, pool: Mapping[str, Action]) -> Action:
+    def _activate(self, element: ScheduleElement, pool: Mapping[str, Action]) -> Action:
         name, start = self._name(element), self._number(element, "offset", 0.0)
         if name not in pool:
             raise self._error(element, f"no action {name!r}; there are {', '.join(pool) or 'none'}")
         action = pool[name]
         return replace(action, start=start)
 
-    def _object(self, element: Element) -> Motion:
+    def _object(self, element: ScheduleElement) -> Motion:
         """Return the motion that an object describes."""
         kind = element.attributes.get("type", "")
         if kind == "keyframebodyanimation":
-            self._known(element, ())
-            return self._opened(self._open_motion, element)
+            self._check_tag(element, ())
+            return self._open(self._open_motion, element)
         if kind in ("idlemotion", "idleemotion"):
-            self._known(element, ("balance",))
-            return self._opened(self._open_idle, self._one(element, "balance"))
+            self._check_tag(element, ("balance",))
+            return self._open(self._open_idle, self._one(element, "balance"))
         if kind == "modifier":
-            self._known(element, ("modifier", "blendableobject"))
+            self._check_tag(element, ("modifier", "blendableobject"))
             inner = self._object(self._one(element, "blendableobject"))
-            return self._modified(self._one(element, "modifier"), inner)
+            return self._modify(self._one(element, "modifier"), inner)
         kinds = "keyframebodyanimation, idlemotion, modifier"
         raise self._error(element, f'type="{kind}" is not known here; there are {kinds}')
 
-    def _modified(self, element: Element, motion: Motion) -> Motion:
+    def _modify(self, element: ScheduleElement, motion: Motion) -> Motion:
         kind = element.attributes.get("type", "")
-        self._known(element, ("duration", "begin", "end"))
+        self._check_tag(element, ("duration", "begin", "end"))
         try:
             if kind == "stretch":
                 return Stretch(motion, self._number(element, "duration"))
             if kind == "window":
-                return Window(motion, self._number(element, "begin"), self._number(element, "end"))
+                return TimeWindow(
+                    motion, self._number(element, "begin"), self._number(element, "end")
+                )
             if kind in self._filters:
                 return Filtered(motion, self._filters[kind]())
         except CharacterError as error:
@@ -202,16 +204,16 @@ class ScheduleReader:
         known = ", ".join(("stretch", "window", *self._filters))
         raise self._error(element, f'type="{kind}" is not known here; there are {known}')
 
-    def _parameters(self, element: Element, duration: float) -> _Parameters:
+    def _parameters(self, element: ScheduleElement, duration: float) -> _Parameters:
         """Return the parameters of an action that lasts a duration [s]."""
         kind, ones = element.attributes.get("type", "none"), np.ones(len(self._skeleton))
         if kind == "none":
-            self._known(element, ())
+            self._check_tag(element, ())
             return _Parameters(ones, ones)
         if kind == "joints":
             return self._joints(element)
         if kind == "merge":
-            self._known(element, ("blendingparams",))
+            self._check_tag(element, ("blendingparams",))
             merged = _Parameters(ones, ones)
             for each in element.children:
                 one = self._parameters(each, duration)
@@ -222,12 +224,12 @@ class ScheduleReader:
                 )
             return merged
         if kind == "curve":
-            self._known(element, ("curveshape",))
+            self._check_tag(element, ("curveshape",))
             element = self._one(element, "curveshape")
             kind = element.attributes.get("type", "")
         return _Parameters(ones, ones, (self._curve(element, kind, duration),))
 
-    def _curve(self, element: Element, kind: str, duration: float) -> Weight:
+    def _curve(self, element: ScheduleElement, kind: str, duration: float) -> Weight:
         """Return a curve; its lengths are written in percent of the duration."""
         shapes: dict[str, Ease] = {"": "linear", "linear": "linear", "cubic": "cubic"}
         shapes["gonio"] = "gonio"
@@ -245,20 +247,20 @@ class ScheduleReader:
             return self._percent(element, name, 0.0) * duration
 
         if ending == "fade":
-            self._known(element, ("fadein", "fadeout"))
+            self._check_tag(element, ("fadein", "fadeout"))
             return FadeCurve(part("fadein"), part("fadeout"), shape)
-        self._known(element, ("attack", "decay", "sustain", "release"))
+        self._check_tag(element, ("attack", "decay", "sustain", "release"))
         level = self._percent(element, "sustain", 100.0)
         return Adsr(part("attack"), part("decay"), level, part("release"), shape)
 
-    def _joints(self, element: Element) -> _Parameters:
+    def _joints(self, element: ScheduleElement) -> _Parameters:
         """Return weights and scales of joints; later elements override earlier ones."""
-        self._known(element, ("default", "scope", "rotation", "translation"))
+        self._check_tag(element, ("default", "scope", "rotation", "translation"))
         weights, scales = np.ones(len(self._skeleton)), np.ones(len(self._skeleton))
         order = ("default", "scope", "rotation", "translation")
         for each in sorted(element.children, key=lambda child: order.index(child.tag)):
-            self._known(each, ())
-            joints = self._covered(each)
+            self._check_tag(each, ())
+            joints = self._joints_of(each)
             for name, values in (("weight", weights), ("scaling", scales)):
                 if name in each.attributes:
                     values[joints] = self._number(each, name)
@@ -266,7 +268,7 @@ class ScheduleReader:
             raise self._error(element, "a weight below 0")
         return _Parameters(weights, scales)
 
-    def _covered(self, element: Element) -> list[int]:
+    def _joints_of(self, element: ScheduleElement) -> list[int]:
         """Return the joints that an element is about."""
         everything = list(range(len(self._skeleton)))
         if element.tag == "default":
@@ -285,7 +287,7 @@ class ScheduleReader:
             raise self._error(element, f"no joint {name!r}")
         return [joint]
 
-    def _opened(self, opener: Opener, element: Element) -> Motion:
+    def _open(self, opener: Opener, element: ScheduleElement) -> Motion:
         name = element.text.strip()
         if not name:
             raise self._error(element, f"<{element.tag}> names no file")
@@ -294,26 +296,26 @@ class ScheduleReader:
         except CharacterError as error:
             raise self._error(element, str(error)) from None
 
-    def _one(self, element: Element, tag: str) -> Element:
+    def _one(self, element: ScheduleElement, tag: str) -> ScheduleElement:
         found = [each for each in element.children if each.tag == tag]
         if len(found) != 1:
             raise self._error(element, f"<{element.tag}> needs one <{tag}>, not {len(found)}")
         return found[0]
 
-    def _known(self, element: Element, tags: tuple[str, ...]) -> None:
+    def _check_tag(self, element: ScheduleElement, tags: tuple[str, ...]) -> None:
         for child in element.children:
             if child.tag not in tags:
                 there = ", ".join(f"<{tag}>" for tag in tags) or "none"
                 message = f"<{child.tag}> is not known in <{element.tag}>; there are {there}"
                 raise self._error(child, message)
 
-    def _name(self, element: Element) -> str:
+    def _name(self, element: ScheduleElement) -> str:
         name = element.attributes.get("id", "")
         if not name:
             raise self._error(element, f"<{element.tag}> has no id")
         return name
 
-    def _number(self, element: Element, name: str, default: float | None = None) -> float:
+    def _number(self, element: ScheduleElement, name: str, default: float | None = None) -> float:
         """Return a number, which is an attribute or the text of an element; "0.5f" is 0.5."""
         texts = [each.text for each in element.children if each.tag == name]
         text = element.attributes.get(name, texts[0] if texts else None)
@@ -329,18 +331,18 @@ class ScheduleReader:
             raise self._error(element, f'{name}="{text.strip()[:40]}" is not a number')
         return number
 
-    def _percent(self, element: Element, name: str, default: float) -> float:
+    def _percent(self, element: ScheduleElement, name: str, default: float) -> float:
         """Return a share that is written in percent."""
         number = self._number(element, name, default)
         if not 0.0 <= number <= 100.0:
             raise self._error(element, f"{name} is {number:g} percent; give 0 to 100")
         return number / 100.0
 
-    def _error(self, element: Element, message: str) -> CharacterError:
+    def _error(self, element: ScheduleElement, message: str) -> CharacterError:
         return CharacterError(f"{self._origin}:{element.line}: {message}")
 
 
-def parse(text: bytes, origin: str) -> Element:
+def parse(text: bytes, origin: str) -> ScheduleElement:
     """Return the root of an XML document.
 
     Raises
@@ -348,10 +350,14 @@ def parse(text: bytes, origin: str) -> Element:
     CharacterError
         If it is not well-formed, or declares entities.
     """
-    parser, open_elements, roots = expat.ParserCreate(), list[Element](), list[Element]()
+    parser, open_elements, roots = (
+        expat.ParserCreate(),
+        list[ScheduleElement](),
+        list[ScheduleElement](),
+    )
 
     def start(tag: str, attributes: dict[str, str]) -> None:
-        element = Element(tag, attributes, parser.CurrentLineNumber)
+        element = ScheduleElement(tag, attributes, parser.CurrentLineNumber)
         if len(open_elements) >= MAX_DEPTH:
             raise CharacterError(f"{origin}:{element.line}: more than {MAX_DEPTH} nested elements")
         (open_elements[-1].children if open_elements else roots).append(element)

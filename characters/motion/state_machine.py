@@ -88,7 +88,7 @@ class StateMachine:
 
     @property
     def duration(self) -> float:
-        """Infinite."""
+        """Infinite: it stays in its last state."""
         return math.inf
 
     def request(
@@ -153,17 +153,18 @@ class StateMachine:
             )
         last = self._switches[-1]
         if last.below is not None and last.weight(time) >= 1.0:
+            # Or the chain of states below would grow with every request.
             last = replace(last, below=None)  # drop finished states
         if crossfade > 0.0 and not last.plays(state):
             if begin is not None:
                 begin()
             switch = _Switch(time, state, motion, None, None, last, crossfade)
         else:
-            switch = self._inertialized(last, state, motion, time, begin)
+            switch = self._inertialize(last, state, motion, time, begin)
         # Two switches are enough to look back over one frame.
         self._switches = [last, switch]
 
-    def _inertialized(
+    def _inertialize(
         self,
         last: _Switch,
         state: str,
@@ -172,7 +173,8 @@ class StateMachine:
         begin: Callable[[], None] | None,
     ) -> _Switch:
         # Forward differences: before its start, a loop with a gap would jump.
-        old = (self._shown(last, time), self._shown(last, time + _VELOCITY_STEP_S))
+        old = (self._sample(last, time), self._sample(last, time + _VELOCITY_STEP_S))
+        # Before `begin`: it may restart the very motion that is being left.
         old_delta = self._travel(last, time, time + _VELOCITY_STEP_S)
         if begin is not None:
             begin()
@@ -190,7 +192,7 @@ class StateMachine:
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]."""
-        return self._shown(self._switches[self._active(time)], time)
+        return self._sample(self._switches[self._active(time)], time)
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
@@ -205,12 +207,12 @@ class StateMachine:
     def _motion(self, switch: _Switch) -> Motion:
         return switch.motion or self.states[switch.state]
 
-    def _shown(self, switch: _Switch, time: float) -> Pose:
+    def _sample(self, switch: _Switch, time: float) -> Pose:
         """Return the pose at a time [s] without later switches."""
         pose = self._motion(switch).sample(time - switch.time)
         weight = switch.weight(time)
         if switch.below is not None and weight < 1.0:
-            pose = mix([self._shown(switch.below, time), pose], [1.0 - weight, weight])
+            pose = mix([self._sample(switch.below, time), pose], [1.0 - weight, weight])
         if switch.transition is None:
             return pose
         return switch.transition.apply(pose, time - switch.time)
@@ -221,12 +223,12 @@ class StateMachine:
         if below is None or fade_end <= start:
             return self._own_travel(switch, start, end)
 
-        def mixed(low: float, high: float, weight_time: float) -> RootDelta:
+        def step(low: float, high: float, weight_time: float) -> RootDelta:
             weight = switch.weight(weight_time)
             deltas = [self._travel(below, low, high), self._own_travel(switch, low, high)]
             return mean_delta(deltas, [1.0 - weight, weight])
 
-        during = integrate_travel(start, fade_end, mixed)
+        during = integrate_travel(start, fade_end, step)
         return during.then(self._own_travel(switch, fade_end, end))
 
     def _own_travel(self, switch: _Switch, start: float, end: float) -> RootDelta:

@@ -22,6 +22,7 @@ from cubeling.characters.rendering.scene import (
     RIM_SHARE as RIM_SHARE,
     WALL_SHARE as WALL_SHARE,
     Box as Box,
+    CameraView as CameraView,
     FloorPath as FloorPath,
     Focus as Focus,
     HandInFront as HandInFront,
@@ -29,7 +30,6 @@ from cubeling.characters.rendering.scene import (
     Scene as Scene,
     SceneCharacter as SceneCharacter,
     Softness as Softness,
-    View as View,
 )
 from cubeling.characters.rendering.stage import Stage as Stage
 from cubeling.characters.rendering.toys import GRIP_M as GRIP_M, toy as toy

@@ -18,7 +18,7 @@ from cubeling.characters.rendering.portrait_camera import (
     joints_below,
 )
 from cubeling.characters.rendering.quality import FULL
-from cubeling.characters.rendering.scene import SceneCharacter, View
+from cubeling.characters.rendering.scene import CameraView, SceneCharacter
 from cubeling.characters.rendering.stage import Stage
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
@@ -117,7 +117,7 @@ class PortraitRenderer:
             The character has no such part.
         """
         pose = character.skeleton.rest if pose is None else pose
-        framed = [pose, *(_sampled(extent) if isinstance(extent, Clip) else extent)]
+        framed = [pose, *(_sample(extent) if isinstance(extent, Clip) else extent)]
         place = _place(character, azimuth)
         camera = self._camera(character, [(each, place) for each in framed], elevation, focus)
         return self._draw(character, pose, place, camera, wrinkles, blood)
@@ -147,7 +147,7 @@ class PortraitRenderer:
     ) -> Image:
         """Return a character from `count` sides, side by side, from the front to its left."""
         pose = character.skeleton.rest if pose is None else pose
-        ((_, back),) = _centered([pose], character)
+        ((_, back),) = _center([pose], character)
         places = [_place(character, math.tau * turn / count) @ back for turn in range(count)]
         camera = self._camera(character, [(pose, place) for place in places], elevation, focus)
         return side_by_side([self._draw(character, pose, place, camera) for place in places])
@@ -172,7 +172,7 @@ class PortraitRenderer:
         shown = [clip.sample(float(time)) for time in times]
         place = _place(character, azimuth)
         framed = [
-            (pose, place @ back) for pose, back in _centered([*shown, *_sampled(clip)], character)
+            (pose, place @ back) for pose, back in _center([*shown, *_sample(clip)], character)
         ]
         camera = self._camera(character, framed, elevation, focus)
         return side_by_side([self._draw(character, *each, camera) for each in framed[: len(shown)]])
@@ -216,7 +216,7 @@ class PortraitRenderer:
     ) -> Image:
         width, height = self.size
         paper = np.full((height, width, 3), PAPER_BGR, np.uint8)
-        view = View(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
+        view = CameraView(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
         posed = PosedCharacter(pose, place, True, "", 0.0, 0.0, 0.0, 0.0)
         picture = self._stage.draw(view, [SceneCharacter(character, posed, wrinkles, blood)])
         faded = np.asarray(cv2.blendLinear(picture, paper, self._fade, 1.0 - self._fade), np.uint8)
@@ -252,13 +252,13 @@ def _place(character: Character, azimuth: float) -> Array:
     return place
 
 
-def _sampled(clip: Clip) -> list[Pose]:
+def _sample(clip: Clip) -> list[Pose]:
     """Return evenly spaced poses of a clip."""
     count = min(SAMPLED_POSES, len(clip))
     return [clip.sample(float(time)) for time in np.linspace(0.0, clip.duration, count)]
 
 
-def _centered(poses: Sequence[Pose], character: Character) -> list[tuple[Pose, Array]]:
+def _center(poses: Sequence[Pose], character: Character) -> list[tuple[Pose, Array]]:
     """Return poses, each with the transform (4, 4) back to the centre and to the front."""
     joints = np.stack([pose.globals(character.skeleton) for pose in poses])[..., :3, 3]
     rotation = rotations.to_matrix(rotations.about("y", -_mean_heading(joints, character.anatomy)))

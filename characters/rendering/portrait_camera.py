@@ -90,7 +90,7 @@ class CharacterExtent:
         if mixed is not None:
             self._positions[: vertices.moved] = mixed[:, :3]
         selected = self._extreme if part is None else self._extreme[part[self._owners]]
-        return vertices.skinned(vertices.palette(joints), selected, self._positions[selected])
+        return vertices.skin(vertices.palette(joints), selected, self._positions[selected])
 
 
 def joints_below(character: Drawable, part: str) -> NDArray[np.bool_]:

@@ -26,16 +26,16 @@ class Rectangle:
     """An area of the picture in whole pixels."""
 
     x: int
-    """Left column."""
+    """Left column, in pixels of the picture."""
 
     y: int
-    """Top row."""
+    """Top row, in pixels of the picture."""
 
     width: int
-    """Number of columns."""
+    """Number of columns, in pixels of the picture."""
 
     height: int
-    """Number of rows."""
+    """Number of rows, in pixels of the picture."""
 
     @property
     def slices(self) -> tuple[slice, slice]:
@@ -88,8 +88,11 @@ def clip_from_camera(matrix: Array, area: Rectangle) -> Array:
     return np.array(
         [
             [scale_x * fx, scale_x * skew, scale_x * (cx + 0.5 - area.x) - 1.0, 0.0],
+            # +y, unlike OpenGL's own convention: row 0 of the viewport is the top row, and nothing
+            # is flipped.
             [0.0, scale_y * fy, scale_y * (cy + 0.5 - area.y) - 1.0, 0.0],
             [0.0, 0.0, depth, -2.0 * FAR_M * NEAR_M / (FAR_M - NEAR_M)],
+            # w = +z: OpenCV's camera looks along +z, OpenGL's along −z.
             [0.0, 0.0, 1.0, 0.0],
         ]
     )
@@ -112,6 +115,7 @@ def bounding_rectangle(
     in_camera = camera_from_points[:3, :3] @ points.T + camera_from_points[:3, 3:]
     if not len(points) or in_camera[2].max() < NEAR_M:
         return None
+    # A point behind the camera projects to the wrong side; no rectangle can be told then.
     if in_camera[2].min() < NEAR_M:
         return Rectangle(0, 0, *size)
     pixels = matrix[:2] @ (in_camera / in_camera[2])
@@ -121,6 +125,7 @@ def bounding_rectangle(
     ):
         rim = MARGIN_PX + RELATIVE_MARGIN * (high - low)
         first = min(max(math.floor(low - rim), 0), side)
+        # + 1: the end is exclusive, and a pixel reaches half beyond its centre.
         ranges.append((first, min(max(math.ceil(high + rim) + 1, 0), side) - first))
     (x, width), (y, height) = ranges
     return Rectangle(x, y, width, height) if min(width, height) > 0 else None

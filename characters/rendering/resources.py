@@ -89,7 +89,7 @@ class FrameResources:
     """What the picture shows."""
 
     undistorted: Callable[[], Image]
-    """Waits for `picture`."""
+    """Returns `picture` without lens distortion, when a thread has computed it."""
 
     size: tuple[int, int]
     """(width, height) of the picture [px]."""
@@ -142,6 +142,7 @@ class FrameResources:
     def camera_position(self) -> Array:
         """The camera in the table frame, (3,) [m]."""
         rotation, origin = self.camera_from_table[:3, :3], self.camera_from_table[:3, 3]
+        # −Rᵀ t, written as a row times a matrix.
         return np.asarray(-origin @ rotation, float)
 
     @cached_property

@@ -130,7 +130,7 @@ class Focus:
 
 
 @dataclass(frozen=True)
-class View:
+class CameraView:
     """The camera's picture and what is known about the scene in it."""
 
     image: NDArray[np.uint8] | None
@@ -167,7 +167,7 @@ class Drawable(Protocol):
 
     @property
     def meshes(self) -> Sequence[Mesh]:
-        """Skinned meshes."""
+        """Meshes that follow the joints of `skeleton`."""
 
     @property
     def skeleton(self) -> Skeleton:
@@ -220,7 +220,7 @@ class FloorPath:
 class Scene:
     """Everything that one picture shows."""
 
-    view: View
+    view: CameraView
     """The camera's frame, and the real cubes in it."""
 
     characters: Sequence[SceneCharacter]

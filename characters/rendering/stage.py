@@ -19,7 +19,13 @@ from cubeling.characters.rendering.programs import ShaderPrograms
 from cubeling.characters.rendering.projection import is_invertible, is_pinhole
 from cubeling.characters.rendering.quality import FULL, QUALITIES, Quality
 from cubeling.characters.rendering.resources import FrameResources
-from cubeling.characters.rendering.scene import FloorPath, Scene, SceneCharacter, Softness, View
+from cubeling.characters.rendering.scene import (
+    CameraView,
+    FloorPath,
+    Scene,
+    SceneCharacter,
+    Softness,
+)
 from cubeling.characters.rendering.target import TargetCache
 from cubeling.characters.skeleton.pose import Array
 
@@ -116,7 +122,7 @@ class Stage:
 
     def draw(
         self,
-        view: View,
+        view: CameraView,
         characters: Sequence[SceneCharacter],
         floor: Sequence[FloorPath] = (),
     ) -> Image:
@@ -180,7 +186,7 @@ class Stage:
         self._undistorter.release()
         self.programs.release()
 
-    def _softness(self, view: View) -> Softness | None:
+    def _softness(self, view: CameraView) -> Softness | None:
         """Return the blur and noise of what is drawn; a coarse layer is blurred to be smooth."""
         return view.softness if self._quality.matched else CoarseSoftness()
 

@@ -40,12 +40,12 @@ class Toy:
     """Its surface [m]; it stands at the origin."""
 
     skeleton: Skeleton = _ONE_JOINT
-    """Its joint."""
+    """A single joint, which carries the whole toy."""
 
     morphs: tuple[str, ...] = ()
-    """None."""
+    """A toy has no morph targets."""
 
-    def placed(self, table_from_toy: Array, timestamp: float) -> SceneCharacter:
+    def place(self, table_from_toy: Array, timestamp: float) -> SceneCharacter:
         """Return it as it is to be drawn at a place, (4, 4) [m]."""
         pose = self.skeleton.rest
         posed = PosedCharacter(pose, table_from_toy, True, "still", 0.0, 0.0, 0.0, timestamp)
@@ -53,7 +53,7 @@ class Toy:
 
 
 @dataclass(frozen=True)
-class _Part:
+class _ToyPart:
     """Some vertices of a toy."""
 
     positions: Array  # (n, 3) [m]
@@ -61,11 +61,11 @@ class _Part:
     triangles: NDArray[np.int64]  # (m, 3), counter-clockwise from outside
     color: tuple[float, float, float]  # linear RGB
 
-    def transformed(self, turn: Array, origin: ArrayLike) -> "_Part":
+    def transform(self, turn: Array, origin: ArrayLike) -> "_ToyPart":
         """Return it after a linear map (3, 3), moved to an origin."""
         normals = self.normals @ np.linalg.inv(turn)
         normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-        return _Part(
+        return _ToyPart(
             self.positions @ turn.T + np.asarray(origin), normals, self.triangles, self.color
         )
 
@@ -84,7 +84,7 @@ def toy(name: str) -> Toy:
     return Toy(name, (_mesh(name, TOYS[name]()),))
 
 
-def _flower() -> list[_Part]:
+def _flower() -> list[_ToyPart]:
     """Return a flower in a pot, which looks up and to the player."""
     pot = [*_round(_CLAY, (0.0, 0.0), (0.0075, 0.0), (0.0095, 0.013)), *_rim(0.0095, 0.013, _CLAY)]
     facing = _about_x(np.deg2rad(55))
@@ -92,11 +92,11 @@ def _flower() -> list[_Part]:
     petals = []
     for angle in np.arange(6) * np.pi / 3:
         turn = facing @ _about_y(angle)
-        petal = _ball(_PINK).transformed(turn @ np.diag([0.0055, 0.0018, 0.0075]), (0.0, 0.0, 0.0))
-        petals.append(petal.transformed(np.eye(3), head + turn @ [0.0, 0.0, 0.0085]))
-    middle = _ball(_YELLOW).transformed(facing @ np.diag([0.0052, 0.0036, 0.0052]), head)
+        petal = _ball(_PINK).transform(turn @ np.diag([0.0055, 0.0018, 0.0075]), (0.0, 0.0, 0.0))
+        petals.append(petal.transform(np.eye(3), head + turn @ [0.0, 0.0, 0.0085]))
+    middle = _ball(_YELLOW).transform(facing @ np.diag([0.0052, 0.0036, 0.0052]), head)
     leaves = [
-        _ball(_GREEN).transformed(
+        _ball(_GREEN).transform(
             _about_z(side * 0.6) @ np.diag([0.0085, 0.0012, 0.0035]), (side * 0.008, height, 0.0)
         )
         for side, height in ((1, 0.030), (-1, 0.036))
@@ -104,16 +104,16 @@ def _flower() -> list[_Part]:
     return [*pot, *_stick(_GREEN, 0.088, 0.0013), *petals, middle, *leaves]
 
 
-def _balloon() -> list[_Part]:
+def _balloon() -> list[_ToyPart]:
     """Return a balloon on a stick with a foot."""
-    body = _ball(_RED).transformed(np.diag([0.0155, 0.0185, 0.0155]), (0.0, 0.105, 0.0))
+    body = _ball(_RED).transform(np.diag([0.0155, 0.0185, 0.0155]), (0.0, 0.105, 0.0))
     knot = _round(_RED, (0.0, 0.0835), (0.0032, 0.0835), (0.0008, 0.0875))
     return [*_foot(_BLUE), *_stick(_WHITE, 0.086, 0.0008), body, *knot]
 
 
-def _flag() -> list[_Part]:
+def _flag() -> list[_ToyPart]:
     """Return a pennant with a stripe on a pole."""
-    knob = _ball(_YELLOW).transformed(0.0026 * np.eye(3), (0.0, 0.110, 0.0))
+    knob = _ball(_YELLOW).transform(0.0026 * np.eye(3), (0.0, 0.110, 0.0))
     cloth = [
         _pennant(0.110, 0.084, 0.0, 0.030, _BLUE),
         _pennant(0.101, 0.093, 0.0004, 0.0301, _YELLOW),
@@ -121,7 +121,7 @@ def _flag() -> list[_Part]:
     return [*_foot(_WOOD), *_stick(_WOOD, 0.110, 0.0012), knob, *cloth]
 
 
-TOYS: dict[str, Callable[[], list[_Part]]] = {
+TOYS: dict[str, Callable[[], list[_ToyPart]]] = {
     "flower": _flower,
     "balloon": _balloon,
     "flag": _flag,
@@ -129,15 +129,15 @@ TOYS: dict[str, Callable[[], list[_Part]]] = {
 """What makes the parts of each toy."""
 
 
-def _foot(color: tuple[float, float, float]) -> list[_Part]:
+def _foot(color: tuple[float, float, float]) -> list[_ToyPart]:
     return _round(color, (0.0, 0.0), (0.0095, 0.0), (0.0095, 0.002), (0.0012, 0.006))
 
 
-def _stick(color: tuple[float, float, float], top: float, radius: float) -> list[_Part]:
+def _stick(color: tuple[float, float, float], top: float, radius: float) -> list[_ToyPart]:
     return _round(color, (radius, 0.002), (radius, top), (0.0, top))
 
 
-def _rim(radius: float, height: float, color: tuple[float, float, float]) -> list[_Part]:
+def _rim(radius: float, height: float, color: tuple[float, float, float]) -> list[_ToyPart]:
     """Return the earth in a pot and the edge around it."""
     wide, dark = radius * 1.12, (0.05, 0.03, 0.02)
     edge = _round(color, (radius, height - 0.003), (wide, height - 0.003), (wide, height))
@@ -145,20 +145,22 @@ def _rim(radius: float, height: float, color: tuple[float, float, float]) -> lis
             *_round(dark, (0.8 * radius, height), (0.0, height))]  # fmt: skip
 
 
-def _round(color: tuple[float, float, float], *profile: tuple[float, float]) -> list[_Part]:
+def _round(color: tuple[float, float, float], *profile: tuple[float, float]) -> list[_ToyPart]:
     """Return surfaces of revolution about +y through (radius, height) [m], with sharp edges."""
-    return [_turned(np.array(pair), color) for pair in itertools.pairwise(profile)]
+    return [_revolve(np.array(pair), color) for pair in itertools.pairwise(profile)]
 
 
-def _ball(color: tuple[float, float, float]) -> _Part:
+def _ball(color: tuple[float, float, float]) -> _ToyPart:
     """Return a sphere of radius 1."""
     angles = np.linspace(-np.pi / 2, np.pi / 2, 13)
     radius = np.cos(angles)
     radius[[0, -1]] = 0.0  # not 1e-16: each pole is one point
-    return _turned(np.stack([radius, np.sin(angles)], axis=1), color, sphere=True)
+    return _revolve(np.stack([radius, np.sin(angles)], axis=1), color, sphere=True)
 
 
-def _turned(profile: Array, color: tuple[float, float, float], *, sphere: bool = False) -> _Part:
+def _revolve(
+    profile: Array, color: tuple[float, float, float], *, sphere: bool = False
+) -> _ToyPart:
     """Return a surface of revolution through (rings, 2), from below to above on its outside."""
     radius, height = profile.T
     along = profile[-1] - profile[0]
@@ -176,12 +178,12 @@ def _turned(profile: Array, color: tuple[float, float, float], *, sphere: bool =
     up, across_up = here + _SIDES, there + _SIDES
     lower, upper = np.stack([here, there, across_up], 1), np.stack([here, across_up, up], 1)
     triangles = np.concatenate([lower[radius[ring] > 0], upper[radius[ring + 1] > 0]])
-    return _Part(around(radius, height), around(*across.T), triangles, color)
+    return _ToyPart(around(radius, height), around(*across.T), triangles, color)
 
 
 def _pennant(
     top: float, bottom: float, inset: float, length: float, color: tuple[float, float, float]
-) -> _Part:
+) -> _ToyPart:
     """Return a waving triangle of cloth from two heights on a pole to its tip, both sides."""
     shares = np.linspace(0.0, 1.0, 13)
     middle, half = (top + bottom) / 2, (top - bottom) / 2 * (1 - shares)
@@ -198,10 +200,10 @@ def _pennant(
                             np.stack([first, low + 1, first + 1], 1)])  # fmt: skip
     normals = np.concatenate([np.tile(normal, (2, 1)), -np.tile(normal, (2, 1))])
     triangles = np.concatenate([faces, faces[:, ::-1] + len(front)])
-    return _Part(np.concatenate([front, back]), normals, triangles, color)
+    return _ToyPart(np.concatenate([front, back]), normals, triangles, color)
 
 
-def _mesh(name: str, parts: Sequence[_Part]) -> Mesh:
+def _mesh(name: str, parts: Sequence[_ToyPart]) -> Mesh:
     """Return all parts as one mesh that the one joint moves."""
     counts = [len(part.positions) for part in parts]
     starts = np.cumsum([0, *counts[:-1]])

@@ -32,7 +32,7 @@ class FootPath:
     def contacts(self) -> list[tuple[int, int]]:
         """First frame and number of frames of each contact that can be held."""
         found = spans(self.heel | self.ball, loop=False)
-        return [each for each in found if np.abs(self._wanted(*each)).max() < self.max_correction]
+        return [each for each in found if np.abs(self._goal(*each)).max() < self.max_correction]
 
     @cached_property
     def standing(self) -> NDArray[np.bool_]:
@@ -47,7 +47,7 @@ class FootPath:
         """How its end moves to be held, (frames, 3) [m]; zero between the contacts."""
         corrections = np.zeros_like(self.goal)
         for first, length in self.contacts:
-            corrections[first : first + length] = self._wanted(first, length)
+            corrections[first : first + length] = self._goal(first, length)
         return np.asarray(corrections + self.steps)
 
     def stepping(self, missing: Array) -> "FootPath":
@@ -62,7 +62,7 @@ class FootPath:
             steps[span] += missing[span][farthest]
         return replace(self, steps=steps)
 
-    def held(self, shift: Array) -> Array:
+    def hold(self, shift: Array) -> Array:
         """Return the positions of its end, (frames, 3) [m], constant during contacts.
 
         A swinging foot moves with the body, which is shifted by (frames, 3) [m].
@@ -73,7 +73,7 @@ class FootPath:
         held[:, 1] = np.maximum(held[:, 1], self.lowest)
         return held
 
-    def _wanted(self, first: int, length: int) -> Array:
+    def _goal(self, first: int, length: int) -> Array:
         span = np.arange(first, first + length)
         return np.asarray(self._contact_positions(span) - self.goal[span])
 

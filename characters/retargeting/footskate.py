@@ -21,13 +21,13 @@ from cubeling.characters.retargeting.heel_rise import Heels
 from cubeling.characters.retargeting.hips_shift import (
     HeldLegs,
     following_feet,
-    smooth_bound,
+    upper_envelope,
     with_listing_hips,
     with_moved_hips,
 )
 from cubeling.characters.retargeting.leg_ik import place_ankle
 from cubeling.characters.retargeting.rig import LegJoints, Rig
-from cubeling.characters.retargeting.soles import stretched_to_fit, tilted_to_fit, tilts
+from cubeling.characters.retargeting.soles import stretch_to_fit, tilt_to_fit, tilts
 from cubeling.characters.retargeting.transfer import (
     ankle_positions,
     clip_in_common_axes,
@@ -37,7 +37,7 @@ from cubeling.characters.retargeting.transfer import (
 )
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array, Pose
-from cubeling.characters.smoothing import gaussian_smoothed
+from cubeling.characters.smoothing import gaussian_smooth
 
 # Lengths in leg lengths.
 _MAX_BALL_RISE = 0.02  # of the ball of a standing foot above its lowest position
@@ -112,17 +112,17 @@ def hold_feet_in_contact(
         heights = ankles[..., 1] - rig.floor
         pose = _on_soles(pose, rig, legs, heights, contacts, ground)
     clearances = np.zeros(ankles.shape[:2])
-    held = _held(pose, rig, legs, ankles, contacts, ground, clearances)
+    held = _hold(pose, rig, legs, ankles, contacts, ground, clearances)
     for _ in range(_RAISING_ROUNDS):
         depths = rig.sole_depths(held, legs)
         if (depths <= _MAX_DEPTH * rig.leg_length).all():
             break
-        clearances += np.stack([smooth_bound(each, ground) for each in depths.T], axis=1)
-        held = _held(pose, rig, legs, ankles, contacts, ground, clearances)
+        clearances += np.stack([upper_envelope(each, ground) for each in depths.T], axis=1)
+        held = _hold(pose, rig, legs, ankles, contacts, ground, clearances)
     return held if rig.floor is None else _with_toes_above(held, rig, legs, rig.floor)
 
 
-def _held(
+def _hold(
     pose: Pose,
     rig: Rig,
     legs: Sequence[LegJoints],
@@ -147,10 +147,10 @@ def _held(
         pose = with_moved_hips(level, rig, rise[:, None] * [0.0, 1.0, 0.0])
         pose = with_listing_hips(pose, rig, legs, held.list_to_extension(pose, extensions))
         held = replace(held, ankles=_held_places(paths, shift, ground) - to_balls)
-        drop = heels.raised(held, heels.tilts(held, pose)).drop_to_reach(pose, most)
+        drop = heels.raise_legs(held, heels.tilts(held, pose)).drop_to_reach(pose, most)
         pose = with_moved_hips(pose, rig, drop[:, None] * [0.0, -1.0, 0.0])
         for _ in range(_STEPPING_ROUNDS):
-            raised = heels.raised(held, heels.tilts(held, pose))
+            raised = heels.raise_legs(held, heels.tilts(held, pose))
             missing = np.moveaxis(raised.missing_reach(pose), 1, 0)
             paths = [
                 path.stepping(ground.directions_to_ground(way))
@@ -161,7 +161,7 @@ def _held(
         lowest = np.stack([ground.middle_cycle(path.lowest) for path in paths], axis=1)
         held = held.swinging_as_long(pose, extensions, lowest - to_balls[..., 1])
     heel_tilts = heels.tilts(held, pose)
-    pose, held = heels.turned(pose, heel_tilts), heels.raised(held, heel_tilts)
+    pose, held = heels.turn_by(pose, heel_tilts), heels.raise_legs(held, heel_tilts)
     ankles = rotations.rotate(rotations.conjugate(rig.common_from_skeleton), held.ankles)
     for number, leg in enumerate(legs):
         pose = place_ankle(pose, rig, leg, ankles[:, number])
@@ -219,7 +219,7 @@ def _held_places(paths: Sequence[FootPath], shift: Array, ground: GroundMotion) 
 
     The shift is over the ground.
     """
-    return np.stack([ground.from_ground(path.held(shift)) for path in paths], axis=1)
+    return np.stack([ground.from_ground(path.hold(shift)) for path in paths], axis=1)
 
 
 def ball_positions(pose: Pose, rig: Rig, leg: LegJoints) -> Array:
@@ -243,7 +243,7 @@ def _on_soles(
     `heights` are those of the ankles above the ground, (frames, legs) [m].
     """
     smoothing = _TILT_SMOOTHING_S * ground.rate
-    on_ball = gaussian_smoothed(ground.repeat(contacts.ball.astype(float)), smoothing)
+    on_ball = gaussian_smooth(ground.repeat(contacts.ball.astype(float)), smoothing)
     on_ball = ground.middle_cycle(on_ball)
     for number, leg in enumerate(legs):
         sole = rig.sole(leg)
@@ -251,22 +251,22 @@ def _on_soles(
         turns = turns_from_rest(pose, rig, joints)
         useful = np.clip(sole.highest_tilt / np.maximum(tilts(turns[:, 0]), 1e-3), 1.0, _MAX_TILT)
         greatest = 1.0 + (useful - 1.0) * on_ball[:, number]
-        fitting = tilted_to_fit(turns[:, 0], heights[:, number], sole.clearance, greatest)
-        turns[:, 0] = _smoothly_turned(turns[:, 0], fitting, ground)
+        fitting = tilt_to_fit(turns[:, 0], heights[:, number], sole.clearance, greatest)
+        turns[:, 0] = _turn_smoothly(turns[:, 0], fitting, ground)
         if leg.toes is not None:
             balls = heights[:, number] + rotations.rotate(turns[:, 0], sole.ball)[:, 1]
-            turns[:, 1] = stretched_to_fit(
+            turns[:, 1] = stretch_to_fit(
                 turns[:, 1], turns[:, 0], balls, sole.toes_clearance, on_ball[:, number]
             )
         pose = with_turns_from_rest(pose, rig, joints, turns)
     return pose
 
 
-def _smoothly_turned(turns: Array, wanted: Array, ground: GroundMotion) -> Array:
+def _turn_smoothly(turns: Array, wanted: Array, ground: GroundMotion) -> Array:
     """Return turns (frames, 4) that go to the wanted ones by a change that is smooth in time."""
     change = rotations.multiply(wanted, rotations.conjugate(turns))
     vectors = ground.repeat(rotations.to_rotation_vector(change))
-    vectors = gaussian_smoothed(vectors, _TILT_SMOOTHING_S * ground.rate)
+    vectors = gaussian_smooth(vectors, _TILT_SMOOTHING_S * ground.rate)
     smooth = rotations.from_rotation_vector(ground.middle_cycle(vectors))
     return rotations.multiply(smooth, turns)
 
@@ -279,6 +279,6 @@ def _with_toes_above(pose: Pose, rig: Rig, legs: Sequence[LegJoints], floor: flo
         toes = rig.placements(pose, [leg.toes])[:, leg.toes, :3, 3]
         heights = in_common_axes(rig, toes)[:, 1] - floor
         turns = turns_from_rest(pose, rig, [leg.toes])
-        turns[:, 0] = tilted_to_fit(turns[:, 0], heights, rig.sole(leg).toes_clearance)
+        turns[:, 0] = tilt_to_fit(turns[:, 0], heights, rig.sole(leg).toes_clearance)
         pose = with_turns_from_rest(pose, rig, [leg.toes], turns)
     return pose

@@ -28,10 +28,8 @@ class Heels:
     """Feet of a clip that may turn about their balls."""
 
     rig: Rig
-    """The skeleton."""
 
     legs: Sequence[LegJoints]
-    """Its legs."""
 
     pose: Pose
     """The clip, its feet turned as in the motion."""
@@ -62,7 +60,7 @@ class Heels:
         least, most = np.zeros(self.on_ball.shape), np.full(self.on_ball.shape, _MAX_TILT)
         for _ in range(_HALVINGS):
             middle = (least + most) / 2
-            away = np.linalg.norm(hips - self.raised(held, middle).ankles, axis=-1)
+            away = np.linalg.norm(hips - self.raise_legs(held, middle).ankles, axis=-1)
             least = np.where(away > held.reach, middle, least)
             most = np.where(away > held.reach, most, middle)
         return most
@@ -72,7 +70,7 @@ class Heels:
         to_balls, on_ball = self.to_balls[frames], self.on_ball[frames]
         return replace(self, pose=self.pose[frames], to_balls=to_balls, on_ball=on_ball)
 
-    def raised(self, held: HeldLegs, tilts: Array) -> HeldLegs:
+    def raise_legs(self, held: HeldLegs, tilts: Array) -> HeldLegs:
         """Return the legs with ankles over the balls of feet that turn by (frames, legs) [rad].
 
         In the air they are only as high as such feet need.
@@ -92,7 +90,7 @@ class Heels:
             ankles[:, number, 1] = np.maximum(ankles[:, number, 1], lowest)
         return replace(held, ankles=ankles)
 
-    def turned(self, pose: Pose, tilts: Array) -> Pose:
+    def turn_by(self, pose: Pose, tilts: Array) -> Pose:
         """Return poses with feet that turn by (frames, legs) [rad]; toes keep their direction."""
         if not tilts.any():
             return pose

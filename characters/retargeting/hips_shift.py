@@ -26,7 +26,7 @@ from cubeling.characters.retargeting.transfer import (
 )
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array, Pose
-from cubeling.characters.smoothing import gaussian_smoothed, smoothstep
+from cubeling.characters.smoothing import gaussian_smooth, smoothstep
 
 _SMOOTHING_S = 0.05  # standard deviation of the shift with the feet
 _DROP_SMOOTHING_S = 0.04  # and of the drop
@@ -55,10 +55,8 @@ class HeldLegs:
     """Legs of a clip, and where their ankles are held."""
 
     rig: Rig
-    """The skeleton."""
 
     legs: Sequence[LegJoints]
-    """Its legs."""
 
     ankles: Array
     """Where the ankles are to be, (frames, legs, 3) [m] in the common axes."""
@@ -96,8 +94,8 @@ class HeldLegs:
         for _ in range(_RISE_ROUNDS):
             missing = wanted - rise[:, None]
             pull = weights * np.where(missing > 0.0, _TOO_LOW_WEIGHT, 1.0)
-            change = gaussian_smoothed((pull * missing).sum(1), deviation)
-            rise += change / gaussian_smoothed(pull.sum(1) + _KEPT_RISE_WEIGHT, deviation)
+            change = gaussian_smooth((pull * missing).sum(1), deviation)
+            rise += change / gaussian_smooth(pull.sum(1) + _KEPT_RISE_WEIGHT, deviation)
         return self.ground.middle_cycle(rise)
 
     def list_to_extension(self, pose: Pose, extensions: Array) -> Array:
@@ -111,7 +109,7 @@ class HeldLegs:
         left, right = self.rig.rest_positions[[leg.upper for leg in self.legs]]
         angle = (rises[:, 0] - rises[:, 1]) / max(float(np.linalg.norm(left - right)), 1e-9)
         angle = np.where(self.standing.all(1), np.clip(angle, -_MAX_LIST, _MAX_LIST), 0.0)
-        smooth = gaussian_smoothed(self.ground.repeat(angle), _SMOOTHING_S * self.ground.rate)
+        smooth = gaussian_smooth(self.ground.repeat(angle), _SMOOTHING_S * self.ground.rate)
         return self.ground.middle_cycle(smooth)
 
     def _rises(self, pose: Pose, extensions: Array) -> Array:
@@ -138,7 +136,7 @@ class HeldLegs:
         height = np.sqrt(np.maximum(self.reach**2 - np.square(away[..., [0, 2]]).sum(-1), 0.0))
         missing: Array = np.where(self.standing, away[..., 1] - height, 0.0).max(1)
         missing = np.clip(missing, 0.0, most * self.rig.leg_length)
-        return smooth_bound(missing, self.ground)
+        return upper_envelope(missing, self.ground)
 
     def swinging_as_long(self, pose: Pose, extensions: Array, lowest: Array) -> "HeldLegs":
         """Return the legs with their swinging ankles as far from the hip joints as in the source.
@@ -176,7 +174,7 @@ def _smooth_mean(values: Array, standing: NDArray[np.bool_], rate: float) -> Arr
     mean = total / np.maximum(standing.sum(1), 1)[:, None]
     frames = np.arange(len(known))
     mean = np.stack([np.interp(frames, frames[known], each[known]) for each in mean.T], axis=-1)
-    return gaussian_smoothed(mean, _SMOOTHING_S * rate)
+    return gaussian_smooth(mean, _SMOOTHING_S * rate)
 
 
 def _swinging(standing: NDArray[np.bool_], rate: float) -> Array:
@@ -190,7 +188,7 @@ def _swinging(standing: NDArray[np.bool_], rate: float) -> Array:
     return smoothstep(part)
 
 
-def smooth_bound(values: Array, ground: GroundMotion) -> Array:
+def upper_envelope(values: Array, ground: GroundMotion) -> Array:
     """Return a smooth curve that is hardly below the values of a clip, (frames,)."""
     if not values.any():
         return values
@@ -198,7 +196,7 @@ def smooth_bound(values: Array, ground: GroundMotion) -> Array:
     values = ground.repeat(values)
     bound = np.zeros_like(values)
     for _ in range(_BOUND_ROUNDS):
-        bound += gaussian_smoothed(np.maximum(values - bound, 0.0), deviation)
+        bound += gaussian_smooth(np.maximum(values - bound, 0.0), deviation)
     return ground.middle_cycle(bound)
 
 

@@ -55,7 +55,7 @@ def _leg_turns(
     thigh, shin = hip - knee, ankle - knee
     thigh_length, shin_length = (np.linalg.norm(v, axis=-1) for v in (thigh, shin))
     total = thigh_length + shin_length
-    reach = _kept_away(target - hip, ankle - hip, _MIN_REACH * total)
+    reach = _keep_away(target - hip, ankle - hip, _MIN_REACH * total)
     distance = np.linalg.norm(reach, axis=-1)
     shortest = np.abs(thigh_length - shin_length) * 1.0005 + 1e-9
     distance = np.clip(distance, shortest, _MAX_REACH * total)
@@ -67,7 +67,7 @@ def _leg_turns(
     return rotations.between(shin, bent), rotations.between(knee + bent - hip, reach)
 
 
-def _kept_away(reach: Array, own: Array, min_distance: Array) -> Array:
+def _keep_away(reach: Array, own: Array, min_distance: Array) -> Array:
     """Return target positions relative to the hip, (frames, 3), at a minimum distance or `own`'s.
 
     Close to the hip the direction of the leg is undefined, and the leg would spin: the closer a

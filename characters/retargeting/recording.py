@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.formats.loading import Performance, is_motion_only, load_motion
+from cubeling.characters.formats.loading import RecordedMotion, is_motion_only, load_motion
 from cubeling.characters.model.bind_pose import with_bind_pose
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.sidecar import read_sidecar
@@ -32,7 +32,6 @@ class Recording:
     """Its file or clip, for messages and reports."""
 
     clip: Clip
-    """The motion."""
 
     skeleton: Skeleton
     """The skeleton of the clip; it rests in the bind pose."""
@@ -72,7 +71,7 @@ def load_recording(
     """
     file, _, clip = name.partition("#")
     if is_motion_only(file):
-        return _of_performance(
+        return _of_recorded_motion(
             name, load_motion(file, clip or None, skeleton=skeleton, up=up), rest
         )
     character = Character.load(file)
@@ -84,11 +83,11 @@ def load_recording(
             f"{file}: which clip? write {file}#CLIP with one of its clips: {known}"
         )
     bound = with_bind_pose(character)
-    found = _unrolled(character.clips[clip], bound, character.anatomy)
+    found = _unroll(character.clips[clip], bound, character.anatomy)
     return Recording(Path(name).name, found, bound, character.anatomy)
 
 
-def _of_performance(name: str, motion: Performance, rest: str | None) -> Recording:
+def _of_recorded_motion(name: str, motion: RecordedMotion, rest: str | None) -> Recording:
     """Return a motion without a body as a recording that stands at rest."""
     file = name.partition("#")[0]
     sidecar = Path(file).with_suffix(".toml")
@@ -108,7 +107,7 @@ def _of_performance(name: str, motion: Performance, rest: str | None) -> Recordi
         if found is upright:
             break
         upright = found
-    clip = _unrolled(motion.clip, upright, anatomy)
+    clip = _unroll(motion.clip, upright, anatomy)
     clip = _without_calibration_frame(clip, upright)
     return Recording(Path(name).name, clip, upright, anatomy)
 
@@ -124,7 +123,7 @@ def _without_calibration_frame(clip: Clip, skeleton: Skeleton) -> Clip:
     return replace(clip, poses=clip.poses[np.arange(1, len(clip))])
 
 
-def _unrolled(clip: Clip, skeleton: Skeleton, anatomy: Anatomy) -> Clip:
+def _unroll(clip: Clip, skeleton: Skeleton, anatomy: Anatomy) -> Clip:
     """Return a loop whose hips end elsewhere as several cycles on their way over the ground.
 
     Its joints close but for the way, which it has in the hips and not in a root joint.

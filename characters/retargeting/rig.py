@@ -53,7 +53,6 @@ class Rig:
     """A skeleton with its anatomy; measures are in the common axes."""
 
     skeleton: Skeleton
-    """Its joints."""
 
     anatomy: Anatomy
     """Which joint is which body part."""
@@ -211,7 +210,7 @@ class Rig:
             origin = ankle if ball is None else ankle + ball
             return Sole.of(points - ankle, tips - origin, ball, ahead)
         height = float(ankle[1]) if self.rests_on_feet else self._assumed_ankle_height(leg)
-        return Sole.assumed(ball, height, ahead, _FOOT_LENGTH * self.leg_length)
+        return Sole.assume(ball, height, ahead, _FOOT_LENGTH * self.leg_length)
 
     def foot_joints(self, leg: LegJoints) -> list[int]:
         """Return the joints that move with a foot or its toes."""

@@ -15,7 +15,7 @@ from cubeling.characters.retargeting.rig import Rig, global_rotations
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
-from cubeling.characters.smoothing import gaussian_smoothed
+from cubeling.characters.smoothing import gaussian_smooth
 
 _SMOOTHING_S = 0.3  # standard deviation; removes the sway of a stride
 
@@ -38,7 +38,7 @@ def root_trajectory(clip: Clip, source: Rig, ratio: float) -> Array:
         behind = ratio * (source.rest_positions[joint] - feet)
         positions = positions - rotations.rotate(rotations.about("y", yaw), behind)
     path = np.stack([positions[:, 0], positions[:, 2], yaw], axis=-1)
-    return gaussian_smoothed(path, _SMOOTHING_S * clip.rate)
+    return gaussian_smooth(path, _SMOOTHING_S * clip.rate)
 
 
 def has_root_joint(skeleton: Skeleton, anatomy: Anatomy) -> bool:
@@ -73,8 +73,8 @@ def with_root_joint(character: Character) -> Character:
         clips=clips,
         meshes=meshes,
         semantics=semantics,
-        springs=tuple(bone.renamed(renamed) for bone in character.springs),
-        constraints=tuple(each.renamed(renamed) for each in character.constraints),
+        springs=tuple(bone.with_names(renamed) for bone in character.springs),
+        constraints=tuple(each.with_names(renamed) for each in character.constraints),
     )
 
 
@@ -102,7 +102,7 @@ def with_root_trajectory(pose: Pose, children: NDArray[np.intp], trajectory: Arr
     return replace(pose, translations=translations, rotations=rotations.continuous(turns))
 
 
-def moved_to_trajectory(pose: Pose, trajectory: Array) -> Pose:
+def move_to_trajectory(pose: Pose, trajectory: Array) -> Pose:
     """Return poses with another root trajectory; the whole body moves with the root."""
     translations, turns = pose.translations.copy(), pose.rotations.copy()
     translations[:, 0] = ground_positions(trajectory)
@@ -118,13 +118,13 @@ def ground_positions(trajectory: Array) -> Array:
 def _with_static_root(pose: Pose) -> Pose:
     """Return poses (…, joints) with a root that does not move before all joints."""
 
-    def prepended(values: Array, first: Array) -> Array:
+    def prepend(values: Array, first: Array) -> Array:
         shape = (*values.shape[:-2], 1, values.shape[-1])
         return np.concatenate([np.broadcast_to(first, shape), values], axis=-2)
 
     return Pose(
-        prepended(pose.translations, np.zeros(3)),
-        prepended(pose.rotations, rotations.IDENTITY),
-        None if pose.scales is None else prepended(pose.scales, np.ones(3)),
+        prepend(pose.translations, np.zeros(3)),
+        prepend(pose.rotations, rotations.IDENTITY),
+        None if pose.scales is None else prepend(pose.scales, np.ones(3)),
         pose.morphs,
     )

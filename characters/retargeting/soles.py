@@ -64,7 +64,7 @@ class Sole:
         return cls(_outermost(foot), _outermost(toes), ball, float(along.min()) * ahead + below)
 
     @classmethod
-    def assumed(cls, ball: Array | None, height: float, ahead: Array, length: float) -> "Sole":
+    def assume(cls, ball: Array | None, height: float, ahead: Array, length: float) -> "Sole":
         """Return the sole of a foot without a skin, whose ankle is at a height [m].
 
         `length` is the distance ahead to the ball of a foot without toes [m]; see `of`.
@@ -113,7 +113,7 @@ def tilts(turns: Array) -> Array:
     return np.asarray(np.arccos(np.clip(rotations.rotate(turns, _UP)[:, 1], -1.0, 1.0)))
 
 
-def tilted_to_fit(
+def tilt_to_fit(
     turns: Array,
     heights: Array,
     clearance: Callable[[Array], Array],
@@ -138,7 +138,7 @@ def tilted_to_fit(
     return _farthest(level, turns, np.maximum(heights, clearance(level)), clearance, greatest)
 
 
-def stretched_to_fit(
+def stretch_to_fit(
     toes: Array, foot: Array, heights: Array, clearance: Callable[[Array], Array], greatest: Array
 ) -> Array:
     """Return the turns of toes (frames, 4), straighter if that is needed to reach the ground.
@@ -154,7 +154,7 @@ def stretched_to_fit(
     greatest
         How far they may straighten, (frames,), 0…1.
     """
-    fitting = tilted_to_fit(toes, heights, clearance)
+    fitting = tilt_to_fit(toes, heights, clearance)
     room = np.maximum(heights, clearance(fitting))
     return _farthest(fitting, foot, room, clearance, greatest)
 
@@ -203,7 +203,7 @@ def parts_of_joints(
         )
         chosen = (own + other > _MIN_WEIGHT) & (own >= other)
         if chosen.any():
-            found.append(_chosen(mesh, chosen))
+            found.append(_choose(mesh, chosen))
     return found
 
 
@@ -212,13 +212,13 @@ def shared_skin(meshes: Sequence[Mesh], joints: Sequence[int]) -> list[Mesh]:
     parts = parts_of_joints(meshes, joints)
     own = [np.where(np.isin(part.joints, joints), part.weights, 0.0).sum(1) for part in parts]
     return [
-        _chosen(part, weights < _RIGID_WEIGHT)
+        _choose(part, weights < _RIGID_WEIGHT)
         for part, weights in zip(parts, own, strict=True)
         if (weights < _RIGID_WEIGHT).any()
     ]
 
 
-def _chosen(mesh: Mesh, vertices: NDArray[np.bool_]) -> Mesh:
+def _choose(mesh: Mesh, vertices: NDArray[np.bool_]) -> Mesh:
     """Return some vertices of a mesh, without triangles and morphs."""
     return replace(
         mesh,

@@ -36,7 +36,7 @@ BODY_PARTS = (
     *(side + part for side in SIDES for part in _SIDED_PARTS),
     *(f"tail{number}" for number in range(1, 33)),
 )
-"""All part names."""
+"""Names of the parts that `Anatomy` looks for."""
 
 _LEG_PARTS = tuple(side + part for side in SIDES for part in ("UpperLeg", "LowerLeg", "Foot"))
 _ARM_PARTS = tuple(side + part for side in SIDES for part in ("UpperArm", "LowerArm", "Hand"))

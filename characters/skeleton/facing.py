@@ -32,7 +32,7 @@ def common_from_skeleton(skeleton: Skeleton, anatomy: Anatomy) -> Array:
     up = _nearest_axis(np.mean(trunk, axis=0) - np.mean(legs, axis=0))
     across = left - right
     ahead = np.cross(_nearest_axis(across - up * float(across @ up)), up)
-    if float(_shown_ahead(positions, anatomy, up) @ ahead) < 0:
+    if float(_visible_ahead(positions, anatomy, up) @ ahead) < 0:
         ahead = -ahead
     return rotations.from_matrix(np.stack([np.cross(up, ahead), up, ahead]))
 
@@ -56,7 +56,7 @@ def _side_centre(positions: Array, anatomy: Anatomy, side: str) -> Array | None:
     return positions[joints].mean(0) if joints else None
 
 
-def _shown_ahead(positions: Array, anatomy: Anatomy, up: Array) -> Array:
+def _visible_ahead(positions: Array, anatomy: Anatomy, up: Array) -> Array:
     """Return the level part (3,) of the feet, or of an animal's trunk; zero if it is steep."""
     bones = [("leftFoot", "leftToes"), ("rightFoot", "rightToes")]
     if anatomy.kind == "quadruped":

@@ -15,7 +15,7 @@ EDGE_RAD = 1e-6
 
 
 @dataclass(frozen=True)
-class JointLimits:
+class AngleLimits:
     """The intervals of the angles of joints.
 
     A local rotation is `before · Rz(ψ) Ry(θ) Rx(φ) · after`, and each of (φ, θ, ψ) has an interval.
@@ -47,16 +47,16 @@ class JointLimits:
             )
 
     @staticmethod
-    def of_angles(low: Array, high: Array) -> "JointLimits":
+    def of_angles(low: Array, high: Array) -> "AngleLimits":
         """Return limits about the axes of the joints themselves, (joints, 3) [rad]."""
         same = np.tile(rotations.IDENTITY, (len(low), 1))
-        return JointLimits(np.asarray(low, float), np.asarray(high, float), same, same)
+        return AngleLimits(np.asarray(low, float), np.asarray(high, float), same, same)
 
     @staticmethod
-    def none(joints: int) -> "JointLimits":
+    def none(joints: int) -> "AngleLimits":
         """Return the limits of joints that turn freely."""
         wide = np.full((joints, 3), np.pi)
-        return JointLimits.of_angles(-wide, wide)
+        return AngleLimits.of_angles(-wide, wide)
 
     @cached_property
     def turned(self) -> bool:
@@ -66,10 +66,10 @@ class JointLimits:
     def __len__(self) -> int:
         return len(self.low)
 
-    def __getitem__(self, joints: Sequence[int]) -> "JointLimits":
+    def __getitem__(self, joints: Sequence[int]) -> "AngleLimits":
         """Return the limits of some of the joints."""
         at = list(joints)
-        return JointLimits(self.low[at], self.high[at], self.before[at], self.after[at])
+        return AngleLimits(self.low[at], self.high[at], self.before[at], self.after[at])
 
     def angles(self, local: Array) -> Array:
         """Return (φ, θ, ψ) of local rotations (…, joints, 4), (…, joints, 3) [rad]."""
@@ -84,7 +84,7 @@ class JointLimits:
     def excess(self, local: Array) -> Array:
         """Return by how much the worst angle of each joint leaves its interval, (…, joints) [rad].
 
-        >>> limits = JointLimits.of_angles(np.full((1, 3), -0.5), np.full((1, 3), 0.5))
+        >>> limits = AngleLimits.of_angles(np.full((1, 3), -0.5), np.full((1, 3), 0.5))
         >>> limits.excess(rotations.about("y", [0.7])).round(6).tolist()
         [0.2]
         """
@@ -102,7 +102,7 @@ class JointLimits:
         inside = (clamped == angles).all(-1)
         return np.where(inside[..., None], local, self.rotations(clamped))
 
-    def widened(self, angle: float) -> "JointLimits":
+    def widen(self, angle: float) -> "AngleLimits":
         """Return limits that are wider by an angle [rad] on each side."""
         return replace(self, low=self.low - angle, high=self.high + angle)
 

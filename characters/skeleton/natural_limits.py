@@ -11,7 +11,7 @@ import numpy as np
 
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
-from cubeling.characters.skeleton.joint_limits import JointLimits
+from cubeling.characters.skeleton.joint_limits import AngleLimits
 from cubeling.characters.skeleton.pose import Array, Skeleton
 
 Toward = Literal["forward", "backward", "up", "palm"]
@@ -68,7 +68,7 @@ QUADRUPED_HEAD = JointRange((-85, 50), (-35, 35), 50, zero="rest")
 _AZIMUTH_DEG, _LATITUDE_DEG, _ARM_TWIST_DEG = (-120.0, 160.0), (-88.0, 70.0), 120.0
 
 
-def natural_limits(skeleton: Skeleton, anatomy: Anatomy) -> JointLimits:
+def natural_limits(skeleton: Skeleton, anatomy: Anatomy) -> AngleLimits:
     """Return the limits of all joints of a skeleton; joints of no known part turn freely.
 
     >>> from cubeling.characters import Character
@@ -78,7 +78,7 @@ def natural_limits(skeleton: Skeleton, anatomy: Anatomy) -> JointLimits:
     >>> np.degrees(limits.high[elbow]).round().tolist()
     [100.0, 35.0, 155.0]
     """
-    free = JointLimits.none(len(skeleton))
+    free = AngleLimits.none(len(skeleton))
     low, high = free.low.copy(), free.high.copy()
     before, after = free.before.copy(), free.after.copy()
     rest = skeleton.rest.globals(skeleton)
@@ -94,7 +94,7 @@ def natural_limits(skeleton: Skeleton, anatomy: Anatomy) -> JointLimits:
         inverse = rotations.conjugate(rotations.from_matrix(carried))
         after[joint] = rotations.multiply(inverse, frames[joint])
         low[joint], high[joint] = np.radians(interval)
-    return JointLimits(low, high, before, after)
+    return AngleLimits(low, high, before, after)
 
 
 @dataclass(frozen=True)

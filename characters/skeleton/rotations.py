@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 IDENTITY: Array = np.array([0.0, 0.0, 0.0, 1.0])
-"""The identity rotation."""
+"""The rotation by no angle, xyzw."""
 
 
 def _multiplication_table() -> Array:
@@ -40,6 +40,7 @@ def _matrix_table() -> Array:
     for row in range(3):
         for i in range(4):
             table[i, i, row, row] = 1.0 if i in (row, w) else -1.0
+    # 2(xy − zw) above the diagonal, 2(xy + zw) below it, and in turn for the other two pairs.
     for row, column, i, j, k in [(0, 1, x, y, z), (1, 2, y, z, x), (2, 0, x, z, y)]:
         table[i, j, row, column] = table[i, j, column, row] = 2.0
         table[k, w, row, column], table[k, w, column, row] = -2.0, 2.0
@@ -154,6 +155,8 @@ def between(start: ArrayLike, end: ArrayLike) -> Array:
     b = b / np.linalg.norm(b, axis=-1, keepdims=True)
     half = np.empty((*a.shape[:-1], 4))
     half[..., :3] = cross(a, b)
+    # (a × b, 1 + a·b) is twice the wanted rotation times the cosine of half the angle: no
+    # trigonometry.
     half[..., 3] = 1 + np.einsum("...i,...i->...", a, b)
     opposite = half[..., 3] < 1e-9
     if opposite.any():  # any perpendicular axis will do
@@ -200,8 +203,10 @@ def to_rotation_vector(q: ArrayLike) -> Array:
     True
     """
     q = np.asarray(q, float)
+    # q and −q are one rotation; that with w ≥ 0 has the angle of at most half a turn.
     q = np.where(q[..., 3:] < 0, -q, q)
     sine = np.sqrt(np.einsum("...i,...i->...", q[..., :3], q[..., :3]))[..., None]
+    # Not arccos of w: near the identity it loses half of the digits.
     angle = 2 * np.arctan2(sine, q[..., 3:])
     vector: Array = q[..., :3] * np.where(sine > 1e-9, angle / np.maximum(sine, 1e-9), 2.0)
     return vector
@@ -280,6 +285,7 @@ def slerp(a: ArrayLike, b: ArrayLike, u: ArrayLike) -> Array:
     cosine = np.clip((a * b).sum(-1, keepdims=True), -1.0, 1.0)
     angle = np.arccos(cosine)
     sine = np.sin(angle)
+    # Nearly the same rotation: the formula divides by the sine, and linear is as exact.
     near = sine < 1e-6
     sine = np.where(near, 1.0, sine)
     mix_a = np.where(near, 1 - u, np.sin((1 - u) * angle) / sine)
@@ -297,6 +303,7 @@ def continuous(q: ArrayLike) -> Array:
     if len(q) < 2:
         return q.copy()
     flips = np.sign((q[1:] * q[:-1]).sum(-1, keepdims=True))
+    # A flip stays for all later frames. At right angles either sign is as near; none flips then.
     signs = np.cumprod(np.where(flips == 0, 1.0, flips), axis=0)
     return np.concatenate([q[:1], q[1:] * signs])
 

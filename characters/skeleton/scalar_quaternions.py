@@ -10,7 +10,7 @@ Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
 IDENTITY: Quaternion = (0.0, 0.0, 0.0, 1.0)
-"""The identity rotation."""
+"""The rotation by no angle, xyzw."""
 
 
 def multiply(a: Sequence[float], b: Sequence[float]) -> Quaternion:

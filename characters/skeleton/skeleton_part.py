@@ -14,7 +14,7 @@ class SkeletonPart:
     """The joints on which some joints depend, as a skeleton of their own."""
 
     skeleton: Skeleton
-    """These joints."""
+    """The joints of the part alone, numbered from 0."""
 
     joints: NDArray[np.intp]
     """Their numbers in the whole skeleton."""

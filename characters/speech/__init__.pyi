@@ -13,7 +13,7 @@ from cubeling.characters.speech.accents import (
 )
 from cubeling.characters.speech.alignment.by_voice import align as align
 from cubeling.characters.speech.alignment.sphinx import align_with_sphinx as align_with_sphinx
-from cubeling.characters.speech.audio import read_speech as read_speech, resampled as resampled
+from cubeling.characters.speech.audio import read_speech as read_speech, resample as resample
 from cubeling.characters.speech.contours import (
     Prosody as Prosody,
     measure_prosody as measure_prosody,

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from cubeling.characters.speech.contours import Prosody, ProsodySettings, measure_prosody
 from cubeling.characters.speech.phones import is_vowel
 from cubeling.characters.speech.speech import Accent, Phone, Samples
-from cubeling.characters.speech.strength import scaled
+from cubeling.characters.speech.strength import scale_between_quantiles
 
 LOUDNESS_EXPONENT = 0.6
 """Loudness grows with this power of the sound pressure (S. S. Stevens 1955, "The measurement of
@@ -95,8 +95,8 @@ def syllable_nuclei(
     voiced = prosody.f0 > 0
     pitch = np.log2(np.where(voiced, prosody.f0, 1.0))
     loudness = 10 ** (LOUDNESS_EXPONENT * prosody.intensity / 20)
-    prominence = scaled(loudness, loudness[voiced])
-    prominence[voiced] += scaled(pitch[voiced])
+    prominence = scale_between_quantiles(loudness, loudness[voiced])
+    prominence[voiced] += scale_between_quantiles(pitch[voiced])
     at = np.array([first + prominence[first:end].argmax() for first, end in spans])
     strengths = prominence[at]
     strengths = strengths + pause_bonus * strengths.max() * _before_pause(prosody, at)

@@ -37,8 +37,8 @@ def read_speech(path: Path) -> Speech:
     """
     try:
         with path.open("rb") as file:
-            rate, blocks = _wave(file, path) or _decoded(path)
-            samples = _joined(blocks, rate, path)
+            rate, blocks = _wave(file, path) or _decode(path)
+            samples = _join(blocks, rate, path)
     except OSError as error:
         raise CharacterError(f"cannot read '{path}': {error.strerror or error}") from error
     if not len(samples):
@@ -52,7 +52,7 @@ def read_speech(path: Path) -> Speech:
     return Speech(samples, rate)
 
 
-def resampled(samples: Samples, rate: int, new_rate: int) -> Samples:
+def resample(samples: Samples, rate: int, new_rate: int) -> Samples:
     """Return a sound at another sample rate, without what the lower rate cannot carry.
 
     Interpolates with a sinc kernel under a Hann window (J. O. Smith, "Digital Audio Resampling Home
@@ -79,7 +79,7 @@ def resampled(samples: Samples, rate: int, new_rate: int) -> Samples:
     return made
 
 
-def _joined(blocks: Iterator[NDArray[np.float32]], rate: int, path: Path) -> Samples:
+def _join(blocks: Iterator[NDArray[np.float32]], rate: int, path: Path) -> Samples:
     """Return all blocks as one array."""
     if not RATES[0] <= rate <= RATES[1]:
         raise CharacterError(f"'{path}' has {rate} samples a second: {RATES[0]} to {RATES[1]} work")
@@ -152,7 +152,7 @@ def _as_float(values: NDArray[np.generic]) -> NDArray[np.float32]:
     return ((values.astype(np.float64) - offset) / full).astype(np.float32)
 
 
-def _decoded(path: Path) -> tuple[int, Iterator[NDArray[np.float32]]]:
+def _decode(path: Path) -> tuple[int, Iterator[NDArray[np.float32]]]:
     """Return the rate and the blocks of a sound or video file that PyAV reads."""
     import av  # slow to load, and a WAV file does not need it
 

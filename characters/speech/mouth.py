@@ -48,16 +48,16 @@ class MouthWeights:
     """The shape of the mouth at a moment; each 0…1, together at most 1. The rest is closed."""
 
     open: float
-    """As in "father"."""
+    """Open, as in "father", 0…1."""
 
     spread: float
-    """As in "see"."""
+    """Spread, as in "see", 0…1."""
 
     rounded: float
-    """As in "too"."""
+    """Rounded, as in "too", 0…1."""
 
     hiss: float
-    """As in "hiss"."""
+    """Teeth together, as in "hiss", 0…1."""
 
 
 class MouthTracker:
@@ -83,7 +83,7 @@ class MouthTracker:
             starts = self._step * np.arange(1, count + 1)
             frames = sound[starts[:, None] + np.arange(self._analysis.length)]
             for target in self._analysis.shapes(frames)[0]:
-                self._weights = _eased(self._weights, target)
+                self._weights = _ease(self._weights, target)
             sound = sound[self._step * count :]
         self._waiting = sound
         return MouthWeights(*(self._weights / max(1.0, self._weights.sum())).tolist())
@@ -126,7 +126,7 @@ class _MouthAnalysis:
         energy_db = 10 * np.log10(energy.T + 1e-10)
         low, middle, _, high, hiss = energy_db
         level = 10 * np.log10(energy.sum(1) + 1e-10)
-        loudest = self._remembered(level)
+        loudest = self._loudest_so_far(level)
         silent = level < np.maximum(loudest - 30.0, QUIETEST_DB)
         voiced = _between(level - loudest, -18.0, -8.0)
         voiced[silent] = 0.0
@@ -139,7 +139,7 @@ class _MouthAnalysis:
         shapes = (opened * wide, vowel * spread, opened * (1.0 - wide), hissing)
         return np.stack(shapes, 1), silent
 
-    def _remembered(self, level: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _loudest_so_far(self, level: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the loudest level so far, slowly forgotten."""
         fading = FORGOTTEN_DB_S * STEP_S * np.arange(1, len(level) + 1)
         peaks = np.maximum.accumulate(np.maximum(level + fading, self._loudest))
@@ -152,7 +152,7 @@ def _between(values: NDArray[np.float64], low: float, high: float) -> NDArray[np
     return np.asarray(((values - low) / (high - low)).clip(0.0, 1.0))
 
 
-def _eased(weights: NDArray[np.float64], target: NDArray[np.float64]) -> NDArray[np.float64]:
+def _ease(weights: NDArray[np.float64], target: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return weights one frame later."""
     duration = np.where(target > weights, RISE_S, FALL_S)
     return np.asarray(weights + (target - weights) * (1.0 - np.exp(-STEP_S / duration)))

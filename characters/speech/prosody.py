@@ -19,5 +19,5 @@ def utterance_of(
         speech.words,
         speech.phones,
         detect_accents(speech.samples, speech.rate, settings, speech.phones),
-        tagged.timed(speech.words, speech.duration) if tagged is not None else (),
+        tagged.gesture_spans(speech.words, speech.duration) if tagged is not None else (),
     )

@@ -57,21 +57,23 @@ def measure_accents(prosody: Prosody, nuclei: Sequence[tuple[float, float]]) -> 
 
 def ev(measures: AccentMeasures) -> NDArray[np.float64]:
     """Return duration × energy, 0…1."""
-    return scaled(measures.duration) * scaled(measures.energy)
+    return scale_between_quantiles(measures.duration) * scale_between_quantiles(measures.energy)
 
 
 def ev2(measures: AccentMeasures) -> NDArray[np.float64]:
     """Return EV × pitch range, 0…1: rising accents are strong, flat ones are 0."""
-    return ev(measures) * scaled(measures.pitch_range)
+    return ev(measures) * scale_between_quantiles(measures.pitch_range)
 
 
 def psi(measures: AccentMeasures) -> NDArray[np.float64]:
     """Return EV × the mean of pitch range and mean pitch, 0…1 (equation 8.1)."""
-    pitch = 0.5 * scaled(measures.pitch_range) + 0.5 * scaled(measures.mean_pitch)
+    pitch = 0.5 * scale_between_quantiles(measures.pitch_range) + 0.5 * scale_between_quantiles(
+        measures.mean_pitch
+    )
     return ev(measures) * pitch
 
 
-def scaled(
+def scale_between_quantiles(
     values: NDArray[np.float64], corpus: NDArray[np.float64] | None = None
 ) -> NDArray[np.float64]:
     """Return values from 0 to 1 between the 1 % and 99 % quantiles of a corpus; 0 for NaN.

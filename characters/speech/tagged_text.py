@@ -84,15 +84,17 @@ class TaggedText:
         text = "".join([*parts, marked[copied:]])
         return TaggedText(text, tuple(sorted(spans, key=lambda span: (span.start, span.end))))
 
-    def timed(self, words: Sequence[Word], duration: float) -> tuple[GestureSpan, ...]:
+    def gesture_spans(self, words: Sequence[Word], duration: float) -> tuple[GestureSpan, ...]:
         """Return the gestures with the times of the words that they go with.
 
         A gesture begins with the first word that begins in its span, and ends with the last one; a
         span without a word is at the place of its begin. `duration` is that of the speech [s].
         """
-        return tuple(self._timed(span, words, duration) for span in self.spans)
+        return tuple(self._gesture_span(span, words, duration) for span in self.spans)
 
-    def _timed(self, span: TaggedSpan, words: Sequence[Word], duration: float) -> GestureSpan:
+    def _gesture_span(
+        self, span: TaggedSpan, words: Sequence[Word], duration: float
+    ) -> GestureSpan:
         inside = [w for w in words if w.offset < span.end and w.offset + len(w.text) > span.start]
         if inside:
             start, end = inside[0].start, inside[-1].end

@@ -36,7 +36,7 @@ class Interval:
     """When it ends [s]."""
 
     label: str
-    """Its text."""
+    """What is written in the interval; may be empty."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,6 @@ class Tier:
     """A row of a TextGrid."""
 
     name: str
-    """Its name."""
 
     intervals: tuple[Interval, ...]
     """Its intervals or points, in order."""
@@ -61,7 +60,7 @@ class TextGrid:
     """When it ends [s]."""
 
     tiers: tuple[Tier, ...]
-    """Its rows."""
+    """In the order of the file."""
 
 
 def read_textgrid(path: Path) -> TextGrid:
@@ -75,7 +74,7 @@ def read_textgrid(path: Path) -> TextGrid:
     try:
         if path.stat().st_size > MAX_BYTES:
             raise CharacterError(f"'{path}' is too large for a TextGrid")
-        text = _decoded(path.read_bytes())
+        text = _decode(path.read_bytes())
     except OSError as error:
         raise CharacterError(f"cannot read '{path}': {error.strerror}") from error
     tokens = [
@@ -106,8 +105,8 @@ def _named_values(grid: TextGrid) -> Iterator[tuple[str, str]]:
     yield from (("tiers? ", "<exists>"), ("size = ", str(len(grid.tiers))))
     for number, tier in enumerate(grid.tiers, 1):
         kind, rows = ("TextTier", "points") if tier.points else ("IntervalTier", "intervals")
-        yield f"item [{number}]:\n    class = ", _quoted(kind)
-        yield "    name = ", _quoted(tier.name)
+        yield f"item [{number}]:\n    class = ", _quote(kind)
+        yield "    name = ", _quote(tier.name)
         yield from _span(0.0, grid.duration, "    ")
         yield f"    {rows}: size = ", str(len(tier.intervals))
         for index, each in enumerate(tier.intervals, 1):
@@ -116,7 +115,7 @@ def _named_values(grid: TextGrid) -> Iterator[tuple[str, str]]:
                 yield f"{head}number = ", f"{each.start:.9g}"
             else:
                 yield from _span(each.start, each.end, "        ", head)
-            yield f"        {'mark' if tier.points else 'text'} = ", _quoted(each.label)
+            yield f"        {'mark' if tier.points else 'text'} = ", _quote(each.label)
 
 
 def _span(start: float, end: float, indent: str = "", head: str = "") -> Iterator[tuple[str, str]]:
@@ -126,8 +125,8 @@ def _span(start: float, end: float, indent: str = "", head: str = "") -> Iterato
 
 def textgrid_of(speech: Speech) -> TextGrid:
     """Return the words and phones of a speech as tiers of these names."""
-    words = _filled([Interval(w.start, w.end, w.text) for w in speech.words], speech.duration)
-    phones = _filled([Interval(p.start, p.end, p.symbol) for p in speech.phones], speech.duration)
+    words = _fill([Interval(w.start, w.end, w.text) for w in speech.words], speech.duration)
+    phones = _fill([Interval(p.start, p.end, p.symbol) for p in speech.phones], speech.duration)
     return TextGrid(speech.duration, (Tier("words", words), Tier("phones", phones)))
 
 
@@ -183,7 +182,7 @@ def _symbols(labels: list[str]) -> list[str]:
     return [ipa_of_arpabet(label) for label in labels]
 
 
-def _filled(intervals: list[Interval], duration: float) -> tuple[Interval, ...]:
+def _fill(intervals: list[Interval], duration: float) -> tuple[Interval, ...]:
     """Return intervals without gaps or overlaps, from 0 to the end."""
     filled, at = [], 0.0
     for each in intervals:
@@ -207,11 +206,11 @@ def _tier(grid: TextGrid, names: tuple[str, ...]) -> list[Interval]:
     return []
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     return '"' + text.replace('"', '""') + '"'
 
 
-def _decoded(data: bytes) -> str:
+def _decode(data: bytes) -> str:
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return data.decode("utf-16", errors="replace")
     try:

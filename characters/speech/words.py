@@ -32,7 +32,7 @@ def with_every_word(speech: Speech) -> Speech:
         after = known[index + 1].offset if index + 1 < len(known) else len(speech.text)
         own_end = word.offset + len(word.text)
         merged = [each for each in written if own_end <= each[1] and _ends(each) <= after]
-        words += _shared(word, merged, speech.phones)
+        words += _share(word, merged, speech.phones)
     return replace(speech, words=tuple(words))
 
 
@@ -40,7 +40,7 @@ def _ends(word: tuple[str, int]) -> int:
     return word[1] + len(word[0])
 
 
-def _shared(word: Word, merged: list[tuple[str, int]], phones: tuple[Phone, ...]) -> list[Word]:
+def _share(word: Word, merged: list[tuple[str, int]], phones: tuple[Phone, ...]) -> list[Word]:
     """Return a word and those that are spoken with it, with the times of their phones."""
     inside = [p for p in phones if p.symbol != SILENCE and word.start <= p.start < word.end]
     named = [(word.text, word.offset)] if written_words(word.text) else []

@@ -47,7 +47,7 @@ class ArchiveFormat:
     """The command that makes one."""
 
     def save(self, path: Path, content: Content, arrays: Arrays) -> None:
-        """Write a file."""
+        """Write content and arrays to a file of this format."""
         text = json.dumps({"format": self.name, "version": self.version, **content})
         with path.open("wb") as file:
             np.savez_compressed(file, content=np.array(text), **arrays)
@@ -93,7 +93,7 @@ class ArchiveFormat:
             changed = path.stat().st_mtime_ns
         except (OSError, ValueError):
             changed = 0  # the reader says what is wrong
-        loaded: _T = _loaded(self, path, changed, read)
+        loaded: _T = _load(self, path, changed, read)
         return loaded
 
     @property
@@ -102,7 +102,7 @@ class ArchiveFormat:
 
 
 @lru_cache(maxsize=16)
-def _loaded(
+def _load(
     kind: ArchiveFormat, path: Path, changed: int, read: Callable[[Content, Arrays], Any]
 ) -> Any:
     return kind.load(path, read)

@@ -75,11 +75,11 @@ def fit_weights(library: MotionLibrary, seed: int = 0) -> FittedWeights:
     def agreement(weights: Array, held: NDArray[np.bool_]) -> float:
         return rank_correlation(angles[held] @ weights, seen[held])
 
-    def cross_validated(pull: float) -> float:
+    def cross_validate(pull: float) -> float:
         fits = [nonnegative_weights(angles[~held], seen[~held], default, pull) for held in left_out]
         return float(np.mean([agreement(*each) for each in zip(fits, left_out, strict=True)]))
 
-    agreements = {pull: cross_validated(pull) for pull in PRIOR_WEIGHTS}
+    agreements = {pull: cross_validate(pull) for pull in PRIOR_WEIGHTS}
     best = max(PRIOR_WEIGHTS, key=agreements.__getitem__)
     weights = nonnegative_weights(angles, seen, default, best)
     weights *= default.sum() / weights.sum()

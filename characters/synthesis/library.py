@@ -34,7 +34,6 @@ class MotionLibrary:
     """Frames of several clips of one skeleton, without their planar root motion."""
 
     skeleton: Skeleton
-    """The joints."""
 
     anatomy: Anatomy
     """Which joint is which body part."""
@@ -84,7 +83,7 @@ class MotionLibrary:
             double = next(name for name in names if names.count(name) > 1)
             raise CharacterError(f"two clips are named {double!r}; rename one of them")
         feet = find_feet(skeleton)
-        parts = [_resampled(_with_root_motion(clip, anatomy), rate) for clip in clips]
+        parts = [_resample(_with_root_motion(clip, anatomy), rate) for clip in clips]
         contacts = [find_contacts(clip, skeleton, feet) for clip in parts]
         counts = [len(clip) - 1 if clip.loop else len(clip) for clip in parts]
         poses = [clip.in_place[:count] for clip, count in zip(parts, counts, strict=True)]
@@ -197,7 +196,7 @@ def _with_root_motion(clip: Clip, anatomy: Anatomy | None) -> Clip:
     return clip
 
 
-def _resampled(clip: Clip, rate: float) -> Clip:
+def _resample(clip: Clip, rate: float) -> Clip:
     """Return a clip at another rate; a loop keeps its length, so its rate is near it."""
     if abs(clip.rate - rate) < 1e-6:
         return clip

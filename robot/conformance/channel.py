@@ -59,7 +59,7 @@ class PortChannel:
             expected = "a robot that reads its input"
             raise CheckFailed(expected, "it took no bytes for 200 ms") from None
         except OSError as error:
-            raise _port_lost(error) from error
+            raise _port_loss(error) from error
 
     def read(self, until: float) -> bytes:
         """Return bytes as soon as there are any, or none at time `until` [s]."""
@@ -71,7 +71,7 @@ class PortChannel:
                     return data + self._port.read(waiting) if waiting else data
             return b""
         except OSError as error:  # pySerial's own errors are OSErrors too
-            raise _port_lost(error) from error
+            raise _port_loss(error) from error
 
 
 class SimulatedChannel:
@@ -105,5 +105,5 @@ class SimulatedChannel:
                 return data
 
 
-def _port_lost(error: OSError) -> RobotError:
+def _port_loss(error: OSError) -> RobotError:
     return RobotError(f"the port was lost during the checks ({error}); plug it in again")

@@ -18,7 +18,7 @@ class Check:
     """One requirement, and its test."""
 
     name: str
-    """Name in words."""
+    """Name of the check's function, with spaces, as the report prints it."""
 
     section: int
     """Section of PROTOCOL.md with the requirement."""

@@ -47,7 +47,7 @@ class FrameExchange:
 
     @property
     def now(self) -> float:
-        """The time [s]."""
+        """Time of the channel's clock [s], which is virtual for a simulated robot."""
         return self._channel.now()
 
     def write(self, data: bytes, *, keep: bool = False) -> None:

@@ -55,7 +55,6 @@ class CheckResult:
     """The result of one check."""
 
     check: Check
-    """The check."""
 
     verdict: Verdict
     """Whether the robot meets the requirement; skipped if that could not be tested."""

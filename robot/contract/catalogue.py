@@ -12,7 +12,7 @@ class JointLimits:
     """Limits of one joint. Zero is neutral; positive is forward, up or right."""
 
     name: str
-    """Its name."""
+    """Unique in the catalogue."""
 
     low: float
     """Smallest angle [rad]."""

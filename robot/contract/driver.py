@@ -53,7 +53,7 @@ class Driver(Protocol):
         """End the session; `bytes_to_send` then returns the last bytes."""
 
     def receive(self, data: bytes, now: float) -> None:
-        """Process received bytes."""
+        """Parse bytes from the robot, in pieces of any size."""
 
     def tick(self, now: float) -> None:
         """Do what is due."""

@@ -31,7 +31,7 @@ class Port(Protocol):
         """Write all bytes, or raise after a bounded time."""
 
     def close(self) -> None:
-        """Release the port."""
+        """Release the port; a second call does nothing."""
 
 
 Opener = Callable[[], Port]

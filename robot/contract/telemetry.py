@@ -29,7 +29,7 @@ class LinkCounts:
     """Frames sent, retries included."""
 
     frames_received: int = 0
-    """Valid frames received."""
+    """Frames of the open session with a right checksum."""
 
     retries: int = 0
     """Commands sent again because no acknowledgement arrived in time."""

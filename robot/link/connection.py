@@ -9,7 +9,7 @@ from cubeling.robot.errors import RobotError
 from cubeling.robot.link.exchange import IoThread
 from cubeling.robot.link.line_sample import LineSample
 from cubeling.robot.link.linked_robot import Robot
-from cubeling.robot.link.transport import opener, spaced
+from cubeling.robot.link.transport import opener, space_writes
 
 CATALOGUE_TIMEOUT_S = 10.0
 """Additional time to report its catalogue for a robot that answers over a very lossy line [s]."""
@@ -59,12 +59,13 @@ def connect(
     # The microsecond of the call tells this program from others.
     host = int(clock() * 1e6) % 0xFFFFFFFF + 1
     driver = kind.make(host, None if settings is None else Path(settings))
+    # Simulators are reached by URL whatever the protocol, also where a driver opens its own line.
     if kind.opener is None or url.startswith("sim:"):
         open_port = opener(url, clock, getattr(driver, "baud", kind.baud))
     else:
         open_port = kind.opener(url, clock)
     if kind.spacing:
-        open_port = spaced(open_port, kind.spacing, clock)
+        open_port = space_writes(open_port, kind.spacing, clock)
     sample = LineSample()
 
     def observe(direction: Direction, data: bytes, now: float) -> None:
@@ -80,6 +81,7 @@ def connect(
             return robot
         if thread.failure is not None:
             robot.check()
+        # Whoever speaks the protocol but loses many frames gets more time; a dead line does not.
         answers = robot.telemetry.silence is not None
         if answers and robot.wait_until_ready(CATALOGUE_TIMEOUT_S):
             return robot

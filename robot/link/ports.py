@@ -20,7 +20,7 @@ class SerialPort:
     """A serial port of this computer."""
 
     url: str
-    """What `connect` opens."""
+    """Device or path that `connect` takes."""
 
     description: str
     """Description by the operating system."""

@@ -62,10 +62,10 @@ class UsbIdentity(NamedTuple):
     """Identifies a USB device."""
 
     vendor: int
-    """USB vendor id."""
+    """Vendor id in the USB descriptor."""
 
     product: int
-    """USB product id."""
+    """Product id in the USB descriptor."""
 
     serial: str | None
     """Its serial number; cheap boards have none."""
@@ -75,6 +75,7 @@ class UsbIdentity(NamedTuple):
 
     def matches(self, other: "UsbIdentity") -> bool:
         """Return whether both are the same device."""
+        # Whatever the socket: the player may plug it in elsewhere.
         if self.serial and other.serial:
             return self[:3] == other[:3]
         return self == other
@@ -88,6 +89,7 @@ def usb_identity(name: str) -> UsbIdentity | None:
 def find_port(identity: UsbIdentity) -> str | None:
     """Return the port of a USB device; None unless exactly one device matches."""
     names = [device for device, found in _usb_devices() if found.matches(identity)]
+    # Two equal boards without serial numbers: opening either could drive the wrong robot.
     return names[0] if len(names) == 1 else None
 
 
@@ -112,6 +114,7 @@ class _PluggablePort:
         if self._identity is not None:
             name = find_port(self._identity) or name
         port = _open_serial(name, self._baud)
+        # Once only: asked again after a replug, the name may be that of another device.
         if self._identity is None and "://" not in name:
             self._identity = usb_identity(name)
         return port
@@ -160,6 +163,7 @@ class SpacedPort:
         """Write all bytes; waits at most the spacing, if the last write was less than it ago."""
         if data and self._written is not None:
             left = self._spacing - (self._clock() - self._written)
+            # Bounded by the spacing, so that a clock that jumps cannot hang the thread.
             if left > 0:
                 threading.Event().wait(min(left, self._spacing))
         written = self._port.write(data)
@@ -168,6 +172,6 @@ class SpacedPort:
         return written
 
 
-def spaced(open_port: Opener, spacing: float, clock: Clock) -> Opener:
+def space_writes(open_port: Opener, spacing: float, clock: Clock) -> Opener:
     """Return an opener of the same port with at least `spacing` [s] between its writes."""
     return lambda: cast(Port, SpacedPort(open_port(), spacing, clock))

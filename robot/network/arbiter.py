@@ -37,7 +37,7 @@ class FollowedPlayer:
     """When the player was found to be offline [s]."""
 
     emotion: EmotionMessage | None = None
-    """The last emotion."""
+    """The last emotion that it sent; None before the first."""
 
     emotion_changed: float = -math.inf
     """When it arrived [s]."""

@@ -19,10 +19,10 @@ class Message:
     """A message on the bus."""
 
     topic: str
-    """Its topic."""
+    """Below `ROOT`: site, role, name and kind of message; see `topics`."""
 
     payload: bytes
-    """Its content."""
+    """JSON as UTF-8; see `messages`."""
 
     retain: bool = False
     """Whether the broker keeps it for later subscribers."""

@@ -102,7 +102,7 @@ class BusClient(Closeable, Generic[E]):
                 self._connections = self.bus.connections
                 self._retained.clear()
                 self._outgoing.clear()
-                self.endpoint.connected(now)
+                self.endpoint.on_connect(now)
             for _ in range(len(self._incoming)):
                 self.endpoint.receive(*self._incoming.popleft(), now)
             self.endpoint.tick(now)

@@ -39,7 +39,7 @@ class SessionEpoch:
         """Whether another program, started later, publishes under the same name."""
         self._first_connected: float | None = None
 
-    def connected(self, now: float) -> None:
+    def on_connect(self, now: float) -> None:
         """Note the time of the first connection [s]."""
         if self._first_connected is None:
             self._first_connected = now
@@ -78,7 +78,7 @@ class Endpoint:
         """Why it stopped publishing, in one line; "" while it publishes."""
         return ""
 
-    def connected(self, now: float) -> None:
+    def on_connect(self, now: float) -> None:
         """Publish everything again: the broker may have lost it."""
 
     def receive(self, topic: str, payload: bytes, now: float) -> None:

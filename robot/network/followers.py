@@ -64,7 +64,7 @@ class Followers:
             if one.status == "online" and now - one.last_heartbeat > LOST_AFTER_S:
                 one.status = "lost"
 
-    def taken_by_all(self) -> int:
+    def number_taken_by_all(self) -> int:
         """Return the number up to which all robots took the actions, also those that are lost."""
         taken = [one.taken for one in self.robots.values() if one.status != "closed"]
         return min(taken, default=0)

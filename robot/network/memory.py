@@ -48,7 +48,7 @@ class MemoryBroker:
         return True
 
     def remove(self, bus: "MemoryBus") -> None:
-        """Disconnect a bus."""
+        """Disconnect a bus; it receives nothing any more. One that is unknown is ignored."""
         with self._lock:
             if bus in self._buses:
                 self._buses.remove(bus)

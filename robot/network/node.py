@@ -25,10 +25,10 @@ class RobotControl(Protocol):
 
     @property
     def telemetry(self) -> Telemetry:
-        """The robot's state."""
+        """What is known of the robot now; see `Telemetry`."""
 
     def express(self, emotion: Emotion) -> None:
-        """Show an emotion."""
+        """Show an emotion from now on."""
 
     def play(self, name: str) -> None:
         """Play a motion or sound once; RobotError if that is not possible."""
@@ -78,9 +78,9 @@ class RobotNode(MemberEndpoint):
         self._acks = 0
         self._ack_due = False
 
-    def connected(self, now: float) -> None:
-        """Publish everything again."""
-        self._epoch.connected(now)
+    def on_connect(self, now: float) -> None:
+        """Publish everything again, as the broker may have lost it."""
+        self._epoch.on_connect(now)
         self._state_publisher.reset()
         self._announce()
 

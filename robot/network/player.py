@@ -124,9 +124,9 @@ class Player(MemberEndpoint):
         """Number of actions that not every robot has taken."""
         return len(self._pending)
 
-    def connected(self, now: float) -> None:
-        """Publish everything again."""
-        self._epoch.connected(now)
+    def on_connect(self, now: float) -> None:
+        """Publish everything again, as the broker may have lost it."""
+        self._epoch.on_connect(now)
         self._last_heartbeat = self._last_emotion = -math.inf
         self._emotion_due = self._emotion is not None
         self._resend(now)
@@ -144,7 +144,7 @@ class Player(MemberEndpoint):
     def tick(self, now: float) -> None:
         """Drop the actions that all robots took or that expired; resend if a robot is behind."""
         self.followers.find_lost(now)
-        taken = self.followers.taken_by_all()
+        taken = self.followers.number_taken_by_all()
         while self._pending and self._pending[0].number <= taken:
             self._pending.popleft()
         while self._pending and now - self._pending[0].timestamp > self._max_age:

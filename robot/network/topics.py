@@ -32,10 +32,9 @@ class Member:
     """A player or a robot."""
 
     site: str
-    """Its site: "north-hall"."""
+    """Where it stands, such as "north-hall": players follow robots of one site."""
 
     role: Role
-    """Its role."""
 
     name: str
     """Its name, unique for its site and role."""

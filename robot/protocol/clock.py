@@ -62,7 +62,7 @@ class RobotClock:
 
     def add(self, ms: int, sent: float, received: float) -> None:
         """Take the time of a STATE [ms] between two times of the host [s]."""
-        self._elapsed_ms, self._last_ms = self._unwrapped(ms), ms
+        self._elapsed_ms, self._last_ms = self._unwrap(ms), ms
         # The clock shows a millisecond from its begin to its end: at the mean, half of it is over.
         robot = self._elapsed_ms / 1000 + TICK_S / 2
         error = (received - sent) / 2 + TICK_S / 2
@@ -71,6 +71,8 @@ class RobotClock:
             self._second = robot
             self._fit()  # before the second of which one sample is all that is known
             self._samples.append(sample)
+        # Only the shortest round trip of a second: delays on the line are one-sided, and short ones
+        # hide the least of them.
         elif error < self._samples[-1].error:
             self._samples[-1] = sample
         else:
@@ -83,12 +85,12 @@ class RobotClock:
         best = self._best
         if best is None:
             return None
-        robot = self._unwrapped(ms) / 1000 + TICK_S / 2
+        robot = self._unwrap(ms) / 1000 + TICK_S / 2
         age = robot - best.robot
         error = best.error + TICK_S / 2 + ERROR_GROWTH * abs(age)
         return ClockSample(robot, best.host + age / (1 + self.drift), error)
 
-    def _unwrapped(self, ms: int) -> int:
+    def _unwrap(self, ms: int) -> int:
         """Return a time as milliseconds since the first one, however often the clock wrapped."""
         if self._last_ms is None:
             return 0
@@ -105,4 +107,5 @@ class RobotClock:
         mean_offset = sum(weight * offset for weight, _, offset in rows) / total
         spread = sum(weight * (host - mean_host) ** 2 for weight, host, _ in rows)
         slope = sum(w * (host - mean_host) * (offset - mean_offset) for w, host, offset in rows)
+        # No quartz is worse; a larger slope comes from delays that change.
         self.drift = min(max(slope / spread if spread else 0.0, -CLOCK_TOLERANCE), CLOCK_TOLERANCE)

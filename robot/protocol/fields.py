@@ -84,7 +84,7 @@ class FieldSpec:
 
     @cached_property
     def per_unit(self) -> int:
-        """Counts per unit."""
+        """Counts on the wire for one unit: the inverse of `scale`, exact."""
         return round(1 / self.scale)
 
     def to_wire(self, value: Any) -> list[Any]:

@@ -73,7 +73,7 @@ def constants() -> dict[str, int]:
 @message(0x01, "host", "Opens the session named in the header, or asks for its WELCOME again.")
 @dataclass(frozen=True)
 class Hello:
-    """Opens a session."""
+    """Opens a session, or repeats the question if the answer was lost."""
 
     version: int = wire_field("u8", "highest version that the host speaks", low=1)
     host: int = wire_field("u32", "who speaks: one number for the life of a host program", low=1)
@@ -99,7 +99,7 @@ class Beat:
 @message(0x10, "host", "A command: feel this from now on.")
 @dataclass(frozen=True)
 class Express:
-    """Show an emotion."""
+    """Shows an emotion until another command comes."""
 
     number: int = wire_field("u32", "number of the command", low=1)
     valence: float = wire_field(
@@ -152,7 +152,7 @@ Command = Express | Play | Stop | Move
 @message(0x1F, "host", "Ends the session. The robot goes to neutral at once; no answer.")
 @dataclass(frozen=True)
 class Bye:
-    """Ends the session."""
+    """Ends the session at once, without an answer."""
 
 
 # --- Messages of the robot ---------------------------------------------------------------------
@@ -244,7 +244,7 @@ class Log:
 @message(0x90, "robot", "Answers every command, also one that it has taken before.")
 @dataclass(frozen=True)
 class Ack:
-    """Answers a command."""
+    """Answers a command, also one that was received before."""
 
     number: int = wire_field("u32", "the command's number", low=1)
     result: int = wire_field("u8", "0 taken; others: refused, see section 6")

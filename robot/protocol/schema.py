@@ -44,10 +44,10 @@ class MessageSpec:
     """Its description in the document."""
 
     fields: tuple[FieldSpec, ...]
-    """In wire order."""
+    """Its fields in wire order, those of all versions."""
 
     kind: type[Any]
-    """The dataclass."""
+    """The dataclass that the codec makes of a body."""
 
     parts: tuple["VersionPart", ...]
     """The fields of its first version, then those that each later version added."""
@@ -74,13 +74,13 @@ class VersionPart:
     """The fields of a message that one version added; packed without gaps, little endian."""
 
     since: int
-    """The version."""
+    """Version of the protocol that added the fields."""
 
     fields: tuple[FieldSpec, ...]
-    """In wire order."""
+    """Its fields in wire order, none of other versions."""
 
     layout: struct.Struct
-    """Their binary layout."""
+    """Little endian, without padding."""
 
     start: int
     """Offset in the body [bytes]."""

@@ -60,6 +60,7 @@ def cobs_decode(encoded: bytes) -> bytes:
             raise FrameError("a run of COBS is empty")
         body[start] = 0  # each run replaces a zero; the first replaces none
         start += run
+    # Equal is right: the last run ends exactly with the bytes.
     if start > length:
         raise FrameError("a run of COBS passes the end of the frame")
     return bytes(body[1:])
@@ -75,9 +76,11 @@ def encode_frame(body: bytes) -> bytes:
 
 def decode_frame(frame: bytes) -> bytes:
     """Return the body of the bytes between two delimiters; raises FrameError if there is none."""
+    # 5: one byte of body, one of COBS, three of the check.
     if not 5 <= len(frame) <= MAX_FRAME:
         raise FrameError("too short or too long for a frame")
     encoded = frame[:-3]
+    # Before COBS is decoded: a frame with wrong bits need not be understood.
     if frame[-3:] != check_bytes(encoded):
         raise FrameError("the check does not match")
     return cobs_decode(encoded)
@@ -110,6 +113,7 @@ class FrameReader:
         *ended, rest = data.split(b"\0")
         for piece in ended:
             self._keep(piece)
+            # Two zeros in a row, as between frames, are no empty frame.
             if self._pending:
                 body = self._finish()
                 if body is not None:

@@ -10,7 +10,7 @@ from hypothesis import given, strategies as st
 from cubeling.affect import LABEL_SETS, Emotion, Feelings, Personality
 from cubeling.affect.dynamics import MAX_TIME_STEP_S
 from cubeling.affect.errors import AffectError
-from cubeling.affect.personality_file import bundled
+from cubeling.affect.personality_file import bundled_names
 from cubeling.affect.traits import AffectImpulse
 from cubeling.affect.words import closest_word
 from tests.examples import some
@@ -252,7 +252,7 @@ def test_no_label_is_left_before_its_time(who, done):
         assert other - one >= who.dwell
 
 
-@pytest.mark.parametrize("name", bundled())
+@pytest.mark.parametrize("name", bundled_names())
 @pytest.mark.parametrize(("action", "mood"), some([("kiss", "happy"), ("shout", "angry")]))
 def test_everyone_can_be_pleased_and_angered_and_comes_home(name, action, mood):
     feelings = Feelings(name)
@@ -277,7 +277,7 @@ def test_everyone_can_be_pleased_and_angered_and_comes_home(name, action, mood):
 def test_the_bundled_personalities_differ_to_see():
     """After the same half minute no two of them are near each other in the plane."""
     paths = {}
-    for name in bundled():
+    for name in bundled_names():
         feelings, path = Feelings(name), []
         for frame in range(round(30 / FRAME_S)):
             action = ("idle", "kiss", "idle", "shout", "idle")[int(frame * FRAME_S / 6)]

@@ -8,7 +8,7 @@ from hypothesis import given, strategies as st
 
 from cubeling.affect import Emotion, Personality
 from cubeling.affect.errors import AffectError
-from cubeling.affect.personality_file import bundled, bundled_text
+from cubeling.affect.personality_file import bundled_names, bundled_text
 from cubeling.affect.traits import AffectImpulse, Ocean
 
 trait = st.floats(0, 1)
@@ -16,8 +16,8 @@ anyone = st.builds(Ocean, trait, trait, trait, trait, trait)
 
 
 def test_the_bundled_personalities():
-    assert bundled() == ("thesis", "calm", "grumpy", "lively", "shy")
-    for name in bundled():
+    assert bundled_names() == ("thesis", "calm", "grumpy", "lively", "shy")
+    for name in bundled_names():
         who = Personality.load(name)
         assert who.name == name
         assert who.description

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from cubeling.affect import NEUTRAL, AffectError, Emotion
-from cubeling.affect.regions import SECTOR_WORDS, Box, Sector, on_disc, region_of
+from cubeling.affect.regions import SECTOR_WORDS, RegionBox, Sector, on_disc, region_of
 from cubeling.affect.words import WORD_PLACES
 
 AXIS = st.floats(-1.0, 1.0)
@@ -30,7 +30,7 @@ def test_words_are_in_their_own_regions() -> None:
 
 
 def test_a_margin_makes_regions_larger() -> None:
-    box, sector = Box((0.2, 0.4), (0.0, 0.5)), Sector(0.0, math.pi / 4, 0.25)
+    box, sector = RegionBox((0.2, 0.4), (0.0, 0.5)), Sector(0.0, math.pi / 4, 0.25)
     for region, outside in ((box, Emotion(0.15, 0.1)), (sector, Emotion(0.6, 0.27))):
         assert not region.contains(outside)
         assert region.contains(outside, 0.1)

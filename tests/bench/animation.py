@@ -98,7 +98,7 @@ def everything(animator: Animator, speed: float, mood: str = "happy") -> Callabl
 
 def with_hands(animator: Animator, speed: float) -> Callable[[int], object]:
     """Return the work of a full update with a reach for a moving place and a gesture."""
-    wave = GestureCollection.bundled().get("WAVE")
+    wave = GestureCollection.load_bundled().get("WAVE")
     times = natural_times(wave, 1.0)
     held = replace(times, relax=1e6, end=1e6 + 1.0)
     gesture = GestureIntent("wave", wave, held, "right")

@@ -84,7 +84,7 @@ def scheduling(read: Block) -> tuple[float, int]:
     def schedule() -> None:
         nonlocal warnings
         realizer = Realizer(Estimates())
-        realizer.perform(read)
+        realizer.accept(read)
         warnings = sum(isinstance(f, BmlWarning) for f in realizer.update(0.0))
 
     return least(schedule), warnings
@@ -93,7 +93,7 @@ def scheduling(read: Block) -> tuple[float, int]:
 def running(read: Block) -> tuple[float, float]:
     """Return the least time of re-timing, and the mean time of a frame [ms]."""
     realizer = Realizer(Estimates())
-    realizer.perform(read)
+    realizer.accept(read)
     realizer.update(0.0)
     retiming = least(partial(realizer.retime, "bml1", "s", "m10", 8.0))
     frames, began = 0, time.perf_counter()

@@ -273,7 +273,7 @@ def report(console: Console, character: Character) -> bool:
 def main(arguments: list[str]) -> int:
     """Print the tables and return an exit code."""
     console, good = Console(width=110), True
-    for name in Character.bundled():
+    for name in Character.bundled_names():
         which = str(Path(arguments[0]) / f"{name}.glb") if arguments else name
         good &= report(console, Character.load(which))
     return int(not good)

@@ -34,7 +34,13 @@ from cubeling.characters import (
 )
 from cubeling.characters.control.controllers import ControllerFactory
 from cubeling.characters.control.layers import FOOT_LAYERS
-from cubeling.characters.rendering import FloorPath, SceneCharacter, Stage, View, create_context
+from cubeling.characters.rendering import (
+    CameraView,
+    FloorPath,
+    SceneCharacter,
+    Stage,
+    create_context,
+)
 from cubeling.characters.rendering.portrait import PAPER_BGR, PortraitRenderer, side_by_side
 from cubeling.characters.rendering.portrait_camera import CharacterExtent, PortraitCamera
 from cubeling.characters.skeleton import rotations
@@ -146,7 +152,7 @@ def _filmed(
     points = CharacterExtent(character).points(character.skeleton.rest) * scale * ROOM
     camera = PortraitCamera.around(points, 0.25, CELL)
     paper = np.full((CELL[1], CELL[0], 3), PAPER_BGR, np.uint8)
-    view = View(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
+    view = CameraView(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
     side = np.eye(4)
     side[:3, :3] = scale * rotations.to_matrix(rotations.about("y", 1.1))
     for posed in shown[:: FRAME_RATE // VIDEO_RATE]:

@@ -42,7 +42,7 @@ def main() -> int:
     )
     table.add_column("one by one")
     slowest = float("inf")
-    for name in Character.bundled():
+    for name in Character.bundled_names():
         character = Character.load(name)
         clips, skeleton = list(character.clips.values()), character.skeleton
         bank = ClipBank.of(skeleton, clips)

@@ -23,10 +23,10 @@ from cubeling.characters import Character
 from cubeling.characters.control.command import PosedCharacter
 from cubeling.characters.rendering import (
     QUALITIES,
+    CameraView,
     Quality,
     SceneCharacter,
     Stage,
-    View,
     create_context,
 )
 from cubeling.characters.rendering.geometry.detail_levels import with_levels
@@ -76,7 +76,9 @@ def compared(
     table[1, 1:3] = -np.cos(PITCH), np.sin(PITCH)
     table[2, 1:3] = -np.sin(PITCH), -np.cos(PITCH)
     table[:3, 3] = 0.0, 0.5 * height, DISTANCE_M
-    view = View(np.full((side, side, 3), (150, 170, 160), np.uint8), matrix, np.zeros(5), table)
+    view = CameraView(
+        np.full((side, side, 3), (150, 170, 160), np.uint8), matrix, np.zeros(5), table
+    )
     stage = Stage(context, (side, side))
     stage.quality = quality
     actors = [_walker(character, height / character.height, turn) for turn in TURNS]
@@ -135,7 +137,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("-o", "--output", type=Path, help="folder for enlarged pictures")
     parser.add_argument(
-        "characters", nargs="*", default=Character.bundled(), help="names or files of characters"
+        "characters",
+        nargs="*",
+        default=Character.bundled_names(),
+        help="names or files of characters",
     )
     options = parser.parse_args()
     headings = (

@@ -24,12 +24,12 @@ from cubeling.characters.model.character import Character
 from cubeling.characters.rendering import (
     FULL,
     QUALITIES,
+    CameraView,
     Effect,
     Focus,
     Quality,
     SceneCharacter,
     Stage,
-    View,
     create_context,
 )
 from cubeling.characters.rendering.camera_picture.light import LINEAR_FROM_SRGB
@@ -60,7 +60,7 @@ def only(*effects: Effect) -> Quality:
     return replace(RICH, name=" + ".join(effects), effects=frozenset(effects))
 
 
-def close_up(view: View, actor: SceneCharacter) -> View:
+def close_up(view: CameraView, actor: SceneCharacter) -> CameraView:
     """Return the view of a camera with a longer lens that looks at the character's head."""
     table = np.asarray(view.camera_from_table, float)
     head = table @ actor.posed.table_from_character @ [0.0, 0.85 * _height(actor), 0.0, 1.0]
@@ -77,7 +77,7 @@ def _height(actor: SceneCharacter) -> float:
 
 def times(
     context: moderngl.Context,
-    view: View,
+    view: CameraView,
     actors: Sequence[SceneCharacter],
     qualities: Sequence[Quality],
 ) -> dict[str, float]:
@@ -115,7 +115,7 @@ def time_table(name: str, found: dict[str, float]) -> Table:
     return table
 
 
-def skin_table(context: moderngl.Context, view: View, actor: SceneCharacter) -> Table:
+def skin_table(context: moderngl.Context, view: CameraView, actor: SceneCharacter) -> Table:
     """Return how near adaptive scattering is to the full one, and the taps that it saves."""
     seen = []
     for effects in (set(Effect) - {Effect.AMBIENT_OCCLUSION}, set(Effect)):
@@ -141,7 +141,9 @@ def skin_table(context: moderngl.Context, view: View, actor: SceneCharacter) -> 
     return table
 
 
-def lens_table(context: moderngl.Context, view: View, actors: Sequence[SceneCharacter]) -> Table:
+def lens_table(
+    context: moderngl.Context, view: CameraView, actors: Sequence[SceneCharacter]
+) -> Table:
     """Return how near the depth of field is to a lens of many places."""
     view = replace(view, occluders=(), distortion=np.zeros(0))
     stage = Stage(context, SIZE)
@@ -172,7 +174,7 @@ def lens_table(context: moderngl.Context, view: View, actors: Sequence[SceneChar
     return result
 
 
-def _background(context: moderngl.Context, view: View) -> Image:
+def _background(context: moderngl.Context, view: CameraView) -> Image:
     stage = Stage(context, SIZE)
     picture = stage.draw(view, [])
     stage.release()

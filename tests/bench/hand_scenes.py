@@ -15,7 +15,7 @@ from cubeling.tracking.synthetic.camera_rays import CameraRays
 from cubeling.tracking.synthetic.choreography import UP, Choreography, SceneState
 from cubeling.tracking.synthetic.desk import draw_objects, render_desk
 from cubeling.tracking.synthetic.exposure import ExposureRenderer, in_colours, shutter_samples
-from cubeling.tracking.synthetic.hand import Capsule, Hand, draw_hand, hand_region
+from cubeling.tracking.synthetic.hand import Capsule, SyntheticHand, draw_hand, hand_region
 from cubeling.tracking.synthetic.options import SyntheticOptions
 from cubeling.tracking.synthetic.paper_cube import PaperCube
 from cubeling.tracking.synthetic.source import EYE_M, LOOK_AT_M, look_at, webcam
@@ -184,7 +184,7 @@ class _HandRenderer(ExposureRenderer):
         self.covered = np.zeros_like(self.covered)
         return super().draw(states, poses, index, in_air)
 
-    def _add_hand(self, image: Floats, hand: Hand, camera_from_cube: Array) -> None:
+    def _add_hand(self, image: Floats, hand: SyntheticHand, camera_from_cube: Array) -> None:
         at = self._table_position(camera_from_cube)
         if self._view.tapping:
             hand = lifted(hand, self.lift)
@@ -210,7 +210,7 @@ class _HandRenderer(ExposureRenderer):
         return super()._sensor_image(image * self._light, index)
 
 
-def lifted(hand: Hand, share: float) -> Hand:
+def lifted(hand: SyntheticHand, share: float) -> SyntheticHand:
     """Return the hand with the forefinger lifted by a share, 0…1."""
     finger = [
         replace(
@@ -223,7 +223,7 @@ def lifted(hand: Hand, share: float) -> Hand:
     return replace(hand, skin=tuple(skin))
 
 
-def turned(hand: Hand, centre: Array, degrees: float) -> Hand:
+def turned(hand: SyntheticHand, centre: Array, degrees: float) -> SyntheticHand:
     """Return the hand turned about the vertical through a point of the table frame."""
     turn = se3.rotation(-np.deg2rad(degrees) * UP)
 

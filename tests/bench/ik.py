@@ -36,7 +36,12 @@ from cubeling.app.commands.ik_figures import (
 )
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.ik.solvers.chains import Chains
-from cubeling.characters.ik.solvers.measures import Problem, arc_targets, joint_change, violations
+from cubeling.characters.ik.solvers.measures import (
+    ReachingProblem,
+    arc_targets,
+    joint_change,
+    violations,
+)
 from cubeling.characters.ik.solvers.single import SingleChain
 from cubeling.characters.ik.solvers.solving import SOLVERS, TOLERANCE, solve
 from cubeling.characters.retargeting.recording import load_recording
@@ -53,7 +58,7 @@ def oracle_table(count: int) -> Table:
     """Return what scipy finds beside what we find."""
     from scipy.optimize import least_squares
 
-    problem = Problem.random(6, count, np.random.default_rng(9))
+    problem = ReachingProblem.random(6, count, np.random.default_rng(9))
     limits = problem.chains.limits
     assert limits is not None
     begin = np.clip(limits.angles(problem.start[0]), limits.low, limits.high).ravel()
@@ -142,7 +147,7 @@ def campaign(solves: int, console: Console) -> bool:
     start = time.perf_counter()
     for block in range(-(-solves // BLOCK)):
         joints = 4 + block % 7
-        problem = Problem.random(joints, BLOCK, np.random.default_rng(block))
+        problem = ReachingProblem.random(joints, BLOCK, np.random.default_rng(block))
         begin = problem.chains.random(BLOCK, np.random.default_rng([block, 1]))
         begin = begin if block % 2 else arc_targets(joints, BLOCK)
         found = solve(problem.chains, problem.targets, begin, seed=block)

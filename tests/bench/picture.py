@@ -23,10 +23,10 @@ from cubeling.characters.control.command import PosedCharacter
 from cubeling.characters.model.character import Character
 from cubeling.characters.rendering import (
     Box,
+    CameraView,
     FloorPath,
     SceneCharacter,
     Stage,
-    View,
     create_context,
 )
 from cubeling.characters.rendering.camera_picture.light import LightEstimator
@@ -55,7 +55,7 @@ PARTS = (
 )
 
 
-def scene(character: Character) -> tuple[View, Callable[[int], SceneCharacter]]:
+def scene(character: Character) -> tuple[CameraView, Callable[[int], SceneCharacter]]:
     """Return a desk with a cube on it, and the actor in each frame."""
     width, height = SIZE
     matrix = np.array([[1108.5, 0, 639.5], [0, 1108.5, 359.5], [0, 0, 1.0]])
@@ -69,7 +69,7 @@ def scene(character: Character) -> tuple[View, Callable[[int], SceneCharacter]]:
     noise = np.random.default_rng(1).normal(140, 12, (height, width, 3))
     image = cv2.GaussianBlur(noise.astype(np.float32), (0, 0), 1.5).astype(np.uint8)
     distortion = np.array([0.06, -0.12, 0.0, 0.0, 0.02])
-    view = View(image, matrix, distortion, table, (Box(table @ place, 0.06),))
+    view = CameraView(image, matrix, distortion, table, (Box(table @ place, 0.06),))
     clip = character.clips.get("Walk") or next(iter(character.clips.values()))
     scale = 0.18 / character.height
 

@@ -18,7 +18,7 @@ import parselmouth
 from rich.console import Console
 from rich.table import Table
 
-from cubeling.characters.speech.audio import read_speech, resampled
+from cubeling.characters.speech.audio import read_speech, resample
 from cubeling.characters.speech.contours import measure_prosody
 from cubeling.characters.speech.pitch import PitchSettings, track_pitch
 from cubeling.characters.speech.speech import Speech
@@ -79,7 +79,7 @@ def main() -> int:
             f"{median:.2f} cents",
             f"{speed:.0f} x",
         )
-        sounds.append(resampled(speech.samples, speech.rate, HOUR_RATE))
+        sounds.append(resample(speech.samples, speech.rate, HOUR_RATE))
     together = np.concatenate(sounds)
     hour = np.tile(together, int(HOUR_S * HOUR_RATE / len(together)) + 1)
     start = time.perf_counter()

@@ -59,7 +59,7 @@ def accuracy(character: Character) -> tuple[float, float, float, float]:
         place = shoulder + far * size * aim / np.linalg.norm(aim)
         step = seed.normal(size=3)
         step *= STEP_MM * metre / np.linalg.norm(step)
-        one, other = (body.reached(rest, HandTarget(where)) for where in (place, place + step))
+        one, other = (body.reach_for(rest, HandTarget(where)) for where in (place, place + step))
         cosine = np.abs((one.pose.rotations * other.pose.rotations).sum(-1)).min()
         turns.append(np.degrees(2 * np.arccos(min(cosine, 1.0))) / (STEP_MM / 10))
         near += far < 1.2
@@ -99,7 +99,7 @@ def main() -> int:
     headings = ("who", "reached", "miss", "turn", "< 5°/cm", "within", "beyond", "layer")
     for heading in headings:
         table.add_column(heading, justify="left" if heading == "who" else "right")
-    for name in Character.bundled():
+    for name in Character.bundled_names():
         character = Character.load(name)
         body, rest = character.upper_body, character.skeleton.rest
         shoulder = rest.globals(character.skeleton)[body.arms["left"].joints[1], :3, 3]

@@ -89,7 +89,7 @@ def drawn(number: int) -> Frame:
     """Render the three cubes, each moving at about 0.15 m/s."""
     ways = 0.15 * np.sin(2 * number / RATE_HZ + np.arange(3)) / 2
     poses = [
-        se3.moved(start, np.array([0, way, way / 2, 0, 4 * way, 0]))
+        se3.apply_delta(start, np.array([0, way, way / 2, 0, 4 * way, 0]))
         for start, way in zip(STARTS, ways, strict=True)
     ]
     light = scene(*zip(CUBES, poses, strict=True), camera=WIDE)

@@ -16,7 +16,7 @@ from rich.console import Console
 from rich.table import Table
 
 from cubeling.characters.model.character import Character
-from cubeling.characters.rendering import QUALITIES, Stage, View, create_context
+from cubeling.characters.rendering import QUALITIES, CameraView, Stage, create_context
 from cubeling.characters.rendering.deferred.lamp import Lamp
 from cubeling.characters.rendering.passes.deferred.soft_shadows import TABLE_SIDE, SoftShadowPass
 from tests.bench.ambient_occlusion.scenes import posed
@@ -45,7 +45,7 @@ def area_of(lamp: Lamp) -> AreaLight:
     return AreaLight(np.asarray(pose[:3, 3] - sides.sum(axis=0) / 2, float), sides)
 
 
-def seen(tracer: RayTracer, points: NDArray[np.float64], view: View) -> NDArray[np.bool_]:
+def seen(tracer: RayTracer, points: NDArray[np.float64], view: CameraView) -> NDArray[np.bool_]:
     """Return which points (n, 3) of the table the camera sees past the character, (n,)."""
     camera = np.linalg.inv(np.asarray(view.camera_from_table, float))[:3, 3]
     ways = camera - points
@@ -64,7 +64,7 @@ def main() -> int:
     for heading in ("character", "texels in shadow", "RMSE", "nothing drawn", "mean of both"):
         table.add_column(heading, justify="left" if heading == "character" else "right")
     worst = 0.0
-    for name in Character.bundled():
+    for name in Character.bundled_names():
         character = Character.load(name)
         view, actor = scene(character)
         stage, watch = Stage(context, SIZE), WatchPass()

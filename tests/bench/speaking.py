@@ -15,7 +15,7 @@ import numpy as np
 from rich.console import Console
 
 from cubeling.app.speaking.lines import bundled_lines
-from cubeling.app.speaking.live import LivePerformer
+from cubeling.app.speaking.live import LiveRealizer
 from cubeling.app.speaking.microphone import BLOCK, MICROPHONE_HZ
 from cubeling.app.speaking.moments import LineRequest
 from cubeling.app.speaking.performance import Direction, performed, write_video
@@ -24,7 +24,7 @@ from cubeling.characters import Character
 from cubeling.characters.control.speech_profile import DEFAULT_PROFILE
 from cubeling.characters.face.visemes.mouth_morphs import MouthMorphs
 from cubeling.characters.retargeting.root import with_root_joint
-from cubeling.characters.speech.audio import resampled
+from cubeling.characters.speech.audio import resample
 from cubeling.characters.speech.voices import Manner, Voice, espeak
 
 CONSOLE = Console(highlight=False, soft_wrap=True)
@@ -65,8 +65,8 @@ def live_mouth(human: Character, voice: Voice) -> None:
     loudness of the same sound, at the greatest correlation.
     """
     speech = voice.say("Papa, mama, baba! My, oh my! Poppy and Bob are a happy couple.")
-    sound = resampled(speech.samples, speech.rate, MICROPHONE_HZ)
-    performer, mouth = LivePerformer(human), MouthMorphs.of(human.morphs)
+    sound = resample(speech.samples, speech.rate, MICROPHONE_HZ)
+    performer, mouth = LiveRealizer(human), MouthMorphs.of(human.morphs)
     opening, loudness, took = [], [], []
     for number in range(len(sound) // BLOCK):
         block = sound[number * BLOCK : (number + 1) * BLOCK]

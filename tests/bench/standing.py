@@ -151,7 +151,7 @@ def main() -> int:
     for heading in ("who", "slide", "weight", "head", "jolt", "seeds", "mood", "longest"):
         table.add_column(heading, justify="left" if heading == "who" else "right")
     good = True
-    for name in Character.bundled():
+    for name in Character.bundled_names():
         character = Character.load(name)
         kind = PostureVectors.of(character.skeleton, character.anatomy)
         poses, places = played(character, 0)

@@ -26,7 +26,7 @@ from rich.table import Table
 from cubeling.characters import Character
 from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
-from cubeling.characters.behaviour.gestures.planning import FLIP_RAD, Performer
+from cubeling.characters.behaviour.gestures.planning import FLIP_RAD, GestureRealizer
 from cubeling.characters.skeleton import rotations
 
 MAX_FRAME_MS = 1.0
@@ -35,27 +35,30 @@ STRONG = GestureExpressivity(spatial=0.3, power=1.0)
 
 def planning_ms(character: Character) -> list[float]:
     """Return how long each bundled gesture takes to plan [ms]."""
-    performer = Performer.measured(character)
+    performer = GestureRealizer.measure(character)
     spans = []
-    for gesture in GestureCollection.bundled():
+    for gesture in GestureCollection.load_bundled():
         start = time.perf_counter()
         performer.plan(gesture)
         spans.append(1e3 * (time.perf_counter() - start))
     return spans
 
 
-def frame_ms(performer: Performer) -> tuple[float, float]:
+def frame_ms(performer: GestureRealizer) -> tuple[float, float]:
     """Return the least time of a frame [ms], and ÷ that of a copy of the rotations."""
-    motion, pose = performer.plan(GestureCollection.bundled().get("OPEN_ARMS")), performer.posture
+    motion, pose = (
+        performer.plan(GestureCollection.load_bundled().get("OPEN_ARMS")),
+        performer.posture,
+    )
     frame = min(timeit.repeat(lambda: motion.over(pose, 0.37, 0.5), number=100, repeat=30)) / 100
     copied = min(timeit.repeat(pose.rotations.copy, number=100, repeat=30)) / 100
     return 1e3 * frame, frame / copied
 
 
-def largest_step(performer: Performer) -> float:
+def largest_step(performer: GestureRealizer) -> float:
     """Return the largest turn of a joint between two key postures [rad]."""
     largest = 0.0
-    for gesture in GestureCollection.bundled():
+    for gesture in GestureCollection.load_bundled():
         turns = performer.plan(gesture).arm_turns
         if turns.size:
             cosines = np.abs(np.vecdot(turns[1:], turns[:-1]))
@@ -63,9 +66,11 @@ def largest_step(performer: Performer) -> float:
     return largest
 
 
-def measured_way(performer: Performer, style: GestureExpressivity) -> tuple[float, float, float]:
+def measured_way(
+    performer: GestureRealizer, style: GestureExpressivity
+) -> tuple[float, float, float]:
     """Return sweep [m], turn of the chest [rad] and peak speed [m/s] of BEAT_BOTH."""
-    motion = performer.plan(GestureCollection.bundled().get("BEAT_BOTH"), "right", style)
+    motion = performer.plan(GestureCollection.load_bundled().get("BEAT_BOTH"), "right", style)
     times = np.linspace(0.0, motion.duration, 201)
     poses = [motion.sample(float(each)) for each in times]
     palms = np.array([performer.body.palm(pose, "right") for pose in poses])
@@ -83,7 +88,7 @@ def measured_way(performer: Performer, style: GestureExpressivity) -> tuple[floa
 
 def main() -> int:
     """Print the table; return 1 if a bar is missed."""
-    gestures = GestureCollection.bundled()
+    gestures = GestureCollection.load_bundled()
     table = Table(title=f"{len(gestures)} symbolic gestures")
     for heading in (
         *("character", "planning", "longest", "a frame", "÷ copy", "largest step"),
@@ -93,7 +98,7 @@ def main() -> int:
     missed = False
     for name in ("human", "vleo", "robot"):
         character = Character.load(name)
-        spans, performer = planning_ms(character), Performer.of(character)
+        spans, performer = planning_ms(character), GestureRealizer.of(character)
         (frame, ratio), step = frame_ms(performer), largest_step(performer)
         written, strong = (measured_way(performer, style) for style in (NEUTRAL, STRONG))
         missed = missed or frame > MAX_FRAME_MS or step > FLIP_RAD

@@ -27,7 +27,7 @@ from cubeling.characters.control.command import PosedCharacter
 from cubeling.characters.face.action_units import WRINKLE_UNITS, ActionUnits
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.face_maps import LAYER_NAMES, WRINKLE_LAYERS
-from cubeling.characters.rendering import SceneCharacter, Stage, View, create_context
+from cubeling.characters.rendering import CameraView, SceneCharacter, Stage, create_context
 from cubeling.characters.rendering.geometry.face_texture import FaceTexture
 from cubeling.characters.skeleton.pose import Array
 from tests.bench.picture import SIZE, scene
@@ -149,7 +149,7 @@ def least_times(
     return least
 
 
-def close_up(view: View) -> View:
+def close_up(view: CameraView) -> CameraView:
     """Return a view of the actor's face from in front, without a cube."""
     table = np.diag([1.0, -1.0, -1.0, 1.0])
     table[:3, 3] = 0.0, 0.152, 0.09

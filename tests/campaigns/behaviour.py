@@ -155,7 +155,7 @@ def run_session(random: np.random.Generator, blocks: int = BLOCKS_PER_SESSION) -
         text = generated_block(random, f"k{index}", names[-4:])
         record.blocks[f"k{index}"], record.arrived[f"k{index}"] = parse(text), now
         names.append(f"k{index}")
-        realizer.perform(text)
+        realizer.accept(text)
         until = now + random.exponential(2.0)
         while now < until:
             _frame(realizer, now, record)
@@ -172,7 +172,7 @@ def _finish(realizer: Realizer, now: float, record: Record) -> None:
     while not realizer.idle and now < end:
         _frame(realizer, now, record)
         now += record.frame
-    realizer.perform(document(name="last", more='composition="REPLACE"'))
+    realizer.accept(document(name="last", more='composition="REPLACE"'))
     record.blocks["last"] = Block("last", composition="REPLACE")
     record.arrived["last"] = now
     while realizer.idle is False:

@@ -61,7 +61,7 @@ def scene(
     for cube, pose in cubes:
         way = np.zeros(6) if sweep is None else sweep
         count = 1 if sweep is None else 24
-        poses = [se3.moved(pose, ((n + 0.5) / count - 0.5) * way) for n in range(count)]
+        poses = [se3.apply_delta(pose, ((n + 0.5) / count - 0.5) * way) for n in range(count)]
         left, top, right, bottom = window(cube, poses, camera)
         part = light[top:bottom, left:right]
         drawn = [_drawn(cube, each, camera, part, (left, top)) for each in poses]

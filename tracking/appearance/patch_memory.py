@@ -28,7 +28,7 @@ class PatchMemory:
         self._irradiance = np.zeros((len(ORIENTATIONS), 3))
 
     def age(self, seconds: float) -> None:
-        """Forget a little."""
+        """Forget a little: weights fall by a factor of e in `MEMORY_S`."""
         self.weights *= np.exp(-max(seconds, 0) / MEMORY_S)
 
     def add(self, patches: Patches, irradiance: Array, seconds: float) -> None:
@@ -61,7 +61,7 @@ class ExposureGain:
     """
 
     ROWS, COLUMNS = 12, 20
-    """Number of places."""
+    """Cells of the grid over the picture whose brightness is compared."""
 
     ADAPTATION_S = 10.0
     """Time in which the reference follows what changes in the room."""

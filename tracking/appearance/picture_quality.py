@@ -73,10 +73,10 @@ def _blurred_steps() -> tuple[Array, Array]:
     blurs, shifts = (each.ravel() for each in np.meshgrid(_BLURS, _SHIFTS, indexing="ij"))
     erf = np.vectorize(math.erf, otypes=[float])
     steps = np.asarray(erf((_OFFSETS - shifts[:, None]) / blurs[:, None] / math.sqrt(2.0)))
-    return steps, _normalized(steps)
+    return steps, _normalize(steps)
 
 
-def _normalized(profiles: Array) -> Array:
+def _normalize(profiles: Array) -> Array:
     centred = profiles - profiles.mean(-1, keepdims=True)
     return np.asarray(
         centred / np.maximum(np.linalg.norm(centred, axis=-1, keepdims=True), 1e-9), np.float64
@@ -111,7 +111,7 @@ class QualityMeter:
             return self._quality
         if abs(interval) > MAX_INTERVAL_S:
             return self._quality
-        measured = _measured(*(_sampled(each, places) for each in (before, image)))
+        measured = _measure(*(_sample(each, places) for each in (before, image)))
         if measured is not None:
             if self._quality and not measured.noise and np.array_equal(before, image):
                 # A camera sends a frame again: that tells nothing of noise, but the next one does.
@@ -159,7 +159,7 @@ class QualityMeter:
         return bool(speed * focal / depth > MAX_SPEED_PX_S)
 
 
-def _sampled(image: Image, places: Floats) -> Floats:
+def _sample(image: Image, places: Floats) -> Floats:
     """Return the grey values at places (…, samples, 2)."""
     flat = places.reshape(-1, *places.shape[-2:])
     sampled = cv2.remap(image, flat[..., 0], flat[..., 1], cv2.INTER_LINEAR)
@@ -167,7 +167,7 @@ def _sampled(image: Image, places: Floats) -> Floats:
     return np.asarray(grey.reshape(places.shape[:-1]), np.float32)
 
 
-def _measured(before: Floats, profiles: Floats) -> PictureQuality | None:
+def _measure(before: Floats, profiles: Floats) -> PictureQuality | None:
     """Return blur and noise of profiles (sides, lines, samples), or None if no side is clear.
 
     The noise is what differs from the profiles of the frame before.
@@ -178,7 +178,7 @@ def _measured(before: Floats, profiles: Floats) -> PictureQuality | None:
     light = (profiles / np.float32(255.0)) ** np.float32(TONE_EXPONENT)
     mean_light = np.asarray(light.mean(1), np.float64)
     steps, normalized_steps = _blurred_steps()
-    fits = _normalized(mean_light) @ normalized_steps.T
+    fits = _normalize(mean_light) @ normalized_steps.T
     clear = (fits.max(1) > MIN_FIT) & (white < SATURATED) & (white - black > MIN_CONTRAST)
     if not clear.any():
         return None

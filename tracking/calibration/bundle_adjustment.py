@@ -30,7 +30,7 @@ class AdjustmentResult:
     """The best model and its uncertainty."""
 
     model: CalibrationModel
-    """The unknowns."""
+    """Intrinsics and the views' poses at the optimum."""
 
     covariance: Array
     """Covariance of the camera's nine parameters and the plates' steps, (9 + 6 P, 9 + 6 P); zero
@@ -53,7 +53,7 @@ def adjust(views: Sequence[View], model: CalibrationModel) -> AdjustmentResult:
     equations = _normal_equations(views, model, sigma)
     cost = _cost(views, model, sigma)
     for _ in range(MAX_ITERATIONS):
-        moved = model.moved(*equations.solve(damping, model.free_parameters))
+        moved = model.apply_step(*equations.solve(damping, model.free_parameters))
         new_cost = _cost(views, moved, sigma)
         if new_cost > cost:
             damping *= 8
@@ -116,8 +116,8 @@ class _NormalEquations:
     right: Array
     blocks: list[_ViewBlock]
 
-    def reduced(self, damping: float) -> tuple[Array, Array]:
-        """Eliminate the views."""
+    def reduce(self, damping: float) -> tuple[Array, Array]:
+        """Return the equations of the intrinsics alone: the Schur complement of the views."""
         normal, right = self.normal.copy(), self.right.copy()
         normal[np.diag_indices(len(normal))] *= 1 + damping
         for block in self.blocks:
@@ -128,7 +128,7 @@ class _NormalEquations:
 
     def solve(self, damping: float, free: Indices) -> tuple[Array, list[Array]]:
         """Return the step of the shared unknowns and that of each view."""
-        normal, right = self.reduced(damping)
+        normal, right = self.reduce(damping)
         step = np.zeros(len(right))
         step[free] = np.linalg.solve(normal[np.ix_(free, free)], right[free])
         by_view = [block.solve(block.right - block.cross @ step, damping) for block in self.blocks]
@@ -136,7 +136,7 @@ class _NormalEquations:
 
     def covariance(self, free: Indices) -> Array:
         """Return the covariance of the shared unknowns; zero for those that are not free."""
-        normal, _ = self.reduced(0.0)
+        normal, _ = self.reduce(0.0)
         covariance = np.zeros_like(normal)
         covariance[np.ix_(free, free)] = np.linalg.inv(normal[np.ix_(free, free)])
         return covariance

@@ -65,7 +65,7 @@ def check_camera(
     TrackingError
         The views do not determine the camera: too few, contradictory, or not tilted.
     """
-    now, kept = solve([_undistorted(saved, view) for view in views], target)
+    now, kept = solve([_undistort(saved, view) for view in views], target)
     now.check()
     pinhole = camera_vector.from_intrinsics(replace(saved, distortion=np.zeros(5)))
     fixed = replace(target, free=np.zeros(9, np.bool_))
@@ -82,15 +82,15 @@ def check_camera(
     )
 
 
-def _undistorted(camera: Intrinsics, view: View) -> View:
+def _undistort(camera: Intrinsics, view: View) -> View:
     """Return a view as the same camera without distortion would see it."""
     along = np.stack([-view.normals[:, 1], view.normals[:, 0]], axis=1)
     # Only the edge's direction is known exactly, so the new normal is perpendicular to its image.
     across, tangents = (
-        camera.undistorted(view.pixels + way / 2) - camera.undistorted(view.pixels - way / 2)
+        camera.undistort(view.pixels + way / 2) - camera.undistort(view.pixels - way / 2)
         for way in (view.normals, along)
     )
     normals = np.stack([tangents[:, 1], -tangents[:, 0]], axis=1)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     normals *= np.sign(np.einsum("ni,ni->n", normals, across))[:, None]
-    return replace(view, pixels=camera.undistorted(view.pixels), normals=normals)
+    return replace(view, pixels=camera.undistort(view.pixels), normals=normals)

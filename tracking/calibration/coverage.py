@@ -113,7 +113,7 @@ class ViewCoverage:
         return kinds
 
     def add(self, sample: ViewSample) -> None:
-        """Count a view."""
+        """Count a view for every kind that it belongs to."""
         self.counts.update(self.kinds_of(sample))
 
     def progress_of(self, kind: str) -> float:

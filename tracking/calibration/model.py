@@ -69,7 +69,7 @@ class CalibrationModel:
         """Return measured minus predicted position of each view's rows [px], each (N,)."""
         counts = [len(view.points) for view in views]
         rows, numbers = join_views(0.0, views), np.repeat(np.arange(len(views)), counts)
-        pixels = camera_vector.project(self.camera, self._placed(rows, numbers)[2])
+        pixels = camera_vector.project(self.camera, self._place(rows, numbers)[2])
         return np.split(self._misses(rows, numbers, pixels), np.cumsum(counts)[:-1])
 
     def linearise(self, view: View, number: int) -> tuple[Array, Array, Array, Array]:
@@ -79,7 +79,7 @@ class CalibrationModel:
         (N, 7). Steps of poses are as in `se3.moved`.
         """
         numbers = np.full(len(view.points), number)
-        from_plate, from_target, in_camera = self._placed(view, numbers)
+        from_plate, from_target, in_camera = self._place(view, numbers)
         pixels, by_point, by_camera = camera_vector.project_with_jacobian(self.camera, in_camera)
         by_point = np.einsum("ni,nij->nj", view.normals, by_point)
         by_camera = np.einsum("ni,nij->nj", view.normals, by_camera)
@@ -89,7 +89,7 @@ class CalibrationModel:
         by_view = np.concatenate([*by_pose, view.bloom[:, None]], axis=1)
         return self._misses(view, numbers, pixels), by_camera, by_plate, by_view
 
-    def _placed(self, rows: View, numbers: Indices) -> tuple[Array, Array, Array]:
+    def _place(self, rows: View, numbers: Indices) -> tuple[Array, Array, Array]:
         """Place the points of rows of the views with these numbers, (N, 3) each [m].
 
         From their plate's centre; from the target's origin along the camera's axes; in the camera.
@@ -134,14 +134,16 @@ class CalibrationModel:
     def _camera_prior(self) -> tuple[Array, Array]:
         return camera_vector.prior(self.target.size, self.camera[0], self.target.free)
 
-    def moved(self, shared: Array, by_view: Sequence[Array]) -> Self:
+    def apply_step(self, shared: Array, by_view: Sequence[Array]) -> Self:
         """Apply a step of camera and plates (9 + 6 P,) and one of each view (7,)."""
         camera, width = self.camera + shared[:9], self.target.size[0]
         # A single bad step must not take the focal length out of the range of real cameras.
         camera[:2] = np.clip(camera[:2], 0.2 * width, 8 * width)
         plate_steps = zip(self.plates, shared[9:].reshape(-1, 6), strict=True)
-        plates = [se3.moved(plate, step) for plate, step in plate_steps]
-        poses = [se3.moved(pose, step[:6]) for pose, step in zip(self.poses, by_view, strict=True)]
+        plates = [se3.apply_delta(plate, step) for plate, step in plate_steps]
+        poses = [
+            se3.apply_delta(pose, step[:6]) for pose, step in zip(self.poses, by_view, strict=True)
+        ]
         blooms = self.blooms + np.array([step[6] for step in by_view])
         return replace(
             self, camera=camera, plates=np.array(plates), poses=np.array(poses), blooms=blooms

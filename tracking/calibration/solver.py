@@ -41,7 +41,6 @@ class Calibration:
     """A camera, and the actual shape of the target that it was calibrated with."""
 
     intrinsics: Intrinsics
-    """The camera."""
 
     spread: Array
     """Standard deviations of fx fy cx cy [px] k1 k2 p1 p2 k3, (9,); 0 for fixed parameters."""
@@ -99,12 +98,12 @@ def solve(views: Sequence[View], target: CalibrationTarget) -> tuple[Calibration
     _check_count(len(views))
     rigid = replace(target, adjust_plates=False)
     model, kept = fit_poses(views, initial_camera(views, target.size), rigid)
-    model = _adjusted(kept, model, "focal length").model
+    model = _adjust(kept, model, "focal length").model
     model, kept = fit_poses(kept, model.camera, target)
-    model, kept = _without_outliers(kept, _adjusted(kept, model, "radial"))
-    model, kept = _without_outliers(kept, _adjusted(kept, model, "all but k3"))
-    best = _adjusted(kept, model, "all but k3")
-    with_k3 = _adjusted(kept, best.model, "all")
+    model, kept = _without_outliers(kept, _adjust(kept, model, "radial"))
+    model, kept = _without_outliers(kept, _adjust(kept, model, "all but k3"))
+    best = _adjust(kept, model, "all but k3")
+    with_k3 = _adjust(kept, best.model, "all")
     if best.cost * (best.residual / with_k3.residual) ** 2 - with_k3.cost > MIN_K3_GAIN:
         best = with_k3
     intrinsics = camera_vector.to_intrinsics(best.model.camera, target.size)
@@ -126,7 +125,7 @@ def fit_poses(
     return CalibrationModel(target, camera, plates, poses, np.zeros(len(kept))), kept
 
 
-def _adjusted(views: Sequence[View], model: CalibrationModel, stage: str) -> AdjustmentResult:
+def _adjust(views: Sequence[View], model: CalibrationModel, stage: str) -> AdjustmentResult:
     free = np.zeros(9, np.bool_)
     free[list(FREE_PARAMETERS[stage])] = True
     return adjust(views, replace(model, target=replace(model.target, free=free)))

@@ -24,7 +24,7 @@ class TargetDetection:
     """A target in one image, accurate to about a pixel."""
 
     corners: View
-    """Its corners."""
+    """Its corners in the picture with their places on the target."""
 
     outlines: tuple[Array, ...]
     """Outline of each visible plate, each (4, 2) [px]."""

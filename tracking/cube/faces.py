@@ -28,7 +28,7 @@ class FacePlanes:
         """Return the indices of the faces whose cosine is greater than `min_cosine`."""
         return tuple(np.flatnonzero(self.cosines(camera_from_cube) > min_cosine).tolist())
 
-    def mirrored(self, camera_from_cube: Array, face: int) -> Array:
+    def mirror(self, camera_from_cube: Array, face: int) -> Array:
         """Pose of the cube with one face tilted to the other side of its line of sight, (4, 4).
 
         The centre of the face stays where it is.

@@ -28,9 +28,9 @@ def write_cube(cube: CubeModel, path: str | Path) -> None:
     if Path(path).suffix != ".toml":
         raise TrackingError(f"a cube is written to a .toml file, not to '{path}'")
     lines = [
-        f"name = {_quoted(cube.name)}",
-        *([f"hint = {_quoted(cube.hint)}"] if cube.hint else []),
-        f"dictionary = {_quoted(cube.dictionary)}",
+        f"name = {_quote(cube.name)}",
+        *([f"hint = {_quote(cube.hint)}"] if cube.hint else []),
+        f"dictionary = {_quote(cube.dictionary)}",
         f"edge_mm = {cube.edge * 1000:.10g}",
         f"marker_mm = {cube.marker_size * 1000:.10g}",
         *(line for face in cube.faces for line in _face(cube, face)),
@@ -39,11 +39,11 @@ def write_cube(cube: CubeModel, path: str | Path) -> None:
 
 
 def _face(cube: CubeModel, face: Face) -> list[str]:
-    lines = ["", "[[face]]", f"name = {_quoted(face.name)}", f"marker_id = {face.marker_id}"]
+    lines = ["", "[[face]]", f"name = {_quote(face.name)}", f"marker_id = {face.marker_id}"]
     if face.roll_deg:
         lines.append(f"roll_deg = {face.roll_deg}")
     lines += [
-        f"{key} = {_quoted(text)}"
+        f"{key} = {_quote(text)}"
         for key, text in (("role", face.role), ("icon", face.icon))
         if text
     ]
@@ -57,6 +57,6 @@ def _face(cube: CubeModel, face: Face) -> list[str]:
     return lines
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     # The escapes of JSON strings are those of TOML's basic strings.
     return json.dumps(text, ensure_ascii=False)

@@ -28,7 +28,6 @@ class Face:
     """One face of the cube and the marker printed on it."""
 
     name: str
-    """One of `FACE_AXES`."""
 
     marker_id: int
     """Id of the marker in the cube's dictionary."""
@@ -144,7 +143,7 @@ class CubeModel:
         """The dictionary and the id of each marker; cubes that share all cannot be told apart."""
         return frozenset((self.dictionary, face.marker_id) for face in self.faces)
 
-    def scaled(self, edge: float) -> Self:
+    def scale(self, edge: float) -> Self:
         """Return the same cube in another size, its markers grown or shrunk with it.
 
         Parameters

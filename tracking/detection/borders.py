@@ -55,7 +55,7 @@ class BorderSegments:
 
     @property
     def length(self) -> Array:
-        """Lengths, (N,) [px]."""
+        """Distance from start to end, (N,) [px]."""
         return np.asarray(np.hypot(*(self.end - self.start).T))
 
     def select(self, chosen: Indices | Flags) -> "BorderSegments":
@@ -127,7 +127,7 @@ def quadrilaterals(segments: BorderSegments) -> tuple[Indices, Array]:
     chain = np.stack([first, second], axis=1)
     meets = corner[:, None]
     for _ in range(2):
-        chain, meets = _extended(chain, meets, begins, second, corner)
+        chain, meets = _extend(chain, meets, begins, second, corner)
     # The fourth segment must meet the first again: look up this pair.
     key = first * len(segments) + second
     wanted = chain[:, 3] * len(segments) + chain[:, 0]
@@ -167,7 +167,7 @@ def _overlap(length: Array) -> Array:
     return np.asarray(np.maximum(MAX_OVERLAP_PX, MAX_OVERLAP_SHARE * length), np.float64)
 
 
-def _extended(
+def _extend(
     chain: Indices, meets: Array, begins: Indices, second: Indices, corner: Array
 ) -> tuple[Indices, Array]:
     """Append to each chain of segments every segment that its last one meets."""

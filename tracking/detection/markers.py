@@ -57,26 +57,28 @@ class MarkerDetector:
         self._others = cv2.aruco.ArucoDetector(pattern, _parameters(first, last))
         strict = _parameters(first, last)
         strict.adaptiveThreshWinSizeStep = (last - first) // 2
+        # OpenCV's share of the dictionary's correctable bits; 0 takes exact patterns only.
         strict.errorCorrectionRate = 0.0
         self._strict = cv2.aruco.ArucoDetector(pattern, strict)
 
     def detect(self, grey: Image) -> list[Marker]:
         """Detect markers in a grey image, (H, W), with the window that finds most."""
-        return _detected(self._first, grey)
+        return _detect(self._first, grey)
 
     def detect_others(self, grey: Image) -> list[Marker]:
         """Detect markers with the other windows, some of them again."""
-        return _detected(self._others, grey)
+        return _detect(self._others, grey)
 
     def detect_strictly(self, grey: Image) -> list[Marker]:
         """Detect markers with all windows, and none with a wrong bit: nothing else proves them."""
-        return _detected(self._strict, grey)
+        return _detect(self._strict, grey)
 
 
 def _parameters(first: int, last: int) -> cv2.aruco.DetectorParameters:
     parameters = cv2.aruco.DetectorParameters()
     parameters.adaptiveThreshWinSizeMin = first
     parameters.adaptiveThreshWinSizeMax = last
+    # One step from the first to the last window; OpenCV asserts that it is positive.
     parameters.adaptiveThreshWinSizeStep = max(last - first, 1)
     parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
     # The search window must not reach the next edge of a small marker: 0.3 cells, at most 5 px.
@@ -85,7 +87,7 @@ def _parameters(first: int, last: int) -> cv2.aruco.DetectorParameters:
     return parameters
 
 
-def _detected(detector: cv2.aruco.ArucoDetector, grey: Image) -> list[Marker]:
+def _detect(detector: cv2.aruco.ArucoDetector, grey: Image) -> list[Marker]:
     quads, ids = detector.detectMarkers(grey)[:2]
     # None where there is no marker; (N,) in OpenCV 5, (N, 1) in OpenCV 4.
     marker_ids = [] if ids is None else [int(number) for number in np.ravel(ids)]

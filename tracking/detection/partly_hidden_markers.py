@@ -6,7 +6,7 @@ import numpy as np
 from cubeling.tracking.cube.marker import marker_cells
 from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.detection.markers import Observation
-from cubeling.tracking.detection.quads import Quads, find_quads, sampled
+from cubeling.tracking.detection.quads import Quads, find_quads, sample_grey
 from cubeling.tracking.detection.smeared_patterns import SmearedPatterns
 from cubeling.tracking.geometry.arrays import Array, Flags, Image, Indices
 from cubeling.tracking.geometry.image_region import Region
@@ -104,7 +104,7 @@ class PartlyHiddenMarkerDetector:
     def _read(self, soft: Image, quads: Quads) -> tuple[Indices, Array]:
         """Identify the marker in each quad: 4 × index of its face + rotation, or below 0."""
         places = quads.map(self._places)
-        values = sampled(soft, places)
+        values = sample_grey(soft, places)
         seen = self._uncovered(quads) & _inside(places, soft.shape)
         white = _median(values[:, self._paper], seen[:, self._paper])[:, None]
         black = _median(values[:, self._border], seen[:, self._border])[:, None]
@@ -116,9 +116,9 @@ class PartlyHiddenMarkerDetector:
         framed &= _share(sign[:, self._paper]) > MIN_FRAME_SHARE
         framed &= _share(-sign[:, self._border]) > MIN_FRAME_SHARE
         hidden = quads.gaps.max(axis=1) > MAX_GAP_CELLS / self._count
-        return self._matched(sign[:, self._bits], framed, np.where(hidden, MAX_WRONG_SHARE, 0.0))
+        return self._match(sign[:, self._bits], framed, np.where(hidden, MAX_WRONG_SHARE, 0.0))
 
-    def _matched(self, sign: Array, framed: Flags, wrong_share: Array) -> tuple[Indices, Array]:
+    def _match(self, sign: Array, framed: Flags, wrong_share: Array) -> tuple[Indices, Array]:
         """Find the marker that agrees best with the signs of the inner cells, (N, cells)."""
         fit = sign @ (2 * self._white - 1).T  # right minus wrong
         read = np.abs(sign).sum(axis=1)

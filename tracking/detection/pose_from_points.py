@@ -176,16 +176,16 @@ class CornerPoseSolver:
         corners = np.concatenate([seen.corners for seen in observations])
         current = start
         for _ in range(6):
-            residuals, rows = self._linearised(current, points, corners)
+            residuals, rows = self._linearise(current, points, corners)
             lengths = np.sqrt((residuals**2).sum(axis=1))
             weights = 1 / np.maximum(1, lengths / max(0.5, 2 * quantile(lengths, 0.5)))
             weighted = (rows * weights[:, None, None]).reshape(-1, 6)
             flat = rows.reshape(-1, 6)
             step = np.linalg.solve(weighted.T @ flat, weighted.T @ residuals.ravel())
-            current = se3.moved(current, step)
+            current = se3.apply_delta(current, step)
             if np.abs(step).max() < 1e-6:
                 break
-        residuals, rows = self._linearised(current, points, corners)
+        residuals, rows = self._linearise(current, points, corners)
         squares = float((residuals**2).sum())
         # One face leaves two degrees of freedom, too few to judge by: assume at least 0.3 px.
         spread = max(0.3**2, squares / max(1, residuals.size - 6))
@@ -194,7 +194,7 @@ class CornerPoseSolver:
         error = float(np.sqrt(squares / len(residuals)))
         return CornerPose(current, tuple(observations), error, covariance)
 
-    def _linearised(self, pose: Array, points: Array, corners: Array) -> tuple[Array, Array]:
+    def _linearise(self, pose: Array, points: Array, corners: Array) -> tuple[Array, Array]:
         """Residuals, (N, 2) [px], and their Jacobian by a pose delta, (N, 2, 6)."""
         rotated = points @ pose[:3, :3].T
         pixels, jacobian = self._projection.project_with_jacobian(rotated + pose[:3, 3])

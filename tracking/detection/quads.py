@@ -66,19 +66,21 @@ def find_quads(grey: Image) -> Quads:
     share = sides.length[chosen] / np.maximum(length, 1.0)
     keep = length.min(axis=1, initial=np.inf) > MIN_SIDE_PX
     keep &= share.mean(axis=1) > MIN_VISIBLE_OUTLINE
+    # Up to 1.3: the blur of a small image makes segments longer than the sides they lie on.
     keep &= (share.min(axis=1, initial=1.0) > MIN_VISIBLE_SIDE) & (share < 1.3).all(axis=1)
+    # Each side against its opposite one, two corners on.
     keep &= (length < MAX_SIDE_RATIO * length[:, [2, 3, 0, 1]]).all(axis=1)
     if not keep.any():
         return Quads(np.zeros((0, 4, 2)), np.zeros((0, 4)), np.zeros(0))
     # Many quads share their sides: move each side once.
     used, of_quad = np.unique(chosen[keep], return_inverse=True)
-    start, end = _moved_to_edge(grey, sides.select(used))
+    start, end = _move_to_edge(grey, sides.select(used))
     corners = _intersections(start[of_quad], end[of_quad])
     gaps = _gaps(sides.start[chosen[keep]], sides.end[chosen[keep]], corners)
     return Quads(corners, gaps, share[keep].mean(axis=1))
 
 
-def sampled(grey: Image, places: Array) -> Array:
+def sample_grey(grey: Image, places: Array) -> Array:
     """Grey values between pixel centres, bilinear, places (N, M, 2) [px] → (N, M)."""
     x, y = np.moveaxis(places.astype(np.float32), -1, 0)
     border = cv2.BORDER_REPLICATE
@@ -95,15 +97,18 @@ def _side_lengths(corners: Array) -> Array:
     return np.asarray(np.hypot(edges[..., 0], edges[..., 1]), np.float64)
 
 
-def _moved_to_edge(grey: Image, used: BorderSegments) -> tuple[Array, Array]:
+def _move_to_edge(grey: Image, used: BorderSegments) -> tuple[Array, Array]:
     """Move sides to the greatest gradient of the image; return their starts and ends, (N, 2)."""
     direction = (used.end - used.start) / used.length[:, None]
     across = np.stack([direction[:, 1], -direction[:, 0]], axis=1)  # towards the bright side
+    # Not up to the corners, where the gradient of the other side begins.
     along = np.linspace(0.1, 0.9, 13)
     reach = np.arange(-SEARCH_REACH_PX, SEARCH_REACH_PX + 1.25, 0.5)  # outlines lie on dark pixels
     middle = used.start[:, None] + along[:, None] * (used.end - used.start)[:, None]
     places = middle[:, :, None] + reach[:, None] * across[:, None, None]
-    values = sampled(grey, places.reshape(-1, len(reach), 2)).reshape(places.shape[:-1])
+    values = sample_grey(grey, places.reshape(-1, len(reach), 2)).reshape(places.shape[:-1])
+    # Only from dark to bright, as the inside of a quad is dark; squared, so that the edge outweighs
+    # noise, and the summand keeps a side without any gradient where it is.
     slope = np.square(np.maximum(values[..., 2:] - values[..., :-2], 0.0)) + 1e-3
     offset = (slope @ reach[1:-1]) / slope.sum(axis=-1)
     shift, slant = _fit_lines(along - 0.5, offset)

@@ -8,7 +8,7 @@ import numpy as np
 
 from cubeling.tracking.cube.marker import marker_cells
 from cubeling.tracking.cube.model import CubeModel
-from cubeling.tracking.detection.quads import Quads, sampled
+from cubeling.tracking.detection.quads import Quads, sample_grey
 from cubeling.tracking.geometry.arrays import Array, Flags, Floats, Image, Indices
 
 SMEARS_CELLS, DIRECTIONS = (1.0, 1.75, 2.5), 8
@@ -49,7 +49,7 @@ class SmearedPatterns:
 
         Return 4 × index of its face + rotation, or −1, and the correlation, (N,) each.
         """
-        values = _normalized(sampled(soft, quads.map(self._places)))
+        values = _normalize(sample_grey(soft, quads.map(self._places)))
         patterns = _smeared_patterns(*self._drawn_from)
         alike = np.tensordot(values, patterns, axes=([1], [2])).max(axis=2)
         order = np.argsort(alike, axis=1, kind="stable")
@@ -68,12 +68,12 @@ def _smeared_patterns(dictionary: str, marker_ids: tuple[int, ...], count: int) 
     """
     cells = [marker_cells(dictionary, number) for number in marker_ids]
     turned = [np.rot90(each, turn) for each in cells for turn in range(4)]
-    patterns = _normalized(np.stack([_smeared(each, count) for each in turned]))
+    patterns = _normalize(np.stack([_smear(each, count) for each in turned]))
     patterns.flags.writeable = False
     return patterns
 
 
-def _smeared(black: Flags, count: int) -> Floats:
+def _smear(black: Flags, count: int) -> Floats:
     """Draw a marker with every blur, (smears, count²)."""
     cell = SAMPLES_PER_CELL * TEXELS_PER_SAMPLE
     white = np.kron((~black).astype(np.float32), np.ones((cell, cell), np.float32))
@@ -101,7 +101,7 @@ def _kernel(length: float, angle: float) -> Floats:
     return np.asarray(soft / soft.sum(), np.float32)
 
 
-def _normalized(values: Array) -> Floats:
+def _normalize(values: Array) -> Floats:
     """Shift and scale each row to mean 0 and length 1, (…, N)."""
     centred = values - values.mean(axis=-1, keepdims=True)
     length = np.sqrt((centred * centred).sum(axis=-1, keepdims=True))

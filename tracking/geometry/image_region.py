@@ -58,7 +58,7 @@ class Patch:
         values = cv2.remap(self.grey, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
         return np.asarray(values, np.float32)
 
-    def smoothed(self, sigma: float) -> "Patch":
+    def smooth(self, sigma: float) -> "Patch":
         """Return it blurred by a Gaussian of `sigma` [px]."""
         soft = cv2.GaussianBlur(self.grey, (0, 0), sigma)
         return Patch(np.asarray(soft, np.float32), self.left, self.top)

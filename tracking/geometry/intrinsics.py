@@ -67,7 +67,7 @@ class Intrinsics:
         matrix = np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1]])
         return cls(matrix, np.zeros(5), size)
 
-    def undistorted(self, points: ArrayLike) -> Array:
+    def undistort(self, points: ArrayLike) -> Array:
         """Move pixels to where the same camera without lens distortion would see them.
 
         Parameters
@@ -83,11 +83,12 @@ class Intrinsics:
         flat = pixels.reshape(-1, 1, 2)
         if not len(flat):
             return pixels.copy()
+        # OpenCV's default stops after 5 iterations: too few at the border of a wide lens.
         precise = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 50, 1e-12)
         moved = cv2.undistortImagePoints(flat, self.matrix, self.distortion, None, precise)
         return moved.reshape(pixels.shape).astype(np.float64)
 
-    def scaled(self, size: tuple[int, int]) -> Self:
+    def scale(self, size: tuple[int, int]) -> Self:
         """Return the same camera with images of another size, still of its whole sensor.
 
         Parameters

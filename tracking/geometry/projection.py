@@ -62,7 +62,7 @@ class Projection:
     def _radial(self, square: Array) -> Array:
         """Return the radial factor at squared distances from the axis."""
         factor = 1 + square * (self._k1 + square * (self._k2 + square * self._k3))
-        return factor / self._divided(square) if any(self._divisor) else factor
+        return factor / self._divide(square) if any(self._divisor) else factor
 
     def _radial_slope(self, square: Array, factor: Array) -> Array:
         """Return how that factor changes by squared distances."""
@@ -70,9 +70,9 @@ class Projection:
         if not any(self._divisor):
             return slope
         k4, k5, k6 = self._divisor
-        return (slope - factor * (k4 + square * (2 * k5 + 3 * k6 * square))) / self._divided(square)
+        return (slope - factor * (k4 + square * (2 * k5 + 3 * k6 * square))) / self._divide(square)
 
-    def _divided(self, square: Array) -> Array:
+    def _divide(self, square: Array) -> Array:
         k4, k5, k6 = self._divisor
         return 1 + square * (k4 + square * (k5 + square * k6))
 

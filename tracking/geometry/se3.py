@@ -119,21 +119,21 @@ def inverse(transform: Array) -> Array:
     return pose(transposed, -transposed @ transform[:3, 3])
 
 
-def moved(transform: Array, pose_delta: Array) -> Array:
+def apply_delta(transform: Array, pose_delta: Array) -> Array:
     """Apply a pose delta, (6,), to a pose, (4, 4).
 
-    >>> moved(np.eye(4), np.array([1.0, 2.0, 3.0, 0.0, 0.0, 0.0]))[:3, 3].tolist()
+    >>> apply_delta(np.eye(4), np.array([1.0, 2.0, 3.0, 0.0, 0.0, 0.0]))[:3, 3].tolist()
     [1.0, 2.0, 3.0]
     """
     return pose(rotation(pose_delta[3:]) @ transform[:3, :3], transform[:3, 3] + pose_delta[:3])
 
 
 def along(transform: Array, pose_delta: Array, shares: Array) -> Array:
-    """Poses along a pose delta: `moved(transform, share * pose_delta)` for N shares, (N, 4, 4).
+    """Poses along a pose delta, as `apply_delta` with each of N shares of it, (N, 4, 4).
 
     >>> motion = np.array([0.1, 0.0, -0.2, 0.3, -0.1, 0.2])
     >>> half = along(np.eye(4), motion, np.array([0.5]))[0]
-    >>> bool(np.allclose(half, moved(np.eye(4), motion / 2)))
+    >>> bool(np.allclose(half, apply_delta(np.eye(4), motion / 2)))
     True
     """
     angle = max(float(np.linalg.norm(pose_delta[3:])), 1e-12)
@@ -148,7 +148,7 @@ def along(transform: Array, pose_delta: Array, shares: Array) -> Array:
 
 
 def delta(start: Array, end: Array) -> Array:
-    """Pose delta, (6,), from one pose to another: `moved(start, delta(start, end))` is `end`."""
+    """Pose delta, (6,), from one pose to another: `apply_delta` to `start` returns `end`."""
     rotated = rotation_vector(end[:3, :3] @ start[:3, :3].T)
     return np.concatenate([end[:3, 3] - start[:3, 3], rotated])
 

@@ -98,6 +98,7 @@ class CubeGestures:
             return before
         velocity = self._velocity(now, pose)
         made = [name for name, each in self._detectors.items() if each.update(now, pose, velocity)]
+        # Before the position is remembered: `_learn` needs the time since the last pose.
         self._learn(state, pose)
         self._remember(now, pose[:3, 3])
         self._last = (now, pose)
@@ -127,7 +128,11 @@ class CubeGestures:
         now = before.timestamp
         lifted = self._is_lifted(now, place)
         steady = self._is_steady(now, before.resting)
+        # A cube that rests may tilt by an error of the tracker for `MIN_LIFT_S`, and still rests.
         resting = steady and (place.flat or (before.resting and not lifted))
+        # Placed again only after it was in a hand, or with another face up: a cube that is only
+        # shoved
+        # comes to rest too.
         self._handled |= lifted
         placed = resting and (self._handled or place.top != self._placed_top)
         if placed:
@@ -156,11 +161,13 @@ class CubeGestures:
         up = table_from_cube[1, :3]
         cosine, top = max(zip((ALL_NORMALS @ up).tolist(), SIDE_NORMALS, strict=True))
         tilt = _angle(cosine)
+        # Hysteresis: between two faces the last one stays on top.
         if last_top is not None and tilt > MAX_TOP_TILT:
             top = last_top
         position = table_from_cube[[0, 2], 3]
         angle = clockwise_angle(table_from_cube, top)
         towards = (table_from_camera[:3, :3] @ TOWARDS_CAMERA)[[0, 2]]
+        # Clockwise as seen from above, 0 towards the camera.
         heading = wrap_angle(angle - clockwise_angle_of(towards))
         height, spread = table.height(pose[:3, 3])
         return _TablePose(
@@ -190,6 +197,7 @@ class CubeGestures:
             return resting
         centre = self._positions[-1][1]
         travel = max(math.dist(centre, there) for _, there in self._positions)
+        # Hysteresis: the noise of a far cube's pose must not end its rest.
         limit = MAX_SPEED_TO_KEEP_RESTING if resting else MAX_SPEED_TO_START_RESTING
         return travel < limit * TRAVEL_WINDOW_S
 
@@ -235,7 +243,7 @@ class TurnCounter:
         self._total = 0.0
 
     def restart(self, angle: float) -> None:
-        """Count from here."""
+        """Count from an angle [rad] on; the sum is 0 again."""
         self._angle, self._total = angle, 0.0
 
     def add(self, angle: float) -> None:

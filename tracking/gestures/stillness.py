@@ -35,6 +35,7 @@ class StillnessDetector:
 
     def add(self, timestamp: float, camera_from_cube: Array, covariance: Array) -> None:
         """Add a pose, and drop those that are older than the window."""
+        # Unseen for a whole window the cube may have been anywhere.
         if self._samples and timestamp - self._samples[-1].timestamp > WINDOW_S:
             self._samples.clear()
         self._samples.append(_Sample(timestamp, camera_from_cube, covariance))
@@ -58,6 +59,7 @@ class StillnessDetector:
             return False
         variance = self._deltas.var(axis=0).reshape(2, 3).sum(axis=1)
         expected = np.mean([np.diag(sample.covariance) for sample in self._samples], axis=0)
+        # Twice the standard deviation that the tracker claims: its noise is no tremor of a hand.
         allowed = np.square(MAX_TREMOR) + 4 * expected.reshape(2, 3).sum(axis=1)
         return bool((variance < allowed).all())
 

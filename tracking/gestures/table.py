@@ -44,7 +44,7 @@ NEXT_FIRM_S, NEXT_FIRM_AFTER_PROVISIONAL_S = 1.5, 0.3
 
 
 @dataclass(frozen=True)
-class Rest:
+class RestingFoot:
     """The foot of a cube at rest, in the camera frame."""
 
     foot: Array
@@ -61,22 +61,24 @@ ALL_NORMALS = np.stack(list(SIDE_NORMALS.values()))
 """All of them, (6, 3)."""
 
 
-def rest_of(camera_from_cube: Array, edge: float, up: Array | None = None) -> Rest | None:
+def rest_of(camera_from_cube: Array, edge: float, up: Array | None = None) -> RestingFoot | None:
     """Return where a resting cube stands; None where no side of it can be up.
 
     Without a table (`up` is None) only sides that face the camera can be up.
     """
     rotation, centre = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
     normals = ALL_NORMALS @ rotation.T
+    # Rows are normals: the product with the transpose turns all of them at once.
     cosines = normals @ (PRIOR_UP if up is None else up)
     if up is None:
         tops = centre + normals * (edge / 2)
+        # −0.1: a side seen edge-on counts as facing, as noise tilts it either way.
         facing = -np.einsum("ij,ij->i", normals, tops) > -0.1 * np.linalg.norm(tops, axis=1)
         cosines = np.where(facing, cosines, -1)
     best = int(np.argmax(cosines))
     if cosines[best] < MIN_UP_COSINE:
         return None
-    return Rest(centre - normals[best] * (edge / 2), normals[best])
+    return RestingFoot(centre - normals[best] * (edge / 2), normals[best])
 
 
 class TablePlane:
@@ -85,7 +87,7 @@ class TablePlane:
     It is the height above its first estimate, (x, z) ↦ d + a·x + b·z. Rests measure it and slopes.
     """
 
-    def __init__(self, rest: Rest) -> None:
+    def __init__(self, rest: RestingFoot) -> None:
         self._start = _frame(rest.foot, rest.up)
         self._plane = np.zeros(3)
         self._information = np.diag(1 / REST_SIGMAS**2)
@@ -93,7 +95,7 @@ class TablePlane:
         self._rest_time = SETTLING_TIME_S
         self.camera_from_table = self._start
 
-    def learn(self, rest: Rest, seconds: float) -> None:
+    def learn(self, rest: RestingFoot, seconds: float) -> None:
         """Improve the plane with a rest that lasts `seconds` more."""
         if float(np.linalg.norm(rest.foot - self._place)) > NEW_PLACE_M:
             self._place, self._rest_time = rest.foot, 0.0
@@ -103,6 +105,7 @@ class TablePlane:
         self._rest_time += share * SETTLING_TIME_S
         x, y, z = (se3.inverse(self._start) @ np.append(rest.foot, 1))[:3].tolist()
         normal = self._start[:3, :3].T @ rest.up
+        # The slopes of y over x and z from a normal (−a, 1, −b) of any length.
         a, b = -normal[0] / normal[1], -normal[2] / normal[1]
         rows = np.array([[1, x, z], [0, 1, 0], [0, 0, 1]])
         weights = share / REST_SIGMAS**2
@@ -122,7 +125,7 @@ class TablePlane:
         slope = float(np.sqrt(1 + self._plane[1] ** 2 + self._plane[2] ** 2))
         return float(y - row @ self._plane) / slope, spread
 
-    def agrees(self, rest: Rest) -> bool:
+    def agrees(self, rest: RestingFoot) -> bool:
         """Whether a rest can be on this table."""
         height, spread = self.height(rest.foot)
         near = abs(height) < MAX_HEIGHT_ERROR_M + 3 * spread
@@ -153,6 +156,7 @@ class TableEstimator:
                 if firm or self._provisional:
                     self.table.learn(rest, seconds)
                     self._drop_alternative()
+                # One firm rest that agrees settles a provisional table for good.
                 self._provisional &= not firm
                 return
         self._gather(camera_from_cube, firm, seconds)
@@ -191,6 +195,7 @@ def _frame(origin: Array, up: Array) -> Array:
     Straight below the camera, where that has no direction, +z points down in the image.
     """
     towards = -origin - up * (-origin @ up)
+    # Nearer than 2 cm to the point below the camera its direction is noise.
     if float(np.linalg.norm(towards)) < 0.02:
         towards = np.array([0.0, 1.0, 0.0])
         towards = towards - up * (towards @ up)

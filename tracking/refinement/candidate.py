@@ -94,7 +94,7 @@ class Candidate:
         """Whether another pose may be the right one as well."""
         return not self.same_pose(other) and not self.clearly_better_than(other)
 
-    def widened_to(self, other: "Candidate") -> "Candidate":
+    def widen_to(self, other: "Candidate") -> "Candidate":
         """Return this pose with a covariance that covers another possible pose too."""
         apart = se3.delta(self.camera_from_cube, other.camera_from_cube)
         return replace(self, covariance=self.covariance + np.outer(apart, apart) / 4)

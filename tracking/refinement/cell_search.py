@@ -57,7 +57,7 @@ class CellMatch:
     """A pose at which the cells match the image, and the evidence for it."""
 
     alignment: StillAlignment
-    """The pose."""
+    """Pose that the cells of the match agree on, and how well."""
 
     found: tuple[str, ...]
     """Names of the faces that are found there."""
@@ -105,14 +105,14 @@ class CellSearch:
         if patch is None:
             return None
         aligned = self._read_aligned(patch, start, read)
-        match = self._weighed(patch, aligned) if aligned else None
+        match = self._weigh(patch, aligned) if aligned else None
         if not aligned or not match or not match.found:
             return match
         alike = match.alignment.correlations
         seen = {face for face, share in alike.items() if share > MIN_JOINING}
         if len(seen) > len(aligned.correlations):
             joint = self._aligner.realign(patch, aligned, seen)
-            again = self._weighed(patch, joint) if joint else None
+            again = self._weigh(patch, joint) if joint else None
             if joint and again and again.evidence.total > match.evidence.total:
                 aligned, match = joint, again
         faces = aligned.correlations
@@ -120,16 +120,14 @@ class CellSearch:
             return replace(match, alignment=aligned)
         # What was found coarsely is measured with more samples.
         aligned = self._aligner.realign(patch, aligned, faces, fine=True) or aligned
-        match = self._weighed(patch, aligned, fine=True)
+        match = self._weigh(patch, aligned, fine=True)
         if len(faces) == 1:
             stiff = MEASURED_STIFFNESS
             measured = self._aligner.realign(patch, aligned, faces, fine=True, stiffness=stiff)
             aligned = measured or aligned
         return match and replace(match, alignment=aligned)
 
-    def _weighed(
-        self, patch: Patch, aligned: StillAlignment, fine: bool = False
-    ) -> CellMatch | None:
+    def _weigh(self, patch: Patch, aligned: StillAlignment, fine: bool = False) -> CellMatch | None:
         """Weigh a pose by all faces that it shows."""
         return self._match(self._aligner.realign(patch, aligned, None, steps=1, fine=fine))
 
@@ -142,7 +140,7 @@ class CellSearch:
             return found
         blur = COARSE_BLUR_CELLS * self._footprint.pixels_per_cell(start)
         coarse = self._aligner.align(
-            patch.smoothed(blur), start, read, float(np.hypot(blur, EXPECTED_BLUR_PX))
+            patch.smooth(blur), start, read, float(np.hypot(blur, EXPECTED_BLUR_PX))
         )
         again = self._aligner.align(patch, coarse.camera_from_cube, read) if coarse else None
         if again and not (found and found.evidence.total > again.evidence.total):

@@ -117,7 +117,7 @@ class EdgeSearch:
     def mirrored_pose(self, candidate: Candidate) -> Array:
         """Return the pose of a candidate of one face, tilted the other way, (4, 4), not refined."""
         face = self._faces.names.index(candidate.faces[0])
-        return self._faces.mirrored(candidate.camera_from_cube, face)
+        return self._faces.mirror(candidate.camera_from_cube, face)
 
     def _inflate_covariance(self, found: EdgeRefinement) -> Array:
         """Covariance of a refined pose, (6, 6), with the errors that all edges have in common."""

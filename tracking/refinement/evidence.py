@@ -29,7 +29,7 @@ class Evidence:
 
     @property
     def total(self) -> float:
-        """Of all blocks."""
+        """Sum over all blocks."""
         return float(self.blocks.sum())
 
     def clearly_exceeds(self, other: "Evidence") -> bool:

@@ -57,7 +57,7 @@ class LensEstimate:
     """Radial distortion in OpenCV's model, besides that of the intrinsics."""
 
     deviation: float = K1_SPREAD
-    """Its standard deviation."""
+    """Standard deviation of `k1`."""
 
     @property
     def known(self) -> bool:

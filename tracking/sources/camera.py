@@ -99,6 +99,7 @@ class CaptureDevice:
         self, capture: VideoCapture, name: str, size: tuple[int, int], options: CameraOptions
     ) -> None:
         self._capture = capture
+        # OpenCV reports a device that does not open by a flag, never by an exception.
         if not capture.isOpened():
             capture.release()
             raise TrackingError(
@@ -115,6 +116,7 @@ class CaptureDevice:
         if sys.platform == "linux" and gives_jpeg:
             capture.set(cv2.CAP_PROP_CONVERT_RGB, 0)
         rate = capture.get(cv2.CAP_PROP_FPS)
+        # Drivers that do not know their rate report 0 or nonsense.
         self.rate = float(rate) if 1 <= rate <= 1000 else 30.0
         self._buffers = _request_buffers(capture, options.buffers)
         self._locks = _locks(capture, options)
@@ -127,7 +129,7 @@ class CaptureDevice:
     def read(self) -> Image | bytes | None:
         """Wait for the next image."""
         success, data = self._capture.read()
-        image = _converted(data) if success and data is not None else None
+        image = _convert(data) if success and data is not None else None
         if image is not None:
             # V4L2 gives the buffer's time in milliseconds of CLOCK_MONOTONIC. Other systems give
             # arbitrary numbers, so `ExposureClock` compares them with the clock.
@@ -152,6 +154,7 @@ def _capture_opener(device: int | str) -> OpenCapture:
     check_present(device, path)
     if sys.platform != "linux":
         return open_capture
+    # /dev/videoN is numbered by order of plugging in; the name under /dev/v4l/by-id stays.
     path = persistent_path(path)
 
     def reopen(_: int | str) -> VideoCapture:
@@ -181,10 +184,11 @@ def _locks(capture: VideoCapture, options: CameraOptions) -> tuple[ControlLock, 
     )
 
 
-def _converted(data: Image) -> Image | bytes:
+def _convert(data: Image) -> Image | bytes:
     """Tell JPEG data from pixels by its shape in OpenCV; convert pixels to BGR."""
+    # With CONVERT_RGB off, OpenCV returns the JPEG's bytes as a single row or column.
     if 1 in data.shape[:2] or data.ndim == 1:
-        return _trimmed(data.tobytes())
+        return _trim(data.tobytes())
     if data.ndim == 2:
         return np.asarray(cv2.cvtColor(data, cv2.COLOR_GRAY2BGR), np.uint8)
     if data.shape[2] == 2:  # the camera does not use MJPG after all
@@ -192,7 +196,7 @@ def _converted(data: Image) -> Image | bytes:
     return data
 
 
-def _trimmed(data: bytes) -> bytes:
+def _trim(data: bytes) -> bytes:
     """Cut the data off after the JPEG: some drivers return their whole buffer.
 
     After the start of scan (FF DA), FF D9 can only be the end of the image.

@@ -137,6 +137,7 @@ class ControlLock:
 
     def _lock(self, value: float, verb: str) -> bool:
         control, capture = self._control, self._capture
+        # The mode first: in automatic mode drivers ignore a value, or take it and change it again.
         capture.set(control.mode, control.manual)
         capture.set(control.value, value)
         actual = capture.get(control.value)

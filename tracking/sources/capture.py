@@ -67,6 +67,7 @@ class CaptureThread:
         self._newest: CapturedImage | None = None
         self._last: Image | bytes | None = None
         self.exposure_clock, self._rejected = ExposureClock(), ""
+        # Never decreases: each is a thread and a device that the program has lost.
         self._abandoned = 0
         self.state: SourceState = "recovering"
         """As known to the thread; the caller must detect by itself that nothing arrives."""
@@ -83,10 +84,12 @@ class CaptureThread:
 
     def newest(self, timeout: float) -> CapturedImage | None:
         """Wait for an image newer than the last one; None after `timeout` [s] or `stop`."""
+        # With a timeout of 0 it still looks once for an image that is already there.
         began, waited = self._clock(), timeout <= 0
         with self._changed:
             while not self._stopped.is_set():
                 if self._newest is not None:
+                    # Taken away, so that no image is ever returned twice.
                     newest, self._newest = self._newest, None
                     return newest
                 self._replace_stuck_thread()
@@ -118,6 +121,7 @@ class CaptureThread:
         device = self._reader.device
         if device is not None:
             device.interrupt()
+        # Bounded: a thread that blocks in the driver is left behind, as it is a daemon.
         if self._thread is not threading.current_thread():
             self._thread.join(0.5)
 
@@ -160,6 +164,7 @@ class CaptureThread:
             if not self.delivered:
                 return  # the caller gets the error and may try another device
             began = self._clock()
+            # In short waits on the given clock, which tests advance faster than the system's.
             while not self._stopped.wait(POLL_S) and self._clock() - began < RETRY_DELAY_S:
                 pass
 
@@ -184,6 +189,8 @@ class CaptureThread:
             reader.blocked_since = None
             if image is not None and not (self._detect_frozen and _same(image, self._last)):
                 last_new, timeout, any_new, self._last = now, SILENCE_S, True, image
+            # Before the first image a camera may take its time; the caller has a timeout of its
+            # own.
             elif self.delivered and now - last_new >= timeout:
                 state: SourceState = "lost" if image is None else "frozen"
                 self._set_lost(reader, state, "", last_new)
@@ -210,6 +217,7 @@ class CaptureThread:
             taken = self.exposure_clock.stamp(arrival, device.exposed)
             age = arrival - taken if self.exposure_clock.by_driver else None
             self.gauge.add(waited, arrival, age)
+            # An image that nobody fetched: the caller is slower than the camera.
             self.dropped += self._newest is not None
             self._newest, self.settings = CapturedImage(image, taken), device.settings
             if self.state != "running":
@@ -234,6 +242,8 @@ class CaptureThread:
 
 
 def _same(one: Image | bytes, other: Image | bytes | None) -> bool:
+    # A live sensor has noise: two equal images mean that the driver repeats a frozen one
+    # (opencv#5746).
     if isinstance(one, bytes) or isinstance(other, bytes) or other is None:
         return type(one) is type(other) and one == other
     return np.array_equal(one, other)

@@ -126,7 +126,7 @@ class Device(Protocol):
         ...
 
     def close(self) -> None:
-        """Release the device."""
+        """Release the device; a second call does nothing."""
         ...
 
 

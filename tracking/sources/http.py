@@ -91,6 +91,7 @@ class _MjpegStream:
             except MultipartError as error:
                 raise TrackingError(f"{self._name} {error}") from error
             if images:
+                # Older ones would only add to the delay.
                 return images[-1]
             if not data or self._parser.ended:
                 raise TrackingError(f"{self._name} ended its stream")
@@ -98,10 +99,11 @@ class _MjpegStream:
     def interrupt(self) -> None:
         """Wake a blocked read."""
         with contextlib.suppress(OSError):  # the peer may have closed it already
+            # close() alone does not wake a thread that is blocked in recv; shutdown does.
             self._socket.shutdown(socket.SHUT_RDWR)
 
     def close(self) -> None:
-        """Close the connection."""
+        """Close the connection; a read that waits on another thread ends with an error."""
         self._response.close()
         self._connection.close()
 

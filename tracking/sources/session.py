@@ -42,12 +42,14 @@ class SessionSource(StoredFrames):
             self.rate, self._images = _nominal_rate(channels.images())
             self._index = 0
             self._ahead: deque[EncodedImage] = deque()
-            self.start(self._decoded(), f"{self._where} holds no camera frame on {IMAGE_TOPIC}")
+            self.start(
+                self._decode_frames(), f"{self._where} holds no camera frame on {IMAGE_TOPIC}"
+            )
         except BaseException:
             self._file.close()
             raise
         found = channels.intrinsics
-        self.intrinsics = found.scaled(self.size) if found and found.size != self.size else found
+        self.intrinsics = found.scale(self.size) if found and found.size != self.size else found
 
     def close(self) -> None:
         """Close the file and end the iteration. May be called again."""
@@ -70,10 +72,10 @@ class SessionSource(StoredFrames):
             pass  # the iteration ends with what is whole
         super().skip(len(needed))
 
-    def _decoded(self) -> Generator[Frame, None, None]:
+    def _decode_frames(self) -> Generator[Frame, None, None]:
         timeline = Timeline()
         try:
-            for encoded, image in decode(self._queued()):
+            for encoded, image in decode(self._images_to_decode()):
                 stamp = timeline.stamp(encoded.timestamp)
                 index, self._index = self._index, self._index + 1
                 yield Frame(image, stamp, index, encoded.data, encoded.encoding)
@@ -82,7 +84,7 @@ class SessionSource(StoredFrames):
                 f"{self._where} {broken}: {readable_frames(self._index)}"
             ) from broken
 
-    def _queued(self) -> Iterator[EncodedImage]:
+    def _images_to_decode(self) -> Iterator[EncodedImage]:
         """Yield the images that are decoded only for those after them, then the others."""
         while True:
             image = self._ahead.popleft() if self._ahead else next(self._images, None)

@@ -31,9 +31,10 @@ class VideoSource(StoredFrames):
         self._path = Path(path)
         self._container = _open(self._path)
         stream = self._container.streams.video[0]
+        # Frames and slices on all cores; without it FFmpeg decodes on one.
         stream.thread_type = "AUTO"
         try:
-            frames = self._decoded(self._container)
+            frames = self._decode_frames(self._container)
             self.start(frames, f"the video '{path}' has no frame that can be decoded")
         except BaseException:
             self._container.close()
@@ -47,7 +48,7 @@ class VideoSource(StoredFrames):
         super().close()
         self._container.close()
 
-    def _decoded(self, container: InputContainer) -> Generator[Frame, None, None]:
+    def _decode_frames(self, container: InputContainer) -> Generator[Frame, None, None]:
         timeline, start, count = Timeline(), None, 0
         stream = container.streams.video[0]
         # AVI has timestamps of packets only, and B frames are decoded in another order.

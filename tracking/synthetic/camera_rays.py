@@ -84,7 +84,7 @@ class PixelRegion:
         return slice(self.y, self.bottom), slice(self.x, self.right)
 
 
-def averaged(values: Floats, samples: int) -> Floats:
+def average_blocks(values: Floats, samples: int) -> Floats:
     """Average blocks of `samples`²: (h · samples, w · samples, n) → (h, w, n)."""
     height, width = values.shape[0] // samples, values.shape[1] // samples
     # INTER_AREA with an integer factor is the mean of each block.

@@ -53,7 +53,7 @@ def render_desk(camera: CameraRays, texture: Floats) -> Floats:
     small = np.asarray(cv2.resize(desk, camera.size, interpolation=cv2.INTER_AREA), np.float32)
     # Light varies slowly: one sample per pixel is enough.
     x, z, below = _desk_points(camera, 1)
-    return _with_wall(_lit(small, x, z), (z < FAR_EDGE_M) | ~below, x, z)
+    return _with_wall(_illuminate(small, x, z), (z < FAR_EDGE_M) | ~below, x, z)
 
 
 def _desk_points(camera: CameraRays, samples: int) -> tuple[Floats, Floats, Flags]:
@@ -68,7 +68,7 @@ def _desk_points(camera: CameraRays, samples: int) -> tuple[Floats, Floats, Flag
     return x, z, directions[..., 1] < -1e-3
 
 
-def _lit(desk: Floats, x: Floats, z: Floats) -> Floats:
+def _illuminate(desk: Floats, x: Floats, z: Floats) -> Floats:
     """Light the desk by a lamp at the far left, with a faint gloss."""
     lamp = np.exp(-((x + 0.35) ** 2 + (z + 0.25) ** 2) / 0.5)[..., None]
     return np.asarray(desk * (0.80 + 0.26 * lamp) + 9.0 * lamp**3, np.float32)

@@ -7,7 +7,7 @@ from cubeling.tracking.geometry.arrays import Array, Floats, Image
 from cubeling.tracking.synthetic.camera_rays import CameraRays, PixelRegion
 from cubeling.tracking.synthetic.choreography import SceneState
 from cubeling.tracking.synthetic.desk import desk_texture, draw_objects, render_desk
-from cubeling.tracking.synthetic.hand import Hand, draw_hand, hand_at, hand_region
+from cubeling.tracking.synthetic.hand import SyntheticHand, draw_hand, hand_at, hand_region
 from cubeling.tracking.synthetic.options import SyntheticOptions
 from cubeling.tracking.synthetic.paper_cube import TO_LIGHT, PaperCube
 
@@ -66,7 +66,7 @@ class ExposureRenderer:
         part *= 1.0 - cover
         part += colour
 
-    def _add_hand(self, image: Floats, hand: Hand, camera_from_cube: Array) -> None:
+    def _add_hand(self, image: Floats, hand: SyntheticHand, camera_from_cube: Array) -> None:
         region = hand_region(self._camera, hand)
         if region.empty:
             return
@@ -77,7 +77,7 @@ class ExposureRenderer:
         part = image[region.index]
         part += (colour - part) * in_colours(cover)
 
-    def _hand_shadow(self, image: Floats, hand: Hand) -> None:
+    def _hand_shadow(self, image: Floats, hand: SyntheticHand) -> None:
         """Cast the hand's shadow on the desk: wide strokes at low resolution, blurred."""
         coarse = 4
         width, height = (side // coarse for side in self._camera.size)

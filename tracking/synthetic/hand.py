@@ -42,7 +42,7 @@ class Capsule:
 
 
 @dataclass(frozen=True)
-class Hand:
+class SyntheticHand:
     """Skin and sleeve, in the table frame."""
 
     skin: tuple[Capsule, ...]
@@ -58,7 +58,7 @@ class Hand:
     """Colour of the sleeve."""
 
 
-def hand_at(position: Array, edge: float, grip: float) -> Hand:
+def hand_at(position: Array, edge: float, grip: float) -> SyntheticHand:
     """Return the hand on the far right of a cube [m], with fingers on its upper edges.
 
     `position` is the cube's centre in the table frame, (3,); `grip` is 0 away, 1 holding.
@@ -99,10 +99,10 @@ def hand_at(position: Array, edge: float, grip: float) -> Hand:
         Capsule(hem, elbow, (0.034, 0.054), cut=True),
         Capsule(cuff, hem, (0.0335, 0.0345), cut=True),
     )
-    return Hand(tuple(skin), sleeve)
+    return SyntheticHand(tuple(skin), sleeve)
 
 
-def hand_region(camera: CameraRays, hand: Hand) -> PixelRegion:
+def hand_region(camera: CameraRays, hand: SyntheticHand) -> PixelRegion:
     """Return the region of the image that the hand covers."""
     parts = hand.skin + hand.sleeve
     points = np.concatenate([_axis(part.start, part.end) for part in parts])
@@ -120,14 +120,14 @@ def _axis(start: Array, end: Array) -> Array:
 
 
 def draw_hand(
-    camera: CameraRays, region: PixelRegion, hand: Hand, to_light: Array
+    camera: CameraRays, region: PixelRegion, hand: SyntheticHand, to_light: Array
 ) -> tuple[Floats, Floats, Floats]:
     """Return colour (h, w, 3) BGR, coverage (h, w) 0…1, and depth (h, w) [m] of the hand."""
     skin = _CapsuleLayer(camera, region, hand.skin)
     cloth = _CapsuleLayer(camera, region, hand.sleeve)
     over = cloth.cover[..., None]
-    colour = skin.shaded(_skin_shader(hand.skin_bgr), to_light) * (1 - over)
-    colour += cloth.shaded(_cloth_shader(hand.sleeve_bgr), to_light) * over
+    colour = skin.shade(_skin_shader(hand.skin_bgr), to_light) * (1 - over)
+    colour += cloth.shade(_cloth_shader(hand.sleeve_bgr), to_light) * over
     depth = np.where(cloth.cover > 0.5, cloth.depth(), skin.depth())
     return colour, np.maximum(skin.cover, cloth.cover), depth
 
@@ -208,7 +208,7 @@ class _CapsuleLayer:
         weight = np.maximum(self._sums[6], MIN_WEIGHT)
         return np.asarray(self._sums[5] / weight, np.float32)
 
-    def shaded(self, colour: Shader, to_light: Array) -> Floats:
+    def shade(self, colour: Shader, to_light: Array) -> Floats:
         """Return the colour (h, w, 3) BGR; black where there is nothing."""
         shown = np.zeros((*self.cover.shape, 3), np.float32)
         covered = self.cover > 0

@@ -8,7 +8,7 @@ from cubeling.tracking.cube.marker import black_texels, marker_cells
 from cubeling.tracking.cube.model import FACE_AXES, CubeModel, Face
 from cubeling.tracking.geometry.arrays import Array, Floats
 from cubeling.tracking.geometry.projection import MIN_DEPTH
-from cubeling.tracking.synthetic.camera_rays import CameraRays, PixelRegion, averaged
+from cubeling.tracking.synthetic.camera_rays import CameraRays, PixelRegion, average_blocks
 from cubeling.tracking.synthetic.folding import face_poses
 
 FACE_TEXELS = 640
@@ -88,11 +88,11 @@ class PaperCube:
         rays = self._camera.rays(region, samples)
         sums = np.zeros((region.height, region.width, 4), np.float32)
         for pose in poses:
-            sums += averaged(self._sampled(region, rays, pose, to_light, samples), samples)
+            sums += average_blocks(self._sample(region, rays, pose, to_light, samples), samples)
         sums /= len(poses)
         return sums[..., :3], sums[..., 3:]
 
-    def _sampled(
+    def _sample(
         self, region: PixelRegion, rays: Floats, pose: Array, to_light: Array, samples: int
     ) -> Floats:
         shown = np.zeros((*rays.shape[:2], 4), np.float32)

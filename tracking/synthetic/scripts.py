@@ -165,7 +165,7 @@ def wave(edge: float, options: SyntheticOptions) -> Script:
         tremble = 2 * np.pi * np.array([7.3, 8.9, 10.7]) * time
         step[:3] += 0.0002 * np.sin(tremble)
         step[3:] += np.deg2rad(0.1) * np.sin(tremble[::-1])
-        return SceneState(se3.moved(pose, step), 0.0)
+        return SceneState(se3.apply_delta(pose, step), 0.0)
 
     return Script("locomotion", len(stops) * (move + stop), at, in_air=True)
 

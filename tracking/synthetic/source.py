@@ -80,7 +80,7 @@ class SyntheticSource(FrameSource):
         return self._camera_from_cube(self.state(index))
 
     def frame(self, index: int) -> Frame:
-        """Render one frame."""
+        """Render the frame of an index, blurred over its exposure time; any order will do."""
         camera, paper, renderer = self._renderer
         time, half = self.time(index), 0.0 if self._script.unrelated else self.options.blur / 2
         ends = [self._script.at(time + shift) for shift in (-half, half)]

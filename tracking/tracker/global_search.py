@@ -115,7 +115,7 @@ class GlobalDetector:
         for observations in self._observations(markers, thorough):
             if observations:
                 poses = self._poses.find(markers.grey, observations, expected, tone)
-                found = _merged(found, poses)
+                found = _merge(found, poses)
                 if is_unambiguous(found):
                     return found
         if any(each.certain for each in found):
@@ -129,6 +129,7 @@ class GlobalDetector:
         """
         passes: tuple[Pass, ...] = ("half size", "first window")
         seen: list[Observation] = []
+        # A bool as an index: small images skip the pass at half size.
         for by in passes[len(markers.grey) < MIN_HALVED_HEIGHT_PX :]:
             found = markers_of(self._cube, markers.read(self._cube.dictionary, by))
             seen += found
@@ -136,6 +137,8 @@ class GlobalDetector:
         if not thorough:
             yield markers_of(self._cube, markers.read(self._cube.dictionary, "other windows"))
             return
+        # In a low image the print of a hidden marker has too few pixels a cell, so it is enlarged
+        # at once.
         small = len(markers.grey) < MIN_SINGLE_HEIGHT_PX
         found = self._hidden.detect(markers.grey, doubled=small)
         seen += found
@@ -153,6 +156,7 @@ class GlobalDetector:
             aligned = patch and self._blur.align_unknown_motion(patch, each.camera_from_cube)
             if patch and aligned:
                 found.append(self._blur.candidate(patch, aligned))
+        # Where no blur explains the image, the corners are still the best guess.
         return [each for each in found if each] or candidates
 
 
@@ -165,7 +169,7 @@ def _around(seen: Sequence[Observation], grey: Image) -> Region:
     return left, top, right, bottom
 
 
-def _merged(one: list[Candidate], other: list[Candidate]) -> list[Candidate]:
+def _merge(one: list[Candidate], other: list[Candidate]) -> list[Candidate]:
     """Join two lists; of poses that are the same, keep the better one. The best comes first."""
     kept: list[Candidate] = []
     for each in sorted([*one, *other], key=lambda each: each.rank):

@@ -65,7 +65,7 @@ class LocalTracker:
             return LocalMatch()
         found = self._by_edges(patch, track, prediction, camera)
         if found is not None:
-            return self._studied(patch, found, track, prediction.timestamp, camera)
+            return self._study_blur(patch, found, track, prediction.timestamp, camera)
         if self._footprint.pixels_per_cell(prediction.camera_from_cube) < MAX_WHOLE_CELL_PX:
             match = self._cells.search(image, prediction.camera_from_cube, camera.tone)
             if match is not None and match.proved:
@@ -82,6 +82,7 @@ class LocalTracker:
             return track.motion(pose, covariance, prediction.timestamp)[0] * camera.exposure
 
         start = prediction.camera_from_cube
+        # Blur wider than that has no edge profile to fit; the image is aligned as a whole.
         if self._footprint.blur_extent(blur_motion(start)) >= MAX_EDGE_BLUR_CELLS:
             return None
         found = self._edges.search(patch, start, blur_motion)
@@ -93,6 +94,7 @@ class LocalTracker:
             return None
         if self._footprint.blur_extent(measured - assumed) < MAX_MOTION_SURPRISE_CELLS:
             return found
+        # The first result where the second search fails: it was good, if not the best.
         return self._edges.search(patch, pose, lambda _: measured) or found
 
     def _by_blur(
@@ -105,9 +107,11 @@ class LocalTracker:
             return LocalMatch()
         pose, covariance = aligned.camera_from_cube, aligned.covariance[:6, :6]
         velocity = track.motion(pose, covariance, prediction.timestamp)[0]
-        return LocalMatch(self._blur.candidate(patch, aligned), self._observed(aligned, velocity))
+        return LocalMatch(
+            self._blur.candidate(patch, aligned), self._observation(aligned, velocity)
+        )
 
-    def _studied(
+    def _study_blur(
         self, patch: Patch, found: Candidate, track: Track, timestamp: float, camera: CameraModel
     ) -> LocalMatch:
         """Align a slightly blurred image, too, while the camera is not known well."""
@@ -120,10 +124,11 @@ class LocalTracker:
         if not shows_exposure(extent, self._footprint.pixels_per_cell(pose)):
             return LocalMatch(found)
         aligned = self._blur.align(patch, pose, motion, camera, coarse=False)
-        return LocalMatch(found, self._observed(aligned, velocity) if aligned else None, True)
+        return LocalMatch(found, self._observation(aligned, velocity) if aligned else None, True)
 
-    def _observed(self, aligned: Alignment, velocity: Array) -> BlurObservation | None:
+    def _observation(self, aligned: Alignment, velocity: Array) -> BlurObservation | None:
         """Return the measurements of the camera in an alignment; None where it may be wrong."""
+        # `not >=` instead of `<`, so that NaN is refused too.
         if not aligned.correlation >= MIN_CORRELATION_ALONE:
             return None
         return BlurObservation(

@@ -80,7 +80,7 @@ class MarkerPoses:
         found: list[Candidate] = []
         solutions = self._solver.solve(observations, expected)
         for solution in solutions:
-            agreed = self._agreed(image, solution, observations, tone)
+            agreed = self._agreement(image, solution, observations, tone)
             if agreed is not None:
                 return [agreed]
         for solution in solutions:
@@ -98,7 +98,7 @@ class MarkerPoses:
             found += self._candidates(image, solution, match, observations, tone)
         return found
 
-    def _agreed(
+    def _agreement(
         self,
         image: Image,
         solution: CornerPose,

@@ -111,7 +111,7 @@ class Track:
         delta += last.acceleration * (accelerated * (ahead - accelerated / 2))
         spread = np.repeat(HAND_ACCELERATION, 3) * ahead**2 / 2
         return Prediction(
-            se3.moved(last.camera_from_cube, delta),
+            se3.apply_delta(last.camera_from_cube, delta),
             np.asarray(last.velocity + last.acceleration * accelerated, np.float64),
             last.covariance * (1 + ahead / MAX_PREDICTION_S) ** 2 + np.diag(spread**2),
             timestamp,

@@ -39,6 +39,7 @@ class Rest:
         begun = Rest(camera_from_cube, (np.zeros(6),), (noise,), (timestamp,))
         if self.first is None or not 0 < timestamp - self.timestamps[-1] <= MAX_FRAME_GAP_S:
             return begun
+        # `first` stays when its own offset falls out: it is only the origin of the others.
         kept = slice(-MAX_REST_FRAMES, None)
         longer = Rest(
             self.first,
@@ -53,7 +54,7 @@ class Rest:
         assert self.first is not None, "a pose was added"
         count = len(self.offsets)
         mean: Array = np.mean(self.offsets, axis=0)
-        return se3.moved(self.first, mean), np.asarray(np.mean(self.noises, axis=0) / count)
+        return se3.apply_delta(self.first, mean), np.asarray(np.mean(self.noises, axis=0) / count)
 
     def _moves(self) -> bool:
         """Whether the last pose leaves the others, or all have a slope, by more than noise."""
@@ -65,6 +66,8 @@ class Rest:
             return True
         times = np.array(self.timestamps)
         times -= times.mean()
+        # A slow slide leaves no single pose apart from the others; only the slope over time shows
+        # it.
         spread = float(times @ times)
         slope = times @ offsets / spread
         noise = noises.mean(axis=0) / spread

@@ -106,13 +106,13 @@ class CubeTracker:
         self._past = verdict.past
         found, track = verdict.candidate, verdict.past.track
         if found is None or verdict.refused:
-            return self._predicted(now, verdict.refused)
+            return self._predict(now, verdict.refused)
         pose, noise = found.camera_from_cube, found.covariance
         by_corners, by_lens = self._systematic_error.covariance(
             pose, found.faces, self._lens.k1_error, found.blur
         )
         if is_uncertain(noise + by_corners):
-            return self._predicted(now, "unsure")
+            return self._predict(now, "unsure")
         if found.edges is not None:
             self._lens.learn(pose, found.edges)
         velocity, acceleration = track.motion(pose, noise, now)
@@ -133,7 +133,7 @@ class CubeTracker:
             timestamp=now,
         )
 
-    def _predicted(self, now: float, refused: str) -> CubeState:
+    def _predict(self, now: float, refused: str) -> CubeState:
         """Return the state of a cube that is not seen, with a covariance that grows."""
         prediction = self._past.track.predict(now)
         covariance = np.full((6, 6), np.nan)
@@ -153,7 +153,7 @@ class CubeTracker:
 
     def predict(self, timestamp: float) -> CubeState:
         """Return where the cube will be shortly after the last frame, by extrapolation."""
-        return self._predicted(timestamp, "")
+        return self._predict(timestamp, "")
 
     def _check_size(self, frame: Frame) -> None:
         height, width = frame.image.shape[:2]

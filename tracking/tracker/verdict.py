@@ -104,14 +104,14 @@ class FollowedPoseJudge:
             return Verdict(candidate, "", unsettled)
         better = _better(candidate, other)
         if better is None:
-            better = _better(*self._weighed(candidate, other, image, tone))
+            better = _better(*self._weigh(candidate, other, image, tone))
         if better:
             return Verdict(better, "", settled)
         if planar_ambiguity_angle < MIN_HARMFUL_ANGLE:
-            return Verdict(candidate.widened_to(other), "", past)
+            return Verdict(candidate.widen_to(other), "", past)
         return ambiguous
 
-    def _weighed(
+    def _weigh(
         self, one: Candidate, other: Candidate, image: Image, tone: Floats
     ) -> tuple[Candidate, Candidate]:
         """Weigh two poses by all cells in view."""
@@ -190,6 +190,7 @@ def _choose(
             (se3.angle_between(prediction.camera_from_cube, each.camera_from_cube), number)
             for number, each in enumerate((best, others[0]))
         )
+        # Twice as far: with both about as near, the last pose would decide by its noise.
         if near[0] < MAX_CHOICE_ANGLE and far[0] > 2 * near[0]:
             return (best, others[0])[near[1]], ""
     return best, "ambiguous"
@@ -202,6 +203,7 @@ def _continued_track(candidate: Candidate, past: Past, now: float) -> Track | No
     pose, last, jump = candidate.camera_from_cube, past.track.poses[-1], past.jump
     if now - last.timestamp > MAX_JUMP_CHECK_AGE_S:
         return past.track
+    # A leap is believed at its second sight: a wrong pose seldom comes twice at one place.
     if jump and now - jump.timestamp <= MAX_PREDICTION_S and jump.reaches(pose, now):
         return Track((jump,))
     return past.track if last.reaches(pose, now) else None

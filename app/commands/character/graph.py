@@ -1,4 +1,4 @@
-"""`cubeling character graph`."""
+"""The command `cubeling character graph`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.output_path import check_output, whole_file
 
 if TYPE_CHECKING:
-    from cubeling.characters.motion import Node, Plan, Transition
+    from cubeling.characters.motion import Node, Plan, StateTransition
 
 
 def graph(
@@ -77,7 +77,7 @@ def outline(plan: Plan, name: str) -> Tree:
     return tree
 
 
-def _described(transition: Transition) -> str:
+def _described(transition: StateTransition) -> str:
     return f"{escape(transition.end)}[/] when {escape(transition.when.text)}"
 
 

@@ -1,4 +1,4 @@
-"""`cubeling character inspect`."""
+"""The command `cubeling character inspect`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from cubeling.app.errors import AppError
 
 if TYPE_CHECKING:
     from cubeling.characters import Character, Skeleton
-    from cubeling.characters.model import ClipStats, FootContactStats, Inspection, Performance
+    from cubeling.characters.model import ClipStats, FootContactStats, Inspection, RecordedMotion
 
 MIN_FOLDED_JOINTS = 4
 """Branches of at least this number of unrecognised joints are shown as one line."""
@@ -76,7 +76,7 @@ def inspect_command(
 
 
 def _load(
-    name: str, read_motion: Callable[[str, str | None], Performance]
+    name: str, read_motion: Callable[[str, str | None], RecordedMotion]
 ) -> tuple[Inspection, bool]:
     """Return the inspection of a character or motion, and whether it has a body."""
     from cubeling.characters import Character, CharacterWarning

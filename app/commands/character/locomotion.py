@@ -1,4 +1,4 @@
-"""`cubeling character locomotion`."""
+"""The command `cubeling character locomotion`."""
 
 from __future__ import annotations
 

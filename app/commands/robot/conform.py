@@ -1,4 +1,4 @@
-"""`cubeling robot conform`."""
+"""The command `cubeling robot conform`."""
 
 from __future__ import annotations
 

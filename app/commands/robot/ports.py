@@ -1,4 +1,4 @@
-"""`cubeling robot list`."""
+"""The command `cubeling robot list`."""
 
 from rich.console import Console
 from rich.table import Table

@@ -1,4 +1,4 @@
-"""`cubeling robot simulate`."""
+"""The command `cubeling robot simulate`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`cubeling robot try`."""
+"""The command `cubeling robot try`."""
 
 from __future__ import annotations
 

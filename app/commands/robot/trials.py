@@ -29,7 +29,7 @@ class Trial:
     """The mood, emotion, motion, sound or joint."""
 
     start: Callable[[], None]
-    """Asks for it."""
+    """Asks the robot for it, and returns at once."""
 
     shown: Callable[[Telemetry], bool]
     """Whether the robot reports that it shows or plays it."""

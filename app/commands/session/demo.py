@@ -1,4 +1,4 @@
-"""`cubeling demo`."""
+"""The command `cubeling demo`."""
 
 from __future__ import annotations
 

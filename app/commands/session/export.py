@@ -1,4 +1,4 @@
-"""`cubeling export`."""
+"""The command `cubeling export`."""
 
 from collections.abc import Sequence
 from contextlib import ExitStack

@@ -1,4 +1,4 @@
-"""`cubeling play`."""
+"""The command `cubeling play`."""
 
 from pathlib import Path
 from typing import Annotated

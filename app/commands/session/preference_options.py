@@ -33,7 +33,7 @@ class Flag:
     """As typer takes it: "--volume", "--mirror/--no-mirror"."""
 
     help: str
-    """What it does."""
+    """What `--help` says about it."""
 
     kind: Any
     """Type of its value on the command line."""

@@ -1,4 +1,4 @@
-"""`cubeling replay`."""
+"""The command `cubeling replay`."""
 
 from contextlib import ExitStack
 from dataclasses import replace

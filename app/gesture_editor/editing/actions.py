@@ -59,7 +59,7 @@ FIRST_RADIUS = {"arc": (0.0, 0.15, 0.0), "circle": (0.15, 0.15, 0.0), "wave": (0
 
 
 def with_card(state: EditorState, name: CardName) -> EditorState:
-    """Open a card."""
+    """Return the state with a card open over the panels."""
     if name == "save as":
         state = with_text(state, "new name", state.document.gesture.name)
     return replace(with_text(state, "find", ""), card=name)

@@ -26,7 +26,6 @@ class Open:
     """Open a gesture of the library."""
 
     name: str
-    """Its name."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +49,7 @@ class New:
 
 @dataclass(frozen=True)
 class Quit:
-    """Close the editor."""
+    """Close the editor, once nothing would be lost."""
 
 
 Request = Save | Open | Import | New | Quit
@@ -62,7 +61,7 @@ class EditorState:
     """The editor at one moment."""
 
     document: GestureDocument = EMPTY
-    """What is edited."""
+    """The edited gesture with its name and file."""
 
     saved: GestureDocument = EMPTY
     """What was opened or saved last."""

@@ -38,7 +38,7 @@ class GestureStore:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._collection = GestureCollection.bundled(folder)
+        self._collection = GestureCollection.load_bundled(folder)
         self._own = set(gestures_in(folder))
 
     @property

@@ -14,7 +14,7 @@ Rect = tuple[float, float, float, float]
 """Left, top, width and height [px]."""
 
 ACCENT = ACTION_COLORS["walk"]
-"""What is selected."""
+"""Colour of what is selected."""
 
 FIELD = bgr("#f4eddf")
 """Background of what can be changed."""
@@ -84,7 +84,7 @@ class Ui:
         self.state = action(self.state)
 
     def edit(self, document: GestureDocument) -> None:
-        """Take another document."""
+        """Replace the document of the state, as one step of undo."""
         self.state = edited(self.state, document)
 
     def note(self, name: str) -> None:
@@ -201,7 +201,7 @@ class Ui:
             self.state = with_text(self.state, name, text)
 
     def label(self, words: str, color: Color = INK, size: float = 0.0) -> None:
-        """Write words."""
+        """Write words at the cursor, which moves on."""
         imgui.push_style_color(imgui.Col_.text, rgba(color))
         with self.font(size):
             imgui.text_unformatted(words)

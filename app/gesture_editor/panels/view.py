@@ -36,13 +36,13 @@ class Parts:
     """Name, files and history."""
 
     stage: Rect
-    """The character."""
+    """Where the character is seen."""
 
     inspector: Rect
-    """The selected key."""
+    """Panel of the selected key."""
 
     time_line: Rect
-    """Phases and keys."""
+    """Strip of the phases and keys."""
 
     @classmethod
     def of(cls, width: float, height: float, unit: float) -> "Parts":

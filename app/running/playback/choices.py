@@ -11,7 +11,7 @@ from cubeling.app.running.playback.background import BackgroundCall
 from cubeling.app.running.playback.parts import PARTS, discard
 from cubeling.app.running.playback.transport import Transport
 from cubeling.app.ui.playback.requests import Choose
-from cubeling.app.ui.playback.status import Choice
+from cubeling.app.ui.playback.status import MenuChoice
 from cubeling.characters import CharacterError
 from cubeling.robot import RobotError
 from cubeling.tracking import TrackingError
@@ -28,12 +28,12 @@ class Choices:
     def __init__(self, session: OpenedSession, transport: Transport) -> None:
         self._session, self._transport = session, transport
         self._lock = threading.Lock()
-        self._found: tuple[Choice, ...] = ()
+        self._found: tuple[MenuChoice, ...] = ()
         self._search: BackgroundCall[None] | None = None
         self._opening: tuple[Choose, BackgroundCall[Any]] | None = None
 
     @property
-    def found(self) -> tuple[Choice, ...]:
+    def found(self) -> tuple[MenuChoice, ...]:
         """What is known so far."""
         with self._lock:
             return self._found

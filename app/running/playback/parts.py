@@ -12,7 +12,7 @@ from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.running.playback.transport import Transport
 from cubeling.app.running.robots import RobotLine
 from cubeling.app.running.wire_tap import WireTap
-from cubeling.app.ui.playback.status import Choice
+from cubeling.app.ui.playback.status import MenuChoice
 from cubeling.characters import Character
 from cubeling.robot import serial_ports
 from cubeling.tracking import FrameSource, Intrinsics, TrackingError, open_source
@@ -31,7 +31,7 @@ class Part:
     refusal: Callable[[OpenedSession], str]
     """Returns why it has to stay as it is now, or ""."""
 
-    choices: Callable[[OpenedSession], Iterator[Choice]]
+    choices: Callable[[OpenedSession], Iterator[MenuChoice]]
     """Yields what can be chosen, the present one first; called on a thread of its own."""
 
     open: Callable[[OpenedSession, str], Any]
@@ -56,14 +56,16 @@ def _refuse_camera(session: OpenedSession) -> str:
     return _kept(session) if session.source.live else "The frames are those of a recording"
 
 
-def _cameras(session: OpenedSession) -> Iterator[Choice]:
+def _cameras(session: OpenedSession) -> Iterator[MenuChoice]:
     if not session.source.live:
         return
     present = session.options.source
     listed = dict.fromkeys((present, session.asked.source, *_camera_uris()))
     for uri in listed:
         if uri == present or _opens(uri):
-            yield Choice("camera", uri, uri.replace("camera:", "camera "), present=uri == present)
+            yield MenuChoice(
+                "camera", uri, uri.replace("camera:", "camera "), present=uri == present
+            )
 
 
 def _camera_uris() -> list[str]:
@@ -100,11 +102,13 @@ def _exchange_camera(
     transport.follow_source()
 
 
-def _characters(session: OpenedSession) -> Iterator[Choice]:
+def _characters(session: OpenedSession) -> Iterator[MenuChoice]:
     own = session.playground.scenario.character
     present = session.options.character or own
-    for name in dict.fromkeys((present, session.asked.character or own, *Character.bundled())):
-        yield Choice("character", name, Path(name).name, present=name == present)
+    for name in dict.fromkeys(
+        (present, session.asked.character or own, *Character.bundled_names())
+    ):
+        yield MenuChoice("character", name, Path(name).name, present=name == present)
 
 
 def _open_character(session: OpenedSession, name: str) -> Character:
@@ -132,7 +136,7 @@ class _TappedRobot:
         self.line.close()
 
 
-def _robots(session: OpenedSession) -> Iterator[Choice]:
+def _robots(session: OpenedSession) -> Iterator[MenuChoice]:
     present = session.options.robot
     labels = {session.asked.robot: session.asked.robot}
     labels |= {"sim": "simulated robot", "none": "no robot"}
@@ -142,7 +146,7 @@ def _robots(session: OpenedSession) -> Iterator[Choice]:
             url = f"pleo:{port.url}" if pleo else port.url
             labels[url] = f"{url}: {port.guess or port.description}"
     for url in dict.fromkeys((present, *labels)):
-        yield Choice("robot", url, labels.get(url, url), present=url == present)
+        yield MenuChoice("robot", url, labels.get(url, url), present=url == present)
 
 
 def _open_robot(session: OpenedSession, url: str) -> _TappedRobot:

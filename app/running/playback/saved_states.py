@@ -24,7 +24,6 @@ class SavedState:
     """That of the frame in its source."""
 
     checkpoint: Checkpoint
-    """The state."""
 
 
 class SavedStates:

@@ -7,7 +7,7 @@ from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.opening import is_seekable
 from cubeling.app.running.playback.frame_feed import FrameFeed
 from cubeling.app.running.playback.saved_states import SavedStates
-from cubeling.app.ui.playback.status import Mark, Position
+from cubeling.app.ui.playback.status import PlaybackMark, Position
 from cubeling.tracking import Frame, Health, LiveFrames
 
 
@@ -40,7 +40,7 @@ class Transport:
         self._changed_by_player = False
         self._target: _Target | None = None
         self._first: float | None = None
-        self._marks: tuple[Mark, ...] | None = None
+        self._marks: tuple[PlaybackMark, ...] | None = None
         self._start = session.options.start_s
         self._end = session.options.end_s or math.inf
         self.seekable = is_seekable(session.source)
@@ -212,8 +212,8 @@ class Transport:
         if self._session.pace is not None:
             self._session.pace.restart()
 
-    def _read_marks(self, first: float) -> tuple[Mark, ...]:
+    def _read_marks(self, first: float) -> tuple[PlaybackMark, ...]:
         """Return what happened in the recording, by its events."""
         replayed = self._session.replayed
         found = [] if replayed is None else replayed.events
-        return tuple(Mark(time - first, event) for time, event in found)
+        return tuple(PlaybackMark(time - first, event) for time, event in found)

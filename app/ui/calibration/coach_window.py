@@ -5,12 +5,12 @@ from numpy.typing import NDArray
 
 from cubeling.app.ui.calibration.coach import CoachView
 from cubeling.app.ui.calibration.session import Advice
-from cubeling.app.ui.window.surface import Surface
+from cubeling.app.ui.window.surface import WindowSurface
 
 Picture = NDArray[np.uint8]
 
 
-class CoachWindow(Surface):
+class CoachWindow(WindowSurface):
     """A window with the live picture and the coach over it; Esc ends the session.
 
     `size` is that of the pictures, (width, height) [px]; `target` is "cube" or "board".

@@ -12,7 +12,7 @@ from cubeling.app.pipeline.scenario import EmotionTarget
 from cubeling.app.ui.display import is_software_renderer
 from cubeling.app.ui.palette import PAPER, between, mood_color
 from cubeling.characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
-from cubeling.characters.rendering import SceneCharacter, Stage, View
+from cubeling.characters.rendering import CameraView, SceneCharacter, Stage
 
 MAX_SIDE_PX = 216
 """Largest picture that is drawn [px]; a larger one is scaled up, to spare software rendering."""
@@ -60,7 +60,7 @@ class VirtualRobot:
             return self._last[1]
         posed = self._animator.update(self.command(target))
         image = backdrop(self._drawn_side, target.emotion.valence)
-        view = View(image, self._matrix, np.zeros(0), self._camera_from_table)
+        view = CameraView(image, self._matrix, np.zeros(0), self._camera_from_table)
         picture = self._stage.draw(view, [SceneCharacter(self._character, posed)])
         if self._drawn_side != self.side:
             size = (self.side, self.side)

@@ -20,7 +20,6 @@ class Fact:
     """A line with a name and a value."""
 
     name: str
-    """What it is."""
 
     value: str
     """The value with its unit."""
@@ -31,7 +30,7 @@ class Fact:
 
 @dataclass(frozen=True)
 class Note:
-    """A sentence."""
+    """A sentence over the width of a panel."""
 
     text: str
     """It is wrapped at the panel's width."""
@@ -41,7 +40,7 @@ class Note:
 
 
 @dataclass(frozen=True)
-class Curve:
+class PlotCurve:
     """A value over time."""
 
     name: str
@@ -54,7 +53,6 @@ class Curve:
     """(n,); NaN leaves a gap."""
 
     color: Color
-    """Its colour."""
 
     width: float = 2.0
     """Width of its line [design units]."""
@@ -65,9 +63,8 @@ class Plot:
     """Curves over the same last seconds."""
 
     title: str
-    """What they show."""
 
-    curves: tuple[Curve, ...]
+    curves: tuple[PlotCurve, ...]
     """The first one lies below the others."""
 
     span: float
@@ -91,7 +88,6 @@ class Share:
     """A part of a whole."""
 
     name: str
-    """What it is."""
 
     amount: float
     """How much of it there is."""
@@ -100,7 +96,6 @@ class Share:
     """The amount with its unit."""
 
     color: Color
-    """Its colour."""
 
 
 @dataclass(frozen=True)
@@ -119,10 +114,9 @@ class Choice:
     """The option that it changes."""
 
     name: str
-    """What it is."""
 
     value: str
-    """The present one."""
+    """The one that is chosen now."""
 
     choices: tuple[str, ...]
     """What can be chosen."""
@@ -142,16 +136,13 @@ class Slider:
     """The option that it changes."""
 
     name: str
-    """What it is."""
 
     value: float
-    """The present one."""
+    """Where it stands now, `low`…`high`."""
 
     low: float
-    """Smallest value."""
 
     high: float
-    """Largest value."""
 
     enabled: bool = True
     """Whether it can be changed now."""
@@ -168,7 +159,6 @@ class Switch:
     """The option that it changes."""
 
     name: str
-    """What it is."""
 
     value: bool
     """Whether it is on."""
@@ -178,7 +168,7 @@ class Switch:
 
 
 @dataclass(frozen=True)
-class Log:
+class LogLines:
     """The last messages, newest last."""
 
     rows: tuple[tuple[str, str, str], ...]
@@ -188,7 +178,7 @@ class Log:
     """How many rows have a place, so that the panel does not change its size."""
 
 
-Widget = Fact | Note | Plot | ShareBar | Choice | Slider | Switch | Log
+Widget = Fact | Note | Plot | ShareBar | Choice | Slider | Switch | LogLines
 
 
 @dataclass(frozen=True)
@@ -199,7 +189,6 @@ class Panel:
     """Its name on the command line."""
 
     title: str
-    """Its title."""
 
     width: float
     """Its width [design units]."""

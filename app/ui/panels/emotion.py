@@ -2,7 +2,7 @@
 
 from cubeling.affect import Emotion
 from cubeling.app.ui.palette import INK, ROBOT_COLOR, bgr
-from cubeling.app.ui.panels.content import Curve, Fact, Panel, Plot, Widget
+from cubeling.app.ui.panels.content import Fact, Panel, Plot, PlotCurve, Widget
 from cubeling.app.ui.panels.monitor import EMOTION_SPAN_S, SessionMonitor
 
 AROUSAL_COLOR = bgr("#d55e00")
@@ -24,8 +24,8 @@ def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
     plots = []
     for column, title, color in ((1, "Valence", INK), (2, "Arousal", AROUSAL_COLOR)):
         curves = (
-            Curve("robot", table[:, 0], table[:, column + 2], ROBOT_COLOR, 5.0),
-            Curve("character", table[:, 0], table[:, column], color),
+            PlotCurve("robot", table[:, 0], table[:, column + 2], ROBOT_COLOR, 5.0),
+            PlotCurve("character", table[:, 0], table[:, column], color),
         )
         plots.append(Plot(title, curves, EMOTION_SPAN_S, -1.0, 1.0, SCALE_MARKS[column - 1]))
     return (

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from functools import cache
 
-from cubeling.affect import bundled
+from cubeling.affect import bundled_names
 from cubeling.app.pipeline.attention import LOOK_CHOICES
 from cubeling.app.pipeline.scenario import SPEED_MAP_NAMES
 from cubeling.app.scenarios import find_scenario
@@ -11,7 +11,7 @@ from cubeling.app.session import SessionOptions
 from cubeling.app.ui.panels.content import Choice, Fact, Note, Panel, Slider, Widget
 from cubeling.app.ui.panels.monitor import SessionMonitor
 
-PERSONALITIES = bundled()
+PERSONALITIES = bundled_names()
 """The personalities that can be chosen, besides the user's own."""
 
 MIN_TURNS, MAX_TURNS = 0.5, 6.0

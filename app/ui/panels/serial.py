@@ -1,6 +1,6 @@
 """What goes over the robot's line, and how well the line works."""
 
-from cubeling.app.ui.panels.content import Fact, Log, Note, Panel, Tone, Widget
+from cubeling.app.ui.panels.content import Fact, LogLines, Note, Panel, Tone, Widget
 from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.panels.wire_log import MAX_MESSAGES, Traffic, WireMessage
 from cubeling.robot import Telemetry, protocol_of
@@ -9,7 +9,7 @@ STATE_TONES: dict[str, Tone] = {"ready": "good", "lost": "bad"}
 """Tones of the link's states; the others are warnings."""
 
 SENDERS = {"tx": "to robot", "rx": "from robot"}
-"""Directions in words."""
+"""Words for the directions of bytes."""
 
 
 def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
@@ -20,7 +20,7 @@ def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
     _, protocol = protocol_of(monitor.options.robot, None)
     traffic = monitor.wire.read(protocol, robot.catalogue, robot.time)
     rows = tuple(_row(each, robot.time) for each in (*traffic.messages, *traffic.routine))
-    return (*_health(monitor.options.robot, telemetry, traffic), Log(rows, MAX_MESSAGES + 2))
+    return (*_health(monitor.options.robot, telemetry, traffic), LogLines(rows, MAX_MESSAGES + 2))
 
 
 def _health(url: str, telemetry: Telemetry, traffic: Traffic) -> tuple[Widget, ...]:

@@ -1,7 +1,16 @@
 """BodySpeech: what the character says, and how its face and hands say it."""
 
 from cubeling.app.ui.palette import ACTION_COLORS, QUIET
-from cubeling.app.ui.panels.content import Choice, Curve, Fact, Note, Panel, Plot, Slider, Widget
+from cubeling.app.ui.panels.content import (
+    Choice,
+    Fact,
+    Note,
+    Panel,
+    Plot,
+    PlotCurve,
+    Slider,
+    Widget,
+)
 from cubeling.app.ui.panels.monitor import SPEECH_SPAN_S, SessionMonitor
 from cubeling.app.ui.playback.requests import ChangeSpeech
 from cubeling.characters.speech import DATABASES, RANGES, SpeechProfile, viseme_sets
@@ -36,8 +45,8 @@ def _said(monitor: SessionMonitor) -> Widget:
 def _plot(monitor: SessionMonitor) -> Widget:
     times, loudness, accents = monitor.speech.table().T
     curves = (
-        Curve("loudness", times, loudness, QUIET),
-        Curve("accents", times, accents, ACTION_COLORS["shout"], 3.0),
+        PlotCurve("loudness", times, loudness, QUIET),
+        PlotCurve("accents", times, accents, ACTION_COLORS["shout"], 3.0),
     )
     return Plot("Speech", curves, SPEECH_SPAN_S, 0.0, 1.0)
 

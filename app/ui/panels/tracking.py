@@ -5,7 +5,7 @@ from rich.text import Text
 
 from cubeling.app.ui.notice import lens_notice
 from cubeling.app.ui.palette import ACTION_COLORS
-from cubeling.app.ui.panels.content import Curve, Fact, Note, Panel, Plot, Tone, Widget
+from cubeling.app.ui.panels.content import Fact, Note, Panel, Plot, PlotCurve, Tone, Widget
 from cubeling.app.ui.panels.monitor import TRACKING_SPAN_S, SessionMonitor
 from cubeling.tracking import CubeState
 
@@ -63,7 +63,7 @@ def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
         Fact("Seen lately", f"{100 * share:.0f} % at {rate}", tone),
         Plot(
             "Residual",
-            (Curve("residual", table[:, 0], table[:, 2], ACTION_COLORS["walk"]),),
+            (PlotCurve("residual", table[:, 0], table[:, 2], ACTION_COLORS["walk"]),),
             TRACKING_SPAN_S,
             0.0,
             MAX_RESIDUAL_PX,

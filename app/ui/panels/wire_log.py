@@ -30,7 +30,6 @@ class WireMessage:
     """When, by the robot's clock [s]."""
 
     direction: Direction
-    """Which way."""
 
     text: str
     """What it says, in words."""

@@ -14,7 +14,7 @@ class Words(NamedTuple):
     """A message in words."""
 
     text: str
-    """What it says."""
+    """The message in a line of plain words."""
 
     routine: bool
     """Whether it is sent all the time, so that only the newest one matters."""
@@ -30,7 +30,7 @@ class WireDecoder(Protocol):
         ...
 
 
-class FrameDecoder:
+class CubelingDecoder:
     """Decodes the frames of the protocol "cubeling"."""
 
     def __init__(self, sender: Sender) -> None:
@@ -75,7 +75,7 @@ def printable(text: str) -> str:
     return "".join(char if char.isprintable() else " " for char in text)
 
 
-DECODERS: dict[str, type[WireDecoder]] = {"cubeling": FrameDecoder}
+DECODERS: dict[str, type[WireDecoder]] = {"cubeling": CubelingDecoder}
 """The decoder of each protocol; all others are lines of text."""
 
 Names = Callable[[int, int], str]

@@ -4,7 +4,7 @@ from functools import lru_cache
 
 from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
 from cubeling.app.ui.palette import ACTION_COLORS, INK, QUIET, RULE, Color
-from cubeling.app.ui.playback.keys import KeyRow, key_rows
+from cubeling.app.ui.playback.keys import KeyHelp, key_rows
 from cubeling.app.ui.playback.status import EndCard
 
 ACCENT = ACTION_COLORS["walk"]
@@ -63,11 +63,11 @@ def draw_keys(width: float, scale: float) -> Card:
     return canvas.card((width - KEYS_WIDTH) / 2, (PICTURE_HEIGHT - height) / 2, 0.97)
 
 
-def _column_height(rows: list[KeyRow]) -> float:
+def _column_height(rows: list[KeyHelp]) -> float:
     return len({row.group for row in rows}) * HEADING_HEIGHT + len(rows) * ROW_HEIGHT
 
 
-def _key_column(canvas: Canvas, left: float, rows: list[KeyRow]) -> None:
+def _key_column(canvas: Canvas, left: float, rows: list[KeyHelp]) -> None:
     y, group = KEYS_TOP, ""
     caps = [list(dict.fromkeys(" ".join(row.keys).split())) for row in rows]
     words_left = left + max(sum(map(_key_width, each)) for each in caps) + 16

@@ -97,7 +97,7 @@ MAX_LISTED_KEYS = 2
 
 
 @dataclass(frozen=True)
-class KeyRow:
+class KeyHelp:
     """A row of the list of keys."""
 
     group: str
@@ -107,7 +107,7 @@ class KeyRow:
     """The keys, or "…" between the first and the last."""
 
     help: str
-    """What they do."""
+    """What the card of keys says about them."""
 
 
 def find_binding(key: str, shift: bool = False) -> Binding | None:
@@ -121,14 +121,14 @@ def find_binding(key: str, shift: bool = False) -> Binding | None:
     return (BY_KEY.get(f"Shift {key}") if shift else None) or BY_KEY.get(key)
 
 
-def key_rows() -> tuple[KeyRow, ...]:
+def key_rows() -> tuple[KeyHelp, ...]:
     """Return the rows of the list of keys."""
     rows = []
     for (group, words), bindings in groupby(BINDINGS, lambda each: (each.group, each.help)):
         keys = tuple(binding.key for binding in bindings)
         if len(keys) > MAX_LISTED_KEYS:
             keys = (keys[0], "…", keys[-1])
-        rows.append(KeyRow(group, keys, words))
+        rows.append(KeyHelp(group, keys, words))
     return tuple(rows)
 
 

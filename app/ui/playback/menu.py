@@ -4,7 +4,7 @@ from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
 from cubeling.app.ui.palette import INK, PAPER, QUIET, Color, between
 from cubeling.app.ui.playback.cards import ACCENT
 from cubeling.app.ui.playback.requests import Choose
-from cubeling.app.ui.playback.status import Choice
+from cubeling.app.ui.playback.status import MenuChoice
 
 COLUMN_WIDTH, SIDE = 286.0, 28.0
 ROWS_TOP, ROW_HEIGHT = 84.0, 38.0
@@ -28,13 +28,13 @@ class Menu:
     """
 
     def __init__(self) -> None:
-        self._columns: dict[str, list[Choice]] = {}
+        self._columns: dict[str, list[MenuChoice]] = {}
         self._selected = ("", "")
         self._looking = True
 
-    def update(self, choices: tuple[Choice, ...], looking: bool) -> None:
-        """Show these choices."""
-        columns: dict[str, list[Choice]] = {}
+    def update(self, choices: tuple[MenuChoice, ...], looking: bool) -> None:
+        """Show these choices, or that they are still looked for."""
+        columns: dict[str, list[MenuChoice]] = {}
         for choice in choices:
             column = columns.setdefault(choice.part, [])
             if len(column) < MAX_ROWS:
@@ -85,7 +85,7 @@ class Menu:
         canvas.text(canvas.size[0] / 2, canvas.size[1] - 22, words, 16, QUIET, "middle")
         return canvas.card(*self._corner(width), 0.97)
 
-    def _row(self, canvas: Canvas, left: float, y: float, choice: Choice) -> None:
+    def _row(self, canvas: Canvas, left: float, y: float, choice: MenuChoice) -> None:
         room = COLUMN_WIDTH - 20
         if (choice.part, choice.value) == self._selected:
             canvas.bar(left, y, room, ROW_HEIGHT - 4, SELECTED)

@@ -28,7 +28,7 @@ class StartOver:
 
 @dataclass(frozen=True)
 class PlayScenario:
-    """Play another scenario."""
+    """Go on with another scenario, with the same camera and robot."""
 
     number: int
     """Its place in the list of scenarios, from 1."""
@@ -102,7 +102,6 @@ class ChangeSetting:
     """A field of `SessionOptions`."""
 
     value: str | float
-    """Its new value."""
 
 
 @dataclass(frozen=True)
@@ -124,7 +123,6 @@ class ChangeSpeech:
     """"language", or a field of `SpeechProfile`."""
 
     value: str | float
-    """Its new value."""
 
 
 PlayerInput = StartOver | PlayScenario | OpenCube

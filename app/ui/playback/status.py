@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Mark:
+class PlaybackMark:
     """Something that happened in a recording."""
 
     position: float
@@ -19,7 +19,7 @@ class Position:
     """Where a session is in its recording. Times are from the first frame of the recording [s]."""
 
     now: float
-    """The last frame."""
+    """Time of the frame that is shown [s]."""
 
     length: float
     """The end of the recording."""
@@ -28,17 +28,17 @@ class Position:
     """Where the part that is played starts."""
 
     end: float
-    """Where it ends."""
+    """Where the part that is played ends [s]."""
 
     target: float | None = None
     """Where it seeks to; None if it does not seek."""
 
-    marks: tuple[Mark, ...] = ()
+    marks: tuple[PlaybackMark, ...] = ()
     """What happened in it."""
 
 
 @dataclass(frozen=True)
-class Choice:
+class MenuChoice:
     """Something that the player can choose."""
 
     part: str
@@ -59,7 +59,7 @@ class EndCard:
     """A card at the end of a recording: what the player can do next."""
 
     title: str
-    """The first line."""
+    """First line of the card, in large letters."""
 
     lines: tuple[tuple[str, str], ...] = ()
     """What can be done, and the command or key that does it."""
@@ -70,7 +70,7 @@ class SessionStatus:
     """The state of a session between two frames."""
 
     scenario: str = ""
-    """The present scenario."""
+    """Name of the scenario that plays; "" for none."""
 
     paused: bool = False
     """Whether it is paused."""
@@ -87,7 +87,7 @@ class SessionStatus:
     ending: EndCard | None = None
     """The card to show, once the recording has ended."""
 
-    choices: tuple[Choice, ...] = ()
+    choices: tuple[MenuChoice, ...] = ()
     """What can be chosen, as far as it is known."""
 
     looking: bool = False

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
 from cubeling.app.ui.palette import ACTION_COLORS, ANGRY, INK, PAPER, QUIET, RULE, Color, between
-from cubeling.app.ui.playback.status import Mark, Position
+from cubeling.app.ui.playback.status import PlaybackMark, Position
 
 STRIP_HEIGHT = 56.0
 """Height of the strip, in units of the canvas."""
@@ -111,7 +111,9 @@ def _x(time: float, length: float, width: float) -> float:
 
 
 @lru_cache(maxsize=4)
-def _background(marks: tuple[Mark, ...], length: float, width: float, scale: float) -> Canvas:
+def _background(
+    marks: tuple[PlaybackMark, ...], length: float, width: float, scale: float
+) -> Canvas:
     """Draw what does not change while a recording plays."""
     canvas = Canvas(width, STRIP_HEIGHT, scale)
     for mark in marks:

@@ -1,4 +1,4 @@
-"""The live window."""
+"""The window of a session that plays, with its panels."""
 
 from cubeling.app.ui.window.window import Window
 

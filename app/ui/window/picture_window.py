@@ -17,6 +17,6 @@ class PictureWindow(Window):
             glfw.swap_buffers(self._window)
 
     def poll(self) -> None:
-        """Process events."""
+        """Process the window's events, unless it is closed."""
         if not self.closed:
             glfw.poll_events()

@@ -65,7 +65,7 @@ def key_name(key: int, scan: int | None = None) -> str | None:
     return letter.upper() if letter and letter.isalpha() else None
 
 
-class Surface:
+class WindowSurface:
     """A window with an OpenGL context, and pictures in it.
 
     Whoever opens it closes it; a second `close` does nothing. Esc and Q close it.
@@ -157,7 +157,7 @@ class Surface:
         self.poll()
 
     def poll(self) -> None:
-        """Process events."""
+        """Process the events of all windows."""
         glfw.poll_events()
 
     def press(self, key: int, *, shift: bool = False, repeated: bool = False) -> None:

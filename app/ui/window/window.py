@@ -22,7 +22,7 @@ from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.layer import PlaybackLayer
 from cubeling.app.ui.playback.requests import SessionRequest, WindowRequest
 from cubeling.app.ui.playback.status import SessionStatus
-from cubeling.app.ui.window.surface import Surface
+from cubeling.app.ui.window.surface import WindowSurface
 
 Picture = NDArray[np.uint8]
 
@@ -31,7 +31,7 @@ MIN_ENLARGEMENT, MAX_ENLARGEMENT = 1.1, 2.0
 much, as the time grows with the area."""
 
 
-class Window(Surface):
+class Window(WindowSurface):
     """A `Screen` on the desktop.
 
     Parameters
@@ -148,11 +148,11 @@ class Window(Surface):
         self._virtual_robot.close()
 
     def handle_key(self, key: str, *, shift: bool = False, repeated: bool = False) -> None:
-        """Handle a key."""
+        """Hand a key on to the layer over the picture."""
         self._layer.press(key, shift=shift, repeated=repeated)
 
     def handle_pointer(self, x: float, y: float) -> None:
-        """Handle the mouse."""
+        """Follow the mouse, in pixels of the picture."""
         scale = self._picture_scale
         self._pointer = x / scale, y / scale
         self._layer.point(*self._pointer)

@@ -10,30 +10,30 @@ from cubeling.characters.behaviour.bml.document import (
     SYNCS,
     Behaviour,
     Block,
+    BmlElement,
     Constraint,
-    Element,
-    Mark,
+    SyncMark,
     SyncReference,
 )
 from cubeling.characters.behaviour.bml.feedback import (
+    BlockPrediction,
     BlockProgress,
     BmlWarning,
     Feedback,
     PredictedBehaviour,
-    Prediction,
     SyncPointProgress,
     feedback_xml,
 )
 from cubeling.characters.behaviour.bml.parser import parse
-from cubeling.characters.behaviour.bml.performer import (
-    CannotPerform,
-    Performer,
+from cubeling.characters.behaviour.bml.realizer import Realizer
+from cubeling.characters.behaviour.bml.timing import (
+    CannotRealize,
     Scheduled,
     Timing,
+    TimingEstimator,
     elastic,
     rigid,
 )
-from cubeling.characters.behaviour.bml.realizer import Realizer
 
 __all__ = [
     "BML",
@@ -45,21 +45,21 @@ __all__ = [
     "SYNCS",
     "Behaviour",
     "Block",
+    "BlockPrediction",
     "BlockProgress",
+    "BmlElement",
     "BmlWarning",
-    "CannotPerform",
+    "CannotRealize",
     "Constraint",
-    "Element",
     "Feedback",
-    "Mark",
-    "Performer",
     "PredictedBehaviour",
-    "Prediction",
     "Realizer",
     "Scheduled",
+    "SyncMark",
     "SyncPointProgress",
     "SyncReference",
     "Timing",
+    "TimingEstimator",
     "elastic",
     "feedback_xml",
     "parse",

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from cubeling.characters.behaviour.bml.document import Behaviour, Block, Constraint, SyncReference
-from cubeling.characters.behaviour.bml.performer import Timing
+from cubeling.characters.behaviour.bml.timing import Timing
 
 Moment = tuple[str, int]
 """A sync point: a behaviour's id, and the index in its `Timing.syncs`."""
@@ -19,13 +19,12 @@ class Link:
     """Two sync points that are at a fixed distance: time of `a` = time of `b` + offset."""
 
     a: Moment
-    """A sync point."""
 
     b: Moment | None
     """Another one; None for time 0."""
 
     offset: float
-    """Distance [s]."""
+    """How much later `a` is than `b` [s]; may be negative."""
 
     owner: str
     """Id of the behaviour or the constraint that wants it."""
@@ -42,7 +41,7 @@ class Order:
     """Another one; None for time 0."""
 
     offset: float
-    """Distance [s]."""
+    """How much later than `later` the earlier one may be [s]."""
 
     owner: str
     """Id of the constraint that wants it."""

@@ -53,7 +53,7 @@ class SyncReference:
     """Whose sync point; "" for the block's start."""
 
     sync: str = ""
-    """Its name."""
+    """Name of the sync point; "" if the offset counts from the block's start."""
 
     block: str = ""
     """In which block; "" for the one that it stands in."""
@@ -76,7 +76,7 @@ class Constraint:
     """Whether `syncs` are all at one moment, or before or after `reference`."""
 
     syncs: tuple[SyncReference, ...]
-    """The moments."""
+    """The moments that are tied; their order means nothing."""
 
     reference: SyncReference | None = None
     """Which moment they are before or after; None for `synchronize`."""
@@ -89,31 +89,29 @@ class Constraint:
 
 
 @dataclass(frozen=True)
-class Element:
+class BmlElement:
     """An element inside a behaviour, as it is written."""
 
     tag: str
     """Its name, without namespace."""
 
     namespace: str = BML
-    """Its namespace."""
 
     attributes: Mapping[str, str] = field(default_factory=dict)
     """Its attributes; those of a namespace are named "{namespace}name"."""
 
-    children: tuple["Element", ...] = ()
-    """What is inside."""
+    children: tuple["BmlElement", ...] = ()
+    """The elements inside, in their order."""
 
     text: str = ""
     """Characters inside, those of its children too."""
 
 
 @dataclass(frozen=True)
-class Mark:
+class SyncMark:
     """A sync point in a text: `<sync id="s1"/>`."""
 
     id: str
-    """Its name."""
 
     at: int
     """How many characters of `Behaviour.text` are before it."""
@@ -138,13 +136,13 @@ class Behaviour:
     attributes: Mapping[str, str] = field(default_factory=dict)
     """All other attributes; those of a namespace are named "{namespace}name"."""
 
-    children: tuple[Element, ...] = ()
+    children: tuple[BmlElement, ...] = ()
     """Elements inside: `stance`, `pose`, `trajectory` …"""
 
     text: str = ""
     """What a speech says: characters of `text` with white space as single spaces."""
 
-    marks: tuple[Mark, ...] = ()
+    marks: tuple[SyncMark, ...] = ()
     """Sync points in `text`, in its order."""
 
     required: bool = False
@@ -163,13 +161,12 @@ class Behaviour:
 
 @dataclass(frozen=True)
 class Block:
-    """A `bml` element."""
+    """A `bml` element: behaviours and constraints that are scheduled together."""
 
     id: str
     """Its name, unique among blocks that are not over."""
 
     behaviours: tuple[Behaviour, ...] = ()
-    """What to do."""
 
     constraints: tuple[Constraint, ...] = ()
     """When, besides what the behaviours say themselves."""

@@ -22,13 +22,11 @@ class BlockProgress:
     """A block starts or ends."""
 
     block: str
-    """Which."""
 
     sync: Literal["start", "end"]
-    """What of it."""
 
     time: float
-    """When [s]."""
+    """By the clock of the player [s]."""
 
     character: str = ""
     """Whose block it is."""
@@ -39,16 +37,13 @@ class SyncPointProgress:
     """A sync point has come."""
 
     block: str
-    """In which block."""
 
     behaviour: str
-    """Whose."""
 
     sync: str
-    """Its name."""
 
     time: float
-    """When [s]."""
+    """By the clock of the player [s]."""
 
     block_time: float
     """When, since the start of its block [s]."""
@@ -62,7 +57,6 @@ class PredictedBehaviour:
     """When the sync points of a behaviour are expected."""
 
     id: str
-    """Which."""
 
     kind: str
     """Name of its element."""
@@ -72,11 +66,10 @@ class PredictedBehaviour:
 
 
 @dataclass(frozen=True)
-class Prediction:
+class BlockPrediction:
     """When a block is expected to start and to end."""
 
     block: str
-    """Which."""
 
     start: float
     """When it starts [s]; inf if that is not known."""
@@ -111,7 +104,7 @@ class BmlWarning:
     """Whose block it is."""
 
 
-Feedback = BlockProgress | SyncPointProgress | Prediction | BmlWarning
+Feedback = BlockProgress | SyncPointProgress | BlockPrediction | BmlWarning
 
 
 def feedback_xml(feedback: Feedback) -> str:
@@ -135,11 +128,11 @@ def feedback_xml(feedback: Feedback) -> str:
             of = _attributes(id=feedback.id, type=feedback.type)
             text = escape(feedback.description)
             return f"<warningFeedback {_head(feedback)}{of}>{text}</warningFeedback>"
-        case Prediction():
+        case BlockPrediction():
             return _prediction(feedback)
 
 
-def _prediction(feedback: Prediction) -> str:
+def _prediction(feedback: BlockPrediction) -> str:
     block = _attributes(id=feedback.block, globalStart=feedback.start, globalEnd=feedback.end)
     behaviours = "".join(
         f"<{b.kind} {_attributes(id=f'{feedback.block}:{b.id}', **dict(b.times))}/>"

@@ -11,10 +11,10 @@ from cubeling.characters.behaviour.bml.document import (
     SYNC_NAMES,
     Behaviour,
     Block,
+    BmlElement,
     Composition,
     Constraint,
-    Element,
-    Mark,
+    SyncMark,
     SyncReference,
 )
 from cubeling.characters.behaviour.bml.xml_elements import OpenElement, read_xml
@@ -58,7 +58,7 @@ def parse_as(document: str | bytes, roots: Collection[str]) -> Block:
     root = read_xml(document)
     if root.tag not in roots or root.namespace != BML:
         raise _error(root, f"<{root.tag}> is no <{'> or <'.join(roots)}> of namespace {BML}")
-    return _Reader(root, roots).block()
+    return _DocumentReader(root, roots).block()
 
 
 def reference(text: str) -> SyncReference:
@@ -87,7 +87,7 @@ def reference(text: str) -> SyncReference:
     return SyncReference(found[2], found[3], found[1] or "", offset)
 
 
-class _Reader:
+class _DocumentReader:
     """Makes a block of a `bml` element."""
 
     def __init__(self, root: OpenElement, roots: Collection[str]) -> None:
@@ -189,16 +189,16 @@ class _Reader:
         return composition, ()
 
 
-def _speech(element: OpenElement) -> tuple[str, tuple[Mark, ...]]:
+def _speech(element: OpenElement) -> tuple[str, tuple[SyncMark, ...]]:
     """Return the text of a speech with single spaces, and its marks."""
-    text, marks = "", list[Mark]()
+    text, marks = "", list[SyncMark]()
 
     def add(parts: Iterable[str | OpenElement]) -> None:
         nonlocal text
         for part in parts:
             if isinstance(part, OpenElement):
                 if part.tag == "sync" and part.attributes.get("id"):
-                    marks.append(Mark(part.attributes["id"].strip(), len(text)))
+                    marks.append(SyncMark(part.attributes["id"].strip(), len(text)))
                 add(part.parts)
                 continue
             for character in part:
@@ -210,18 +210,18 @@ def _speech(element: OpenElement) -> tuple[str, tuple[Mark, ...]]:
     add([child for child in element.children if child.tag in ("text", "ssml", "description")])
     _check_marks(element, marks)
     text = text.rstrip()
-    return text, tuple(Mark(mark.id, min(mark.at, len(text))) for mark in marks)
+    return text, tuple(SyncMark(mark.id, min(mark.at, len(text))) for mark in marks)
 
 
-def _check_marks(element: OpenElement, marks: list[Mark]) -> None:
+def _check_marks(element: OpenElement, marks: list[SyncMark]) -> None:
     names = [mark.id for mark in marks] + ["start", "end"]
     for name in names:
         if names.count(name) > 1:
             raise _error(element, f'a second sync point "{name}" in a text; give each its own id')
 
 
-def _as_element(element: OpenElement) -> Element:
-    return Element(
+def _as_element(element: OpenElement) -> BmlElement:
+    return BmlElement(
         element.tag,
         element.namespace,
         element.attributes,

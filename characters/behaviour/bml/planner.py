@@ -11,8 +11,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from cubeling.characters.behaviour.bml.constraints import Contradictory, Link, Moment, Order, Unmet
-from cubeling.characters.behaviour.bml.problem import Problem, check, sequence
-from cubeling.characters.behaviour.bml.spans import TOLERANCE, fits, stretched
+from cubeling.characters.behaviour.bml.problem import TimingProblem, check, sequence
+from cubeling.characters.behaviour.bml.spans import TOLERANCE, fits, stretch
 
 LATENESS = 0.1
 """A sync point that should have been so many seconds ago may be now: the standard's tolerance."""
@@ -39,7 +39,7 @@ class _Anchor:
     owner: str
 
 
-def plan(problem: Problem) -> dict[str, list[float]]:
+def plan(problem: TimingProblem) -> dict[str, list[float]]:
     """Return the times of the sync points of every behaviour [s], inf for those that never come.
 
     Raises
@@ -51,7 +51,7 @@ def plan(problem: Problem) -> dict[str, list[float]]:
 
 
 class _Planner:
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: TimingProblem) -> None:
         self._problem = problem
         self._ground = _Cluster([], grounded=True)
         self._clusters: dict[str, _Cluster] = {}
@@ -106,18 +106,18 @@ class _Planner:
     def _place(self, name: str) -> None:
         anchors = self._anchors(name)
         facts = self._problem.facts.get(name, {})
-        cluster = self._joined(name, anchors, grounded=bool(facts))
-        fixed = self._fixed(name, anchors, facts)
+        cluster = self._join(name, anchors, grounded=bool(facts))
+        fixed = self._fixed_times(name, anchors, facts)
         for link in self._links[name]:
             if link.b is not None and link.b[0] == link.a[0] and (fixed or not cluster.grounded):
                 self._fix_distance(name, link, fixed)
         timing = self._problem.timings[name]
         if fixed:
-            times = self._stretched(name, fixed, cluster)
+            times = self._stretch(name, fixed, cluster)
         elif cluster.grounded:
             times = [math.inf] * len(timing.syncs)
         else:
-            times = stretched(timing, {0: 0.0})
+            times = stretch(timing, {0: 0.0})
         self._clusters[name], self._times[name], self._known[name] = cluster, times, fixed
         cluster.members.append(name)
         for order in self._orders.get(name, ()):
@@ -141,7 +141,7 @@ class _Planner:
             return anchor.offset
         return self._times[anchor.moment[0]][anchor.moment[1]] + anchor.offset
 
-    def _joined(self, name: str, anchors: list[_Anchor], *, grounded: bool) -> _Cluster:
+    def _join(self, name: str, anchors: list[_Anchor], *, grounded: bool) -> _Cluster:
         """Return the cluster of a behaviour: clusters that it links become one."""
         found = [self._cluster(anchor) for anchor in anchors]
         if grounded or self._ground in found:
@@ -184,7 +184,7 @@ class _Planner:
     def _begin(self, cluster: _Cluster) -> float:
         return min(self._times[member][0] for member in cluster.members)
 
-    def _fixed(
+    def _fixed_times(
         self, name: str, anchors: list[_Anchor], facts: Mapping[int, float]
     ) -> dict[int, float]:
         """Return the times that anchors and facts give to a behaviour's sync points."""
@@ -218,7 +218,7 @@ class _Planner:
         assert link.b is not None
         one, other = link.a[1], link.b[1]
         if one not in fixed and other not in fixed:
-            times = stretched(self._problem.timings[name], fixed or {0: 0.0})
+            times = stretch(self._problem.timings[name], fixed or {0: 0.0})
             fixed[other] = times[other]
         if other in fixed:
             self._fix(name, fixed, one, fixed[other] + link.offset, link.owner)
@@ -244,19 +244,17 @@ class _Planner:
             a, b = self._point(name, first), self._point(name, last)
             raise Unmet(owner, f"{a} and {b} cannot be {duration:.3g} s apart")
 
-    def _stretched(self, name: str, fixed: dict[int, float], cluster: _Cluster) -> list[float]:
+    def _stretch(self, name: str, fixed: dict[int, float], cluster: _Cluster) -> list[float]:
         """Return the times of a behaviour; one that would start too early is compressed."""
         timing = self._problem.timings[name]
-        times = stretched(timing, fixed)
+        times = stretch(timing, fixed)
         start = self._problem.start
         if cluster.grounded and times[0] < start - TOLERANCE:
             first = min(fixed)
             if first == 0 or not fits(timing, 0, first, fixed[first] - start):
-                self._unmet(
-                    self._blamed(name), f"it would start {start - times[0]:.3g} s too early"
-                )
+                self._unmet(self._blame(name), f"it would start {start - times[0]:.3g} s too early")
             if first > 0:
-                times = stretched(timing, {**fixed, 0: min(start, fixed[first])})
+                times = stretch(timing, {**fixed, 0: min(start, fixed[first])})
         if not self._problem.strict and cluster.grounded:
             times = self._not_in_the_past(name, times)
         return times
@@ -269,7 +267,7 @@ class _Planner:
             times[index] = latest
         return times
 
-    def _blamed(self, name: str) -> str:
+    def _blame(self, name: str) -> str:
         """Return who wants a behaviour where it cannot be: a constraint, or itself."""
         owners = [link.owner for link in self._links[name]]
         return next((owner for owner in owners if owner not in self._problem.timings), name)
@@ -310,7 +308,7 @@ class _Planner:
             return
         self._fix(name, fixed, index, self._times[name][index] + by, order.owner)
         if fixed:
-            self._times[name] = self._stretched(name, fixed, self._clusters[name])
+            self._times[name] = self._stretch(name, fixed, self._clusters[name])
 
     # All behaviours
 

@@ -5,15 +5,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from cubeling.characters.behaviour.bml.constraints import Link, Moment, Order, Unmet
-from cubeling.characters.behaviour.bml.performer import Timing
 from cubeling.characters.behaviour.bml.spans import TOLERANCE
+from cubeling.characters.behaviour.bml.timing import Timing
 
 SUM_TOLERANCE = 10 * TOLERANCE
 """Seconds by which constraints may be missed at the end: every placement may add its rounding."""
 
 
 @dataclass(frozen=True)
-class Problem:
+class TimingProblem:
     """What is to be planned."""
 
     timings: Mapping[str, Timing]
@@ -41,7 +41,7 @@ class Problem:
     """Whether contradictions are raised; otherwise what runs goes on as well as it can."""
 
 
-def sequence(problem: Problem) -> list[str]:
+def sequence(problem: TimingProblem) -> list[str]:
     """Return behaviours in an order in which those that others refer to come first.
 
     Those that were moved come before all; a circle is entered at its first in the document.
@@ -67,7 +67,7 @@ def sequence(problem: Problem) -> list[str]:
     return order
 
 
-def check(problem: Problem, times: Mapping[str, Sequence[float]]) -> None:
+def check(problem: TimingProblem, times: Mapping[str, Sequence[float]]) -> None:
     """Check all constraints: none is broken unseen.
 
     Raises

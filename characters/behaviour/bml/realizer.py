@@ -1,4 +1,4 @@
-"""Perform BML blocks in time: when each begins, what happens, and what is reported.
+"""Play BML blocks in time: when each begins, what happens, and what is reported.
 
 The realizer has no clock: `update` is told the time. What happens between two updates is worked
 through in its order and reported with the times at which it was due, so that the rate of frames
@@ -19,29 +19,34 @@ from cubeling.characters.behaviour.bml.feedback import (
     WarningType,
 )
 from cubeling.characters.behaviour.bml.parser import parse
-from cubeling.characters.behaviour.bml.performance import Performance
-from cubeling.characters.behaviour.bml.performer import Performer, Scheduled
-from cubeling.characters.behaviour.bml.schedule import BlockFailed, Scheduler, Track, lead_over
+from cubeling.characters.behaviour.bml.realization import Realization
+from cubeling.characters.behaviour.bml.schedule import (
+    BehaviourTrack,
+    BlockFailed,
+    Scheduler,
+    lead_over,
+)
+from cubeling.characters.behaviour.bml.timing import Scheduled, TimingEstimator
 from cubeling.characters.errors import CharacterError
 
 
 class Realizer:
-    """Performs blocks.
+    """Plays blocks: lays each out in time, and tells what is active.
 
     Parameters
     ----------
-    performer
-        Whoever performs their behaviours: it is asked for their natural times.
+    estimator
+        Tells the natural times of their behaviours.
     """
 
-    def __init__(self, performer: Performer) -> None:
-        self._performer = performer
+    def __init__(self, estimator: TimingEstimator) -> None:
+        self._estimator = estimator
         self._arrived: list[str | bytes | Block] = []
-        self._performances: dict[str, Performance] = {}
+        self._realizations: dict[str, Realization] = {}
         self._feedback: list[Feedback] = []
         self._now = 0.0
 
-    def perform(self, bml: str | bytes | Block) -> None:
+    def accept(self, bml: str | bytes | Block) -> None:
         """Accept a block, a document or what was read of one; it counts from the next update on."""
         self._arrived.append(bml)
 
@@ -64,29 +69,29 @@ class Realizer:
 
     def active(self, now: float) -> tuple[Scheduled, ...]:
         """Return the behaviours that are going on, in the order in which their blocks came."""
-        return tuple(s for performance in self._running() for s in performance.scheduled(now))
+        return tuple(s for realization in self._running() for s in realization.behaviours(now))
 
     @property
     def scheduled(self) -> tuple[Scheduled, ...]:
         """The behaviours that go on or are still to come, as far as their times are known."""
         return tuple(
             scheduled
-            for performance in self._performances.values()
-            if math.isfinite(performance.start)
-            for scheduled in performance.scheduled()
+            for realization in self._realizations.values()
+            if math.isfinite(realization.start)
+            for scheduled in realization.behaviours()
         )
 
     @property
     def idle(self) -> bool:
         """Whether nothing goes on or waits for its turn; blocks to be activated do not count."""
         return not self._arrived and all(
-            performance.state == "preplanned" for performance in self._performances.values()
+            realization.state == "preplanned" for realization in self._realizations.values()
         )
 
     def retime(self, block: str, behaviour: str, sync: str, time: float) -> None:
         """Move a sync point that has not happened, and what depends on it, in all blocks.
 
-        A block that has not started is scheduled again when it does: its performer is asked again.
+        A block that has not started is scheduled again when it does: its times are estimated again.
 
         Parameters
         ----------
@@ -95,19 +100,19 @@ class Realizer:
         time
             When it is now expected [s]; what is past counts as now.
         """
-        performance = self._performances.get(block)
-        if performance is None or performance.state != "running":
+        realization = self._realizations.get(block)
+        if realization is None or realization.state != "running":
             return
-        track = performance.tracks.get(behaviour)
+        track = realization.tracks.get(behaviour)
         if track is None or track.interrupted or sync not in track.timing.syncs:
             return
         index = track.timing.syncs.index(sync)
         if index < track.happened:
             return
-        performance.move(track, index, time, self._now)
+        realization.move(track, index, time, self._now)
         changed = set[str]()
         for other in self._running():
-            if other is performance or other.refers_to(changed):
+            if other is realization or other.refers_to(changed):
                 changed.add(other.block.id)
                 other.replan(self._now, self._external)
                 lead_over(other.tracks.values(), self._others(other), self._now)
@@ -122,56 +127,56 @@ class Realizer:
             except CharacterError as error:
                 self._feedback.append(BmlWarning("", "PARSING_FAILURE", str(error), self._now))
                 return
-        if bml.id in self._performances:
+        if bml.id in self._realizations:
             self._warn(bml, "", "PARSING_FAILURE", "a block with this id is not over yet")
             return
-        performance = Performance(bml, "preplanned", self._now)
-        self._performances[bml.id] = performance
+        realization = Realization(bml, "preplanned", self._now)
+        self._realizations[bml.id] = realization
         if not bml.preplan:
-            self._activate(performance, self._now)
-        if not performance.awaits_nothing:
-            self._preview(performance)
+            self._activate(realization, self._now)
+        if not realization.awaits_nothing:
+            self._preview(realization)
 
-    def _activate(self, performance: Performance, time: float) -> None:
+    def _activate(self, realization: Realization, time: float) -> None:
         """Find out what a block has to wait for."""
-        block = performance.block
-        others = [name for name in self._performances if name != block.id]
-        performance.state, performance.ready = "waiting", time
-        performance.awaits_release = {name for name in block.chunk_after if name in others}
-        performance.awaits_end = {name for name in block.append_after if name in others}
+        block = realization.block
+        others = [name for name in self._realizations if name != block.id]
+        realization.state, realization.ready = "waiting", time
+        realization.awaits_release = {name for name in block.chunk_after if name in others}
+        realization.awaits_end = {name for name in block.append_after if name in others}
         if block.composition == "APPEND":
-            performance.awaits_end |= {
-                name for name in others if self._performances[name].state != "preplanned"
+            realization.awaits_end |= {
+                name for name in others if self._realizations[name].state != "preplanned"
             }
         wanted = others if block.composition == "REPLACE" else block.interrupt
-        performance.interrupts = tuple(name for name in wanted if name in others)
+        realization.interrupts = tuple(name for name in wanted if name in others)
 
-    def _preview(self, performance: Performance) -> None:
+    def _preview(self, realization: Realization) -> None:
         """Predict a block that does not start yet; what it cannot do is known when it starts.
 
         It leaves what runs alone: its times are a guess.
         """
-        if performance.state != "preplanned":
-            ends = [self._performances[name].end for name in performance.awaits_end]
-            ends += [self._performances[name].release for name in performance.awaits_release]
-            performance.start = max([performance.ready, *ends])
-        start = performance.start if math.isfinite(performance.start) else self._now
+        if realization.state != "preplanned":
+            ends = [self._realizations[name].end for name in realization.awaits_end]
+            ends += [self._realizations[name].release for name in realization.awaits_release]
+            realization.start = max([realization.ready, *ends])
+        start = realization.start if math.isfinite(realization.start) else self._now
         with suppress(BlockFailed):
-            scheduler = Scheduler(performance.block, self._performer, self._external)
-            performance.tracks = scheduler.schedule(start, ()).tracks
-            self._feedback.append(performance.prediction())
+            scheduler = Scheduler(realization.block, self._estimator, self._external)
+            realization.tracks = scheduler.schedule(start, ()).tracks
+            self._feedback.append(realization.prediction())
 
-    def _schedule(self, performance: Performance, start: float) -> bool:
+    def _schedule(self, realization: Realization, start: float) -> bool:
         """Schedule a block and send warnings; return whether it can be performed."""
-        block = performance.block
+        block = realization.block
         try:
-            scheduler = Scheduler(block, self._performer, self._external)
-            schedule = scheduler.schedule(start, self._others(performance))
+            scheduler = Scheduler(block, self._estimator, self._external)
+            schedule = scheduler.schedule(start, self._others(realization))
         except BlockFailed as failed:
             self._warn(block, "", failed.type, f"it is required: {failed}")
-            self._finish(performance, start, report=False)
+            self._finish(realization, start, report=False)
             return False
-        performance.tracks, performance.constraints = schedule.tracks, schedule.constraints
+        realization.tracks, realization.constraints = schedule.tracks, schedule.constraints
         for failure in schedule.failures:
             self._warn(block, failure.id, failure.type, failure.reason)
         return True
@@ -182,79 +187,79 @@ class Realizer:
         """Do all that is due."""
         while True:
             due = [
-                (time, kind, order, performance)
-                for order, performance in enumerate(self._performances.values())
-                for time, kind in [self._due(performance)]
+                (time, kind, order, realization)
+                for order, realization in enumerate(self._realizations.values())
+                for time, kind in [self._due(realization)]
                 if time <= self._now
             ]
             if not due:
                 return
-            time, kind, _, performance = min(due, key=lambda event: event[:3])
-            (self._progress, self._finish, self._begin)[kind](performance, time)
+            time, kind, _, realization = min(due, key=lambda event: event[:3])
+            (self._progress, self._finish, self._begin)[kind](realization, time)
 
-    def _due(self, performance: Performance) -> tuple[float, int]:
+    def _due(self, realization: Realization) -> tuple[float, int]:
         """Return when a block wants attention, and what for: a sync point, its end or its start."""
-        if performance.awaits_nothing:
-            return performance.ready, 2
-        if performance.state != "running":
+        if realization.awaits_nothing:
+            return realization.ready, 2
+        if realization.state != "running":
             return math.inf, 2
-        track = performance.next_track()
+        track = realization.next_track()
         if track is None:
-            return max(performance.end, performance.latest), 1
+            return max(realization.end, realization.latest), 1
         return track.times[track.happened], 0
 
-    def _begin(self, performance: Performance, time: float) -> None:
+    def _begin(self, realization: Realization, time: float) -> None:
         """End what a block replaces; start it if that is over."""
-        if performance.interrupts:
-            for name in performance.interrupts:
-                if name in self._performances:
-                    self._interrupt(self._performances[name], time)
-            performance.awaits_end = {n for n in performance.interrupts if n in self._performances}
-            performance.interrupts = ()
+        if realization.interrupts:
+            for name in realization.interrupts:
+                if name in self._realizations:
+                    self._interrupt(self._realizations[name], time)
+            realization.awaits_end = {n for n in realization.interrupts if n in self._realizations}
+            realization.interrupts = ()
             return
-        if not self._schedule(performance, time):
+        if not self._schedule(realization, time):
             return
-        block = performance.block
-        performance.state, performance.start, performance.latest = "running", time, time
-        self._feedback.append(performance.prediction())
+        block = realization.block
+        realization.state, realization.start, realization.latest = "running", time, time
+        self._feedback.append(realization.prediction())
         self._feedback.append(BlockProgress(block.id, "start", time, block.character))
         self._activate_all(block, block.on_start, time)
 
-    def _progress(self, performance: Performance, time: float) -> None:
+    def _progress(self, realization: Realization, time: float) -> None:
         """Report a sync point, and do what it is for."""
-        track = performance.next_track()
+        track = realization.next_track()
         assert track is not None
-        block, behaviour = performance.block, track.behaviour
+        block, behaviour = realization.block, track.behaviour
         sync = track.timing.syncs[track.happened]
         track.happened += 1
-        performance.latest = time
+        realization.latest = time
         self._feedback.append(
             SyncPointProgress(
-                block.id, behaviour.id, sync, time, time - performance.start, block.character
+                block.id, behaviour.id, sync, time, time - realization.start, block.character
             )
         )
         if behaviour.namespace == BMLA and sync == "start":
             self._control(block, behaviour, time)
-        if performance.released:
-            for other in self._performances.values():
-                self._stop_waiting(other.awaits_release, other, performance, time)
+        if realization.released:
+            for other in self._realizations.values():
+                self._stop_waiting(other.awaits_release, other, realization, time)
 
-    def _finish(self, performance: Performance, time: float, *, report: bool = True) -> None:
+    def _finish(self, realization: Realization, time: float, *, report: bool = True) -> None:
         """Forget a block, and let those that wait for it go on."""
-        block = performance.block
-        del self._performances[block.id]
-        performance.state = "over"
+        block = realization.block
+        del self._realizations[block.id]
+        realization.state = "over"
         if report:
             self._feedback.append(BlockProgress(block.id, "end", time, block.character))
-        for other in self._performances.values():
-            self._stop_waiting(other.awaits_end, other, performance, time)
-            self._stop_waiting(other.awaits_release, other, performance, time)
+        for other in self._realizations.values():
+            self._stop_waiting(other.awaits_end, other, realization, time)
+            self._stop_waiting(other.awaits_release, other, realization, time)
 
     def _stop_waiting(
-        self, awaited: set[str], waiting: Performance, performance: Performance, time: float
+        self, awaited: set[str], waiting: Realization, realization: Realization, time: float
     ) -> None:
-        if performance.block.id in awaited:
-            awaited.discard(performance.block.id)
+        if realization.block.id in awaited:
+            awaited.discard(realization.block.id)
             waiting.ready = max(waiting.ready, time)
 
     # Control of other blocks
@@ -266,7 +271,7 @@ class Realizer:
         if behaviour.kind != "interrupt":
             return
         for name in targets:
-            target = self._performances.get(name)
+            target = self._realizations.get(name)
             if target is None:
                 self._warn(block, behaviour.id, "NO_SUCH_TARGET", f"there is no block {name}")
             else:
@@ -275,7 +280,7 @@ class Realizer:
 
     def _activate_all(self, block: Block, names: Iterable[str], time: float) -> None:
         for name in names:
-            target = self._performances.get(name)
+            target = self._realizations.get(name)
             if target is None or target.state != "preplanned":
                 self._warn(block, "", "NO_SUCH_TARGET", f"{name} is no block to be activated")
             else:
@@ -283,7 +288,7 @@ class Realizer:
 
     def _interrupt(
         self,
-        target: Performance,
+        target: Realization,
         time: float,
         only: tuple[str, ...] = (),
         but: tuple[str, ...] = (),
@@ -295,19 +300,19 @@ class Realizer:
 
     # Between blocks
 
-    def _running(self) -> list[Performance]:
-        return [p for p in self._performances.values() if p.state == "running"]
+    def _running(self) -> list[Realization]:
+        return [p for p in self._realizations.values() if p.state == "running"]
 
-    def _others(self, performance: Performance) -> list[Track]:
-        others = [other for other in self._running() if other is not performance]
+    def _others(self, realization: Realization) -> list[BehaviourTrack]:
+        others = [other for other in self._running() if other is not realization]
         return [track for other in others for track in other.tracks.values()]
 
     def _external(self, reference: SyncReference) -> float | None:
         """Return when a sync point of another block is [s], None if that is not known."""
-        performance = self._performances.get(reference.block)
-        if performance is None or not math.isfinite(performance.start):
+        realization = self._realizations.get(reference.block)
+        if realization is None or not math.isfinite(realization.start):
             return None
-        track = performance.tracks.get(reference.behaviour)
+        track = realization.tracks.get(reference.behaviour)
         if track is None or reference.sync not in track.timing.syncs:
             return None
         return track.times[track.timing.syncs.index(reference.sync)]

@@ -19,10 +19,10 @@ from cubeling.characters.behaviour.bml.document import (
     Constraint,
 )
 from cubeling.characters.behaviour.bml.feedback import WarningType
-from cubeling.characters.behaviour.bml.performer import CannotPerform, Performer, Timing
 from cubeling.characters.behaviour.bml.planner import plan
-from cubeling.characters.behaviour.bml.problem import Problem
+from cubeling.characters.behaviour.bml.problem import TimingProblem
 from cubeling.characters.behaviour.bml.spans import TOLERANCE
+from cubeling.characters.behaviour.bml.timing import CannotRealize, Timing, TimingEstimator
 
 CONTROLS = {
     "interrupt": Timing(("start", "end"), (0.0,), (0.0,), (0.0,)),
@@ -32,14 +32,13 @@ CONTROLS = {
 
 
 @dataclass
-class Track:
+class BehaviourTrack:
     """A behaviour that is scheduled, and how far it has got."""
 
     behaviour: Behaviour
-    """What it is."""
 
     timing: Timing
-    """Its natural times."""
+    """Its natural times, before constraints stretch or shift them."""
 
     times: list[float]
     """When its sync points are [s]; inf for what comes only by an interrupt."""
@@ -82,7 +81,6 @@ class Failure:
     """A behaviour or a constraint that is left out."""
 
     id: str
-    """Which."""
 
     type: WarningType
     """What kind of failure."""
@@ -101,10 +99,10 @@ class BlockFailed(Exception):  # noqa: N818 -- a verdict on a document, not a bu
 
 
 @dataclass
-class Schedule:
+class BlockSchedule:
     """What is performed of a block, and when."""
 
-    tracks: dict[str, Track]
+    tracks: dict[str, BehaviourTrack]
     """Behaviours by id, in the document's order."""
 
     constraints: tuple[Constraint, ...]
@@ -115,9 +113,9 @@ class Schedule:
 
 
 class Scheduler:
-    """Schedules one block."""
+    """Finds the times of one block: its constraints met, its behaviours stretched least."""
 
-    def __init__(self, block: Block, performer: Performer, external: External) -> None:
+    def __init__(self, block: Block, estimator: TimingEstimator, external: External) -> None:
         self._block, self._external = block, external
         self._behaviours = {behaviour.id: behaviour for behaviour in block.behaviours}
         self._constraints = {constraint.id: constraint for constraint in block.constraints}
@@ -126,11 +124,11 @@ class Scheduler:
         self._failures: list[Failure] = []
         for behaviour in block.behaviours:
             try:
-                self._timings[behaviour.id] = _timing(behaviour, block, performer)
-            except CannotPerform as error:
+                self._timings[behaviour.id] = _timing(behaviour, block, estimator)
+            except CannotRealize as error:
                 self._leave_out(behaviour.id, _failure_type(behaviour, error), str(error))
 
-    def schedule(self, start: float, others: Sequence[Track]) -> Schedule:
+    def schedule(self, start: float, others: Sequence[BehaviourTrack]) -> BlockSchedule:
         """Return the schedule of the block if it starts at `start` [s] beside `others`.
 
         Raises
@@ -148,13 +146,13 @@ class Scheduler:
             conflicts = [*_conflicts(tracks.values(), others)]
             if not conflicts:
                 lead_over(tracks.values(), others, start)
-                return Schedule(tracks, tuple(self._constraints.values()), self._failures)
+                return BlockSchedule(tracks, tuple(self._constraints.values()), self._failures)
             for name, reason in conflicts:
                 self._leave_out(name, "IMPOSSIBLE_TO_SCHEDULE", reason)
 
-    def _attempt(self, start: float) -> dict[str, Track]:
+    def _attempt(self, start: float) -> dict[str, BehaviourTrack]:
         links, orders = self._rules(start)
-        times = plan(Problem(self._timings, links, orders, start))
+        times = plan(TimingProblem(self._timings, links, orders, start))
         ended = {
             end[0]
             for link in links
@@ -162,7 +160,7 @@ class Scheduler:
             if end is not None and end[1] == len(self._timings[end[0]].syncs) - 1
         }
         return {
-            name: Track(self._behaviours[name], timing, times[name], name in ended)
+            name: BehaviourTrack(self._behaviours[name], timing, times[name], name in ended)
             for name, timing in self._timings.items()
         }
 
@@ -190,7 +188,9 @@ class Scheduler:
                 del self._constraints[constraint.id], self._parts[constraint.id]
 
 
-def lead_over(tracks: Iterable[Track], others: Iterable[Track], now: float) -> None:
+def lead_over(
+    tracks: Iterable[BehaviourTrack], others: Iterable[BehaviourTrack], now: float
+) -> None:
     """Let behaviours end when the next one takes what they occupied: none returns to rest first.
 
     Those that others have taken from already end `now` [s].
@@ -206,7 +206,9 @@ def lead_over(tracks: Iterable[Track], others: Iterable[Track], now: float) -> N
                 other.times[-1] = min(other.times[-1], end)
 
 
-def _conflicts(tracks: Iterable[Track], others: Iterable[Track]) -> Iterator[tuple[str, str]]:
+def _conflicts(
+    tracks: Iterable[BehaviourTrack], others: Iterable[BehaviourTrack]
+) -> Iterator[tuple[str, str]]:
     """Yield what of a block wants something of the body that another behaviour has, and why."""
     earlier = [o for o in others if o.timing.occupies and not o.over and not o.interrupted]
     for track in tracks:
@@ -226,13 +228,13 @@ def _conflicts(tracks: Iterable[Track], others: Iterable[Track]) -> Iterator[tup
             earlier.append(track)
 
 
-def _timing(behaviour: Behaviour, block: Block, performer: Performer) -> Timing:
+def _timing(behaviour: Behaviour, block: Block, estimator: TimingEstimator) -> Timing:
     if behaviour.namespace == BMLA and behaviour.kind in CONTROLS:
         return CONTROLS[behaviour.kind]
-    return performer.timing(behaviour, block)
+    return estimator.timing(behaviour, block)
 
 
-def _failure_type(behaviour: Behaviour, error: CannotPerform) -> WarningType:
+def _failure_type(behaviour: Behaviour, error: CannotRealize) -> WarningType:
     if error.type is not None:
         return error.type
     if behaviour.namespace != BML:

@@ -3,7 +3,7 @@
 import math
 from itertools import pairwise
 
-from cubeling.characters.behaviour.bml.performer import Timing
+from cubeling.characters.behaviour.bml.timing import Timing
 
 TOLERANCE = 1e-6
 """Seconds by which limits may be missed: rounding of sums."""
@@ -19,7 +19,7 @@ def fits(timing: Timing, first: int, last: int, duration: float) -> bool:
     return least - TOLERANCE <= duration <= most + TOLERANCE
 
 
-def shared(timing: Timing, first: int, last: int, duration: float) -> list[float]:
+def share_duration(timing: Timing, first: int, last: int, duration: float) -> list[float]:
     """Return the lengths of the spans between two sync points that take `duration` together [s].
 
     Each span gives or takes the same part of what its limits allow; holds without limit take all
@@ -27,7 +27,7 @@ def shared(timing: Timing, first: int, last: int, duration: float) -> list[float
 
     >>> timing = Timing(("start", "ready", "relax", "end"), (0.5,) * 3, (0.2,) * 3,
     ...                 (1.0, math.inf, 1.0))
-    >>> shared(timing, 0, 3, 4.5)
+    >>> share_duration(timing, 0, 3, 4.5)
     [0.5, 3.5, 0.5]
     """
     natural = timing.spans[first:last]
@@ -55,7 +55,7 @@ def _in_proportion(natural: tuple[float, ...], duration: float) -> list[float]:
     return [duration * span / total for span in natural]
 
 
-def stretched(timing: Timing, fixed: dict[int, float]) -> list[float]:
+def stretch(timing: Timing, fixed: dict[int, float]) -> list[float]:
     """Return the times of all sync points if those of some, at least one, are given [s].
 
     Spans before the first and after the last keep their natural length; a persistent behaviour
@@ -69,7 +69,9 @@ def stretched(timing: Timing, fixed: dict[int, float]) -> list[float]:
         times[index - 1] = times[index] - timing.spans[index - 1]
     for left, right in pairwise(known):
         time = fixed[left]
-        for index, span in enumerate(shared(timing, left, right, fixed[right] - time), left + 1):
+        for index, span in enumerate(
+            share_duration(timing, left, right, fixed[right] - time), left + 1
+        ):
             time += span
             times[index] = min(time, fixed[right])
         times[right] = fixed[right]

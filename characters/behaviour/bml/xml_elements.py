@@ -37,12 +37,12 @@ class OpenElement:
 
     @property
     def children(self) -> list["OpenElement"]:
-        """Elements inside."""
+        """The elements inside, in their order, without the text between them."""
         return [part for part in self.parts if isinstance(part, OpenElement)]
 
     @property
     def text(self) -> str:
-        """All characters inside."""
+        """All characters inside, those of its children too."""
         return "".join(part if isinstance(part, str) else part.text for part in self.parts)
 
 

@@ -50,13 +50,15 @@ def behaviours_of(fml: str | bytes, lexicon: Lexicon | None = None) -> Block:
         if behaviour.namespace != BML or behaviour.kind in SYNCS:
             behaviours.append(behaviour)
         elif (behaviour.kind, behaviour.get("type")) in lexicon:
-            behaviours += _shown(behaviour, lexicon, speech)
+            behaviours += _behaviours_of(behaviour, lexicon, speech)
         else:
             behaviours.append(replace(behaviour, namespace=FML, syncs={}))
     return replace(block, behaviours=tuple(behaviours))
 
 
-def _shown(intention: Behaviour, lexicon: Lexicon, speech: Behaviour | None) -> list[Behaviour]:
+def _behaviours_of(
+    intention: Behaviour, lexicon: Lexicon, speech: Behaviour | None
+) -> list[Behaviour]:
     """Return the behaviours that show an intention."""
     strength, target = _strength(intention), intention.get("target")
     syncs = dict(intention.syncs)

@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.characters.behaviour.gestures.contacts import BodySurface
+from cubeling.characters.behaviour.gestures.contacts import ContactPoints
 from cubeling.characters.behaviour.gestures.space import GestureSpace
 from cubeling.characters.behaviour.gestures.trunk import TrunkTurns, chest_part
 from cubeling.characters.ik.reaching import UpperBody
@@ -26,18 +26,17 @@ class GestureBody:
     """What a character gestures with."""
 
     character: Character
-    """Who."""
 
     posture: Pose
     """How it stands while it gestures; a four-legged one sits up."""
 
     body: UpperBody
-    """Its arms."""
+    """Its torso and arms, for reaching."""
 
     trunk: TrunkTurns
     """Its trunk, shoulders and head."""
 
-    surface: BodySurface
+    surface: ContactPoints
     """Where it can be touched."""
 
     space: GestureSpace
@@ -50,7 +49,7 @@ class GestureBody:
     """Joints of collarbone, arm, hand and fingers by side."""
 
     @classmethod
-    def measured(cls, character: Character) -> Self:
+    def measure(cls, character: Character) -> Self:
         """Return what a character gestures with."""
         skeleton, anatomy = character.skeleton, character.anatomy
         idle = idle_clips(character.clips)
@@ -59,7 +58,7 @@ class GestureBody:
         if sitting is not None:
             posture = sitting.sit_up(posture, 1.0)
         body = UpperBody.of(skeleton, anatomy)
-        surface = BodySurface(skeleton, anatomy, character.meshes, posture)
+        surface = ContactPoints(skeleton, anatomy, character.meshes, posture)
         joints = {}
         for side, arm in body.arms.items():
             collarbone, upper, *_ = arm.joints

@@ -14,7 +14,7 @@ from cubeling.characters.errors import CharacterError
 class GestureCollection:
     """Gestures by their names; upper and lower case, "-" and " " make no difference.
 
-    >>> GestureCollection.bundled().get("wave").name
+    >>> GestureCollection.load_bundled().get("wave").name
     'WAVE'
     """
 
@@ -24,7 +24,7 @@ class GestureCollection:
         """Where `save` writes; None if nowhere."""
 
     @staticmethod
-    def bundled(folder: Path | None = None) -> "GestureCollection":
+    def load_bundled(folder: Path | None = None) -> "GestureCollection":
         """Return Cubeling's gestures and those in a folder, which go first; it need not exist.
 
         Raises
@@ -33,7 +33,7 @@ class GestureCollection:
             If a file in the folder is no gesture.
         """
         own = {} if folder is None else gestures_in(folder)
-        return GestureCollection({**_bundled(), **own}, folder)
+        return GestureCollection({**_load_bundled(), **own}, folder)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -96,7 +96,7 @@ def gestures_in(folder: Path) -> dict[str, SymbolicGesture]:
 
 
 @lru_cache(maxsize=1)
-def _bundled() -> dict[str, SymbolicGesture]:
+def _load_bundled() -> dict[str, SymbolicGesture]:
     return gestures_in(Path(str(resources.files("cubeling.characters.behaviour") / "library")))
 
 

@@ -29,10 +29,10 @@ class Contact(NamedTuple):
     """To the side of the hand."""
 
     up: float
-    """Along +y."""
+    """Along +y; only the direction of the three numbers counts."""
 
     forward: float
-    """Along +z."""
+    """Along +z; only the direction of the three numbers counts."""
 
 
 CONTACTS: Mapping[str, Contact] = {
@@ -59,7 +59,7 @@ CONTACTS: Mapping[str, Contact] = {
 """What a `Place` may touch."""
 
 
-class BodySurface:
+class ContactPoints:
     """Places on the surface of a character in a posture, for either hand.
 
     Directions are those of the character in the posture. Without a mesh, places are at joints.

@@ -61,7 +61,7 @@ def out_bounce(x: Time) -> Time:
     return float(where) if isinstance(x, float) else where
 
 
-def eased(x: Time, expressivity: GestureExpressivity) -> Time:
+def ease_time(x: Time, expressivity: GestureExpressivity) -> Time:
     """Return the share of the way from key to key at a share of the time.
 
     Without power it is the time itself. Power blends in OutQuart, and above `QUART_POWER` OutBack,

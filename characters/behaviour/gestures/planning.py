@@ -23,9 +23,9 @@ from cubeling.characters.behaviour.gestures.timing import Repeats, stroke_length
 from cubeling.characters.behaviour.gestures.tracks import (
     POSITION,
     HandTrack,
+    choose_side,
     hand_track,
     one_period,
-    sided,
 )
 from cubeling.characters.behaviour.gestures.trunk import body_track
 from cubeling.characters.behaviour.intents import Hand
@@ -50,16 +50,16 @@ PLANS = 64
 """Plans that are kept for when a gesture comes again."""
 
 
-class Performer(GestureBody):
+class GestureRealizer(GestureBody):
     """A body that plans gestures."""
 
     @staticmethod
-    def of(character: Character) -> "Performer":
+    def of(character: Character) -> "GestureRealizer":
         """Return what a character gestures with; the last few characters' are kept."""
         for kept in _KEPT:
             if kept.character.skeleton is character.skeleton:
                 return kept
-        _KEPT.append(Performer.measured(character))
+        _KEPT.append(GestureRealizer.measure(character))
         return _KEPT[-1]
 
     def plan(
@@ -85,14 +85,17 @@ class Performer(GestureBody):
         return _planning(self, gesture, hand, expressivity)
 
 
-_KEPT: deque[Performer] = deque(maxlen=CHARACTERS)
+_KEPT: deque[GestureRealizer] = deque(maxlen=CHARACTERS)
 
 
 @lru_cache(maxsize=PLANS)
 def _planning(
-    performer: Performer, gesture: SymbolicGesture, hand: Hand, expressivity: GestureExpressivity
+    gesture_body: GestureRealizer,
+    gesture: SymbolicGesture,
+    hand: Hand,
+    expressivity: GestureExpressivity,
 ) -> "GesturePlanning":
-    return GesturePlanning(performer, gesture, hand, expressivity)
+    return GesturePlanning(gesture_body, gesture, hand, expressivity)
 
 
 class GesturePlanning:
@@ -100,31 +103,31 @@ class GesturePlanning:
 
     def __init__(
         self,
-        performer: GestureBody,
+        gesture_body: GestureBody,
         gesture: SymbolicGesture,
         hand: Hand,
         expressivity: GestureExpressivity,
     ) -> None:
-        self.performer = performer
+        self.gesture_body = gesture_body
         self.expressivity = expressivity
         self.duration = stroke_length(gesture)
         openness, power = (
             min(max(value, 0.0), 1.0) for value in (expressivity.openness, expressivity.power)
         )
-        self._postures = KeyPostures(performer, ReachStyle(openness, power))
-        space = performer.space
+        self._postures = KeyPostures(gesture_body, ReachStyle(openness, power))
+        space = gesture_body.space
         self.space = GestureSpace(np.zeros(3), space.arm, expressivity.spatial)
-        shown, mirrored = sided(gesture, hand)
+        shown, mirrored = choose_side(gesture, hand)
         self.repeats = repeats = Repeats.of(gesture)
         body = one_period(shown.body, repeats) or (BodyKey(0.0),)
         self.body = body_track(body, mirrored, expressivity)
         keys = {"right": one_period(shown.right, repeats), "left": one_period(shown.left, repeats)}
         asked = {side: each for side, each in keys.items() if each}
-        self.keys = {side: each for side, each in asked.items() if side in performer.body.arms}
+        self.keys = {side: each for side, each in asked.items() if side in gesture_body.body.arms}
         if len(self.keys) < len(asked):
             missing = " and ".join(side for side in asked if side not in self.keys)
             warnings.warn(
-                f"{performer.character.name} performs {gesture.name} without its {missing} arm",
+                f"{gesture_body.character.name} performs {gesture.name} without its {missing} arm",
                 CharacterWarning,
                 stacklevel=4,
             )
@@ -148,7 +151,7 @@ class GesturePlanning:
 
     @cached_property
     def motion(self) -> GestureMotion:
-        """All postures."""
+        """All postures, planned to the end and smoothed; the first access takes long."""
         self.advance(len(self._frames))
         times, poses = np.array([frame.time for frame in self._frames]), np.stack(self._poses)
         for side, track in self.tracks.items():
@@ -157,14 +160,14 @@ class GesturePlanning:
         return self._motion(times, poses)
 
     def _motion(self, times: Array, poses: Array) -> GestureMotion:
-        held = [self.performer.arms[side] for side in self.tracks]
+        held = [self.gesture_body.arms[side] for side in self.tracks]
         arms = np.concatenate([np.zeros(0, np.intp), *held])
-        trunk = np.setdiff1d(self.performer.trunk.joints, arms)
-        before = self.performer.posture.rotations[trunk]
+        trunk = np.setdiff1d(self.gesture_body.trunk.joints, arms)
+        before = self.gesture_body.posture.rotations[trunk]
         added = rotations.multiply(rotations.conjugate(before), poses[:, trunk])
         turned = (np.abs(added[..., :3]) > NEGLIGIBLE).any(axis=(0, 2))
         return GestureMotion(
-            self.performer.posture,
+            self.gesture_body.posture,
             times,
             arms,
             rotations.continuous(poses[:, arms]),
@@ -199,8 +202,8 @@ class GesturePlanning:
             met: Array = np.zeros(3) if other is None else other.keys.between(key.at)[POSITION]
             return met + offset
         if key.place.contact:
-            _, posed = self._postures.turned(self.body.between(key.at))
-            place = self.performer.surface.place(key.place.contact, left, posed)
+            _, posed = self._postures.turn_by(self.body.between(key.at))
+            place = self.gesture_body.surface.place(key.place.contact, left, posed)
             if place is not None:
                 turn, chest = self._postures.chest(posed)
                 touched: Array = (place - chest) @ turn
@@ -213,7 +216,7 @@ class GesturePlanning:
 
         A paw that cannot face as it is asked to is turned as far as it goes, to either side.
         """
-        joints = self.performer.arms[side]
+        joints = self.gesture_body.arms[side]
         turns = poses[:, joints]
         cosines = np.abs(np.vecdot(turns[1:], turns[:-1]))
         flipping = joints[(cosines < math.cos(FLIP_RAD / 2.0)).any(axis=0)]
@@ -228,7 +231,7 @@ class GesturePlanning:
 
     def _overshoot(self, poses: Array, times: Array, side: str, track: HandTrack) -> None:
         """Turn the arm beyond its keys where power lets it."""
-        joints = self.performer.arms[side]
+        joints = self.gesture_body.arms[side]
         for over in track.overshoots:
             start, end = (int(np.searchsorted(times, time)) for time in (over.start, over.end))
             first, last = poses[start, joints], poses[end, joints]

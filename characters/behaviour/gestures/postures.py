@@ -33,14 +33,14 @@ class KeyPostures:
         self._joint_from_chest = np.linalg.pinv(upright)
         self._turned_postures: dict[bytes, tuple[Pose, Array]] = {}
 
-    def turned(self, row: Array) -> tuple[Pose, Array]:
+    def turn_by(self, row: Array) -> tuple[Pose, Array]:
         """Return the posture with trunk and head turned by a row of the body's track.
 
         With it comes `character_from_joint` of all joints, (joints, 4, 4).
         """
         key = row.tobytes()
         if key not in self._turned_postures:
-            pose = self.body.trunk.turned(self.body.posture, row)
+            pose = self.body.trunk.turn_by(self.body.posture, row)
             self._turned_postures[key] = pose, pose.globals(self.body.character.skeleton)
         return self._turned_postures[key]
 
@@ -52,7 +52,7 @@ class KeyPostures:
 
     def posture(self, frame: KeyFrame, shapes: Mapping[str, tuple[str, ...]]) -> Pose:
         """Return the whole body at a key frame; `shapes` has a name for each weight of a hand."""
-        pose, posed = self.turned(frame.parts["body"])
+        pose, posed = self.turn_by(frame.parts["body"])
         turn, chest = self.chest(posed)
         targets = {}
         for side in shapes:

@@ -56,7 +56,7 @@ class RecordedHand:
     """A hand over the frames of a recording."""
 
     left: bool
-    """Whose it is."""
+    """Whether it is the left one."""
 
     places: Array
     """Of its palm, (frames, 3), from the chest and in its frame, in parts of an arm's length."""
@@ -121,7 +121,7 @@ def gesture_from_recording(
     times = np.linspace(start, end, max(round((end - start) * RATE_HZ), 1) + 1)
     poses = Pose.of_frames([clip.sample(float(time)) for time in times])
     chest, space = _chest(poses, skeleton, anatomy, body)
-    hands = {side: _recorded(side, poses, skeleton, body, chest, space) for side in body.arms}
+    hands = {side: _record_hand(side, poses, skeleton, body, chest, space) for side in body.arms}
     hands = {side: hand for side, hand in hands.items() if hand.moves}
     if not hands or end <= start:
         raise CharacterError(
@@ -172,7 +172,7 @@ def _keys(
         keys.append(
             HandKey(
                 round(min(max(float(times[frame] - times[first]) / length, 0.0), 1.0), 4),
-                _snapped(unit.nearest(hand.places[frame], hand.left)),
+                _snap(unit.nearest(hand.places[frame], hand.left)),
                 hand.shapes[frame],
                 palm,
                 fingers,
@@ -182,7 +182,7 @@ def _keys(
     return tuple(keys)
 
 
-def _snapped(place: Place) -> Place:
+def _snap(place: Place) -> Place:
     """Return a place, in the middle of its cell if it is near it."""
     offset = tuple(round(value, 3) if abs(value) > SNAP else 0.0 for value in place.offset)
     return replace(place, offset=(offset[0], offset[1], offset[2]))
@@ -216,7 +216,7 @@ def _chest(
     return moved, GestureSpace.about(shoulders, arm_length(body))
 
 
-def _recorded(
+def _record_hand(
     side: str,
     poses: Pose,
     skeleton: Skeleton,

@@ -30,7 +30,7 @@ CENTRES_X_CM = dict(zip(SECTORS_X, (45.0, 30.0, 15.0, -15.0), strict=True))
 """Outward from the middle of the body [cm]."""
 
 CENTRES_Y_CM = dict(zip(SECTORS_Y, (60.0, 40.0, 20.0, 10.0, 0.0, -10.0, -20.0), strict=True))
-"""Up [cm]."""
+"""Up from the middle of the chest [cm]."""
 
 CENTRES_Z_CM = dict(zip(SECTORS_Z, (10.0, 20.0, 40.0), strict=True))
 """Forward from the chest [cm]."""
@@ -64,7 +64,7 @@ class GestureSpace:
         below = (CENTRES_Y_CM["YUpperC"] - CHEST_CM) / 100.0 * arm / REFERENCE_ARM_M
         return GestureSpace(shoulders + np.array([0.0, -below, DEPTH * arm]), arm)
 
-    def turned(self, turn: Array, chest: Array, torso_scale: float = 1.0) -> "GestureSpace":
+    def turn_by(self, turn: Array, chest: Array, torso_scale: float = 1.0) -> "GestureSpace":
         """Return the space of a body whose torso is turned, moved and bent."""
         return replace(self, turn=turn, chest=chest, torso_scale=torso_scale)
 

@@ -41,7 +41,7 @@ class TcbSpline:
             outgoing[1:-1] = ((1.0 + c) * low * before + (1.0 - c) * high * after) / mean
         return TcbSpline(times, points, incoming, outgoing)
 
-    def straightened(self, segment: int) -> "TcbSpline":
+    def straighten(self, segment: int) -> "TcbSpline":
         """Return the path with one segment straight: its tangents keep the part along it."""
         chord = self.points[segment + 1] - self.points[segment]
         squared = float(chord @ chord)

@@ -75,7 +75,7 @@ def samples(key: HandKey, power: float) -> int:
     return plain
 
 
-def ramped(t: Array) -> Array:
+def ramp(t: Array) -> Array:
     """Return times 0…1 that start and stop gently, as a hand that goes round or to and fro does.
 
     The speed rises and falls over `RAMP` of the time each.

@@ -22,7 +22,7 @@ class Repeats:
     """A stroke that is performed several times; times are 0…1 of all of it."""
 
     count: int
-    """How many times."""
+    """How many times it is performed, at least 1."""
 
     share: float
     """Share of one period that the stroke takes; the rest is the way back."""

@@ -9,11 +9,11 @@ import numpy as np
 
 from cubeling.characters.behaviour.expressivity import GestureExpressivity
 from cubeling.characters.behaviour.gestures.directions import direction
-from cubeling.characters.behaviour.gestures.easing import eased
+from cubeling.characters.behaviour.gestures.easing import ease_time
 from cubeling.characters.behaviour.gestures.gathering import PartKeys
 from cubeling.characters.behaviour.gestures.space import GestureSpace
 from cubeling.characters.behaviour.gestures.splines import TcbSpline
-from cubeling.characters.behaviour.gestures.targeting import PathFormula, ramped, samples
+from cubeling.characters.behaviour.gestures.targeting import PathFormula, ramp, samples
 from cubeling.characters.behaviour.gestures.timing import Repeats
 from cubeling.characters.behaviour.intents import Hand
 from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, SymbolicGesture
@@ -39,7 +39,7 @@ class Overshoot:
     """Time of the key that it goes to."""
 
     times: Array
-    """When, (n,)."""
+    """Times of the stroke at which it is sampled, ascending, (n,)."""
 
     shares: Array
     """By how much of the way from key to key, (n,)."""
@@ -59,7 +59,7 @@ class HandTrack:
     """Where power lets it overshoot."""
 
 
-def sided(gesture: SymbolicGesture, hand: Hand) -> tuple[SymbolicGesture, bool]:
+def choose_side(gesture: SymbolicGesture, hand: Hand) -> tuple[SymbolicGesture, bool]:
     """Return a gesture for the hand that performs it, and whether its body is mirrored."""
     if not gesture.one_handed or hand in ("right", "nearest"):
         return gesture, False
@@ -103,13 +103,13 @@ def hand_track(
     dense, overshoots = [times[:1]], []
     for number, (before, key) in enumerate(pairwise(keys)):
         u = np.linspace(0.0, 1.0, samples(key, expressivity.power) + 1)[1:]
-        way = eased(u, expressivity)
+        way = ease_time(u, expressivity)
         beyond, reached = np.maximum(way - 1.0, 0.0), np.clip(way, 0.0, 1.0)
-        line = spline if key.path == "keys" else spline.straightened(number)
+        line = spline if key.path == "keys" else spline.straighten(number)
         formula = PathFormula.of(key, space.radius(key.radius, left))
         round_trip = key.path in ("circle", "wave")
         way_there = line.segment(number, reached)
-        way_there += formula.offsets(ramped(reached) if round_trip else reached)
+        way_there += formula.offsets(ramp(reached) if round_trip else reached)
         share = smoothstep(reached)
         turned = rotations.slerp(frames[number], frames[number + 1], share)
         shaped = weights[number] + (weights[number + 1] - weights[number]) * share[:, None]

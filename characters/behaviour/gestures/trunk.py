@@ -105,7 +105,7 @@ class TrunkTurns:
         """All joints that are turned."""
         return np.concatenate([self.trunk, self.head, self.shoulders])
 
-    def turned(self, pose: Pose, row: Array) -> Pose:
+    def turn_by(self, pose: Pose, row: Array) -> Pose:
         """Return a pose with trunk, shoulders and head turned by a row of a body track, (7,)."""
         local = pose.rotations.copy()
         lean, side, turn, shrug, nod, tilt, shake = row.tolist()

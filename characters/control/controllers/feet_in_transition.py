@@ -38,7 +38,7 @@ class FeetInTransition:
         self._transition: Inertialization | None = None
         self._standing = np.zeros(len(self._feet), bool)
 
-    def held(self, shown: Pose, own: Pose, entered: float, spent: float, length: float) -> Pose:
+    def hold(self, shown: Pose, own: Pose, entered: float, spent: float, length: float) -> Pose:
         """Return the shown pose with the feet that stand held.
 
         Parameters
@@ -58,7 +58,7 @@ class FeetInTransition:
             self._last = None
             return shown
         joints = shown.globals(self._skeleton)
-        feet, free = self._placed(own.globals(self._skeleton)), self._placed(joints)
+        feet, free = self._place(own.globals(self._skeleton)), self._place(joints)
         if self._last is None or entered != self._entered:
             old = self._last or free
             stand = self._stand(old, feet)
@@ -79,10 +79,10 @@ class FeetInTransition:
             turn = _turns(above[None])[0]
             turns[foot] = rotations.multiply(rotations.conjugate(turn), aims.rotations[number])
         pose = Pose(places, turns, shown.scales, shown.morphs)
-        self._last = self._placed(pose.globals(self._skeleton))
+        self._last = self._place(pose.globals(self._skeleton))
         return pose
 
-    def _placed(self, joints: Array) -> Pose:
+    def _place(self, joints: Array) -> Pose:
         """Return where the feet are and how they are turned in the character's frame."""
         feet = joints[self._feet]
         return Pose(feet[:, :3, 3], _turns(feet))

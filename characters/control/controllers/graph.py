@@ -27,7 +27,7 @@ from cubeling.characters.synthesis.graphs.search import CostToGo
 from cubeling.characters.synthesis.graphs.storage import StoredGraph, load_graph
 from cubeling.characters.synthesis.library import MotionLibrary
 from cubeling.characters.synthesis.transitions.live import (
-    FrameSource,
+    GraphPlayback,
     LiveMotion,
     PartsSource,
     StandardSource,
@@ -63,7 +63,7 @@ class GraphController(WalkController):
         scale: float,
         place: RootDelta | None,
         behaviours: Behaviours,
-        source: FrameSource,
+        source: GraphPlayback,
         to_stand: CostToGo,
     ) -> None:
         super().__init__(character, scale, place)
@@ -126,7 +126,7 @@ class GraphController(WalkController):
 
     def _play(self, steered: SteeringOutput, state: str, weight: float, now: float) -> None:
         if state in self._actions:
-            self._perform(self._actions[state], weight, now, self._machine.state == state)
+            self._play_action(self._actions[state], weight, now, self._machine.state == state)
         elif state == "move":
             self._request(steered, now)
         self._machine.request(state, now, begin=self._live.restart if state == "move" else None)
@@ -190,7 +190,7 @@ def graph_factory(
     if files and len(motions) > 1:
         raise CharacterError(f"{', '.join(motions)}: give one .graph file alone, or only motions")
     if files:
-        stored = fitted(load_graph(files[0]), character)
+        stored = fit_graph(load_graph(files[0]), character)
     else:
         own = [clip for name, clip in character.clips.items() if name in OWN_CLIPS]
         clips = read_motions(motions, character) if motions else own
@@ -207,7 +207,7 @@ OWN_CLIPS = ("idle", *NOT_ACTIONS)
 """The clips of a character that its own graph is made of."""
 
 
-def fitted(stored: StoredGraph, character: Character) -> StoredGraph:
+def fit_graph(stored: StoredGraph, character: Character) -> StoredGraph:
     """Return a graph on the skeleton of a character; its clips are retargeted if they must be.
 
     Raises
@@ -239,7 +239,7 @@ LIVE_COSTS = EdgeCosts(per_frame=0.01, most_jumps=4)
 """What edges cost in play: to wait for a tenth of a second is as dear as a good jump."""
 
 
-Playable: TypeAlias = tuple[Behaviours, Callable[[], FrameSource], CostToGo]
+Playable: TypeAlias = tuple[Behaviours, Callable[[], GraphPlayback], CostToGo]
 """What a graph can do, what makes a source that plays it, and its ways to standing."""
 
 

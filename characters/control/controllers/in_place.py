@@ -36,7 +36,7 @@ class _Hop:
         """Return the place on the table and the height [m]."""
         u = min(self.time / HOP_TIME_S, 1.0)
         top = 0.006 + 0.25 * math.hypot(self.end.x - self.start.x, self.end.z - self.start.z)
-        return self.start.interpolated(self.end, ease(u, "cubic")), 4 * u * (1 - u) * top
+        return self.start.interpolate(self.end, ease(u, "cubic")), 4 * u * (1 - u) * top
 
 
 class InPlaceController:
@@ -95,7 +95,7 @@ class InPlaceController:
         machine, pose = self._machine, self._machine.sample(self._time)
         spent = self._time - machine.entered
         own = pose if spent >= machine.length else machine.states[machine.state].sample(spent)
-        return self._feet.held(pose, own, machine.entered, spent, machine.length)
+        return self._feet.hold(pose, own, machine.entered, spent, machine.length)
 
     def _act(self, command: CharacterCommand, elapsed: float, now: float) -> None:
         weight = min(max(command.weight, -1.0), 1.0)
@@ -140,7 +140,7 @@ class InPlaceController:
         # Hops of equal length, so that the last one is not much shorter than the others.
         part = 1.0 / math.ceil(max(distance / MAX_HOP_M, abs(turn) / MAX_HOP_TURN_RAD))
         self._turn_speed = 0.0
-        way = self._place.interpolated(target, part)
+        way = self._place.interpolate(target, part)
         return _Hop(self._place, RootDelta(way.x, way.z, self._place.yaw + part * turn), 0.0)
 
 

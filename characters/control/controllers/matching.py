@@ -41,7 +41,7 @@ from cubeling.characters.synthesis.matching.matched_motion import MatchedMotion
 from cubeling.characters.synthesis.matching.prediction import Impulse, Wish, predict
 
 SPEED_KNOTS = (IDLE_SPEED, 1.0, 2.0, RUN_SPEED, 3.5, 4.0, TOP_SPEED)
-"""AvatAR's Speeds."""
+"""AvatAR's parameter Speed at the knots, in its own numbers."""
 
 PACE_KNOTS = (0.38, 0.51, 0.78, 1.26, 1.66, 1.9, 2.4)
 """The same over the ground, as the bundled human has them [body heights/s]."""
@@ -113,7 +113,7 @@ class MatchingController:
         if action == "idle":
             self._match(wish, now - self._machine.entered, elapsed)
         step = self._machine.travel(now, self._time)
-        self.place = self.place.then(step.scaled(self._scale))
+        self.place = self.place.then(step.scale(self._scale))
         if elapsed > 0.0:
             pace, rate = step.z / elapsed, step.yaw / elapsed
             self._pace_now = low_pass(self._pace_now, pace, elapsed, MEASURING_LAG_S)
@@ -186,7 +186,7 @@ class MatchingController:
         """Search for frames that suit a wish better, and turn a little where none fits exactly."""
         here = RootDelta(self.place.x / self._scale, self.place.z / self._scale, self.place.yaw)
         impulse = self._impulse
-        self._impulse, _ = impulse.advanced(here, wish, self._height, elapsed)
+        self._impulse, _ = impulse.advance(here, wish, self._height, elapsed)
         error = 0.0 if wish.target is None else here.bearing(*wish.target)
 
         def ahead() -> Mapping[str, Array]:

@@ -13,7 +13,7 @@ from cubeling.characters.motion.motion import Motion, RootDelta
 from cubeling.characters.motion.state_machine import StateMachine
 from cubeling.characters.motion.trees.building import Builder
 from cubeling.characters.motion.trees.parametric import ParameterBindings
-from cubeling.characters.motion.trees.plan import PARAMETERS, Plan, Transition
+from cubeling.characters.motion.trees.plan import PARAMETERS, Plan, StateTransition
 from cubeling.characters.smoothing import low_pass
 
 DEFAULT_LAGS_S = {"speed": 0.15, "angular": 0.15, "weight": 0.12}
@@ -78,7 +78,7 @@ class TreeController:
         state = self._machine.state
         self._bindings[state].set_values(self._values, now - self._machine.entered)
         step = self._machine.travel(now, self._time)
-        self._place = self._place.then(step.scaled(self._scale))
+        self._place = self._place.then(step.scale(self._scale))
         name = state or command.activity
         return ControllerFrame(
             self._machine.sample(self._time),
@@ -137,7 +137,7 @@ class TreeController:
                 self._enter(change, now)
                 return
 
-    def _enter(self, change: Transition, now: float) -> None:
+    def _enter(self, change: StateTransition, now: float) -> None:
         """Enter a state; its motion restarts once the old pose has been sampled."""
         bindings = self._bindings[change.end]
         self._machine.length = change.seconds

@@ -90,6 +90,7 @@ class WalkController:
     ) -> ControllerFrame:
         """Advance by a time [s] under a command and return what is played."""
         if self._standing is not None:
+            # Also while it walks: when it stops it stands as it feels now.
             self._standing.feel(command.emotion)
         action, self._finished = next_action(
             self._machine, self._actions, command.action, self._finished, self._time
@@ -106,10 +107,11 @@ class WalkController:
         Standing, it plays an action at an intensity −1…1.
         """
         steered = self._steered = self._smooth(course, elapsed)
+        # The play starts at the frame's begin, and the pose is of its end, so no frame is lost.
         now, self._time = self._time, self._time + elapsed
         self._play(steered, "move" if course.speed > 0.0 else action, weight, now)
         step = self._machine.travel(now, self._time)
-        self.place = self.place.then(step.scaled(self._scale))
+        self.place = self.place.then(step.scale(self._scale))
         return self._frame(steered, course.speed > 0.0 and not self._turning)
 
     def _frame(self, steered: SteeringOutput, going: bool) -> ControllerFrame:
@@ -142,6 +144,7 @@ class WalkController:
         if state in self._actions:
             action = self._actions[state]
             contacts, phase = self.gaits.contacts(action.clip), action.phase(spent)
+            # The end of an action that is held is its last frame, not the first of a loop.
             frame = int((phase if phase == 1.0 else phase % 1.0) * (len(contacts) - 1))
             return contacts[frame]
         if state == "idle":
@@ -166,11 +169,14 @@ class WalkController:
         if command.locomotion is None or command.locomotion.facing is None:
             self._turning = False
             return STANDSTILL
+        # Angular is positive to the right, bearings to the left.
         error = -self.place.bearing(*(float(value) for value in command.locomotion.facing))
+        # Hysteresis: it starts late, and then turns all the way.
         self._turning = abs(error) > (TURN_END_RAD if self._turning else TURN_START_RAD)
         if not self._turning:
             return STANDSTILL
         angular = min(max(2 * error, -MAX_ANGULAR_RAD), MAX_ANGULAR_RAD)
+        # Stride 0: steps on the spot.
         return SteeringOutput(TURN_SPEED, angular, 0.0)
 
     def _smooth(self, course: SteeringOutput, elapsed: float) -> SteeringOutput:
@@ -192,10 +198,10 @@ class WalkController:
         elif state == "move":
             self._strides.restart(motion, self._first_phase)
         if state in self._actions:
-            self._perform(self._actions[state], weight, now, self._machine.state == state)
+            self._play_action(self._actions[state], weight, now, self._machine.state == state)
         self._machine.request(state, now)
 
-    def _perform(self, action: ActionMotion, weight: float, now: float, playing: bool) -> None:
+    def _play_action(self, action: ActionMotion, weight: float, now: float, playing: bool) -> None:
         if not playing:
             self._weight = weight
             action.begin(weight)

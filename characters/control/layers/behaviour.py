@@ -5,9 +5,9 @@ import math
 import numpy as np
 
 from cubeling.characters.behaviour.intents import GazeIntent, Influence
-from cubeling.characters.behaviour.performing.face_names import FaceNames
-from cubeling.characters.behaviour.performing.planned_values import PlannedValues
-from cubeling.characters.behaviour.performing.stances import StanceJoints
+from cubeling.characters.behaviour.realization.face_names import FaceNames
+from cubeling.characters.behaviour.realization.planned_values import PlannedValues
+from cubeling.characters.behaviour.realization.stances import StanceJoints
 from cubeling.characters.control.layers.layer import FrameContext
 from cubeling.characters.control.layers.posture import posture_share
 from cubeling.characters.model.character import Character
@@ -53,15 +53,15 @@ class StanceLayer:
             lambda time: self._joints.values(postures, time),
             now,
         )
-        turns = self._turned(context)
+        turns = self._turn_to_gaze(context)
         if not self._joints.able or not (values.any() or self._turning):
             return pose
         share = posture_share(context)
         return self._joints.apply(pose, values * share, turns[0] * share, turns[1] * share)
 
-    def _turned(self, context: FrameContext) -> tuple[float, float]:
+    def _turn_to_gaze(self, context: FrameContext) -> tuple[float, float]:
         """Return how far pelvis and trunk turn to what is looked at [rad], to the left."""
-        gaze = looked_at(context)
+        gaze = gaze_of(context)
         shares = (0.0, 0.0) if gaze is None else TURN_SHARES.get(gaze.influence, (0.0, 0.0))
         if not self._turning and not any(shares):
             return 0.0, 0.0
@@ -90,7 +90,7 @@ class FaceShiftLayer:
         faces = () if behaviour is None else behaviour.faces
         weights = self._values.update(
             tuple((each.key, each.names, each.weights, each.times) for each in faces),
-            lambda time: self._names.shown(faces, time),
+            lambda time: self._names.morph_weights(faces, time),
             now,
         )
         if not weights.any():
@@ -99,7 +99,7 @@ class FaceShiftLayer:
         return Pose(pose.translations, pose.rotations, pose.scales, np.minimum(shown, 1.0))
 
 
-def looked_at(context: FrameContext) -> GazeIntent | None:
+def gaze_of(context: FrameContext) -> GazeIntent | None:
     """Return the look that counts in a frame: the last one that has begun and does not relax."""
     behaviour, now = context.command.behaviour, context.command.timestamp
     found = None

@@ -59,7 +59,7 @@ class FaceLayer:
         if not self._speech.active:
             return shown
         self._speech.apply(weights, closed)
-        return shown if self._speech.has_morphs else self._jaw.opened(shown, self._speech.opening)
+        return shown if self._speech.has_morphs else self._jaw.open_by(shown, self._speech.opening)
 
     def _update_speech(self, context: FrameContext) -> None:
         """Bring the mouth to the time of the frame."""

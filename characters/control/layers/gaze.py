@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from cubeling.characters.behaviour.performing.head_movements import turned_head
-from cubeling.characters.behaviour.performing.planned_values import PlannedValues
+from cubeling.characters.behaviour.realization.head_movements import turned_head
+from cubeling.characters.behaviour.realization.planned_values import PlannedValues
 from cubeling.characters.body.gaze import HEAD_LAG_S, Gaze
-from cubeling.characters.control.layers.behaviour import lag_of, looked_at
+from cubeling.characters.control.layers.behaviour import gaze_of, lag_of
 from cubeling.characters.control.layers.layer import Found, FrameContext
 from cubeling.characters.control.layers.posture import posture_share
 from cubeling.characters.model.character import Character
@@ -28,7 +28,7 @@ class GazeLayer:
 
     def update(self, pose: Pose, context: FrameContext) -> Found:
         """Return the pose with its gaze on the point, and how far that has moved."""
-        looked = looked_at(context)
+        looked = gaze_of(context)
         target, tempo = context.gaze_target, context.expressivity.tempo
         share = 1.0 - (1.0 - HEAD_SHARE_IN_ACTION) * float(context.frame.acting)
         if looked is not None:

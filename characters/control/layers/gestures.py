@@ -1,4 +1,4 @@
-"""Symbolic gestures: `CharacterCommand.behaviour.gestures`."""
+"""The layer that plays symbolic gestures: `CharacterCommand.behaviour.gestures`."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -11,7 +11,7 @@ from cubeling.characters.skeleton.pose import Pose
 from cubeling.characters.smoothing import low_pass
 
 if TYPE_CHECKING:
-    from cubeling.characters.control.layers.performed_gesture import PerformedGesture
+    from cubeling.characters.control.layers.gesture_playback import GesturePlayback
 
 FADE_S = 0.3
 """How long a gesture takes to go that is left out before its end, or to join in late [s]."""
@@ -31,7 +31,7 @@ class GestureLayer:
 
     def __init__(self, character: Character, seed: int = 0) -> None:
         self._character = character
-        self._active: list[PerformedGesture] = []
+        self._active: list[GesturePlayback] = []
         self._free = 1.0
 
     def update(self, pose: Pose, context: FrameContext) -> Pose:
@@ -53,9 +53,9 @@ class GestureLayer:
     def _follow(self, asked: BehaviourIntent, now: float, elapsed: float) -> None:
         """Begin what is new, re-time what has changed, and let go what is left out."""
         known = list(self._active)
-        going: list[PerformedGesture] = []
+        going: list[GesturePlayback] = []
         for intent in asked.gestures:
-            each = next((each for each in known if each.performs(intent)), None)
+            each = next((each for each in known if each.plays(intent)), None)
             if each is None:
                 each = self._begin(intent, now, [*going, *known], asked)
             else:
@@ -72,31 +72,31 @@ class GestureLayer:
         self,
         intent: GestureIntent,
         now: float,
-        others: "Sequence[PerformedGesture]",
+        others: "Sequence[GesturePlayback]",
         asked: BehaviourIntent,
-    ) -> "PerformedGesture":
+    ) -> "GesturePlayback":
         # Most sessions have no gestures: what plans them is loaded with the first one.
-        from cubeling.characters.behaviour.gestures.planning import Performer
-        from cubeling.characters.control.layers.performed_gesture import PerformedGesture
+        from cubeling.characters.behaviour.gestures.planning import GestureRealizer
+        from cubeling.characters.control.layers.gesture_playback import GesturePlayback
 
         hand = intent.hand
         if hand == "nearest":
             hand = _free_hand(others, asked)
         on_time = now <= intent.times.start + ON_TIME_S
-        return PerformedGesture(
-            intent, hand, Performer.of(self._character), 1.0 if on_time else 0.0
+        return GesturePlayback(
+            intent, hand, GestureRealizer.of(self._character), 1.0 if on_time else 0.0
         )
 
 
 def prepare_gestures(character: Character) -> None:
     """Load what plans gestures and measure a body, so that its first gesture delays no frame."""
-    import cubeling.characters.control.layers.performed_gesture  # noqa: F401
-    from cubeling.characters.behaviour.gestures.planning import Performer
+    import cubeling.characters.control.layers.gesture_playback  # noqa: F401
+    from cubeling.characters.behaviour.gestures.planning import GestureRealizer
 
-    Performer.of(character)
+    GestureRealizer.of(character)
 
 
-def _free_hand(others: "Sequence[PerformedGesture]", asked: BehaviourIntent) -> Hand:
+def _free_hand(others: "Sequence[GesturePlayback]", asked: BehaviourIntent) -> Hand:
     """Return the right hand, unless it is taken and the left one is not."""
     taken = {each.hand for each in others} | {each.hand for each in asked.reaches}
     return "left" if "right" in taken and not taken & {"left", "both"} else "right"

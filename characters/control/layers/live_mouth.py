@@ -35,7 +35,7 @@ class LiveMouthLayer:
         for name, shape in SHAPE_OF.items():
             shapes[NEUTRAL_LEVEL, MOUTH_SHAPES.index(shape)] = getattr(self.mouth, name)
         if not self._morphs:
-            return self._jaw.opened(pose, jaw_opening(shapes))
+            return self._jaw.open_by(pose, jaw_opening(shapes))
         weights = np.zeros(self._count) if pose.morphs is None else pose.morphs.copy()
         weights[self._morphs.numbers] += self._morphs.of_shapes(shapes)
         return replace(pose, morphs=weights)

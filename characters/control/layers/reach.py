@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.behaviour.intents import ReachIntent, Times
-from cubeling.characters.behaviour.performing.planned_values import PlannedValues
+from cubeling.characters.behaviour.realization.planned_values import PlannedValues
 from cubeling.characters.body.capsules import fitted_capsules
 from cubeling.characters.control.layers.layer import FrameContext
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.ik.reaching import HandTarget, ReachStyle, UpperBody
-from cubeling.characters.ik.reaching.arms import scaled
+from cubeling.characters.ik.reaching.arms import scale_vector
 from cubeling.characters.ik.reaching.surface import BodySurface
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.standing import idle_clips
@@ -97,13 +97,15 @@ class ReachingHand:
             return
         times, left = self.intent.times, self._left
         plan = (times, self._joined) if left is None else left
-        asked = self._weights.update(plan, lambda time: np.array([self._asked(times, time)]), now)
+        asked = self._weights.update(
+            plan, lambda time: np.array([self._wanted_weight(times, time)]), now
+        )
         self.weight = min(max(float(asked[0]), 0.0), 1.0)
         if left is not None and now >= left[0] + FADE_S:
             self.weight, self.intent, self._left = 0.0, None, None
             self._weights = PlannedValues(1, FADE_S)
 
-    def _asked(self, times: Times, now: float) -> float:
+    def _wanted_weight(self, times: Times, now: float) -> float:
         if self._left is not None:
             since, weight = self._left
             return weight * (1.0 - ease((now - since) / FADE_S, "gonio"))
@@ -125,7 +127,6 @@ class NearestHand:
     """Chooses a hand for each intent that leaves the choice, and keeps to it."""
 
     body: UpperBody
-    """Whose hands."""
 
     shoulders: dict[str, Vector]
     """Where they begin, in the character frame [m]."""
@@ -179,7 +180,7 @@ class ReachLayer:
         busy = self._shown is not None or any(hand.intent for hand in self._hands.values())
         if not self._hands or not (reaches or busy):
             return pose
-        asked = dict(self._assigned(reaches, context))
+        asked = dict(self._assign(reaches, context))
         step = MAX_TARGET_SPEED * self._height * max(context.elapsed, 1e-3)
         for side, hand in self._hands.items():
             if side in asked:
@@ -187,9 +188,9 @@ class ReachLayer:
             else:
                 hand.leave(now)
             hand.advance(now)
-        return self._performed(pose, context)
+        return self._move_hands(pose, context)
 
-    def _assigned(
+    def _assign(
         self, reaches: Sequence[ReachIntent], context: FrameContext
     ) -> Iterator[tuple[str, tuple[ReachIntent, Vector]]]:
         """Yield what each hand is to do and where; of two for one hand the later one counts."""
@@ -215,7 +216,7 @@ class ReachLayer:
                 if intent.hand == "both" and len(sides) > 1:
                     arm = self._body.arms[side]
                     shift = arm.sign * APART * (arm.upper + arm.fore)
-                yield side, (intent, self._kept_out(side, add(place, (shift, 0.0, 0.0))))
+                yield side, (intent, self._keep_out(side, add(place, (shift, 0.0, 0.0))))
 
     def _place(self, intent: ReachIntent, context: FrameContext) -> Vector:
         x, y, z = context.in_character(np.asarray(intent.target, float)).tolist()
@@ -226,16 +227,16 @@ class ReachLayer:
             )
         return x, y, z
 
-    def _kept_out(self, side: str, place: Vector) -> Vector:
+    def _keep_out(self, side: str, place: Vector) -> Vector:
         """Return a place out of the body, and so that the hand is not in the body on its way."""
         arm, shoulder = self._body.arms[side], self._nearest.shoulders[side]
         aim = subtract(place, shoulder)
         far = length(aim) / (arm.upper + arm.fore + arm.hand.length)
-        nearby = place if far <= 1.0 else add(shoulder, scaled(aim, 1.0 / far))
+        nearby = place if far <= 1.0 else add(shoulder, scale_vector(aim, 1.0 / far))
         outside = self._surface.outside(nearby)
         return place if outside == nearby else outside
 
-    def _performed(self, pose: Pose, context: FrameContext) -> Pose:
+    def _move_hands(self, pose: Pose, context: FrameContext) -> Pose:
         hands = {side: hand for side, hand in self._hands.items() if hand.weight > 0.0}
         if not hands and self._decay is None:
             self._shown = None
@@ -288,7 +289,6 @@ class StandingBody:
     """A character as it stands: what its hands stay out of, and where its arms begin."""
 
     character: Character
-    """Whose body."""
 
     surface: BodySurface
     """Its trunk and head."""

@@ -44,7 +44,6 @@ class OverlaidMotion:
     """A motion of some joints that lies over another one."""
 
     motion: Motion
-    """The motion."""
 
     start: float
     """When it begins [s]."""
@@ -121,10 +120,10 @@ class SpeechGestures:
         for overlay in self._overlays:
             pose = overlay.over(pose, now, hands * share)
         if self._expressions:
-            pose = replace(pose, morphs=self._expressed(pose.morphs, now, share))
+            pose = replace(pose, morphs=self._express(pose.morphs, now, share))
         return pose
 
-    def _expressed(self, morphs: Array | None, now: float, share: float) -> Array:
+    def _express(self, morphs: Array | None, now: float, share: float) -> Array:
         shown = np.zeros(self._morphs) if morphs is None else morphs.copy()
         for span, number in self._expressions:
             own, length = now - self.speech.start - span.start, span.end - span.start

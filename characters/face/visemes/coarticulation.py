@@ -157,7 +157,6 @@ class _TimedViseme:
     """When it ends [s]."""
 
     sounding: SoundingViseme
-    """Which one."""
 
     accent: float | None = None
     """Strength of the accent on it, 0…1; None without one."""

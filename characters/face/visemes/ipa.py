@@ -49,7 +49,7 @@ _FIRST_OF_TWO_VOWELS = 0.6
 """Share of a diphthong's time that its first vowel has."""
 
 
-class Segment(NamedTuple):
+class IpaSegment(NamedTuple):
     """What a letter says of lips, tongue and jaw."""
 
     vowel: bool
@@ -68,17 +68,17 @@ class Segment(NamedTuple):
     """Whether the lips are rounded."""
 
 
-def _segments() -> dict[str, Segment]:
+def _segments() -> dict[str, IpaSegment]:
     found = {}
     for kind, letters in _CONSONANTS.items():
         place, manner = kind.split()
         for letter in letters.split():
-            segment = Segment(False, _PLACES[place], manner, 0.0, manner == "round")
+            segment = IpaSegment(False, _PLACES[place], manner, 0.0, manner == "round")
             found[letter] = segment
     for height, row in _VOWELS.items():
         for column, letters in enumerate(row):
             for letter in letters.split():
-                found[letter] = Segment(True, column % 3, "", height, column >= 3)
+                found[letter] = IpaSegment(True, column % 3, "", height, column >= 3)
     return found
 
 
@@ -115,7 +115,7 @@ def parts_of(symbol: str) -> tuple[tuple[str, float], ...]:
     return tuple((letter, 1.0 / len(letters)) for letter in letters)
 
 
-def difference(a: Segment, b: Segment) -> float:
+def difference(a: IpaSegment, b: IpaSegment) -> float:
     """Return how different two sounds of one kind look; infinite for a vowel and a consonant."""
     if a.vowel != b.vowel:
         return float("inf")

@@ -82,7 +82,6 @@ class SoundingViseme:
     """A viseme within a phone."""
 
     viseme: Viseme
-    """Which one."""
 
     share: float
     """Its share of the phone's time, 0…1; those of a phone sum to 1."""
@@ -116,10 +115,10 @@ class VisemeSet:
         ['aa', 'I']
         """
         if symbol not in self._known:
-            self._known[symbol] = self._found(symbol)
+            self._known[symbol] = self._find(symbol)
         return self._known[symbol]
 
-    def _found(self, symbol: str) -> tuple[SoundingViseme, ...]:
+    def _find(self, symbol: str) -> tuple[SoundingViseme, ...]:
         parts = parts_of(symbol)
         joined = "".join(letter for letter, _ in parts)
         if len(parts) > 1 and joined in self._of_phone:

@@ -107,7 +107,7 @@ def _poses(
         "weights": np.tile(weights, (len(times), 1)),
     }
     for track in tracks:
-        values[track.path][:, track.target] = _sampled(track, times)
+        values[track.path][:, track.target] = _sample(track, times)
     unscaled = rest.scales is None and np.allclose(values["scale"], 1.0, atol=1e-4)
     return Pose(
         values["translation"],
@@ -203,7 +203,7 @@ def _key_values(file: GltfFile, sampler: Json, path: str, width: int, keys: int)
     return values.reshape(-1, width)
 
 
-def _sampled(track: _KeyframeTrack, times: Array) -> Array:
+def _sample(track: _KeyframeTrack, times: Array) -> Array:
     """Return a track's values at some times, constant beyond its ends.
 
     Cubic splines as in the glTF 2.0 specification, appendix C.

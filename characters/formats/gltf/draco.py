@@ -25,10 +25,10 @@ def with_unpacked_meshes(file: GltfFile) -> GltfFile:
         If a primitive cannot be unpacked.
     """
     buffers = list(file.buffers)
-    for where, primitive in _compressed(file):
+    for where, primitive in _compressed_primitives(file):
         with error_context(where):
             packed = primitive["extensions"][EXTENSION]
-            mesh = _decoded(bytes(file.view(packed["bufferView"])))
+            mesh = _decode(bytes(file.view(packed["bufferView"])))
             store = partial(_store, file, buffers)
             for name, identifier in packed["attributes"].items():
                 found = mesh.get_attribute_by_unique_id(identifier)
@@ -41,7 +41,7 @@ def with_unpacked_meshes(file: GltfFile) -> GltfFile:
     return replace(file, buffers=tuple(buffers))
 
 
-def _compressed(file: GltfFile) -> Iterator[tuple[str, Json]]:
+def _compressed_primitives(file: GltfFile) -> Iterator[tuple[str, Json]]:
     """Yield the primitives that are compressed, and how to call each."""
     for number, mesh in enumerate(file.all("meshes")):
         for primitive in mesh["primitives"]:
@@ -49,7 +49,7 @@ def _compressed(file: GltfFile) -> Iterator[tuple[str, Json]]:
                 yield label("mesh", number, mesh), primitive
 
 
-def _decoded(data: bytes) -> Any:
+def _decode(data: bytes) -> Any:
     import DracoPy  # takes time to load, and few files need it
 
     try:

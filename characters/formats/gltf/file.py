@@ -76,7 +76,7 @@ class GltfFile:
     """An opened glTF: its document and its bytes."""
 
     path: Path
-    """The file."""
+    """The file itself, to which the URIs of its buffers are relative."""
 
     document: Json
     """The JSON part, checked against the schema."""
@@ -162,7 +162,7 @@ class GltfFile:
             self.budget.spend(count * width, f"a count of {count}")
             if "bufferView" in accessor:
                 offset = accessor.get("byteOffset", 0)
-                values = self._strided(accessor["bufferView"], offset, dtype, count, width)
+                values = self._strided_view(accessor["bufferView"], offset, dtype, count, width)
             elif count > _MAX_EMPTY_ROWS:
                 raise DamagedFileError(f"has a count of {count}, and no data")
             else:
@@ -171,7 +171,7 @@ class GltfFile:
                 values = self._with_sparse(values, accessor["sparse"])
         return values
 
-    def _strided(
+    def _strided_view(
         self, view: int, offset: int, dtype: "np.dtype[np.generic]", count: int, width: int
     ) -> NDArray[np.generic]:
         data, size = self.view(view), dtype.itemsize * width
@@ -188,12 +188,14 @@ class GltfFile:
         if count > len(values):
             raise DamagedFileError(f"replaces {count} of {len(values)} rows")
         where = _component(indices)
-        rows = self._strided(indices["bufferView"], indices.get("byteOffset", 0), where, count, 1)
+        rows = self._strided_view(
+            indices["bufferView"], indices.get("byteOffset", 0), where, count, 1
+        )
         numbers = rows[:, 0].astype(np.int64)
         if ((numbers < 0) | (numbers >= len(values))).any():
             raise DamagedFileError(f"replaces a row beyond its {len(values)}")
         changed, offset = values.copy(), replacing.get("byteOffset", 0)
-        changed[numbers] = self._strided(
+        changed[numbers] = self._strided_view(
             replacing["bufferView"], offset, values.dtype, count, values.shape[1]
         )
         return changed
@@ -210,7 +212,7 @@ def _component(holder: Json) -> "np.dtype[np.generic]":
 def open_gltf(path: Path) -> GltfFile:
     """Read a .glb or .gltf file with its buffers; refuse extensions that are not supported."""
     data = read_file(path)
-    text, blob = _unpacked(path, data)
+    text, blob = _unpack(path, data)
     try:
         document = parse(text)
     except DamagedFileError:
@@ -249,14 +251,14 @@ def _advice(extension: str, path: Path) -> str:
 def has_mesh(path: Path) -> bool:
     """Return whether a file has a mesh; one that cannot be read is said to have one."""
     try:
-        text, _ = _unpacked(path, read_file(path))
+        text, _ = _unpack(path, read_file(path))
         document = json.loads(text)
     except (CharacterError, ValueError, RecursionError):
         return True
     return not isinstance(document, dict) or "asset" not in document or bool(document.get("meshes"))
 
 
-def _unpacked(path: Path, data: bytes) -> tuple[bytes, bytes]:
+def _unpack(path: Path, data: bytes) -> tuple[bytes, bytes]:
     """Return the JSON text and the binary chunk."""
     if data[:4] != struct.pack("<I", MAGIC):
         return data, b""

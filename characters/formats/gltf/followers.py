@@ -52,9 +52,9 @@ _SCHEMA: Json = {
 def followers_of(character: Character) -> Json:
     """Return the extra of a character; empty if nothing follows its body."""
     followers = {
-        "springs": [_stated(asdict(bone)) for bone in character.springs],
-        "constraints": [_stated(asdict(each)) for each in character.constraints],
-        "look_at": None if character.look_at is None else _stated(asdict(character.look_at)),
+        "springs": [_without_none(asdict(bone)) for bone in character.springs],
+        "constraints": [_without_none(asdict(each)) for each in character.constraints],
+        "look_at": None if character.look_at is None else _without_none(asdict(character.look_at)),
     }
     return {name: value for name, value in followers.items() if value}
 
@@ -113,7 +113,7 @@ def _check_names(
             raise DamagedFileError(f"{each.kind!r:.20} is no constraint")
 
 
-def _stated(values: Json) -> Json:
+def _without_none(values: Json) -> Json:
     """Return the members that are not None; JSON makes lists of tuples by itself."""
     return {name: value for name, value in values.items() if value is not None}
 

@@ -88,7 +88,6 @@ class MappedMaterial:
     """A material with the mapping of its textures."""
 
     material: Material
-    """The surface."""
 
     uv_set: int = 0
     """The number n of the TEXCOORD_n that its textures use."""
@@ -237,7 +236,7 @@ class MaterialWriter:
         if material.toon is not None:
             image = material.toon.texture
             shade = None if image is None else self._texture(image)
-            self._extend(item, mtoon.EXTENSION, mtoon.written(material.toon, shade))
+            self._extend(item, mtoon.EXTENSION, mtoon.write(material.toon, shade))
         if any(material.emissive):
             self._set_emission(item, material.emissive)
         if material.blended:

@@ -22,7 +22,7 @@ from cubeling.characters.formats.gltf.vrm.humanoid import (
 )
 from cubeling.characters.formats.gltf.vrm.look_at import read_look_at
 from cubeling.characters.formats.gltf.vrm.springs import read_springs
-from cubeling.characters.formats.loading import MotionOptions, Performance
+from cubeling.characters.formats.loading import MotionOptions, RecordedMotion
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.mesh import Mesh
 from cubeling.characters.skeleton.pose import Array, Skeleton
@@ -58,7 +58,7 @@ def load_character(path: Path) -> Character:
         return character if humanoid is None else _as_humanoid(character, humanoid, parts, tree)
 
 
-def load_motion(path: Path, options: MotionOptions) -> Performance:
+def load_motion(path: Path, options: MotionOptions) -> RecordedMotion:
     """Read one clip of a file and its skeleton; the file need not have a mesh."""
     with _open(path) as file:
         tree, humanoid = _read_joints(file)
@@ -73,7 +73,7 @@ def load_motion(path: Path, options: MotionOptions) -> Performance:
         raise CharacterError(f"{path}: has {known}; say which one: {path.name}#CLIP")
     bones = {} if humanoid is None else humanoid.bones
     semantics = {bone: skeleton.names[tree.joint_of_node[node]] for bone, node in bones.items()}
-    return Performance(skeleton, clips[name], semantics=semantics)
+    return RecordedMotion(skeleton, clips[name], semantics=semantics)
 
 
 @contextmanager

@@ -89,7 +89,7 @@ class _CharacterWriter:
             "POSITION": add(mesh.positions, np.float32, ARRAY_BUFFER, bounds=True),
             "NORMAL": add(mesh.normals, np.float32, ARRAY_BUFFER),
             "JOINTS_0": add(mesh.joints, joint_type, ARRAY_BUFFER),
-            "WEIGHTS_0": add(_quantised(mesh.weights), np.uint16, ARRAY_BUFFER, normalized=True),
+            "WEIGHTS_0": add(_quantise(mesh.weights), np.uint16, ARRAY_BUFFER, normalized=True),
         }
         if mesh.colors is not None:
             levels = np.round(np.clip(mesh.colors, 0.0, 1.0) * 65535)
@@ -195,7 +195,7 @@ class _CharacterWriter:
         return self._time_accessors[key]
 
 
-def _quantised(weights: NDArray[np.float32]) -> Array:
+def _quantise(weights: NDArray[np.float32]) -> Array:
     """Return skin weights in 65535ths with an exact sum: the remainder goes to the largest."""
     levels = np.round(weights.astype(float) * 65535)
     rows = np.arange(len(levels))

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.formats.loading import MotionOptions, Performance
+from cubeling.characters.formats.loading import MotionOptions, RecordedMotion
 from cubeling.characters.formats.mocap.asf import AcclaimSkeleton, load_skeleton
-from cubeling.characters.formats.mocap.axes_and_units import metric_performance
-from cubeling.characters.formats.mocap.text import CUT_OFF, TextFile, numbers, parse_numbers, quoted
+from cubeling.characters.formats.mocap.axes_and_units import metric_motion
+from cubeling.characters.formats.mocap.text import CUT_OFF, TextFile, numbers, parse_numbers, quote
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.skeleton.pose import Array
 
@@ -24,7 +24,7 @@ _MAX_RATE_HZ = 1e5
 _FRAME_NUMBER = re.compile(r"\n[ \t]*\d{1,11}[ \t]*\n")
 
 
-def load_motion(path: Path, options: MotionOptions) -> Performance:
+def load_motion(path: Path, options: MotionOptions) -> RecordedMotion:
     """Read an .amc file and the .asf that goes with it; errors name the line of the problem.
 
     Every joint's rest rotation is the identity: joints keep the axes of the file, and the bones'
@@ -44,7 +44,7 @@ def load_motion(path: Path, options: MotionOptions) -> Performance:
     values, notes = _values(file, start, body)
     file.check_size(len(body.skeleton), len(values))
     clip = Clip(path.stem, rate, body.channels(angle_unit).poses(values), loop=False)
-    return metric_performance(path, clip, body.skeleton, options, notes, stated_unit=body.unit)
+    return metric_motion(path, clip, body.skeleton, options, notes, stated_unit=body.unit)
 
 
 def _find_skeleton(path: Path) -> Path:
@@ -138,10 +138,10 @@ def _frames(file: TextFile, block: tuple[int, int]) -> Iterator[_Frame]:
                 yield frame
             frame = _Frame(line, int(words[0]), {})
         elif frame is None:
-            problem = f"{quoted(words[0])} before the number of the first frame"
+            problem = f"{quote(words[0])} before the number of the first frame"
             raise file.error(line, problem, "is this an .amc?")
         elif words[0] in frame.rows:
-            problem = f"frame {frame.number} moves {quoted(words[0])} twice"
+            problem = f"frame {frame.number} moves {quote(words[0])} twice"
             raise file.error(line, problem, "a frame number is missing: export it again")
         else:
             frame.rows[words[0]] = (line, words[1:])
@@ -181,18 +181,18 @@ def _row(file: TextFile, body: AcclaimSkeleton, frame: _Frame, first: _Frame) ->
     row = np.zeros(body.width)
     for name, (line, words) in frame.rows.items():
         if name not in body.columns:
-            problem = f"{body.path.name} has no bone {quoted(name)}"
+            problem = f"{body.path.name} has no bone {quote(name)}"
             raise file.error(line, problem, "give the .asf of the same performer with skeleton=")
         part = body.columns[name]
         if len(words) != part.stop - part.start:
             problem = (
-                f"{quoted(name)} has {numbers(len(words))} instead of {part.stop - part.start}, "
+                f"{quote(name)} has {numbers(len(words))} instead of {part.stop - part.start}, "
                 f"its degrees of freedom in {body.path.name}"
             )
             raise file.error(line, problem, "give the .asf of the same performer, or export again")
         row[part] = [file.number(line, word) for word in words]
     missing = [name for name in first.rows if name not in frame.rows]
     if missing or not frame.rows:
-        absent = quoted(missing[0]) if missing else "all bones"
+        absent = quote(missing[0]) if missing else "all bones"
         raise file.error(frame.line, f"frame {frame.number} lacks {absent}", CUT_OFF)
     return np.concatenate([[frame.number], row])

@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.formats.loading import MotionOptions, Performance
+from cubeling.characters.formats.loading import MotionOptions, RecordedMotion
 from cubeling.characters.formats.mocap.asf_bones import AsfBone, Line, read_bones, read_sections
 from cubeling.characters.formats.mocap.channels import AxisChannel, ChannelLayout
-from cubeling.characters.formats.mocap.text import TextFile, quoted
+from cubeling.characters.formats.mocap.text import TextFile, quote
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
@@ -27,7 +27,7 @@ class AcclaimSkeleton:
     """The content of an .asf file."""
 
     path: Path
-    """The file."""
+    """The file, for error messages."""
 
     skeleton: Skeleton
     """In the file's axes and units: a joint at the start of every bone, with the bone's name,
@@ -79,7 +79,7 @@ class AcclaimSkeleton:
         return ChannelLayout(offsets, tuple(rotating), tuple(moving), angle_unit)
 
 
-def refuse_motion(path: Path, options: MotionOptions) -> Performance:
+def refuse_motion(path: Path, options: MotionOptions) -> RecordedMotion:
     """Refuse an .asf file that is given as a motion."""
     raise CharacterError(f"{path}: a skeleton without motion; give the .amc that goes with it")
 
@@ -119,6 +119,6 @@ def _units(file: TextFile, lines: list[Line]) -> tuple[float, float]:
             unit = INCH_M / length
         elif key == "angle":
             if value.lower()[:3] not in ("deg", "rad"):
-                raise file.error(line, f"angles in {quoted(value)}", "state deg or rad")
+                raise file.error(line, f"angles in {quote(value)}", "state deg or rad")
             angle_unit = 1.0 if value.lower().startswith("rad") else float(np.pi / 180)
     return unit, angle_unit

@@ -7,7 +7,7 @@ from typing import TypeAlias
 import numpy as np
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.formats.mocap.text import CUT_OFF, TextFile, quoted
+from cubeling.characters.formats.mocap.text import CUT_OFF, TextFile, quote
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array
 
@@ -64,7 +64,7 @@ def read_sections(file: TextFile) -> dict[str, list[Line]]:
             if name != "documentation" and words[1:]:
                 current.append((number, words[1:]))
         elif current is None:
-            raise file.error(number, f"{quoted(words[0])} before any section", "is this an .asf?")
+            raise file.error(number, f"{quote(words[0])} before any section", "is this an .asf?")
         else:
             current.append((number, words))
     return sections
@@ -88,7 +88,7 @@ def _blocks(file: TextFile, lines: list[Line]) -> Iterator[tuple[int, list[Line]
         elif start:
             inside.append((number, words))
         else:
-            raise file.error(number, f"{quoted(words[0])} outside begin … end", "move it inside")
+            raise file.error(number, f"{quote(words[0])} outside begin … end", "move it inside")
     if start:
         raise file.error(start, "this begin has no end", CUT_OFF)
 
@@ -103,7 +103,7 @@ def read_bones(file: TextFile, sections: dict[str, list[Line]]) -> tuple[list[As
     for start, lines in _blocks(file, sections["bonedata"]):
         bone = _bone(file, start, lines)
         if bone.name in bones:
-            raise file.error(start, f"a second bone {quoted(bone.name)}", "rename one of them")
+            raise file.error(start, f"a second bone {quote(bone.name)}", "rename one of them")
         bones[bone.name] = bone
     children = _children(file, sections["hierarchy"], bones)
     order, parents = [root.name], [-1]
@@ -117,7 +117,7 @@ def read_bones(file: TextFile, sections: dict[str, list[Line]]) -> tuple[list[As
     lost = [name for name in bones if name not in reached]
     if lost:
         raise CharacterError(
-            f"{file.path}: bone {quoted(lost[0])} is not connected to the root; "
+            f"{file.path}: bone {quote(lost[0])} is not connected to the root; "
             "name its parent in :hierarchy"
         )
     return [bones[name] for name in order], parents
@@ -131,10 +131,10 @@ def _children(file: TextFile, lines: list[Line], bones: dict[str, AsfBone]) -> d
         for line, words in inside:
             for word in words:
                 if word not in bones:
-                    raise file.error(line, f"no bone named {quoted(word)}", "add it to :bonedata")
+                    raise file.error(line, f"no bone named {quote(word)}", "add it to :bonedata")
             for child in words[1:]:
                 if child in placed:
-                    problem = f"{quoted(child)} has a parent already"
+                    problem = f"{quote(child)} has a parent already"
                     raise file.error(line, problem, "keep one of them")
                 placed.add(child)
             children.setdefault(words[0], []).extend(words[1:])
@@ -178,7 +178,7 @@ def _bone(file: TextFile, start: int, lines: list[Line]) -> AsfBone:
         raise file.error(start, "this bone has no name", "name it")
     norm = float(np.linalg.norm(bone.direction))
     if bone.length < 0 or (bone.length > 0 and norm < 1e-6):
-        problem = f"bone {quoted(bone.name)} has no direction or a negative length"
+        problem = f"bone {quote(bone.name)} has no direction or a negative length"
         raise file.error(start, problem, "correct it")
     direction = bone.direction / norm if norm >= 1e-6 else np.array([0.0, 1.0, 0.0])
     return replace(bone, direction=direction)
@@ -187,7 +187,7 @@ def _bone(file: TextFile, start: int, lines: list[Line]) -> AsfBone:
 def _order(file: TextFile, line: int, words: list[str]) -> str:
     order = "".join(words).lower()
     if order not in _ROTATION_ORDERS:
-        raise file.error(line, f"{quoted(order)} is not an order of axes", "state one, as XYZ")
+        raise file.error(line, f"{quote(order)} is not an order of axes", "state one, as XYZ")
     return order
 
 
@@ -195,8 +195,8 @@ def _dof(file: TextFile, line: int, words: list[str]) -> tuple[str, ...]:
     dof = tuple(word.lower() for word in words)
     for word in dof:
         if word not in _DOFS:
-            problem = f"{quoted(word)} is not a degree of freedom"
+            problem = f"{quote(word)} is not a degree of freedom"
             raise file.error(line, problem, "use rx ry rz tx ty tz l")
         if dof.count(word) > 1:
-            raise file.error(line, f"{quoted(word)} is listed twice", "list it once")
+            raise file.error(line, f"{quote(word)} is listed twice", "list it once")
     return dof

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.formats.loading import MotionOptions, Performance
+from cubeling.characters.formats.loading import MotionOptions, RecordedMotion
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
@@ -45,14 +45,14 @@ _NECK_NAME = re.compile(r"neck", re.IGNORECASE)
 _FOOT_NAME = re.compile(r"foot|ankle|toe|paw|hoof", re.IGNORECASE)
 
 
-def metric_performance(
+def metric_motion(
     path: Path,
     clip: Clip,
     skeleton: Skeleton,
     options: MotionOptions,
     notes: tuple[str, ...],
     stated_unit: float | None = None,
-) -> Performance:
+) -> RecordedMotion:
     """Return a recording in metres with +y up.
 
     Scale and vertical axis are recognised if the options leave them out; a unit stated by the
@@ -62,27 +62,27 @@ def metric_performance(
     frames = np.linspace(0, len(clip) - 1, _SAMPLED_FRAMES).round().astype(int)
     positions = poses[np.unique(frames)].globals(skeleton)[..., :3, 3]
     if options.up is not None:
-        axis = _stated_up(path, options.up)
+        axis = _check_up(path, options.up)
     else:
-        axis, up_notes = _recognised_up(skeleton, positions)
+        axis, up_notes = _recognise_up(skeleton, positions)
         notes += up_notes
     height = float(np.percentile(np.ptp(positions[..., "xyz".index(axis[1])], axis=-1), 90))
     scale = options.scale
     if scale is None:
-        scale, scale_notes = _recognised_unit(height, stated_unit)
+        scale, scale_notes = _recognise_unit(height, stated_unit)
         notes += scale_notes
     elif not _SCALE_RANGE_M[0] <= scale <= _SCALE_RANGE_M[1]:
         raise CharacterError(f"{path}: scale {scale:g} is not a length; give metres per unit")
     turn = _Y_UP_FROM[axis]
-    rest = _transformed(skeleton.rest, turn, scale)
-    return Performance(
+    rest = _transform(skeleton.rest, turn, scale)
+    return RecordedMotion(
         Skeleton(skeleton.names, skeleton.parents, rest),
-        replace(clip, poses=_transformed(poses, turn, scale)),
+        replace(clip, poses=_transform(poses, turn, scale)),
         notes,
     )
 
 
-def _transformed(pose: Pose, turn: Array, scale: float) -> Pose:
+def _transform(pose: Pose, turn: Array, scale: float) -> Pose:
     """Return a pose in other axes and units; the frames of joints turn with the axes."""
     if np.array_equal(turn, np.eye(3)):
         return Pose(pose.translations * scale, pose.rotations)
@@ -91,14 +91,14 @@ def _transformed(pose: Pose, turn: Array, scale: float) -> Pose:
     return Pose(pose.translations @ (turn.T * scale), quaternions)
 
 
-def _stated_up(path: Path, up: str) -> str:
+def _check_up(path: Path, up: str) -> str:
     axis = up.lower() if up[:1] in ("+", "-") else "+" + up.lower()
     if axis not in _Y_UP_FROM:
         raise CharacterError(f"{path}: up {up!r} is not an axis; give x, y, z, -x, -y or -z")
     return axis
 
 
-def _recognised_up(skeleton: Skeleton, positions: Array) -> tuple[str, tuple[str, ...]]:
+def _recognise_up(skeleton: Skeleton, positions: Array) -> tuple[str, tuple[str, ...]]:
     """Return the axis from feet to body in the frames, else in the rest pose, else +y."""
     names = skeleton.names
     heads = [j for j, name in enumerate(names) if _HEAD_NAME.search(name)]
@@ -141,7 +141,7 @@ def _common_axis(directions: Array) -> str | None:
     return "-+"[int(mean[axis] > 0)] + "xyz"[axis]
 
 
-def _recognised_unit(height: float, stated: float | None) -> tuple[float, tuple[str, ...]]:
+def _recognise_unit(height: float, stated: float | None) -> tuple[float, tuple[str, ...]]:
     """Return the unit [m] for a performer of this height in units, and a note on the guess."""
     if stated is not None and PLAUSIBLE_HEIGHT_M[0] <= height * stated <= PLAUSIBLE_HEIGHT_M[1]:
         return stated, ()

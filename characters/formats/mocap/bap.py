@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.formats.loading import MotionOptions, Performance
+from cubeling.characters.formats.loading import MotionOptions, RecordedMotion
 from cubeling.characters.formats.mocap.hanim import (
     BAP_COUNT,
     FINGERS,
@@ -53,7 +53,7 @@ class BapTrack:
     """The parameters of a body over time."""
 
     rate: float
-    """Frames a second."""
+    """Frames a second, as the file's header says."""
 
     values: NDArray[np.int64]
     """(frames, 296); 0 is a body at rest."""
@@ -81,7 +81,7 @@ def track_of(clip: Clip) -> BapTrack:
     so that hands and feet stay where they are. The outer joints of fingers keep their flexion.
     """
     skeleton = hanim_skeleton()
-    turns = _reduced(rotations.normalize(clip.poses.rotations))
+    turns = _reduce(rotations.normalize(clip.poses.rotations))
     angles = _joint_angles(turns)
     moved = clip.poses.translations - skeleton.rest.translations
     values = np.zeros((len(clip), BAP_COUNT), np.int64)
@@ -141,9 +141,9 @@ def read_baps(path: Path) -> BapTrack:
     return BapTrack(rate, values)
 
 
-def load_motion(path: Path, options: MotionOptions) -> Performance:
+def load_motion(path: Path, options: MotionOptions) -> RecordedMotion:
     """Read a .bap file as the motion of a person of 1.75 m."""
-    return Performance(hanim_skeleton(), read_baps(path).motion(path.stem))
+    return RecordedMotion(hanim_skeleton(), read_baps(path).motion(path.stem))
 
 
 def _header(file: TextFile, words: list[str]) -> tuple[float, int]:
@@ -157,7 +157,7 @@ def _header(file: TextFile, words: list[str]) -> tuple[float, int]:
     return rate, count
 
 
-def _reduced(turns: Array) -> Array:
+def _reduce(turns: Array) -> Array:
     """Return local rotations (frames, joints, 4) that the parameters can express."""
     index = hanim_skeleton().index
     turns = turns.copy()

@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.formats.loading import MotionOptions, Performance
-from cubeling.characters.formats.mocap.axes_and_units import metric_performance
+from cubeling.characters.formats.loading import MotionOptions, RecordedMotion
+from cubeling.characters.formats.mocap.axes_and_units import metric_motion
 from cubeling.characters.formats.mocap.channels import AxisChannel, ChannelLayout
-from cubeling.characters.formats.mocap.text import CUT_OFF, TextFile, numbers, parse_numbers, quoted
+from cubeling.characters.formats.mocap.text import CUT_OFF, TextFile, numbers, parse_numbers, quote
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
@@ -23,7 +23,7 @@ from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 _FRAME_TIME_RANGE_S = (1e-5, 100.0)
 
 
-def load_motion(path: Path, options: MotionOptions) -> Performance:
+def load_motion(path: Path, options: MotionOptions) -> RecordedMotion:
     """Read a .bvh file; errors name the line of the problem.
 
     Every joint's rest rotation is the identity. End sites become joints with the name of the
@@ -34,7 +34,7 @@ def load_motion(path: Path, options: MotionOptions) -> Performance:
     rate, values, notes = _motion(file, end, tree.channel_count)
     file.check_size(len(tree.names), len(values))
     clip = Clip(path.stem, rate, tree.channels().poses(values), loop=False)
-    return metric_performance(path, clip, tree.skeleton(), options, tree.notes() + notes)
+    return metric_motion(path, clip, tree.skeleton(), options, tree.notes() + notes)
 
 
 @dataclass
@@ -80,7 +80,7 @@ class _Tree:
         return ChannelLayout(offsets, turning, moving, angle_unit=float(np.pi / 180))
 
     def notes(self) -> tuple[str, ...]:
-        """Return the repairs."""
+        """Return what had to be repaired, one sentence each."""
         repeated = [name for name, count in self.name_counts.items() if count > 1]
         if not repeated:
             return ()
@@ -115,7 +115,7 @@ class _Words:
         expected = " or ".join(words)
         word = self.next(expected)
         if word.upper() not in words:
-            raise self.error(f"expected {expected}, found {quoted(word)}", "export again")
+            raise self.error(f"expected {expected}, found {quote(word)}", "export again")
         return word.upper()
 
 
@@ -173,13 +173,13 @@ def _read_channels(words: _Words, tree: _Tree, joint: int) -> None:
     count = words.next("a number of channels")
     # isdecimal() also accepts digits of other scripts, which int() reads as well.
     if not count.isdecimal() or len(count) > 6:
-        raise words.error(f"{quoted(count)} is not a number of channels", "give their count")
+        raise words.error(f"{quote(count)} is not a number of channels", "give their count")
     for _ in range(int(count)):
         channel = words.next("the name of a channel")
         axis, kind = "XYZ".find(channel[0].upper()), channel[1:].lower()
         if axis < 0 or kind not in ("position", "rotation"):
             raise words.error(
-                f"expected a channel of {quoted(tree.names[joint])}, found {quoted(channel)}",
+                f"expected a channel of {quote(tree.names[joint])}, found {quote(channel)}",
                 "use Xposition … Zrotation, as many as stated",
             )
         moves = AxisChannel(joint, np.eye(3)[axis], tree.channel_count)
@@ -233,7 +233,7 @@ def _setting(file: TextFile, lines: list[str], start: int, key: str) -> tuple[in
         if not words:
             continue
         if [word.lower() for word in words[:-1]] != key.split():
-            problem = f"expected {key!r}, found {quoted(lines[line].strip())}"
+            problem = f"expected {key!r}, found {quote(lines[line].strip())}"
             raise file.error(line + 1, problem, "export it again")
         return line + 1, file.number(line + 1, words[-1])
     raise file.error(len(lines), f"ends without {key!r}", CUT_OFF)

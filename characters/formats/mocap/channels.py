@@ -23,7 +23,7 @@ class AxisChannel:
     """One number of a frame that rotates or moves one joint."""
 
     joint: int
-    """The joint."""
+    """Index of the joint in the skeleton."""
 
     axis: Array
     """In the parent's frame, (3,): the unit axis of a rotation, or what a value of 1 adds to the

@@ -51,10 +51,10 @@ class TextFile:
         try:
             value = float(word)
         except ValueError:
-            problem = f"expected a number, found {quoted(word)}"
+            problem = f"expected a number, found {quote(word)}"
             raise self.error(line, problem, EXPORT_AGAIN) from None
         if not abs(value) <= MAX_ABS_NUMBER:
-            raise self.error(line, f"{quoted(word)} is out of range", EXPORT_AGAIN)
+            raise self.error(line, f"{quote(word)} is out of range", EXPORT_AGAIN)
         return value
 
     def vector(self, line: int, words: list[str], name: str) -> Array:
@@ -83,7 +83,7 @@ def parse_numbers(words: Iterable[str]) -> Array | None:
     return values if bool((np.abs(values) <= MAX_ABS_NUMBER).all()) else None
 
 
-def quoted(word: str) -> str:
+def quote(word: str) -> str:
     """Return a word of a file, shortened and quoted for a message of one line."""
     return repr(word if len(word) <= 40 else word[:37] + "...")
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cubeling.characters.ik.reaching.hands import Hand, part_names
+from cubeling.characters.ik.reaching.hands import HandJoints, part_names
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.joint_chains import chains_to_root
@@ -53,7 +53,7 @@ _ELBOW_AHEAD: Vector = (0.0, -0.9, -0.4)
 class Arm:
     """The bones of one arm in the rest pose of its skeleton; vectors are in the character frame."""
 
-    hand: Hand
+    hand: HandJoints
     """Its hand, with its side."""
 
     sign: float
@@ -123,7 +123,7 @@ class BentArm(NamedTuple):
     """Of the lower arm."""
 
     hand: Quaternion
-    """Of the hand."""
+    """Rotation of the hand, `character_from_joint`."""
 
     wrist: Vector
     """Where the wrist is [m]."""
@@ -132,7 +132,7 @@ class BentArm(NamedTuple):
     """Where the elbow is [m]."""
 
 
-def find_arm(skeleton: Skeleton, anatomy: Anatomy, hand: Hand) -> Arm | None:
+def find_arm(skeleton: Skeleton, anatomy: Anatomy, hand: HandJoints) -> Arm | None:
     """Return the arm of a hand; None if a bone of it has no length."""
     parts = [anatomy.joint(part) for part in part_names(hand.side, anatomy)]
     shoulder, upper, lower, wrist = (-1 if joint is None else joint for joint in parts)
@@ -190,13 +190,13 @@ def clamped_aim(aim: Vector, chest: Quaternion, sign: float) -> Vector:
     cosine = dot(aim, axis) / size
     if cosine >= _CONE_COSINE:
         return aim
-    x, y, z = subtract(aim, scaled(axis, cosine * size))
+    x, y, z = subtract(aim, scale_vector(axis, cosine * size))
     aside = math.sqrt(x * x + y * y + z * z)
     if aside < 1e-6 * size:  # straight behind: the hand is held low
         x, y, z = rotate(chest, (0.0, -0.85, -0.25))
         aside = math.sqrt(x * x + y * y + z * z)
     scale = size * _CONE_SINE / aside
-    return add(scaled(axis, size * _CONE_COSINE), (x * scale, y * scale, z * scale))
+    return add(scale_vector(axis, size * _CONE_COSINE), (x * scale, y * scale, z * scale))
 
 
 def cone_axis(chest: Quaternion, sign: float) -> Vector:
@@ -222,9 +222,9 @@ def bend(
     upper = multiply(from_axes(along, hinge), arm.upper_from_frame)
     turn = multiply(from_axes(forearm, hinge), effector.fore_from_frame)
     moved = multiply(turn, conjugate(arm.rest_turns[0]))
-    place = add(shoulder, scaled(aim, distance))
+    place = add(shoulder, scale_vector(aim, distance))
     wrist = subtract(place, rotate(moved, effector.offset))
-    elbow = add(shoulder, scaled(along, arm.upper))
+    elbow = add(shoulder, scale_vector(along, arm.upper))
     return BentArm(upper, turn, multiply(moved, arm.rest_turns[1]), wrist, elbow)
 
 
@@ -311,23 +311,23 @@ def _swivel_axes(arm: Arm, aim: Vector, chest: Quaternion) -> tuple[Vector, Vect
 def _from_frame(along: Vector, hinge: Vector, turn: Quaternion) -> Quaternion:
     """Return the rotation of a joint from the frame of a direction and a hinge at rest."""
     size = length(along)
-    first = scaled(along, 1.0 / size)
-    second = subtract(hinge, scaled(first, dot(hinge, first)))
-    second = scaled(second, 1.0 / max(length(second), 1e-9))
+    first = scale_vector(along, 1.0 / size)
+    second = subtract(hinge, scale_vector(first, dot(hinge, first)))
+    second = scale_vector(second, 1.0 / max(length(second), 1e-9))
     return multiply(conjugate(from_axes(first, second)), turn)
 
 
-def scaled(vector: Vector, scale: float) -> Vector:
+def scale_vector(vector: Vector, scale: float) -> Vector:
     """Return a vector times a number."""
     return vector[0] * scale, vector[1] * scale, vector[2] * scale
 
 
 def _unit(vector: Vector) -> Vector:
-    return scaled(vector, 1.0 / length(vector))
+    return scale_vector(vector, 1.0 / length(vector))
 
 
 def _perpendicular(vector: Vector, axis: Vector) -> Vector:
-    return _unit(subtract(vector, scaled(axis, dot(vector, axis))))
+    return _unit(subtract(vector, scale_vector(axis, dot(vector, axis))))
 
 
 def to_vector(values: Sequence[float] | Array) -> Vector:
@@ -350,18 +350,16 @@ def swivel_of(arm: Arm, shoulder: Vector, elbow: Vector, wrist: Vector, chest: Q
     return math.atan2(dot(side, outward), dot(side, down))
 
 
-def _mirrored(vector: Vector, sign: float) -> Vector:
+def _mirror(vector: Vector, sign: float) -> Vector:
     return sign * vector[0], vector[1], vector[2]
 
 
 _CONE_COSINE, _CONE_SINE = math.cos(CONE_RAD), math.sin(CONE_RAD)
-_CONE_AXES: Mapping[float, Vector] = {
-    sign: _unit(_mirrored(CONE_AXIS, sign)) for sign in (1.0, -1.0)
-}
+_CONE_AXES: Mapping[float, Vector] = {sign: _unit(_mirror(CONE_AXIS, sign)) for sign in (1.0, -1.0)}
 _POLES: Mapping[float, tuple[Vector, Vector]] = {
     sign: (
-        _unit(_mirrored(_AHEAD, sign)),
-        _perpendicular(_ELBOW_AHEAD, _unit(_mirrored(_AHEAD, sign))),
+        _unit(_mirror(_AHEAD, sign)),
+        _perpendicular(_ELBOW_AHEAD, _unit(_mirror(_AHEAD, sign))),
     )
     for sign in (1.0, -1.0)
 }

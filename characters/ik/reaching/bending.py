@@ -12,7 +12,7 @@ from cubeling.characters.ik.reaching.arms import (
     bend_to_wrist,
     effector_of,
     from_axes,
-    scaled,
+    scale_vector,
     swivel_of,
     to_vector,
 )
@@ -68,7 +68,6 @@ class HandOnItsWay(NamedTuple):
     """A hand that reaches, before the torso moves."""
 
     arm: Arm
-    """Its arm."""
 
     target: HandTarget
     """Where it is to be."""
@@ -116,7 +115,7 @@ def passive_shoulder(
     return from_rotation_vector((axis[0] * scale, axis[1] * scale, axis[2] * scale))
 
 
-def pointed(hand: HandOnItsWay, shoulder: Vector, chest: Quaternion) -> BentArm:
+def point_finger(hand: HandOnItsWay, shoulder: Vector, chest: Quaternion) -> BentArm:
     """Return an arm whose finger is on the line to a place, or touches it if it is near."""
     arm, effector = hand.arm, hand.effector
     aim = subtract(hand.place, shoulder)
@@ -135,7 +134,9 @@ def pointed(hand: HandOnItsWay, shoulder: Vector, chest: Quaternion) -> BentArm:
     return bent._replace(hand=turn)
 
 
-def oriented(hand: HandOnItsWay, wrist: Effector, shoulder: Vector, chest: Quaternion) -> BentArm:
+def orient_hand(
+    hand: HandOnItsWay, wrist: Effector, shoulder: Vector, chest: Quaternion
+) -> BentArm:
     """Return an arm whose hand faces where it is asked to, as far as wrist and forearm turn.
 
     What reaches is at its place all the same.
@@ -147,7 +148,7 @@ def oriented(hand: HandOnItsWay, wrist: Effector, shoulder: Vector, chest: Quate
     place = subtract(hand.place, rotate(multiply(turn, back), offset))
     bent = bend(arm, wrist, shoulder, place, chest, NEUTRAL_SWIVEL)
     wanted = multiply(turn, conjugate(bent.hand))
-    allowed = _allowed(arm, bent, wanted)
+    allowed = _limit_turn(arm, bent, wanted)
     short = length(subtract(bent.wrist, place))
     if allowed is wanted and short < AT_PLACE * arm.fore:
         return bent._replace(hand=turn)
@@ -171,7 +172,7 @@ class Bearer(NamedTuple):
     """Rotation of the chest from its rest."""
 
 
-def opened(
+def open_elbow(
     arm: Arm, wrist: Effector, bent: BentArm, before: Bearer, after: Bearer, openness: float
 ) -> BentArm:
     """Return an arm with its elbow swivelled by openness, from where it is at an openness of ½.
@@ -190,7 +191,7 @@ def opened(
     return new._replace(upper=upper, lower=lower)
 
 
-def twisted(arm: Arm, bent: BentArm) -> BentArm:
+def twist_forearm(arm: Arm, bent: BentArm) -> BentArm:
     """Return an arm whose forearm takes half of the hand's turn about its length."""
     natural = natural_hand(arm, bent)
     turn = multiply(bent.hand, conjugate(natural))
@@ -225,7 +226,7 @@ def _facing(hand: HandOnItsWay, turn: Quaternion) -> Quaternion:
     return turn if asked is None else multiply(between(rotate(moved, axis), to_vector(asked)), turn)
 
 
-def _allowed(arm: Arm, bent: BentArm, turn: Quaternion) -> Quaternion:
+def _limit_turn(arm: Arm, bent: BentArm, turn: Quaternion) -> Quaternion:
     """Return a turn of a hand from its natural rotation within what wrist and forearm allow."""
     axis = _forearm(arm, bent)
     twist, swing = _twist_and_swing(turn, axis)
@@ -235,8 +236,10 @@ def _allowed(arm: Arm, bent: BentArm, turn: Quaternion) -> Quaternion:
     over_swing = length(swung_by) / max(most, 1e-9)
     if over_twist <= 1.0 and over_swing <= 1.0:
         return turn
-    swing = from_rotation_vector(scaled(swung_by, 1.0 / max(over_swing, 1.0)))
-    return multiply(swing, from_rotation_vector(scaled(twisted_by, 1.0 / max(over_twist, 1.0))))
+    swing = from_rotation_vector(scale_vector(swung_by, 1.0 / max(over_swing, 1.0)))
+    return multiply(
+        swing, from_rotation_vector(scale_vector(twisted_by, 1.0 / max(over_twist, 1.0)))
+    )
 
 
 def _twist_and_swing(turn: Quaternion, axis: Vector) -> tuple[Quaternion, Quaternion]:
@@ -254,7 +257,7 @@ def _twist_and_swing(turn: Quaternion, axis: Vector) -> tuple[Quaternion, Quater
 def _forearm(arm: Arm, bent: BentArm) -> Vector:
     """Return the direction of a forearm."""
     moved = multiply(bent.lower, conjugate(arm.rest_turns[0]))
-    return rotate(moved, scaled(subtract(arm.wrist, arm.elbow), 1.0 / arm.fore))
+    return rotate(moved, scale_vector(subtract(arm.wrist, arm.elbow), 1.0 / arm.fore))
 
 
 def _perpendicular(along: Vector, palm: Vector) -> tuple[Vector, Vector] | None:
@@ -262,7 +265,7 @@ def _perpendicular(along: Vector, palm: Vector) -> tuple[Vector, Vector] | None:
     size = length(along)
     if size < 1e-9:
         return None
-    first = scaled(along, 1.0 / size)
-    second = subtract(palm, scaled(first, dot(first, palm)))
+    first = scale_vector(along, 1.0 / size)
+    second = subtract(palm, scale_vector(first, dot(first, palm)))
     size = length(second)
-    return None if size < 1e-6 else (first, scaled(second, 1.0 / size))
+    return None if size < 1e-6 else (first, scale_vector(second, 1.0 / size))

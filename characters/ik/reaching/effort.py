@@ -14,7 +14,7 @@ class Reacher(Protocol):
 
     @property
     def skeleton(self) -> Skeleton:
-        """Its skeleton."""
+        """The whole skeleton, not only what reaches."""
         ...
 
     @property

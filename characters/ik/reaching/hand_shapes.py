@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.ik.reaching.hands import Hand, find_hand, fingertip
+from cubeling.characters.ik.reaching.hands import HandJoints, find_hand, fingertip
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
@@ -110,7 +110,7 @@ class HandShapes:
             self._postures[key] = found
         return self._postures[key]
 
-    def shaped(self, pose: Pose, side: str, shape: str, weight: float = 1.0) -> Pose:
+    def shape(self, pose: Pose, side: str, shape: str, weight: float = 1.0) -> Pose:
         """Return a pose with a hand in a shape, or part of the way there; `weight` is 0…1."""
         posture = self.posture(side, shape)
         if not len(posture.joints) or weight <= 0.0:
@@ -125,7 +125,7 @@ class HandShapes:
         return replace(pose, rotations=local)
 
 
-def _posture(hand: Hand, shape: HandShape, skeleton: Skeleton) -> HandPosture:
+def _posture(hand: HandJoints, shape: HandShape, skeleton: Skeleton) -> HandPosture:
     rest = skeleton.rest.globals(skeleton)
     places, turns = rest[:, :3, 3], _turns(rest[:, :3, :3])
     joints, local, tips = [], [], {}
@@ -150,7 +150,7 @@ def _posture(hand: Hand, shape: HandShape, skeleton: Skeleton) -> HandPosture:
     return HandPosture(np.array(joints, np.intp), np.array(local), tips)
 
 
-def _finger(hand: Hand, shape: HandShape, finger: str, count: int) -> tuple[Array, Array]:
+def _finger(hand: HandJoints, shape: HandShape, finger: str, count: int) -> tuple[Array, Array]:
     """Return the directions of the segments of a finger, (count, 3), and its hinge."""
     along, across, palm = hand.axes
     spread = -math.radians(shape.spread_deg) * _FROM_MIDDLE[finger]
@@ -161,7 +161,7 @@ def _finger(hand: Hand, shape: HandShape, finger: str, count: int) -> tuple[Arra
     return np.cos(bends) * base + np.sin(bends) * palm, np.cross(base, palm)
 
 
-def _thumb(hand: Hand, shape: HandShape, at_rest: Array) -> tuple[Array, Array, Array]:
+def _thumb(hand: HandJoints, shape: HandShape, at_rest: Array) -> tuple[Array, Array, Array]:
     """Return the hinge at rest, the directions of the segments of a thumb, and its hinge."""
     first = np.array(shape.thumb) @ hand.axes
     first = first / np.linalg.norm(first)

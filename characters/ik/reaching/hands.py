@@ -35,11 +35,11 @@ _SEGMENTS = ("Metacarpal", "Proximal", "Intermediate", "Distal")
 
 
 @dataclass(frozen=True)
-class Hand:
+class HandJoints:
     """One hand of a skeleton in its rest pose; vectors are in the character frame."""
 
     side: str
-    """Whose it is."""
+    """ "left" or "right", as in `SIDES`."""
 
     joint: int
     """The wrist, or the ankle of a paw."""
@@ -63,7 +63,7 @@ def part_names(side: str, anatomy: Anatomy) -> tuple[str, ...]:
     return tuple(side + part for part in parts)
 
 
-def find_hand(skeleton: Skeleton, anatomy: Anatomy, side: str) -> Hand | None:
+def find_hand(skeleton: Skeleton, anatomy: Anatomy, side: str) -> HandJoints | None:
     """Return a hand or front paw of a skeleton; None if it or its arm is missing."""
     _, upper, lower, hand = (anatomy.joint(part) for part in part_names(side, anatomy))
     if upper is None or lower is None or hand is None:
@@ -76,7 +76,7 @@ def find_hand(skeleton: Skeleton, anatomy: Anatomy, side: str) -> Hand | None:
         axes = np.array([[0.0, 0.0, 1.0], [inward, 0.0, 0.0], [0.0, -1.0, 0.0]])
         height = max(float(places[hand, 1]), 0.0)
         sole = places[hand] + axes[2] * min(height, long)
-        return Hand(side, hand, {}, axes, sole, float(np.linalg.norm(sole - places[hand])))
+        return HandJoints(side, hand, {}, axes, sole, float(np.linalg.norm(sole - places[hand])))
     fingers = _fingers(anatomy, side)
     knuckles = [joints[0] for name, joints in fingers.items() if name != "Thumb"]
     along = forearm / max(long, 1e-9)
@@ -84,11 +84,11 @@ def find_hand(skeleton: Skeleton, anatomy: Anatomy, side: str) -> Hand | None:
         middle = places[knuckles].mean(0) - places[hand]
         tips = max(np.linalg.norm(p - places[hand]) for p in finger_points(fingers, skeleton))
         axes = _axes(along + _unit(middle), _across(fingers, places), side)
-        return Hand(side, hand, fingers, axes, _palm(places[hand], middle, axes), float(tips))
+        return HandJoints(side, hand, fingers, axes, _palm(places[hand], middle, axes), float(tips))
     axes = _axes(along, np.array([0.0, 0.0, 1.0]), side)
     length = HAND_SHARE * long
     palm = _palm(places[hand], 0.5 * length * along, axes)
-    return Hand(side, hand, fingers, axes, palm, length)
+    return HandJoints(side, hand, fingers, axes, palm, length)
 
 
 def finger_points(fingers: Mapping[str, tuple[int, ...]], skeleton: Skeleton) -> list[Array]:

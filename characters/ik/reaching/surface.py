@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from cubeling.characters.ik.reaching.arms import scaled
+from cubeling.characters.ik.reaching.arms import scale_vector
 from cubeling.characters.skeleton.scalar_quaternions import Vector, add, dot, length, subtract
 
 _ROUNDS = 2
@@ -26,7 +26,7 @@ class BodySurface:
         spheres = []
         for start, end, radius in self.capsules:
             reach = 0.5 * length(subtract(end, start)) + radius + self.clearance
-            spheres.append((scaled(add(start, end), 0.5), reach * reach))
+            spheres.append((scale_vector(add(start, end), 0.5), reach * reach))
         return spheres
 
     def outside(self, place: Vector) -> Vector:
@@ -43,20 +43,20 @@ class BodySurface:
                 away = subtract(place, middle)
                 if dot(away, away) < square:
                     start, end, radius = capsule
-                    place = _pushed(place, start, end, radius + self.clearance)
+                    place = _push(place, start, end, radius + self.clearance)
             if place == before:
                 break
         return place
 
 
-def _pushed(place: Vector, start: Vector, end: Vector, radius: float) -> Vector:
+def _push(place: Vector, start: Vector, end: Vector, radius: float) -> Vector:
     axis, offset = subtract(end, start), subtract(place, start)
     along = min(max(dot(offset, axis) / max(dot(axis, axis), 1e-12), 0.0), 1.0)
-    nearest = add(start, scaled(axis, along))
+    nearest = add(start, scale_vector(axis, along))
     away = subtract(place, nearest)
     size = length(away)
     if size >= radius:
         return place
     if size < 1e-9:
         away, size = (0.0, 0.0, 1.0), 1.0
-    return add(nearest, scaled(away, radius / size))
+    return add(nearest, scale_vector(away, radius / size))

@@ -52,4 +52,4 @@ class ReachStyle:
 
 
 NEUTRAL_REACH = ReachStyle()
-"""Without expression."""
+"""The way that takes the least effort: no expression changes it."""

@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from cubeling.characters.ik.reaching.arms import CONE_RAD, Arm, clamped_aim, cone_axis, scaled
+from cubeling.characters.ik.reaching.arms import CONE_RAD, Arm, clamped_aim, cone_axis, scale_vector
 from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
     Quaternion,
@@ -80,7 +80,7 @@ class PlacedTorso(NamedTuple):
     limits: float
     """Share of the limits of a person's torso that this one has."""
 
-    def carried(self, step: Quaternion, place: Vector) -> Vector:
+    def carry(self, step: Quaternion, place: Vector) -> Vector:
         """Return where the torso takes a place of its top when each joint makes a turn."""
         places = self.places
         x, y, z = place
@@ -92,7 +92,7 @@ class PlacedTorso(NamedTuple):
 
     def step(self, turned: Vector) -> Quaternion:
         """Return the part of each joint of a whole turn, a rotation vector [rad]."""
-        return from_rotation_vector(scaled(turned, 1.0 / max(len(self.places), 1)))
+        return from_rotation_vector(scale_vector(turned, 1.0 / max(len(self.places), 1)))
 
     def chest_after(self, turned: Vector) -> Quaternion:
         """Return the rotation of the chest from its rest after a turn."""
@@ -103,7 +103,6 @@ class Reaching(NamedTuple):
     """One arm that is to get somewhere."""
 
     arm: Arm
-    """Its bones."""
 
     fore: float
     """From its elbow to what reaches [m]."""
@@ -140,7 +139,7 @@ def turn_torso(
         share += (1.0 - share) * POWER_SHARE * power * max(map(_strain, reaching))
     # An open posture turns by itself, the less the more it has to turn anyway.
     open_turn = (1.0 - share) ** 2 * OPEN_TURN * openness
-    turned = add(_turned(turn, lean, share), scaled(turn, open_turn))
+    turned = add(_turn_partly(turn, lean, share), scale_vector(turn, open_turn))
     if effort >= 1.0:
         effort = max(effort, _beyond(torso, reaching, turned, power))
     return TorsoTurn(turned, effort)
@@ -198,12 +197,12 @@ def _turn(azimuth: float, sign: float, limits: float) -> float:
     return turn * cut * cut * (3.0 - 2.0 * cut)
 
 
-def _turned(turn: Vector, lean: Vector, share: float) -> Vector:
+def _turn_partly(turn: Vector, lean: Vector, share: float) -> Vector:
     """Return a share, 0…1, of turn and lean: the turn goes first, and ends softly.
 
     So the last of it is all lean, which always gains length.
     """
-    return add(scaled(turn, share * (2.0 - share)), scaled(lean, share))
+    return add(scale_vector(turn, share * (2.0 - share)), scale_vector(lean, share))
 
 
 def _effort(torso: PlacedTorso, each: Reaching, turn: Vector, lean: Vector) -> tuple[float, float]:
@@ -212,14 +211,14 @@ def _effort(torso: PlacedTorso, each: Reaching, turn: Vector, lean: Vector) -> t
     far = length(subtract(each.target, each.shoulder))
     effort = share = 0.0
     if far > _LEAST_EXTENSION * full:
-        effort, share = _stretched(torso, each, turn, lean, far)
+        effort, share = _stretch(torso, each, turn, lean, far)
     if share < 1.0 and _turned_away(torso, each, IDENTITY):
         share = _share_for_direction(torso, each, turn, lean, share)
         effort = max(effort, share)
     return effort, share
 
 
-def _stretched(
+def _stretch(
     torso: PlacedTorso, each: Reaching, turn: Vector, lean: Vector, far: float
 ) -> tuple[float, float]:
     """Return the effort for a place `far` away [m], and the share of turn and lean.
@@ -228,7 +227,7 @@ def _stretched(
     e, where it would snap without a torso. What the arm does not gain, the torso does.
     """
     full = each.arm.upper + each.fore
-    there = torso.carried(torso.step(add(turn, lean)), each.shoulder)
+    there = torso.carry(torso.step(add(turn, lean)), each.shoulder)
     at_end = far - length(subtract(each.target, there))
     gain = max(at_end, LEAST_GAIN * full)
     slack = min((1.0 - EASY_EXTENSION) * full, gain)
@@ -252,7 +251,7 @@ def _share_for_direction(
         return high
     for _ in range(_ROUNDS):
         middle = 0.5 * (low + high)
-        away = _turned_away(torso, each, torso.step(_turned(turn, lean, middle)))
+        away = _turned_away(torso, each, torso.step(_turn_partly(turn, lean, middle)))
         low, high = (middle, high) if away else (low, middle)
     return high
 
@@ -261,7 +260,7 @@ def _turned_away(torso: PlacedTorso, each: Reaching, step: Quaternion) -> bool:
     """Return whether a place is further behind than a hand gets, after steps of the torso."""
     shoulder, axis = each.shoulder, cone_axis(torso.chest, each.arm.sign)
     if step is not IDENTITY:
-        shoulder = torso.carried(step, shoulder)
+        shoulder = torso.carry(step, shoulder)
         for _ in torso.places:
             axis = rotate(step, axis)
     aim = subtract(each.target, shoulder)
@@ -274,7 +273,7 @@ def _beyond(
     """Return the effort for places that are not reached: 1, and by what arms are too short."""
     step, chest, worst = torso.step(turned), torso.chest_after(turned), 0.0
     for each in reaching:
-        shoulder, full = torso.carried(step, each.shoulder), each.arm.upper + each.fore
+        shoulder, full = torso.carry(step, each.shoulder), each.arm.upper + each.fore
         aim = subtract(each.target, shoulder)
         x, y, z = clamped_aim(aim, chest, each.arm.sign)
         size = max(length((x, y, z)), 1e-9)

@@ -21,7 +21,7 @@ from cubeling.characters.ik.reaching.arms import (
     bend_to_wrist,
     effector_of,
     find_arm,
-    scaled,
+    scale_vector,
     swivel_of,
     to_vector,
 )
@@ -29,11 +29,11 @@ from cubeling.characters.ik.reaching.bending import (
     NEUTRAL_SWIVEL,
     Bearer,
     HandOnItsWay,
-    opened,
-    oriented,
+    open_elbow,
+    orient_hand,
     passive_shoulder,
-    pointed,
-    twisted,
+    point_finger,
+    twist_forearm,
 )
 from cubeling.characters.ik.reaching.hand_shapes import HandShapes
 from cubeling.characters.ik.reaching.kinematics import Frames, UpperBodyKinematics
@@ -76,7 +76,6 @@ class ReachedPose(NamedTuple):
     """A pose that reaches, and what it took."""
 
     pose: Pose
-    """The pose."""
 
     effort: float
     """0 within the arms' reach … 1 where torso and arms are stretched; more beyond."""
@@ -133,9 +132,9 @@ class UpperBody:
         style: ReachStyle = NEUTRAL_REACH,
     ) -> Pose:
         """Return a pose with its hands where they are to be, or as near as they get."""
-        return self.reached(pose, left, right, style).pose
+        return self.reach_for(pose, left, right, style).pose
 
-    def reached(
+    def reach_for(
         self,
         pose: Pose,
         left: HandTarget | None = None,
@@ -154,17 +153,17 @@ class UpperBody:
         holds = self._four_legs and len(wanted) < len(self.arms)
         frames = self._kinematics.frames(pose, whole_arms=holds)
         torso = self._kinematics.torso(frames)
-        hands = [self._started(frames, arm, target, style) for arm, target in wanted]
+        hands = [self._start(frames, arm, target, style) for arm, target in wanted]
         swivelled = style.openness != NEUTRAL_REACH.openness
         neutral = ReachStyle(power=style.power) if swivelled else style
         turned, effort = self._torso_turn(torso, hands, neutral)
         bearers = [_bearer(torso, hand, turned) for hand in hands]
-        bent = [self._bent(*each) for each in zip(hands, bearers, strict=True)]
+        bent = [self._bend(*each) for each in zip(hands, bearers, strict=True)]
         if swivelled:
             turned, _ = self._torso_turn(torso, hands, style)
             for place, (hand, arm, before) in enumerate(zip(hands, bent, bearers, strict=True)):
                 wrist, after = self._wrists[hand.arm.hand.side], _bearer(torso, hand, turned)
-                bent[place] = opened(hand.arm, wrist, arm, before, after, style.openness)
+                bent[place] = open_elbow(hand.arm, wrist, arm, before, after, style.openness)
         local, whole = pose.rotations.copy(), from_rotation_vector(turned)
         self._kinematics.turn_trunk(local, frames, torso.step(turned))
         for hand, arm in zip(hands, bent, strict=True):
@@ -185,7 +184,7 @@ class UpperBody:
         target = HandTarget(place)
         return min(
             self._torso_turn(
-                torso, [self._started(frames, arm, target, NEUTRAL_REACH)], NEUTRAL_REACH
+                torso, [self._start(frames, arm, target, NEUTRAL_REACH)], NEUTRAL_REACH
             )[1]
             for arm in self.arms.values()
         )
@@ -201,7 +200,7 @@ class UpperBody:
         offset = self._effectors[side, "reach"].offset
         return np.array(add(frames.places[hand], rotate(moved, offset)))
 
-    def _started(
+    def _start(
         self, frames: Frames, arm: Arm, target: HandTarget, style: ReachStyle
     ) -> HandOnItsWay:
         """Return an arm with its place, and its collarbone as it follows."""
@@ -212,7 +211,7 @@ class UpperBody:
         aim = subtract((x, y, z), shoulder)
         if max(map(abs, aim)) > _FAR * full:  # squares of what is very far are infinite
             scale = _FAR * full / max(map(abs, aim))
-            x, y, z = add(shoulder, scaled(aim, scale))
+            x, y, z = add(shoulder, scale_vector(aim, scale))
         swung = IDENTITY
         if arm.joints[0] >= 0:
             base = frames.places[self._kinematics.number[arm.joints[0]]]
@@ -226,26 +225,26 @@ class UpperBody:
         """Return the turn of the torso for one or two hands, each as far as its weight goes."""
         if len(hands) == 1:
             turned, effort = _turn_for(torso, hands, style)
-            return scaled(turned, hands[0].target.weight), effort
+            return scale_vector(turned, hands[0].target.weight), effort
         single = [_turn_for(torso, [hand], style) for hand in hands]
         effort = max(effort for _, effort in single)
         one, other = (hand.target.weight for hand in hands)
         both, together = _turn_for(torso, hands, style)
         shares = (one * (1.0 - other), other * (1.0 - one), one * other)
         turns = (single[0][0], single[1][0], both)
-        first, second, third = (scaled(*each) for each in zip(turns, shares, strict=True))
+        first, second, third = (scale_vector(*each) for each in zip(turns, shares, strict=True))
         return add(first, add(second, third)), max(effort, together)
 
-    def _bent(self, hand: HandOnItsWay, bearer: Bearer) -> BentArm:
+    def _bend(self, hand: HandOnItsWay, bearer: Bearer) -> BentArm:
         """Return the arm of a hand with a neutral elbow."""
         arm, target = hand.arm, hand.target
         if target.kind == "point":
-            return twisted(arm, pointed(hand, *bearer))
+            return twist_forearm(arm, point_finger(hand, *bearer))
         if target.palm is None and target.fingers is None:
             return bend(
                 arm, hand.effector, bearer.shoulder, hand.place, bearer.chest, NEUTRAL_SWIVEL
             )
-        return twisted(arm, oriented(hand, self._wrists[arm.hand.side], *bearer))
+        return twist_forearm(arm, orient_hand(hand, self._wrists[arm.hand.side], *bearer))
 
     def _write(
         self,
@@ -285,7 +284,7 @@ class UpperBody:
         (arm,) = (arm for arm in self.arms.values() if arm is not reaching.arm)
         turns, places = frames
         _, upper, lower, paw = (self._kinematics.number.get(joint, -1) for joint in arm.joints)
-        shoulder = torso.carried(torso.step(turned), places[upper])
+        shoulder = torso.carry(torso.step(turned), places[upper])
         wrist = self._wrists[arm.hand.side]
         now = BentArm(turns[upper], turns[lower], turns[paw], places[paw], places[lower])
         swivel = swivel_of(arm, places[upper], places[lower], places[paw], torso.chest)
@@ -329,7 +328,7 @@ def _turn_for(
 
 def _bearer(torso: PlacedTorso, hand: HandOnItsWay, turned: Vector) -> Bearer:
     """Return what bears the arm of a hand after a turn of the torso."""
-    shoulder = torso.carried(torso.step(turned), hand.shoulder)
+    shoulder = torso.carry(torso.step(turned), hand.shoulder)
     return Bearer(shoulder, torso.chest_after(turned))
 
 

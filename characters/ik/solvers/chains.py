@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.skeleton import rotations
-from cubeling.characters.skeleton.joint_limits import JointLimits
+from cubeling.characters.skeleton.joint_limits import AngleLimits
 from cubeling.characters.skeleton.pose import Array
 
 
@@ -23,7 +23,7 @@ class Chains:
     offsets: Array
     """Each bone in the frame of its joint, (joints, 3), or (batch, joints, 3) [m]."""
 
-    limits: JointLimits | None = None
+    limits: AngleLimits | None = None
     """How far the joints turn, the same in all chains; None for freely."""
 
     def __post_init__(self) -> None:
@@ -40,7 +40,7 @@ class Chains:
             )
 
     @staticmethod
-    def straight(lengths: Array, limits: JointLimits | None = None) -> "Chains":
+    def straight(lengths: Array, limits: AngleLimits | None = None) -> "Chains":
         """Return chains of bones (…, joints) [m] that lie along x where no joint is turned."""
         lengths = np.asarray(lengths, float)
         return Chains(lengths[..., None] * np.array([1.0, 0.0, 0.0]), limits)
@@ -69,7 +69,7 @@ class Chains:
 
     def random(self, count: int, random: np.random.Generator) -> Array:
         """Return random local rotations within the limits, (count, joints, 4)."""
-        limits = JointLimits.none(self.joints) if self.limits is None else self.limits
+        limits = AngleLimits.none(self.joints) if self.limits is None else self.limits
         shape = (count, self.joints, 3)
         return limits.rotations(random.uniform(limits.low, limits.high, shape))
 

@@ -84,7 +84,7 @@ def conjugate(q: Array) -> Array:
 
 
 def rotate(q: Array, vectors: Array) -> Array:
-    """Return rotated vectors."""
+    """Return vectors (…, 3, n) rotated by unit quaternions (…, 4, n)."""
     axis, w = q[..., :3, :], q[..., 3:, :]
     twice = cross(axis, vectors)
     twice += twice

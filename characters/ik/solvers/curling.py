@@ -8,7 +8,7 @@ FABRIK warns of the zig-zag).
 import numpy as np
 
 from cubeling.characters.ik.solvers import columns
-from cubeling.characters.ik.solvers.orientation import oriented
+from cubeling.characters.ik.solvers.orientation import orient
 from cubeling.characters.ik.solvers.task import Task
 from cubeling.characters.skeleton.pose import Array
 
@@ -22,7 +22,7 @@ follows a moving target goes on from where it is."""
 _STEPS, _BISECTIONS = 32, 6
 
 
-def curled(task: Task) -> Task:
+def curl(task: Task) -> Task:
     """Return the task with chains curled whose targets are near the base and far from the end."""
     near = columns.length(task.targets) < NEAR_BASE * task.reach
     far = columns.length(task.points_at_start[-1] - task.targets) > FAR_START * task.reach
@@ -32,7 +32,7 @@ def curled(task: Task) -> Task:
     part = task.select(which)
     before = part.points_at_start
     after = _curled_points(part, np.diff(before, axis=0))
-    turns = oriented(part, part.frames_at_start, before, after)
+    turns = orient(part, part.frames_at_start, before, after)
     if task.bounds is not None:
         turns, _ = task.bounds.cut(turns)
     start = task.start.copy()
@@ -56,7 +56,7 @@ def _curled_points(task: Task, bones: Array) -> Array:
         middle = 0.5 * (low + high)
         outside = _size(bones, axis, middle) > wanted
         low, high = np.where(outside, middle, low), np.where(outside, high, middle)
-    points = columns.running_sum(_bent(bones, axis, high))
+    points = columns.running_sum(_bend(bones, axis, high))
     return columns.rotate(columns.between(points[-1], task.targets), points)
 
 
@@ -71,7 +71,7 @@ def _bend_axis(bones: Array, targets: Array) -> Array:
     return unit
 
 
-def _bent(bones: Array, axis: Array, angle: Array) -> Array:
+def _bend(bones: Array, axis: Array, angle: Array) -> Array:
     """Return bones (joints, 3, batch) with an angle (batch,) more in each joint but the first."""
     half = 0.5 * angle * np.arange(len(bones))[:, None]
     turns = np.concatenate([axis * np.sin(half)[:, None], np.cos(half)[:, None]], axis=1)
@@ -79,4 +79,4 @@ def _bent(bones: Array, axis: Array, angle: Array) -> Array:
 
 
 def _size(bones: Array, axis: Array, angle: Array) -> Array:
-    return columns.length(_bent(bones, axis, angle).sum(0))
+    return columns.length(_bend(bones, axis, angle).sum(0))

@@ -33,7 +33,7 @@ class JacobianSolver:
     """Makes a step of the error."""
 
     max_steps: int = MAX_STEPS
-    """Most steps."""
+    """Number of steps after which it gives up."""
 
     def __call__(self, task: Task) -> Solved:
         """Return rotations within the limits."""
@@ -59,7 +59,7 @@ class JacobianMover:
     """Makes a step of the error."""
 
     max_steps: int = MAX_STEPS
-    """Most steps."""
+    """Number of steps after which it gives up."""
 
     def __call__(self, points: Array, task: Task) -> tuple[Array, NDArray[np.intp]]:
         """Return points (joints + 1, 3, batch), of the right lengths, and steps (batch,)."""
@@ -73,7 +73,7 @@ class JacobianMover:
         pull = self.rule(_ball_gram(arms), targets - points[-1])
         # A bone turns by what its joint and all joints before it turn.
         turns = columns.running_sum(columns.cross(arms, pull[None]))[1:]
-        moved = columns.running_sum(_turned(np.diff(points, axis=0), turns))
+        moved = columns.running_sum(_turn(np.diff(points, axis=0), turns))
         near = columns.length(moved[-1] - targets) <= tolerance
         return (moved, targets, tolerance), near
 
@@ -86,7 +86,7 @@ def _ball_gram(arms: Array) -> Array:
     return np.stack([yy + zz, xx + zz, xx + yy, -xy, -xz, -yz])
 
 
-def _turned(vectors: Array, turns: Array) -> Array:
+def _turn(vectors: Array, turns: Array) -> Array:
     """Return vectors turned by about the rotation vectors `turns`, with their lengths unchanged.
 
     By the Cayley map, a rotation by 2 atan(angle / 2): it needs no sine, and turns that are too
@@ -159,7 +159,7 @@ def _axes(links: Array | None, angles: Array, offsets: Array) -> tuple[Array, Ar
     x, y, z = (np.broadcast_to(row[:, None], (3, count)) for row in np.eye(3))
     for joint, (sine, cosine) in enumerate(zip(sines, cosines, strict=True)):
         if links is not None:
-            x, y, z = _linked(links[joint], (x, y, z))
+            x, y, z = _link(links[joint], (x, y, z))
         axes[joint, 2] = z
         x, y = cosine[2] * x + sine[2] * y, cosine[2] * y - sine[2] * x
         axes[joint, 1] = y
@@ -171,7 +171,7 @@ def _axes(links: Array | None, angles: Array, offsets: Array) -> tuple[Array, Ar
     return axes, points
 
 
-def _linked(link: Array, basis: tuple[Array, Array, Array]) -> list[Array]:
+def _link(link: Array, basis: tuple[Array, Array, Array]) -> list[Array]:
     """Return the columns of a rotation followed by a fixed one, given as quaternion (4, 1)."""
     fixed = [columns.rotate(link, axis[:, None]) for axis in np.eye(3)]
     x, y, z = basis

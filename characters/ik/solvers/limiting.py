@@ -10,12 +10,12 @@ MAX_LEVER_RATIO = 2.0
 """Most that a parent turns for each radian of its child: near the target the ratio has no bound."""
 
 
-def clamped(task: Task, turns: Array) -> Array:
+def clamp(task: Task, turns: Array) -> Array:
     """Return rotations (joints, 4, batch) with all angles cut off at the limits."""
     return turns if task.bounds is None else task.bounds.cut(turns)[0]
 
 
-def propagated(task: Task, turns: Array, points: Array) -> Array:
+def propagate(task: Task, turns: Array, points: Array) -> Array:
     """Return rotations within the limits, with what is cut off passed on to the parents.
 
     From the end to the base: where a joint is cut off by α, its parent turns in the same sense by
@@ -41,8 +41,8 @@ def propagated(task: Task, turns: Array, points: Array) -> Array:
     return turns
 
 
-def limited(task: Task, turns: Array, points: Array) -> Array:
+def limit(task: Task, turns: Array, points: Array) -> Array:
     """Return rotations within the limits, in the way that the task asks for."""
     if task.limiting == "clamp":
-        return clamped(task, turns)
-    return propagated(task, turns, points)
+        return clamp(task, turns)
+    return propagate(task, turns, points)

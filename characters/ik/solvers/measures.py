@@ -6,7 +6,7 @@ import numpy as np
 
 from cubeling.characters.ik.solvers.chains import Chains, Solution
 from cubeling.characters.skeleton import rotations
-from cubeling.characters.skeleton.joint_limits import EDGE_RAD, JointLimits
+from cubeling.characters.skeleton.joint_limits import EDGE_RAD, AngleLimits
 from cubeling.characters.skeleton.pose import Array
 
 REACH_M = 0.6
@@ -18,7 +18,7 @@ _MAX_WAY_DEG = 120.0  # of a bone from the start: farther, the shortest way is n
 
 
 @dataclass(frozen=True)
-class Problem:
+class ReachingProblem:
     """Chains, where they start, and targets that they reach within their limits."""
 
     chains: Chains
@@ -36,21 +36,21 @@ class Problem:
         return Chains(self.chains.offsets)
 
     @staticmethod
-    def random(joints: int, count: int, random: np.random.Generator) -> "Problem":
+    def random(joints: int, count: int, random: np.random.Generator) -> "ReachingProblem":
         """Return a problem with uniformly random angles as its solutions."""
         chains = Chains.straight(np.full(joints, REACH_M / joints), ball_limits(joints))
         _, points = chains.frames(chains.random(count, random))
-        return Problem(chains, arc_targets(joints, count), points[:, -1])
+        return ReachingProblem(chains, arc_targets(joints, count), points[:, -1])
 
 
-def ball_limits(joints: int) -> JointLimits:
+def ball_limits(joints: int) -> AngleLimits:
     """Return limits that suit no limb in particular: a shoulder, then joints of a spine.
 
     The bend is that of the experiment in S16 (±120° at the base, else ±50°).
     """
     high = np.tile(np.radians([30.0, 50.0, 50.0]), (joints, 1))
     high[0] = np.radians([60.0, 80.0, 120.0])
-    return JointLimits.of_angles(-high, high)
+    return AngleLimits.of_angles(-high, high)
 
 
 def arc_targets(joints: int, count: int) -> Array:

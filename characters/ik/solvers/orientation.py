@@ -7,7 +7,7 @@ from cubeling.characters.ik.solvers.task import Task
 from cubeling.characters.skeleton.pose import Array
 
 
-def oriented(task: Task, frames: Array, before: Array, after: Array) -> Array:
+def orient(task: Task, frames: Array, before: Array, after: Array) -> Array:
     """Return the rotations (joints, 4, batch) that put the joints at new points.
 
     Each bone takes the shortest way from its direction in the points `before`, where the base-frame

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.ik.solvers import columns
-from cubeling.characters.ik.solvers.limiting import limited
-from cubeling.characters.ik.solvers.orientation import oriented, rigid
+from cubeling.characters.ik.solvers.limiting import limit
+from cubeling.characters.ik.solvers.orientation import orient, rigid
 from cubeling.characters.ik.solvers.task import Arrays, Solved, Task, until_done
 from cubeling.characters.skeleton.pose import Array
 
@@ -35,7 +35,7 @@ class PositionalSolver:
     """What moves the points."""
 
     max_loops: int = MAX_LOOPS
-    """Most rounds."""
+    """Number of rounds over the chain after which it gives up."""
 
     def __call__(self, task: Task) -> Solved:
         """Return rotations within the limits."""
@@ -46,25 +46,25 @@ class PositionalSolver:
     def _free(self, task: Task) -> Solved:
         """Solve without limits: rotations are needed only once, at the end."""
         frames, start = task.frames_at_start, task.points_at_start
-        points, total = self._rigidly_moved(start, task)
+        points, total = self._move_rigidly(start, task)
         left = np.flatnonzero(~_near(points, task))
         for _ in range(1, self.max_loops):
             if len(left) == 0:
                 break
             part = task.select(left)
-            points[..., left], used = self._rigidly_moved(points[..., left], part)
+            points[..., left], used = self._move_rigidly(points[..., left], part)
             total[left] += used
             left = left[~_near(points[..., left], part)]
-        return oriented(task, frames, start, points), points, total
+        return orient(task, frames, start, points), points, total
 
     def _with_limits(self, task: Task) -> Solved:
         def one_round(state: Arrays) -> tuple[Arrays, NDArray[np.bool_]]:
             turns, index, used, best, least = state
             part = task.select(index.astype(np.intp))
             frames, before = part.frames(turns)
-            moved, iterations = self._rigidly_moved(before, part)
-            free = oriented(part, frames, before, moved)
-            turns = limited(part, free, moved)
+            moved, iterations = self._move_rigidly(before, part)
+            free = orient(part, frames, before, moved)
+            turns = limit(part, free, moved)
             _, after = part.frames(turns)
             errors = columns.length(after[-1] - part.targets)
             better = errors < least
@@ -77,7 +77,7 @@ class PositionalSolver:
         (_, _, used, best, _), _ = until_done(one_round, state, self.max_loops)
         return best, task.frames(best)[1], used.astype(np.intp)
 
-    def _rigidly_moved(self, points: Array, task: Task) -> tuple[Array, NDArray[np.intp]]:
+    def _move_rigidly(self, points: Array, task: Task) -> tuple[Array, NDArray[np.intp]]:
         moved, used = self.move(points, task)
         return rigid(moved, task.lengths), used
 

@@ -34,7 +34,7 @@ def transpose(gram: Array, error: Array) -> Array:
 
 def pseudo_inverse(gram: Array, error: Array) -> Array:
     """Return (J Jᵀ)⁻¹ e; the damping only keeps singular matrices invertible."""
-    return _solved(gram, error, 1e-9 * (gram[0] + gram[1] + gram[2]))
+    return _solve(gram, error, 1e-9 * (gram[0] + gram[1] + gram[2]))
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Damped:
     def __call__(self, gram: Array, error: Array) -> Array:
         """Return what Jᵀ multiplies."""
         trace = gram[0] + gram[1] + gram[2]
-        return _solved(gram, error, self.damping * columns.dot(error, error) + self.floor * trace)
+        return _solve(gram, error, self.damping * columns.dot(error, error) + self.floor * trace)
 
 
 def damped_pull(gram: Sequence[float], error: Vector) -> Vector:
@@ -76,7 +76,7 @@ def _times(gram: Array, v: Array) -> tuple[Array, Array, Array]:
     return xx * a + xy * b + xz * c, xy * a + yy * b + yz * c, xz * a + yz * b + zz * c
 
 
-def _solved(gram: Array, error: Array, damping: Array) -> Array:
+def _solve(gram: Array, error: Array, damping: Array) -> Array:
     """Return (J Jᵀ + λ² I)⁻¹ e by the adjugate."""
     xx, yy, zz, xy, xz, yz = gram
     xx, yy, zz = xx + damping, yy + damping, zz + damping

@@ -46,7 +46,7 @@ class SingleSolution:
     """From the end to the target [m]."""
 
     iterations: int
-    """Steps."""
+    """Number of steps that it took."""
 
 
 class SingleChain:
@@ -87,10 +87,10 @@ class SingleChain:
         frames, points = self.frames(start)
         goal = self._within_reach(target, points[-1])
         near = tolerance * self.reach
-        moved, steps = _moved(points, goal, near)
+        moved, steps = _move(points, goal, near)
         if goal is not target and math.dist(target, points[0]) > self.reach:
             moved = self._straight(goal)
-        turns = _oriented(frames, points, moved)
+        turns = _orient(frames, points, moved)
         limited = self._limited
         if limited is not None and not limited.allow(angles := limited.angles(turns)):
             angles, _, more = solve_angles(limited, angles, goal, near, MAX_STEPS)
@@ -132,7 +132,7 @@ class SingleChain:
         return x * scale, y * scale, z * scale
 
 
-def _moved(points: Points, target: Vector, near: float) -> tuple[Points, int]:
+def _move(points: Points, target: Vector, near: float) -> tuple[Points, int]:
     """Return points whose last one is at the target, and the number of steps."""
     for step in range(MAX_STEPS):
         if math.dist(points[-1], target) <= near:
@@ -174,7 +174,7 @@ def _step(points: Points, target: Vector) -> Points:
     return moved
 
 
-def _oriented(frames: list[Quaternion], before: Points, after: Points) -> list[Quaternion]:
+def _orient(frames: list[Quaternion], before: Points, after: Points) -> list[Quaternion]:
     """Return local rotations that put the joints at new points; each bone the shortest way."""
     turns: list[Quaternion] = []
     above: Quaternion = IDENTITY

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from cubeling.characters.ik.solvers.rules import damped_pull
-from cubeling.characters.skeleton.joint_limits import EDGE_RAD, JointLimits
+from cubeling.characters.skeleton.joint_limits import EDGE_RAD, AngleLimits
 from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
     Quaternion,
@@ -28,7 +28,7 @@ Axis = tuple[Vector, Vector]
 """An axis of a joint and the place of the joint, in the frame of the base."""
 
 Basis = tuple[Vector, Vector, Vector]
-"""Three axes."""
+"""Three unit vectors at right angles: the axes x, y and z of a joint."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class LimitedJoints:
     """The axes of each joint at zero in those of the joint before; None where they are the same."""
 
     @staticmethod
-    def of(limits: JointLimits, offsets: Sequence[Vector]) -> "LimitedJoints":
+    def of(limits: AngleLimits, offsets: Sequence[Vector]) -> "LimitedJoints":
         """Return the joints with limits and bones, in their own frames [m]."""
         before: list[Quaternion] = [(x, y, z, w) for x, y, z, w in limits.before.tolist()]
         after: list[Quaternion] = [(x, y, z, w) for x, y, z, w in limits.after.tolist()]
@@ -134,11 +134,11 @@ def solve_angles(
         rows = [
             cross(axis, (end[0] - px, end[1] - py, end[2] - pz)) for axis, (px, py, pz) in frames
         ]
-        angles = joints.cut(_stepped(joints, rows, angles, error))
+        angles = joints.cut(_step(joints, rows, angles, error))
     return best, least, max_steps
 
 
-def _stepped(
+def _step(
     joints: LimitedJoints, rows: list[Vector], angles: list[float], error: Vector
 ) -> list[float]:
     """Return angles after one step, not yet cut off; those at a limit do not go beyond it."""
@@ -178,11 +178,11 @@ def _axes(joints: LimitedJoints, angles: list[float]) -> tuple[list[Axis], Vecto
             a, b, c = link
             x, y, z = _sum(x, y, z, a), _sum(x, y, z, b), _sum(x, y, z, c)
         last = z
-        x, y = _turned(x, y, sines[3 * joint + 2], cosines[3 * joint + 2])
+        x, y = _turn(x, y, sines[3 * joint + 2], cosines[3 * joint + 2])
         middle = y
-        z, x = _turned(z, x, sines[3 * joint + 1], cosines[3 * joint + 1])
+        z, x = _turn(z, x, sines[3 * joint + 1], cosines[3 * joint + 1])
         found += (x, place), (middle, place), (last, place)
-        y, z = _turned(y, z, sines[3 * joint], cosines[3 * joint])
+        y, z = _turn(y, z, sines[3 * joint], cosines[3 * joint])
         place = add(place, _sum(x, y, z, bone))
     return found, place
 
@@ -201,7 +201,7 @@ def _sum(x: Vector, y: Vector, z: Vector, weights: Vector) -> Vector:
     )
 
 
-def _turned(x: Vector, y: Vector, sine: float, cosine: float) -> tuple[Vector, Vector]:
+def _turn(x: Vector, y: Vector, sine: float, cosine: float) -> tuple[Vector, Vector]:
     """Return two axes turned about the third one."""
     return (
         (cosine * x[0] + sine * y[0], cosine * x[1] + sine * y[1], cosine * x[2] + sine * y[2]),

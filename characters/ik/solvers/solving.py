@@ -9,10 +9,10 @@ from cubeling.characters.errors import CharacterError
 from cubeling.characters.ik.solvers import columns
 from cubeling.characters.ik.solvers.ccd import CyclicCoordinateDescent
 from cubeling.characters.ik.solvers.chains import Chains, Solution
-from cubeling.characters.ik.solvers.curling import curled
+from cubeling.characters.ik.solvers.curling import curl
 from cubeling.characters.ik.solvers.fabrik import Fabrik
 from cubeling.characters.ik.solvers.jacobian import JacobianSolver
-from cubeling.characters.ik.solvers.orientation import oriented, straight
+from cubeling.characters.ik.solvers.orientation import orient, straight
 from cubeling.characters.ik.solvers.positional import PositionalSolver
 from cubeling.characters.ik.solvers.rules import Damped, pseudo_inverse, transpose
 from cubeling.characters.ik.solvers.springs import MassSprings
@@ -96,13 +96,13 @@ def solve(
     usable = (np.abs(targets) < _FARTHEST_M).all(-1) & (reach > columns.TINY)
     goals = np.where(usable[:, None], targets, 0.0)
     task = Task.of(chains, goals, start, tolerance * reach, limits)
-    reachable = _with_reachable_targets(_nudged(task))
+    reachable = _with_reachable_targets(_nudge(task))
     if not alone:
-        reachable = curled(reachable)
+        reachable = curl(reachable)
     turns, points, iterations = solver(reachable)
     beyond = np.flatnonzero(columns.length(task.targets) >= task.reach)
     if task.bounds is None and len(beyond):
-        turns[..., beyond], points[..., beyond] = _straightened(reachable.select(beyond))
+        turns[..., beyond], points[..., beyond] = _straighten(reachable.select(beyond))
     if not alone:
         _made_sure(reachable, turns, points, iterations, np.random.default_rng(seed))
     errors = columns.length(points[-1] - task.targets)
@@ -149,16 +149,16 @@ def _with_reachable_targets(task: Task) -> Task:
     return replace(task, targets=moved)
 
 
-def _straightened(task: Task) -> tuple[Array, Array]:
+def _straighten(task: Task) -> tuple[Array, Array]:
     """Return the rotations and points of chains that point straight to their targets.
 
     A solver is done earlier: bones bent by 2° shorten a chain by less than its tolerance.
     """
     points = straight(task)
-    return oriented(task, task.frames_at_start, task.points_at_start, points), points
+    return orient(task, task.frames_at_start, task.points_at_start, points), points
 
 
-def _nudged(task: Task) -> Task:
+def _nudge(task: Task) -> Task:
     """Return the task with chains that lie on the line to their target bent a little.
 
     On that line every direction of a solver is along it, and the chain would never bend.

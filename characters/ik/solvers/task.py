@@ -47,7 +47,7 @@ class Bounds:
 class Task:
     """A batch of chains with their start, targets and limits.
 
-    The rotations are those between the axes of the limits: `before` and `after` of `JointLimits`
+    The rotations are those between the axes of the limits: `before` and `after` of `AngleLimits`
     are in `links` and `offsets`.
     """
 
@@ -131,7 +131,7 @@ class Task:
 
     @property
     def count(self) -> int:
-        """Number of chains."""
+        """Number of chains that are solved at once: the batch."""
         return len(self.tolerance)
 
     @property

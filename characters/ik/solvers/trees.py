@@ -143,7 +143,7 @@ def solve_tree(
     for _ in range(_MAX_LOOPS):
         # Stretched springs get shorter at rest by as much: in the end, bones under tension have
         # their own length (method of multipliers).
-        moved, more = _relaxed(tree, used, points, rest - stretch, _REST * tolerance * size)
+        moved, more = _relax(tree, used, points, rest - stretch, _REST * tolerance * size)
         steps += more
         local = _rotations(tree, used, frames, points, moved)
         frames, after = tree.points(local)
@@ -186,7 +186,7 @@ def _lengths(tree: Tree, points: Array) -> Array:
     return lengths
 
 
-def _relaxed(
+def _relax(
     tree: Tree, targets: Sequence[Target], points: Array, rest: Array, energy: float
 ) -> tuple[Array, int]:
     """Return the points at which the springs, of lengths `rest`, are in balance, and the steps."""

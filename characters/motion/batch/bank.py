@@ -92,9 +92,9 @@ class ClipBank:
         turns = np.concatenate([pose.rotations for pose in poses])
         turns, sign_ambiguous = _align_signs(turns, counts)
         shifts = np.concatenate([pose.translations for pose in poses])
-        scales = _stacked([pose.scales for pose in poses], counts, shifts.shape[1:], 1.0)
+        scales = _stack([pose.scales for pose in poses], counts, shifts.shape[1:], 1.0)
         width = max(0 if p.morphs is None else p.morphs.shape[-1] for p in poses)
-        morphs = _stacked([pose.morphs for pose in poses], counts, (width,), 0.0)
+        morphs = _stack([pose.morphs for pose in poses], counts, (width,), 0.0)
         moving = np.flatnonzero((np.ptp(shifts, axis=0) > _CONSTANT_TOLERANCE).any(-1))
         scaling = np.flatnonzero((np.ptp(scales, axis=0) > _CONSTANT_TOLERANCE).any(-1))
         unscaled = not scaling.size and np.allclose(scales[0], 1.0, atol=_CONSTANT_TOLERANCE)
@@ -265,7 +265,7 @@ def _repeat_single_frame(pose: Pose) -> Pose:
     return pose[np.array([0, 0])] if len(pose.rotations) == 1 else pose
 
 
-def _stacked(
+def _stack(
     arrays: Sequence[Array | None], counts: Indices, shape: tuple[int, ...], default: float
 ) -> Array:
     """Return concatenated arrays (frames, …), with the default for those that are None."""

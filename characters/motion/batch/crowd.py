@@ -40,7 +40,7 @@ def crowd_globals(bank: ClipBank, clips: ArrayLike, times: ArrayLike, weights: A
     (characters, joints, 3, 4): the last row of each matrix, (0, 0, 0, 1), is left out.
     """
     rows = bank.mixed_rows(clips, times, weights)
-    columns = _transposed(rows)
+    columns = _transpose(rows)
     joints = len(bank.skeleton)
     turned, shifted, sized, _ = bank.column_ends
     turns = columns[:turned].reshape(joints, 4, -1)
@@ -77,7 +77,7 @@ def _globals(
         below[:, 3] += above[:, 3]
         matrices[:, :, positions] = below
     sorted_back = matrices.transpose(2, 0, 1, 3)[order.positions]
-    return _transposed(sorted_back.reshape(-1, count)).reshape(count, joints, 3, 4)
+    return _transpose(sorted_back.reshape(-1, count)).reshape(count, joints, 3, 4)
 
 
 def _rotate(q: Floats, matrices: Floats) -> None:
@@ -104,7 +104,7 @@ def _with_constants(constant: Floats, moving: Indices, columns: Floats) -> Float
     return everyone
 
 
-def _transposed(rows: Floats) -> Floats:
+def _transpose(rows: Floats) -> Floats:
     """Return a transposed copy of a matrix; OpenCV does it block by block, faster than NumPy."""
     return np.asarray(cv2.transpose(rows)) if rows.size else np.zeros(rows.shape[::-1], rows.dtype)
 

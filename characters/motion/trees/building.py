@@ -18,11 +18,11 @@ from cubeling.characters.motion.modifiers import (
     RootOffset,
     Stretch,
     TimeCurve,
+    TimeWindow,
     Warped,
-    Window,
 )
 from cubeling.characters.motion.motion import Motion, RootDelta
-from cubeling.characters.motion.phase import StaticPose, as_cyclic, phased
+from cubeling.characters.motion.phase import StaticPose, as_cyclic, with_phase
 from cubeling.characters.motion.schedule import Action, Schedule
 from cubeling.characters.motion.trees.parametric import (
     ParameterBindings,
@@ -54,7 +54,7 @@ class Builder:
         self._skeleton = skeleton
         self._anatomy = anatomy
         self._mirror = mirror
-        self._clips = {name: phased(clip, skeleton) for name, clip in clips.items()}
+        self._clips = {name: with_phase(clip, skeleton) for name, clip in clips.items()}
         self._constant: dict[int, Motion] = {}
 
     def build(self, node: Node, values: Values) -> tuple[Motion, ParameterBindings]:
@@ -66,17 +66,17 @@ class Builder:
             If a part of the plan cannot be played; the message names its place in the file.
         """
         bindings = ParameterBindings()
-        motion = self._bound(node, values, bindings)
+        motion = self._bind(node, values, bindings)
         bindings.restart_with(values)
         return motion, bindings
 
-    def _bound(self, node: Node, values: Values, bindings: ParameterBindings) -> Motion:
+    def _bind(self, node: Node, values: Values, bindings: ParameterBindings) -> Motion:
         """Return a motion that remains the same object while its parameters change."""
         if not node.parametric:
-            return self._fixed(node, values)
+            return self._build_fixed(node, values)
         if node.group == "layer":
             base, over = (
-                self._bound(node.motions[key], values, bindings) for key in ("base", "over")
+                self._bind(node.motions[key], values, bindings) for key in ("base", "over")
             )
             weight = node.fields["weight"]
             if isinstance(weight, str):
@@ -84,7 +84,7 @@ class Builder:
                 bindings.weights.append(weight)
             return self._layer_over(node, base, over, weight)
         self._refuse_layers(node, node)
-        parametric = ParametricMotion(lambda now: self._fixed(node, now), values)
+        parametric = ParametricMotion(lambda now: self._build_fixed(node, now), values)
         bindings.motions.append(parametric)
         return parametric
 
@@ -99,7 +99,7 @@ class Builder:
                 )
             self._refuse_layers(node, child)
 
-    def _fixed(self, node: Node, values: Values) -> Motion:
+    def _build_fixed(self, node: Node, values: Values) -> Motion:
         """Return the motion of a node for fixed parameters; without parameters it is built once."""
         if id(node) in self._constant:
             return self._constant[id(node)]
@@ -117,12 +117,12 @@ class Builder:
             self._refuse(node, str(error))
 
     def _of(self, node: Node, values: Values, key: str = "of") -> Motion:
-        return self._fixed(node.motions[key], values)
+        return self._build_fixed(node.motions[key], values)
 
     def _clip(self, node: Node, values: Values) -> Motion:
         return self._clips[node.fields["clip"]]
 
-    def _mirrored(self, node: Node, values: Values) -> Motion:
+    def _build_mirrored(self, node: Node, values: Values) -> Motion:
         return Mirrored(self._of(node, values), self._mirror())
 
     def _root_offset(self, node: Node, values: Values) -> Motion:
@@ -131,7 +131,7 @@ class Builder:
         offset = RootDelta(node.fields["x"], node.fields["z"], yaw)
         return RootOffset(self._of(node, values), offset, roots)
 
-    def _time_scaled(self, node: Node, values: Values) -> Motion:
+    def _scale_time(self, node: Node, values: Values) -> Motion:
         rate, stride = node.fields["rate"], node.fields["stride"]
         if rate <= 0.0:
             self._refuse(node, f"a rate of {rate}; give more than 0")
@@ -159,7 +159,7 @@ class Builder:
         space = BlendSpace2D(points, self._rows(node, values))
         return space.at([values[along], values[across]])
 
-    def _layered(self, node: Node, values: Values) -> Motion:
+    def _layer(self, node: Node, values: Values) -> Motion:
         base, over = (self._of(node, values, key) for key in ("base", "over"))
         return self._layer_over(node, base, over, node.fields["weight"])
 
@@ -179,7 +179,7 @@ class Builder:
             fade = FadeCurve(fields["fade_in"], fields["fade_out"], fields["shape"])
             actions.append(
                 Action(
-                    self._fixed(row.motion, values),
+                    self._build_fixed(row.motion, values),
                     fields["start"],
                     Product((fields["weight"], fade)),
                     self._mask(fields["mask"]),
@@ -198,7 +198,7 @@ class Builder:
             self._refuse(node, str(error))
 
     def _rows(self, node: Node, values: Values) -> tuple[Motion, ...]:
-        return tuple(self._fixed(row.motion, values) for row in node.rows)
+        return tuple(self._build_fixed(row.motion, values) for row in node.rows)
 
     def _mask(self, name: str) -> Mask | None:
         if not name:
@@ -218,7 +218,7 @@ class Builder:
 _MODIFIER_BUILDERS: Mapping[str, Callable[[Motion, Mapping[str, Any]], Motion]] = {
     "hold": lambda motion, fields: StaticPose(motion.sample(fields["at"]), 1.0),
     "stretch": lambda motion, fields: Stretch(motion, fields["seconds"]),
-    "window": lambda motion, fields: Window(motion, fields["start"], fields["end"]),
+    "window": lambda motion, fields: TimeWindow(motion, fields["start"], fields["end"]),
     "loop": lambda motion, _: Loop(motion),
     "warp": lambda motion, fields: Warped(motion, TimeCurve(fields["times"], fields["sources"])),
 }
@@ -226,14 +226,14 @@ _MODIFIER_BUILDERS: Mapping[str, Callable[[Motion, Mapping[str, Any]], Motion]] 
 
 _NODE_BUILDERS: Mapping[str, Callable[[Builder, Node, Values], Motion]] = {
     "clip": Builder._clip,
-    "mirror": Builder._mirrored,
+    "mirror": Builder._build_mirrored,
     "displace": Builder._root_offset,
-    "pace": Builder._time_scaled,
+    "pace": Builder._scale_time,
     "blend": Builder._blend,
     "space": Builder._space,
     "plane": Builder._plane,
-    "layer": Builder._layered,
-    "add": Builder._layered,
+    "layer": Builder._layer,
+    "add": Builder._layer,
     "crossfade": Builder._crossfade,
     "schedule": Builder._schedule,
 }

@@ -29,8 +29,8 @@ def to_dot(plan: Plan, title: str = "") -> str:
 class _DotWriter:
     def __init__(self, title: str) -> None:
         self.lines = [
-            f"digraph {_quoted(title)} {{",
-            f"  graph [rankdir=LR, labelloc=t, label={_quoted(title)}]",
+            f"digraph {_quote(title)} {{",
+            f"  graph [rankdir=LR, labelloc=t, label={_quote(title)}]",
             '  node [shape=box, style="rounded,filled"]',
         ]
         self._motions: dict[int, str] = {}
@@ -59,14 +59,14 @@ class _DotWriter:
         return name
 
     def _box(self, name: str, title: str, note: str, group: str) -> None:
-        label = _quoted(title) if note == title else f"{_quoted(title)[:-1]}\\n{_quoted(note)[1:]}"
+        label = _quote(title) if note == title else f"{_quote(title)[:-1]}\\n{_quote(note)[1:]}"
         self.lines.append(f'  {name} [label={label}, fillcolor="{_FILL_COLOURS[group]}"]')
 
     def _edge(self, start: str, end: str, label: str = "", style: str = "") -> None:
-        attributes = f" [label={_quoted(label)}{style}]" if label else ""
+        attributes = f" [label={_quote(label)}{style}]" if label else ""
         self.lines.append(f"  {start} -> {end}{attributes}")
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     escaped = text.replace("\\", "\\\\").replace('"', '\\"')
     return f'"{escaped}"'

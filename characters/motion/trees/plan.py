@@ -115,7 +115,6 @@ class Row:
     """One of several motions of a node."""
 
     motion: "Node"
-    """The motion."""
 
     fields: Mapping[str, Any]
     """Its other fields, such as "value" or "weight"."""
@@ -171,7 +170,7 @@ class Node:
             return "clip"
         defaults = NODE_KINDS[self.kind].optional
         fields = [
-            f"{key.removesuffix('_deg')} {_formatted(value)}"
+            f"{key.removesuffix('_deg')} {_format(value)}"
             for key, value in self.fields.items()
             if value not in ("", None) and (key not in defaults or defaults[key] != value)
         ]
@@ -190,7 +189,7 @@ class Node:
 
 
 @dataclass(frozen=True)
-class Transition:
+class StateTransition:
     """A transition from one state to another."""
 
     start: str
@@ -200,7 +199,6 @@ class Transition:
     """The state that it enters."""
 
     when: Condition
-    """Its condition."""
 
     seconds: float
     """Its length [s]."""
@@ -217,9 +215,9 @@ class StateGraph:
     """The motion of each state."""
 
     start: str
-    """The first state."""
+    """Name of the state that it begins in."""
 
-    transitions: tuple[Transition, ...]
+    transitions: tuple[StateTransition, ...]
     """Tried in this order."""
 
 
@@ -251,7 +249,7 @@ class Plan:
     """The state graph; None if there is only one motion."""
 
     masks: Mapping[str, MaskPlan] = field(default_factory=dict)
-    """Masks by name."""
+    """Masks of joints by the name that layers use."""
 
     lags: Mapping[str, float] = field(default_factory=dict)
     """Time constants of parameters by name [s]; defaults are
@@ -267,13 +265,13 @@ class Plan:
 def _row_label(fields: Mapping[str, Any]) -> str:
     """Return the position, start or weight of a row's motion."""
     if "start" in fields:
-        return f"{_formatted(fields['start'])} s"
-    return _formatted(fields.get("value", fields.get("weight", "")))
+        return f"{_format(fields['start'])} s"
+    return _format(fields.get("value", fields.get("weight", "")))
 
 
-def _formatted(value: object) -> str:
+def _format(value: object) -> str:
     if isinstance(value, float):
         return f"{value:g}".replace("-", "−")
     if isinstance(value, tuple):
-        return ", ".join(map(_formatted, value))
+        return ", ".join(map(_format, value))
     return str(value)

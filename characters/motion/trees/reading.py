@@ -15,7 +15,7 @@ from cubeling.characters.motion.trees.plan import (
     Plan,
     Row,
     StateGraph,
-    Transition,
+    StateTransition,
 )
 from cubeling.toml_file import TomlTable
 
@@ -169,7 +169,7 @@ class _PlanReader:
                 return table.choice(key, PARAMETERS)
 
 
-def _transition(table: TomlTable, states: Collection[str]) -> Transition:
+def _transition(table: TomlTable, states: Collection[str]) -> StateTransition:
     table.only("from", "to", "when", "seconds", "crossfade")
     start, end = table.choice("from", ["*", *states], "*"), table.choice("to", states)
     numbers = frozenset([*PARAMETERS, *STATE_VALUES])
@@ -180,7 +180,7 @@ def _transition(table: TomlTable, states: Collection[str]) -> Transition:
     seconds = table.number("seconds", 0.0, 10.0, 0.25)
     if seconds == 0.0:
         raise table.unlike("seconds", "more than 0 and at most 10")
-    return Transition(start, end, when, seconds, table.truth("crossfade", False))
+    return StateTransition(start, end, when, seconds, table.truth("crossfade", False))
 
 
 def _time_constants(file: TomlTable) -> dict[str, float]:

@@ -43,7 +43,7 @@ def hazy(pixels: Image, table: Image) -> Image:
     return np.asarray(result, np.uint8)
 
 
-def darkened(picture: Image, left: Image, table: Image | None) -> Image:
+def darken_picture(picture: Image, left: Image, table: Image | None) -> Image:
     """Return a picture (height, width, 3) times the shares that are left of its light, 255 for 1.
 
     The glare in it is not shaded: nothing becomes darker than that.

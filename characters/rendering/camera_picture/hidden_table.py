@@ -34,15 +34,15 @@ def hidden_table(
     for place, share in cubes:
         shared = place.intersection(area)
         if shared is not None:
-            hidden = _joined(hidden, share[shared.within(place).slices], shared, area)
+            hidden = _join(hidden, share[shared.within(place).slices], shared, area)
     shared = None if cover is None else cover.area.intersection(area)
     if cover is not None and shared is not None:
         part = cover.share_in(shared)
-        hidden = _joined(hidden, part, shared, area)
+        hidden = _join(hidden, part, shared, area)
     return hidden
 
 
-def _joined(
+def _join(
     hidden: NDArray[np.uint8] | None, part: NDArray[np.uint8], shared: Rectangle, area: Rectangle
 ) -> NDArray[np.uint8]:
     """Hide a part of a region too; what two hide independently of each other is multiplied."""

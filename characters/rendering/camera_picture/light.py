@@ -15,7 +15,7 @@ from cubeling.characters.rendering.projection import (
     project,
     usable_distortion,
 )
-from cubeling.characters.rendering.scene import Box, RoomLight, View
+from cubeling.characters.rendering.scene import Box, CameraView, RoomLight
 from cubeling.characters.skeleton.pose import Array
 
 TO_LIGHT = np.array([-0.42, 1.0, 0.34]) / np.linalg.norm([-0.42, 1.0, 0.34])
@@ -228,13 +228,13 @@ class LightEstimator:
         return np.asarray(np.maximum(mean, 1e-4))
 
 
-def paper_color(view: View) -> Array | None:
+def paper_color(view: CameraView) -> Array | None:
     """Return the linear RGB (3,) of the paper of the brightest visible cube face, or None."""
     papers = [paper for box in view.occluders for paper in _face_papers(view, box)]
     return max(papers, key=lambda paper: float(paper @ LUMA_WEIGHTS), default=None)
 
 
-def _face_papers(view: View, box: Box) -> Array:
+def _face_papers(view: CameraView, box: Box) -> Array:
     """Return the paper colours (n, 3) of the faces that the camera sees completely."""
     if view.image is None or not is_invertible(box.camera_from_box) or not np.isfinite(box.edge):
         return np.zeros((0, 3))

@@ -82,7 +82,7 @@ def _outline(box: Box, matrix: Array) -> list[tuple[float, float, float]]:
     pose = np.asarray(box.camera_from_box, float)
     visible = box.edge * _CORNERS @ pose[:3, :3].T + pose[:3, 3]
     if visible[:, 2].min() < NEAR_M:
-        visible = _clipped(box.edge * CUBE_EDGES @ pose[:3, :3].T + pose[:3, 3])
+        visible = _clip(box.edge * CUBE_EDGES @ pose[:3, :3].T + pose[:3, 3])
     # Its corners come in one sense of rotation, so that the inside is on one side of all lines.
     hull = cv2.convexHull(project(visible, matrix).astype(np.float32), clockwise=False)[:, 0]
     lines = []
@@ -93,7 +93,7 @@ def _outline(box: Box, matrix: Array) -> list[tuple[float, float, float]]:
     return lines
 
 
-def _clipped(edges: Array) -> Array:
+def _clip(edges: Array) -> Array:
     """Return the ends of edges (n, 2, 3) that are not before the near plane, and where they cut it.
 
     In the camera frame, (m, 3) [m].

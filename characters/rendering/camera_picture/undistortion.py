@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.rendering.camera_picture.hand_cover import Maps, PictureCover, covered_area
 from cubeling.characters.rendering.projection import Rectangle, is_pinhole, usable_distortion
-from cubeling.characters.rendering.scene import HandInFront, View
+from cubeling.characters.rendering.scene import CameraView, HandInFront
 from cubeling.characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
@@ -40,7 +40,7 @@ class Undistorter:
         self._lens = np.eye(3), np.zeros(5)
         self._backdrop: Image | None = None
         self._worker: ThreadPoolExecutor | None = None
-        self._ahead: tuple[View, Future[Image]] | None = None
+        self._ahead: tuple[CameraView, Future[Image]] | None = None
 
     def start(self, image: Image, matrix: Array, distortion: Array) -> None:
         """Begin to undistort a frame on another thread: its view follows.
@@ -53,7 +53,7 @@ class Undistorter:
             return  # `undistort` says so
         if self._worker is None:
             self._worker = ThreadPoolExecutor(1, "undistortion")
-        view = View(image, matrix, distortion, None)
+        view = CameraView(image, matrix, distortion, None)
         self.matrix_of(view)
         self._ahead = view, self._worker.submit(self._undistorted, view, self._maps)
 
@@ -70,7 +70,7 @@ class Undistorter:
             self._worker.shutdown()
             self._worker = None
 
-    def matrix_of(self, view: View) -> Array:
+    def matrix_of(self, view: CameraView) -> Array:
         """Return the pinhole matrix of the picture, (3, 3) [px], without waiting for the picture.
 
         Raises
@@ -93,7 +93,7 @@ class Undistorter:
             self._lens = matrix, distortion
         return self._matrix
 
-    def undistort(self, view: View) -> Image:
+    def undistort(self, view: CameraView) -> Image:
         """Return the undistorted picture, (height, width, 3) BGR: a copy to draw on.
 
         Raises
@@ -110,7 +110,7 @@ class Undistorter:
         self.matrix_of(view)
         return self._undistorted(view, self._maps)
 
-    def _undistorted(self, view: View, maps: Maps | None) -> Image:
+    def _undistorted(self, view: CameraView, maps: Maps | None) -> Image:
         """Return the same, of a view that has an image, by the maps of its camera."""
         image = view.image
         assert image is not None
@@ -191,7 +191,7 @@ class Undistorter:
         return self._backdrop.copy()
 
 
-def _camera_key(view: View) -> tuple[bytes, ...]:
+def _camera_key(view: CameraView) -> tuple[bytes, ...]:
     """Return what the maps of a view depend on."""
     matrix = np.asarray(view.matrix, float)
     shape = None if view.image is None else view.image.shape[:2]
@@ -199,7 +199,7 @@ def _camera_key(view: View) -> tuple[bytes, ...]:
     return matrix.tobytes(), distortion.tobytes(), bytes(repr(shape), "ascii")
 
 
-def _same_picture(view: View, other: View) -> bool:
+def _same_picture(view: CameraView, other: CameraView) -> bool:
     """Return whether two views show the same picture."""
     return view.image is other.image and _camera_key(view) == _camera_key(other)
 

@@ -35,7 +35,7 @@ def _regular(count: int) -> Array:
     return np.stack([(np.arange(count) + 0.5) / count, np.full(count, 0.5)], axis=1)
 
 
-def _jittered(count: int) -> Array:
+def _jitter(count: int) -> Array:
     shifts = _random(count)
     shifts[:, 0] = (np.arange(count) + shifts[:, 0]) / count
     return shifts
@@ -52,7 +52,7 @@ def _hammersley(count: int) -> Array:
 PATTERNS: dict[str, Callable[[int], Array]] = {
     "random": _random,
     "regular": _regular,
-    "jittered": _jittered,
+    "jittered": _jitter,
     "halton": _halton,
     "hammersley": _hammersley,
 }

@@ -95,7 +95,7 @@ def with_levels(
     part = np.where(np.arange(len(vertices.positions)) < vertices.moved, 0, 1)
     if dormant is not None:
         part[(part == 1) & dormant[vertices.owners]] = 2
-    drawn = [_drawn(vertices, stand, bones, part == 2) for stand in stands]
+    drawn = [_drawn_triangles(vertices, stand, bones, part == 2) for stand in stands]
     last = np.full(len(part), -1)
     for number, (indices, _, _) in enumerate(drawn):
         last[indices] = number
@@ -111,7 +111,7 @@ def with_levels(
         counts = np.bincount(part[last >= number], minlength=3).tolist()
         parts = tuple(zip(starts, counts, strict=True))
         levels.append(DetailLevel(distance, new_index[indices], materials, awake, parts))
-    return vertices.reordered(order), tuple(levels)
+    return vertices.reorder(order), tuple(levels)
 
 
 def shape_only(vertices: CharacterVertices) -> CharacterVertices:
@@ -152,7 +152,7 @@ def chosen_level(levels: Sequence[DetailLevel], last: int, max_error: float) -> 
     return last if last > fits and stays else fits
 
 
-def _drawn(
+def _drawn_triangles(
     vertices: CharacterVertices,
     stand: NDArray[np.intp],
     bones: NDArray[np.float64],

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.characters.rendering.geometry.places import are_whole, connected, places_of
+from cubeling.characters.rendering.geometry.places import are_whole, connect, places_of
 from cubeling.characters.rendering.geometry.quadrics import (
     Floats,
     Indices,
@@ -109,7 +109,7 @@ class _Mesh:
         error = self._errors(keys, pair, froms)
         limits = np.minimum(tolerance.distance, tolerance.thickness_share * self._thickness[froms])
         error[~(error <= limits**2)] = np.inf
-        chosen = self._picked(froms, tos, error)
+        chosen = self._pick(froms, tos, error)
         chosen = chosen[self._linked(pairs, froms, tos, np.bincount(pair, uses), chosen)]
         is_chosen = np.zeros(len(pairs), bool)
         is_chosen[chosen] = True
@@ -150,7 +150,7 @@ class _Mesh:
         area = np.bincount(pair, self._quadrics[sources, -1])
         return np.where(whole, np.bincount(pair, error), np.inf) / np.maximum(area, 1e-30)
 
-    def _picked(self, froms: Indices, tos: Indices, error: Floats) -> Indices:
+    def _pick(self, froms: Indices, tos: Indices, error: Floats) -> Indices:
         """Return pairs of small error of which no two are neighbours."""
         order = np.argsort(error, kind="stable")[: np.count_nonzero(np.isfinite(error))]
         _, first = np.unique(froms[order], return_index=True)  # the best target of each place
@@ -207,7 +207,7 @@ def _thickness(corners: Floats, triangles: Indices, count: int) -> Floats:
     It is three times the volume over the area: the radius of a sphere, and nearly 0 for a patch
     that lies on another part.
     """
-    parts = connected(triangles, count)
+    parts = connect(triangles, count)
     part = parts[triangles[:, 0]]
     area = np.bincount(part, 0.5 * np.linalg.norm(triangle_normals(corners), axis=1), count)
     sums = [np.bincount(part, column, count) for column in corners.mean(axis=1).T]

@@ -73,7 +73,7 @@ class SkinnedPoints:
         """Give other positions (k, 3) to some of the points, (k,)."""
         self._positions[:3, which] = positions.T
 
-    def skinned(self, palette: NDArray[np.float32]) -> NDArray[np.float64]:
+    def skin(self, palette: NDArray[np.float32]) -> NDArray[np.float64]:
         """Return the points, (n, 3), moved by a palette (rows, 3, 4) without last rows."""
         # The threads of one large product would wait for each other on a busy machine.
         matrices = palette.reshape(-1, 12).T @ self._weights

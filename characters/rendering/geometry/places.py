@@ -35,7 +35,7 @@ def places_of(positions: NDArray[np.float32]) -> Indices:
         order = np.argsort(keys, kind="stable")
         same = np.diff(keys[order]) == 0
         neighbours.append(np.stack([order[:-1][same], order[1:][same]], axis=1))
-    lowest = connected(np.concatenate(neighbours), len(points))
+    lowest = connect(np.concatenate(neighbours), len(points))
     return np.unique(lowest, return_inverse=True)[1][place.reshape(-1)].astype(np.intp)
 
 
@@ -48,7 +48,7 @@ def are_whole(triangles: NDArray[np.integer[Any]]) -> NDArray[np.bool_]:
     return np.asarray((triangles != np.roll(triangles, 1, axis=1)).all(axis=1))
 
 
-def connected(together: Indices, count: int) -> Indices:
+def connect(together: Indices, count: int) -> Indices:
     """Return the lowest of the places to which each one is connected, (count,).
 
     The places in a row of `together`, (n, k), as the corners of a triangle, are connected.

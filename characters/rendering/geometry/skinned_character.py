@@ -67,7 +67,7 @@ class SkinnedCharacter:
         self._vertices, self._level = vertices, 0
         self._asleep = False
         extreme = vertices.extreme()
-        heights = vertices.skinned(rest, slice(None))[:, 1]
+        heights = vertices.skin(rest, slice(None))[:, 1]
         self.height = float(max(heights.max() - min(heights.min(), 0.0), 1e-6))
         """Height of the rest pose above the ground [m in the character frame]."""
         self._morphs = MorphMixer(
@@ -95,7 +95,7 @@ class SkinnedCharacter:
         ]
         indices = context.buffer(np.concatenate(drawn))
         shape = shape_only(leveled[-1])
-        simplified, self._caster_runs = shape.simplified(SHADOW_CELLS, self._levels[-1].awake)
+        simplified, self._caster_runs = shape.simplify(SHADOW_CELLS, self._levels[-1].awake)
         caster_indices = context.buffer(simplified)
         self.skinned = context.buffer(reserve=RECORD_BYTES * len(vertices.positions))
         """Positions and normals in the table frame, 3 + 3 float32 for each vertex."""
@@ -185,7 +185,7 @@ class SkinnedCharacter:
         self._asleep = bool(len(self._dormant) and _vanished(palette[self._dormant], scale).all())
         self._level = chosen_level(self._levels, self._level, max_error)
         self._skin_used()
-        return self._enclosing.skinned(palette)
+        return self._enclosing.skin(palette)
 
     def render(
         self,

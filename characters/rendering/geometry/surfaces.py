@@ -60,7 +60,6 @@ class Surface:
     """Number of its indices."""
 
     material: Material
-    """The material."""
 
     features: frozenset[str]
     """Result of `surface_features`."""

@@ -119,9 +119,9 @@ class CharacterVertices:
         fixed = np.ones(len(self.positions), bool)
         fixed[moved] = False
         order = np.concatenate([moved, np.flatnonzero(fixed)])
-        return replace(self.reordered(order), moved=len(moved))
+        return replace(self.reorder(order), moved=len(moved))
 
-    def reordered(self, order: NDArray[np.intp]) -> Self:
+    def reorder(self, order: NDArray[np.intp]) -> Self:
         """Return a copy in which vertex i is the vertex `order[i]`, (vertices,), of this one."""
         new_index = np.empty(len(order), np.uint32)
         new_index[order] = np.arange(len(order))
@@ -134,14 +134,14 @@ class CharacterVertices:
             colors=self.colors[order],
             uvs=self.uvs[order],
             indices=new_index[self.indices],
-            morphs=tuple(_renumbered(morph, new_index) for morph in self.morphs),
+            morphs=tuple(_renumber(morph, new_index) for morph in self.morphs),
         )
 
     def palette(self, world_from_joint: Array) -> Array:
         """Return the skinning matrices (rows, 4, 4) for the skeleton's joints (joints, 4, 4)."""
         return np.concatenate([world_from_joint @ bind for bind in self.binds])
 
-    def skinned(
+    def skin(
         self,
         palette: Array,
         selection: NDArray[np.intp] | slice,
@@ -179,7 +179,7 @@ class CharacterVertices:
         strongest = self.weights.argmax(axis=1)
         return np.asarray(self.joints[np.arange(len(strongest)), strongest], np.uint32)
 
-    def simplified(
+    def simplify(
         self, cells: int, awake: int | None = None
     ) -> tuple[NDArray[np.uint32], tuple[CasterRun, ...]]:
         """Return fewer triangles of the same vertices, by vertex clustering.
@@ -221,7 +221,7 @@ class CharacterVertices:
         return np.hstack([self.positions, self.normals])
 
 
-def _renumbered(morph: Morph, new_index: NDArray[np.uint32]) -> Morph:
+def _renumber(morph: Morph, new_index: NDArray[np.uint32]) -> Morph:
     """Return a morph with new numbers of its vertices, ascending."""
     vertices = new_index[morph.vertices]
     order = np.argsort(vertices)

@@ -16,7 +16,7 @@ class CharacterPass(RenderPass):
     """Draws the skinned characters on the character layer, whose depth hides what is covered."""
 
     def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
-        """Draw all characters."""
+        """Draw all characters, shaded, on the character layer."""
         layer.use()
         light = frame.light
         self._render(

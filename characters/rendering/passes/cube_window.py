@@ -72,7 +72,7 @@ class CubeWindowPass(RenderPass):
                 array.program,
                 clip_from_cube=layer.clip_from_camera @ camera_from_unit_cube(box),
                 opening=box.opening,
-                **_seen_from_inside(frame, box),
+                **_uniforms_inside(frame, box),
                 key=frame.light.key,
                 sky=frame.light.sky,
             )
@@ -89,7 +89,7 @@ class CubeWindowPass(RenderPass):
         """Render the shadow map of a character; return its floor's frame, (4, 4) [m]."""
         if self._shadow is None:
             self._shadow = ShadowMap(self._context, self._programs)
-        floor_from_table = np.asarray(np.linalg.inv(_unscaled(resident.place)), float)
+        floor_from_table = np.asarray(np.linalg.inv(_unscale(resident.place)), float)
         turn = floor_from_table[:3, :3]
         to_light = turn @ frame.light.to_light
         to_light[1] = max(to_light[1], MIN_SLOPE)
@@ -126,7 +126,7 @@ def set_clipping(context: moderngl.Context, is_on: bool) -> None:
         (context.enable_direct if is_on else context.disable_direct)(GL_CLIP_DISTANCE0 + number)
 
 
-def _seen_from_inside(frame: FrameResources, box: Box) -> dict[str, Array]:
+def _uniforms_inside(frame: FrameResources, box: Box) -> dict[str, Array]:
     """Return where camera, light and up are from a cube whose edge is 1 long."""
     turn = np.asarray(box.camera_from_box[:3, :3]).T
     eye = -turn @ box.camera_from_box[:3, 3] / box.edge
@@ -145,7 +145,7 @@ def _seen_from_inside(frame: FrameResources, box: Box) -> dict[str, Array]:
     }
 
 
-def _unscaled(place: Array) -> Array:
+def _unscale(place: Array) -> Array:
     """Return a placement without its scale, (4, 4) [m]."""
     rigid = np.array(place, float)
     rigid[:3, :3] /= np.linalg.norm(rigid[:3, :3], axis=0)

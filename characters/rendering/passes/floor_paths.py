@@ -119,7 +119,9 @@ def _seen_paint(
     key = points.tobytes(), path.closed, path.highlight, texel
     known = last if last is not None and last.key == key else None
     image = (
-        known.image if known else _painted(places, path.closed, numbers == path.highlight, texel)
+        known.image
+        if known
+        else _paint_share(places, path.closed, numbers == path.highlight, texel)
     )
     rays = _rays(frame, image.corners)
     if known is not None and np.abs(rays - known.rays).max() < SAME_PX:
@@ -155,7 +157,7 @@ def _texel(frame: FrameResources, points: Array) -> float:
     return 2.0 ** max(exponent, math.ceil(math.log2(side / (MAX_SIDE_TEXELS - 2 * RIM_TEXELS))))
 
 
-def _painted(
+def _paint_share(
     places: Array, closed: bool, highlighted: NDArray[np.bool_], texel: float
 ) -> TableImage:
     """Return the share of each texel that paint covers; `places` are finite, (n, 2) [m]."""

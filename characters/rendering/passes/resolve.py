@@ -52,7 +52,7 @@ class ResolvePass(RenderPass):
         if frame.haze is not None:
             pixels = hazy(pixels, frame.haze)
         if softness is not None:
-            pixels = blurred(pixels, softness.blur * frame.scale)
+            pixels = blur_picture(pixels, softness.blur * frame.scale)
         behind = frame.picture[area.slices]
         # OpenCV takes several times as long for channels that are not all next to each other.
         color = cv2.cvtColor(pixels, cv2.COLOR_BGRA2BGR)
@@ -82,7 +82,7 @@ class ResolvePass(RenderPass):
         return self._tiled[y : y + height, x : x + width]
 
 
-def blurred(pixels: Image, blur_px: float) -> Image:
+def blur_picture(pixels: Image, blur_px: float) -> Image:
     """Return what was drawn with the blur of a camera's picture, a standard deviation [px]."""
     variance = min(blur_px, MAX_BLUR_PX) ** 2 - OWN_BLUR_PX**2
     if variance <= 0.0:

@@ -137,6 +137,7 @@ class ShadowMap:
         """
         height = character.height
         # Horizontal offset (x, z) of a point from its shadow, for each metre of the point's height.
+        # The light is above the table (`Light` sees to it), so this never divides by zero.
         slope = light.to_light[[0, 2]] / light.to_light[1]
         self.extent = _extent(character.enclosing, height, slope)
         self.area = _map_area(self.extent, height)
@@ -155,11 +156,13 @@ class ShadowMap:
         # touch it.
         context.enable_only(moderngl.BLEND | moderngl.CULL_FACE)
         context.front_face = "ccw"
+        # Each texel keeps the most that anything covers it, in whatever order triangles come.
         context.blend_equation = moderngl.MAX, moderngl.MAX
         context.blend_func = moderngl.ONE, moderngl.ONE
         for run in character.skinned.caster_runs:
             (context.disable if run.double_sided else context.enable)(moderngl.CULL_FACE)
             character.skinned.caster.render(vertices=run.count, first=run.first, instances=2)
+        # The state is global: other passes expect the usual blending.
         context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
 
     def read_back(self) -> None:
@@ -184,6 +187,7 @@ class ShadowMap:
             cv2.BORDER_REPLICATE,
         )
         texel = float(self.area[2]) / MAP_SIDE
+        # One texel of margin on each side, so the picture starts one texel earlier.
         corner = self.area[:2] + texel * (np.array([x, z]) - 1)
         return TableImage(np.asarray(bgr, np.uint8), (float(corner[0]), float(corner[1])), texel)
 
@@ -262,6 +266,7 @@ def _left_of_light(
     closed = _blurred_sum(sky, texels_per_height, SKY_BLUR, SKY_OCCLUSION)
     shade, closed = np.minimum(shade, 1.0), np.minimum(closed, MAX_SKY_OCCLUSION)
     left = cv2.merge(
+        # 1 − share·shade − (1 − share)·closed; BGR, hence the shares in reverse.
         [cv2.addWeighted(shade, -each, closed, each - 1.0, 1.0) for each in share[::-1].tolist()]
     )
     return np.asarray(
@@ -281,6 +286,7 @@ def _blurred_sum(
     levels = np.ascontiguousarray(covered.transpose(2, 0, 1))
     for level, deviation, weight in zip(levels, deviations, weights, strict=True):
         kernel = _gaussian_kernel(texels_per_height * deviation)
+        # The weight is in one of the two kernels, which saves a pass over the map.
         weighted = np.float32(weight / 255.0) * kernel
         total += cv2.sepFilter2D(
             level, cv2.CV_32F, kernel, weighted, borderType=cv2.BORDER_REPLICATE
@@ -294,6 +300,7 @@ def _gaussian_kernel(deviation: float) -> NDArray[np.float32]:
 
     Maps grow in steps, so that few deviations are asked for.
     """
+    # With less, the kernel is a single tap, and edges alias to texels.
     deviation = max(deviation, 0.3)
     side = min(math.ceil(3.0 * deviation) + 1, BLUR_TAPS)
     kernel = np.exp(-0.5 * (np.arange(1 - side, side) / deviation) ** 2)

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 
 from cubeling.characters.rendering.camera_picture.hand_cover import PictureCover
-from cubeling.characters.rendering.camera_picture.haze import darkened
+from cubeling.characters.rendering.camera_picture.haze import darken_picture
 from cubeling.characters.rendering.camera_picture.hidden_table import hidden_table
 from cubeling.characters.rendering.passes.table_image import TableImage
 from cubeling.characters.rendering.resources import FrameResources
@@ -18,7 +18,7 @@ def darken(frame: FrameResources, cover: PictureCover | None, factors: TableImag
 
     `factors` are those of sRGB values, BGR, 255 for 1; beyond them, all light is left.
     """
-    dark = _cropped(factors)
+    dark = _crop(factors)
     area = None if dark is None else frame.area_of(dark.corners)
     if dark is None or area is None:
         return
@@ -31,10 +31,10 @@ def darken(frame: FrameResources, cover: PictureCover | None, factors: TableImag
         taken = cv2.multiply(cv2.bitwise_not(left[box]), seen, scale=1 / 255)
         left[box] = cv2.bitwise_not(taken)
     part = frame.picture[area.slices]
-    part[:] = darkened(part, left, frame.haze)
+    part[:] = darken_picture(part, left, frame.haze)
 
 
-def _cropped(factors: TableImage) -> TableImage | None:
+def _crop(factors: TableImage) -> TableImage | None:
     """Return the part that is seen to be dark, and one texel around it; None if none is."""
     seen = cv2.inRange(factors.pixels, (UNSEEN_LEVEL,) * 3, (255,) * 3)
     x, y, width, height = cv2.boundingRect(cv2.bitwise_not(seen))

@@ -27,7 +27,7 @@ class LoopCut:
     """A part of a clip that repeats."""
 
     start: int
-    """First frame."""
+    """Index of the first frame in the recording."""
 
     end: int
     """The frame that matches the first, one cycle later."""
@@ -86,15 +86,15 @@ def close_loop(clip: Clip, cut: LoopCut) -> Clip:
     gap = rotations.to_rotation_vector(rotations.multiply(rotations.conjugate(last), first))
     turns = rotations.multiply(turns, rotations.from_rotation_vector(gap * part))
 
-    def closed(values: Array) -> Array:
+    def close(values: Array) -> Array:
         weight = part if values.ndim == 3 else part[..., 0]
         return np.asarray(values + (values[0] - values[-1]) * weight)
 
     loop = Pose(
-        closed(poses.translations),
+        close(poses.translations),
         turns,
-        None if poses.scales is None else closed(poses.scales),
-        None if poses.morphs is None else closed(poses.morphs),
+        None if poses.scales is None else close(poses.scales),
+        None if poses.morphs is None else close(poses.morphs),
     )
     return replace(clip, poses=loop, loop=True)
 
@@ -108,15 +108,15 @@ def resample_loop(clip: Clip, rate: float) -> Clip:
     poses = clip.poses
     turns = rotations.continuous(poses.rotations)
 
-    def interpolated(values: Array) -> Array:
+    def interpolate(values: Array) -> Array:
         weight = part if values.ndim == 3 else part[..., 0]
         return np.asarray(values[before] * (1 - weight) + values[before + 1] * weight)
 
     resampled = Pose(
-        interpolated(poses.translations),
-        rotations.normalize(interpolated(turns)),
-        None if poses.scales is None else interpolated(poses.scales),
-        None if poses.morphs is None else interpolated(poses.morphs),
+        interpolate(poses.translations),
+        rotations.normalize(interpolate(turns)),
+        None if poses.scales is None else interpolate(poses.scales),
+        None if poses.morphs is None else interpolate(poses.morphs),
     )
     return replace(clip, rate=rate, poses=resampled)
 

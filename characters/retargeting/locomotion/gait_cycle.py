@@ -17,7 +17,7 @@ from cubeling.characters.retargeting.footskate import (
 )
 from cubeling.characters.retargeting.ground_motion import GroundMotion, arc, transform
 from cubeling.characters.retargeting.rig import LegJoints, Rig, global_rotations
-from cubeling.characters.retargeting.root import moved_to_trajectory
+from cubeling.characters.retargeting.root import move_to_trajectory
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array, Pose
 
@@ -124,19 +124,19 @@ class GaitCycle:
         every = np.concatenate(speeds)
         return float(every.mean()) if len(every) else 0.0
 
-    def bent_to(self, path: ArcPath) -> "GaitCycle":
+    def bend_to(self, path: ArcPath) -> "GaitCycle":
         """Return the gait on another path, its footprints bent with it."""
         times = np.arange(len(self.clip)) / self.clip.rate
         share = path.speed / self.path.speed
         curvature_change = path.curvature * share - self.path.curvature
-        pose = moved_to_trajectory(self.clip.poses, path.at(times))
+        pose = move_to_trajectory(self.clip.poses, path.at(times))
         pose = self._with_lean(pose, path)
         ends = np.empty((len(times), len(self.legs), 3))
         for number, leg in enumerate(self.legs):
             balls = ball_positions(self.clip.poses, self.rig, leg)
             coordinates = self.path.to_arc(balls, times)
             yaw = curvature_change * (coordinates[:, 0] - self.path.speed * times)
-            pose = _turned(pose, self.rig, leg.foot, rotations.about("y", yaw))
+            pose = _turn(pose, self.rig, leg.foot, rotations.about("y", yaw))
             coordinates[:, 0] *= share
             ends[:, number] = path.from_arc(coordinates)
         knees = self.source_knees if abs(curvature_change) < _MIN_CURVATURE else None
@@ -168,7 +168,7 @@ class GaitCycle:
         necks = [j for part in ("neck", "head") if (j := self.rig.anatomy.joint(part)) is not None]
         for joint in necks:
             turn = rotations.about("y", look_yaw / len(necks))
-            pose = _turned(pose, self.rig, joint, turn)
+            pose = _turn(pose, self.rig, joint, turn)
         return pose
 
 
@@ -180,7 +180,7 @@ def _with_exact_end(pose: Pose) -> Pose:
     return replace(pose, translations=translations, rotations=turns)
 
 
-def _turned(pose: Pose, rig: Rig, joint: int, turn: Array) -> Pose:
+def _turn(pose: Pose, rig: Rig, joint: int, turn: Array) -> Pose:
     """Return poses with a joint turned in the world by rotations (frames, 4)."""
     pair = [rig.skeleton.parents[joint], joint]
     placements = global_rotations(pose.globals(rig.skeleton)[:, pair])

@@ -80,7 +80,7 @@ class GaitReport:
 
     @classmethod
     def of(cls, name: str, gait: GaitCycle, meshes: Sequence[Mesh]) -> "GaitReport":
-        """Measure a gait."""
+        """Measure a gait on the meshes of the character that walks."""
         poses = gait.clip.in_place
         return cls(
             name,

@@ -39,7 +39,7 @@ from cubeling.characters.retargeting.locomotion.recorded_gait import (
 )
 from cubeling.characters.retargeting.recording import Recording
 from cubeling.characters.retargeting.rig import Rig
-from cubeling.characters.retargeting.root import moved_to_trajectory, with_root_joint
+from cubeling.characters.retargeting.root import move_to_trajectory, with_root_joint
 from cubeling.characters.skeleton.pose import Pose
 
 _MAX_STRAIGHT_ANGULAR = 8.0  # degrees; less is straight
@@ -64,7 +64,7 @@ class LocomotionResult:
     """The gaits found in the recordings."""
 
     clips: tuple[GaitReport, ...]
-    """The clips made."""
+    """One for each gait that was found or made."""
 
 
 def make_locomotion(
@@ -124,11 +124,11 @@ def _tree_gaits(
         own_angular = sign * angular_of(gait.path)
         share = np.interp(abs(angular), knots, speeds) / np.interp(abs(own_angular), knots, speeds)
         yaw_rate = -math.radians(YAW_RATE_PER_ANGULAR * angular)
-        bent = gait.bent_to(ArcPath(gait.path.speed * float(share), sign * yaw_rate))
+        bent = gait.bend_to(ArcPath(gait.path.speed * float(share), sign * yaw_rate))
         changes = "" if abs(own_angular - angular) < _MAX_STRAIGHT_ANGULAR else ", bent"
         bent = replace(bent, clip=replace(bent.clip, name=name))
         if mirrored and mirror is not None:
-            bent = _mirrored(bent, mirror)
+            bent = _mirror(bent, mirror)
             changes += ", mirrored"
         made.append(replace(bent, origin=gait.origin + changes))
     return made
@@ -154,7 +154,7 @@ def _nearest_gait(
     return gaits[number], mirrored
 
 
-def _mirrored(gait: GaitCycle, mirror: Mirror) -> GaitCycle:
+def _mirror(gait: GaitCycle, mirror: Mirror) -> GaitCycle:
     """Return a gait mirrored and shifted by half a cycle, so that it begins with the left foot."""
     clip = gait.clip
     image = mirror.clip(clip)
@@ -165,7 +165,7 @@ def _mirrored(gait: GaitCycle, mirror: Mirror) -> GaitCycle:
     image.poses.translations[:, rigid] = clip.poses.translations[:, rigid]
     count = len(image) - 1
     order = (np.arange(len(image)) + count // 2) % count
-    poses = moved_to_trajectory(image.in_place[order], image.track)
+    poses = move_to_trajectory(image.in_place[order], image.track)
     sides = [leg + 1 - 2 * (leg % 2) for leg in range(gait.contacts.ball.shape[1])]
     heel, ball = gait.contacts.heel[order][:, sides], gait.contacts.ball[order][:, sides]
     mirrored = replace(

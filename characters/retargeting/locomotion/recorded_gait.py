@@ -30,7 +30,7 @@ from cubeling.characters.retargeting.rig import Rig, leg_pairs
 from cubeling.characters.retargeting.root import (
     clip_with_root,
     has_root_joint,
-    moved_to_trajectory,
+    move_to_trajectory,
     with_root_trajectory,
 )
 from cubeling.characters.skeleton.pose import Array, Skeleton
@@ -73,7 +73,7 @@ def extract_gait(recording: Recording, character: Character, walker: Character) 
         contacts = contacts.at(np.linspace(0, fine - 1, len(loop)).round().astype(int))
     path = ArcPath(path.speed * seconds / loop.duration, delta.yaw / loop.duration)
     times = np.arange(len(loop)) / loop.rate
-    poses = moved_to_trajectory(loop.poses, path.at(times))
+    poses = move_to_trajectory(loop.poses, path.at(times))
     loop = replace(loop, poses=poses, root_motion=True)
     seam, knees = cut.seam * rig.leg_length, _source_knees(recording, rig, cut)
     gait = GaitCycle(recording.origin, loop, rig, contacts, path, seam, knees).with_held_feet()
@@ -152,4 +152,4 @@ def _without_treadmill(clip: Clip, rig: Rig, contacts: FootContacts) -> Clip:
         for frame, root in zip(frame_poses, clip.track, strict=True)
     ]
     trajectory = np.array([[delta.x, delta.z, delta.yaw] for delta in deltas])
-    return replace(clip, poses=moved_to_trajectory(clip.in_place, trajectory))
+    return replace(clip, poses=move_to_trajectory(clip.in_place, trajectory))

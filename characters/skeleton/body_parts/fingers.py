@@ -19,7 +19,7 @@ def find_fingers(tree: JointTree, found: Mapping[str, int]) -> dict[str, int]:
     """Return the joints of the fingers of both hands; `found` are the limbs."""
     fingers: dict[str, int] = {}
     for side in ("left", "right"):
-        chains = _named(tree, side)
+        chains = _chains_by_name(tree, side)
         hand = found.get(f"{side}Hand")
         if not chains and hand is not None:
             chains = _by_shape(tree, hand)
@@ -31,7 +31,7 @@ def find_fingers(tree: JointTree, found: Mapping[str, int]) -> dict[str, int]:
     return fingers
 
 
-def _named(tree: JointTree, side: str) -> dict[str, list[int]]:
+def _chains_by_name(tree: JointTree, side: str) -> dict[str, list[int]]:
     """Return the chain of each finger that names tell."""
     joints = [j for j, name in enumerate(tree.names) if name.finger and tree.side(j) == side]
     chains = {

@@ -15,7 +15,7 @@ SIDE_OF = dict.fromkeys(
     ("right", "r", "rt", "rgt", "droite", "rechts", "derecha", "derecho", "destra", "direita"),
     "right",
 )
-"""Side by word."""
+"""Side by the word or letter in a joint's name."""
 
 FILLER_WORDS = _words(
     "mixamorig bip bip01 bone bones b j jnt joint jt armature skeleton def c center centre m x "

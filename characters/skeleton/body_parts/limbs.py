@@ -127,7 +127,7 @@ def _limb(
     if apart and top is not None and middle is not None:
         found |= _detached_end(tree, top, middle, essential[-1])
     if found and not set(essential) <= found.keys():
-        found = max(best, _with_unnamed(tree, found, roles, essential, fit), key=_score)[1]
+        found = max(best, _assign_unnamed(tree, found, roles, essential, fit), key=_score)[1]
     joints = list(found.values())
     if len(joints) == 1 and essential[0] in fit(tree.names[joints[0]]):  # one for the whole limb
         return {essential[0]: joints[0]}
@@ -150,7 +150,7 @@ def _fits(tree: JointTree, chain: Sequence[int], fit: Fit) -> list[Mapping[str, 
     ]
 
 
-def _with_unnamed(
+def _assign_unnamed(
     tree: JointTree,
     found: Mapping[str, int],
     roles: Sequence[str],

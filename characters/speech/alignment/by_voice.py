@@ -74,10 +74,10 @@ def align(recording: Speech, text: str, voice: Voice, language: str = "en") -> S
     dialects = (
         DIALECTS.get(language, (language,)) if len(text) <= MAX_VARIANTS_TEXT else (language,)
     )
-    fits = [_Fit(_said(text, voice, dialect), features) for dialect in dialects]
+    fits = [_Fit(_speak_variants(text, voice, dialect), features) for dialect in dialects]
     best = min(fits, key=lambda fit: fit.distance)
-    bounds = _snapped(best.begins.clip(0, len(frames) - 1), frames)
-    timed = _timed(best.phones, bounds, frames)
+    bounds = _snap(best.begins.clip(0, len(frames) - 1), frames)
+    timed = _time_phones(best.phones, bounds, frames)
     words = _words(best.said, best.phones, timed)
     filled = fill_pauses(timed, recording.duration)
     return replace(recording, text=text, language=language, words=words, phones=filled)
@@ -104,7 +104,7 @@ class _Fit:
         """How unlike they are."""
 
 
-def _said(text: str, voice: Voice, language: str) -> list[Speech]:
+def _speak_variants(text: str, voice: Voice, language: str) -> list[Speech]:
     """Return the text as the variants of a voice say it, all with the same phones."""
     said = [with_every_word(with_closures(voice.say(text, language)))]
     if not any(phone.symbol != SILENCE for phone in said[0].phones):
@@ -162,7 +162,7 @@ def _sounding(level: NDArray[np.float64]) -> NDArray[np.intp]:
     return np.flatnonzero(kept)
 
 
-def _snapped(begins: NDArray[np.intp], frames: NDArray[np.intp]) -> NDArray[np.intp]:
+def _snap(begins: NDArray[np.intp], frames: NDArray[np.intp]) -> NDArray[np.intp]:
     """Return where phones begin, so that each pause that was cut out lies between two phones."""
     bounds = begins.copy()
     bounds[0] = 0
@@ -173,7 +173,7 @@ def _snapped(begins: NDArray[np.intp], frames: NDArray[np.intp]) -> NDArray[np.i
     return np.maximum.accumulate(bounds)
 
 
-def _timed(
+def _time_phones(
     phones: Sequence[Phone], bounds: NDArray[np.intp], frames: NDArray[np.intp]
 ) -> list[Phone]:
     """Return phones with the times of a recording; one may be empty."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.characters.speech.audio import resampled
+from cubeling.characters.speech.audio import resample
 from cubeling.characters.speech.frames import frame_blocks
 from cubeling.characters.speech.speech import Samples
 
@@ -53,14 +53,14 @@ class Cepstra:
 
 def cepstra(samples: Samples, rate: int) -> Cepstra:
     """Return the spectrum of a sound every `HOP_S`."""
-    bands = _log_bands(resampled(samples, rate, RATE))
+    bands = _log_bands(resample(samples, rate, RATE))
     level = bands.mean(1) * 10 / np.log(10)
     loud = level > np.quantile(level, 0.95) - 20.0
     order = np.arange(COEFFICIENTS)
     cosines = np.cos(np.pi / BANDS * (np.arange(BANDS)[:, None] + 0.5) * order)
     values = bands @ cosines
-    values = _normalised(values, loud)
-    return Cepstra(np.hstack([values, _normalised(_slope(values), loud)]).astype(np.float32), level)
+    values = _normalise(values, loud)
+    return Cepstra(np.hstack([values, _normalise(_slope(values), loud)]).astype(np.float32), level)
 
 
 def mel_filters(rate: int = RATE, length: int = FFT) -> NDArray[np.float32]:
@@ -98,6 +98,6 @@ def _slope(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.sum(moved, 0) / (shifts**2).sum())
 
 
-def _normalised(values: NDArray[np.float64], loud: NDArray[np.bool_]) -> NDArray[np.float64]:
+def _normalise(values: NDArray[np.float64], loud: NDArray[np.bool_]) -> NDArray[np.float64]:
     spoken = values[loud] if loud.any() else values
     return np.asarray((values - spoken.mean(0)) / (spoken.std(0) + 1e-3))

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.speech.audio import resampled
+from cubeling.characters.speech.audio import resample
 from cubeling.characters.speech.phones import arpabet_of_ipa, fill_pauses, ipa_of_arpabet
 from cubeling.characters.speech.speech import SILENCE, Phone, Speech, Word
 from cubeling.characters.speech.voices import Voice
@@ -42,8 +42,8 @@ def align_with_sphinx(recording: Speech, text: str, voice: Voice) -> Speech:
     decoder = _decoder()
     for word in {_key(word) for word, _ in written}:
         if decoder.lookup_word(word) is None:
-            decoder.add_word(word, _pronounced(word, voice), True)
-    sound = resampled(recording.samples, recording.rate, RATE)
+            decoder.add_word(word, _pronounce(word, voice), True)
+    sound = resample(recording.samples, recording.rate, RATE)
     data = (sound.clip(-1.0, 1.0) * 32767).astype("<i2").tobytes()
     try:
         decoder.set_align_text(" ".join(_key(word) for word, _ in written))
@@ -93,7 +93,7 @@ def _key(word: str) -> str:
     return word.lower().replace("’", "'")
 
 
-def _pronounced(word: str, voice: Voice) -> str:
+def _pronounce(word: str, voice: Voice) -> str:
     """Return how a voice pronounces a word, in ARPAbet."""
     symbols = (phone.symbol for phone in voice.say(word, "en-us").phones)
     return " ".join(each for symbol in symbols for each in arpabet_of_ipa(symbol)) or "SIL"

@@ -29,7 +29,7 @@ def warp(features: NDArray[np.float32], template: NDArray[np.float32]) -> NDArra
     """
     if len(features) * len(template) <= MAX_CELLS:
         return _path(features, template, np.zeros(len(features), int), len(template))
-    coarse = warp(_averaged(features), _averaged(template))
+    coarse = warp(_average(features), _average(template))
     centre = COARSER * np.interp(
         np.arange(len(features)), COARSER * (np.arange(len(coarse)) + 0.5), coarse + 0.5
     )
@@ -39,7 +39,7 @@ def warp(features: NDArray[np.float32], template: NDArray[np.float32]) -> NDArra
     return _path(features, template, np.maximum.accumulate(lows), width)
 
 
-def _averaged(rows: NDArray[np.float32]) -> NDArray[np.float32]:
+def _average(rows: NDArray[np.float32]) -> NDArray[np.float32]:
     count = -(-len(rows) // COARSER)
     padded = np.pad(rows, ((0, count * COARSER - len(rows)), (0, 0)), "edge")
     return np.asarray(padded.reshape(count, COARSER, -1).mean(1), np.float32)
@@ -62,7 +62,7 @@ def _path(
         if index == 0:
             total[2 : 2 + min(2, width)] = cost[:2]
             continue
-        shifted = _shifted(total, low - int(lows[index - 1]))
+        shifted = _shift(total, low - int(lows[index - 1]))
         ways[0] = shifted[2:] + STEP_COST
         ways[1] = shifted[1:-1]
         ways[2] = shifted[:-2] + STEP_COST
@@ -70,10 +70,10 @@ def _path(
         back[index] = best
         total[2:] = ways[best, np.arange(width)] + cost
         total[:2] = np.inf
-    return _traced(back, lows, total[2:])
+    return _trace(back, lows, total[2:])
 
 
-def _shifted(total: NDArray[np.float32], by: int) -> NDArray[np.float32]:
+def _shift(total: NDArray[np.float32], by: int) -> NDArray[np.float32]:
     """Return costs by the rows of a band that lies so much further on."""
     if by == 0:
         return total
@@ -83,7 +83,7 @@ def _shifted(total: NDArray[np.float32], by: int) -> NDArray[np.float32]:
     return moved
 
 
-def _traced(
+def _trace(
     back: NDArray[np.int8], lows: NDArray[np.int_], total: NDArray[np.float32]
 ) -> NDArray[np.intp]:
     """Return the path that ends in the last row, or the nearest one that can be reached."""

@@ -53,7 +53,7 @@ class Engine:
         self._library.espeak_SetSynthCallback(self._callback)
 
     def say(self, request: dict[str, Any]) -> None:
-        """Speak one text."""
+        """Speak the text of a request; samples and events go to the standard output."""
         language = str(request["language"])
         if self._library.espeak_SetVoiceByName(language.encode()) != 0:
             write({"error": f"no voice speaks '{language}'; see: espeak-ng --voices"})
@@ -90,7 +90,7 @@ class Engine:
 
 
 def write(event: dict[str, Any]) -> None:
-    """Write one event."""
+    """Write an event as one line of JSON."""
     sys.stdout.buffer.write(json.dumps(event).encode() + b"\n")
 
 

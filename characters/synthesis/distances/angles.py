@@ -42,7 +42,7 @@ class JointAngles:
         height: float = 1.0,
     ) -> None:
         self._weights = np.array([*weights.values()])
-        turns = _oriented(library, [*weights])
+        turns = _orient(library, [*weights])
         self._turns = np.ascontiguousarray(turns.swapaxes(0, 1))  # (joints, frames, 4)
         self._blocks = (self._turns * _STRETCH).astype(np.float32)
         rows = [_hips_height(library)[:, None] * np.sqrt(height)] if height else []
@@ -93,7 +93,7 @@ def transition_probabilities(distances: Array, sigma: float) -> Array:
     return likeness
 
 
-def _oriented(library: MotionLibrary, joints: list[int]) -> Array:
+def _orient(library: MotionLibrary, joints: list[int]) -> Array:
     """Return the local rotations of joints, (frames, joints, 4), the hips' in the world's axes.
 
     Theirs has no yaw, so that frames are alike whichever way they face.

@@ -13,7 +13,7 @@ from cubeling.characters.errors import CharacterError
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
-from cubeling.characters.smoothing import gaussian_smoothed
+from cubeling.characters.smoothing import gaussian_smooth
 
 ARM_MASSES = {"LowerArm": 2.0, "UpperArm": 3.0, "Shoulder": 3.0}
 """Mass that each joint of an arm moves (M4)."""
@@ -136,7 +136,7 @@ def hand_speed(path: Array, rate: float, cutoff_hz: float = SPEED_CUTOFF_HZ) -> 
     # A Gaussian of this deviation halves the power at the cut-off: exp(−(2π f σ)²) = ½.
     deviation = math.sqrt(math.log(2.0)) / (2 * math.pi * cutoff_hz) * rate
     speed: Array = np.linalg.norm(np.gradient(path, axis=0), axis=1) * rate
-    return np.maximum(gaussian_smoothed(speed, deviation), 0.0)
+    return np.maximum(gaussian_smooth(speed, deviation), 0.0)
 
 
 def find_apex(path: Array, rate: float, stroke: tuple[int, int]) -> int:

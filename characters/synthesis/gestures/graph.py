@@ -32,7 +32,7 @@ class Connectivity:
     """How well a graph is connected at one threshold: a row of Table 4.2."""
 
     threshold: float
-    """Similarity threshold st."""
+    """Similarity threshold st, one of `THRESHOLDS`."""
 
     branching: float
     """Edges per node: the branching factor BF."""
@@ -49,7 +49,6 @@ class GestureGraph:
     """Gestures, and rest, and what may follow each; the last node is rest."""
 
     library: GestureLibrary
-    """The gestures."""
 
     threshold: float
     """Below which distance gestures are joined."""

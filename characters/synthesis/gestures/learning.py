@@ -93,7 +93,7 @@ def learn_gestures(clips: Sequence[Clip], skeleton: Skeleton, anatomy: Anatomy) 
         for first, last in _units(found.labels["both"]):
             inside = [each for each in found.phrases if first <= each.bounds[0] < last]
             if inside:
-                phrases += [_moved(each, len(recordings), first) for each in inside]
+                phrases += [_renumber(each, len(recordings), first) for each in inside]
                 recordings.append(GestureRecording(clip.name, turns[first : last + 1]))
     if not phrases:
         names = ", ".join(clip.name for clip in clips)
@@ -132,11 +132,11 @@ def _phrase(
     apices = {side: min(find_apex(paths[side], RATE_HZ, stroke), bounds[5]) for side in busy}
     times = [apex / RATE_HZ for apex in apices.values()]
     strength = stroke_strength(turns[part], hand, anatomy, (times[0], times[-1]))
-    longest = max(busy, key=lambda side: _reached(paths[side], stroke[0], apices[side]))
+    longest = max(busy, key=lambda side: _reach(paths[side], stroke[0], apices[side]))
     return GesturePhrase(0, hand, bounds, apices[longest], strength)
 
 
-def _reached(path: Array, first: int, last: int) -> float:
+def _reach(path: Array, first: int, last: int) -> float:
     return float(np.linalg.norm(path[last] - path[first]))
 
 
@@ -157,7 +157,7 @@ def _units(labels: Labels) -> list[tuple[int, int]]:
     ]
 
 
-def _moved(phrase: GesturePhrase, recording: int, first: int) -> GesturePhrase:
+def _renumber(phrase: GesturePhrase, recording: int, first: int) -> GesturePhrase:
     """Return a phrase of a recording that begins with this frame."""
     a, b, c, d, e, f = (bound - first for bound in phrase.bounds)
     return replace(phrase, recording=recording, bounds=(a, b, c, d, e, f), apex=phrase.apex - first)

@@ -23,7 +23,7 @@ from cubeling.characters.synthesis.archive import (
 from cubeling.characters.synthesis.choices import Database
 
 GESTURE_FORMAT = ArchiveFormat("cubeling gestures", 1, "gesture library", "cubeling gesture learn")
-"""The .gestures file."""
+"""The format of `.gestures` files: `cubeling gesture learn` writes them."""
 
 STEP_RAD = 1e-4
 """Resolution of rotation vectors in the file [rad]."""
@@ -73,7 +73,7 @@ class GestureRecording:
     """The upper body of a clip: one or more gesture phrases, often from rest to rest."""
 
     name: str
-    """Of the clip."""
+    """Name of the clip it was learned from."""
 
     turns: Array
     """Local rotations of the library's joints, (frames, joints, 4), with continuous signs."""
@@ -84,7 +84,6 @@ class GestureLibrary:
     """Gesture phrases of one body."""
 
     skeleton: Skeleton
-    """The joints."""
 
     anatomy: Anatomy
     """Which joint is which body part."""
@@ -99,7 +98,7 @@ class GestureLibrary:
     """Local rotations of these joints in rest, (joints, 4)."""
 
     recordings: tuple[GestureRecording, ...]
-    """The motion."""
+    """The recordings that phrases refer to by index."""
 
     phrases: tuple[GesturePhrase, ...]
     """What is in it, in order of recordings and time."""
@@ -170,9 +169,9 @@ class GestureLibrary:
             for each in self.phrases
         ]
         arrays["joints"] = np.array(self.joints, np.int32)
-        arrays["rest"] = _packed(self.rest)
+        arrays["rest"] = _pack(self.rest)
         for number, each in enumerate(self.recordings):
-            arrays[f"turns_{number}"] = _packed(each.turns)
+            arrays[f"turns_{number}"] = _pack(each.turns)
         GESTURE_FORMAT.save(path, content, arrays)
 
     @staticmethod
@@ -205,13 +204,13 @@ def gesture_joints(skeleton: Skeleton, anatomy: Anatomy) -> tuple[int, ...]:
     return tuple(sorted(moved))
 
 
-def _packed(turns: Array) -> Array:
+def _pack(turns: Array) -> Array:
     """Return rotations as integers: their rotation vectors in steps of `STEP_RAD`."""
     packed: Array = np.rint(rotations.to_rotation_vector(turns) / STEP_RAD).astype(np.int16)
     return packed
 
 
-def _unpacked(packed: Array) -> Array:
+def _unpack(packed: Array) -> Array:
     return rotations.from_rotation_vector(packed.astype(float) * STEP_RAD)
 
 
@@ -219,7 +218,7 @@ def _library(content: Content, arrays: Arrays) -> GestureLibrary:
     skeleton, anatomy = read_skeleton(content, arrays)
     joints = tuple(int(joint) for joint in arrays["joints"])
     recordings = tuple(
-        GestureRecording(str(name), rotations.continuous(_unpacked(arrays[f"turns_{number}"])))
+        GestureRecording(str(name), rotations.continuous(_unpack(arrays[f"turns_{number}"])))
         for number, name in enumerate(content["recordings"])
     )
     if not joints or not 0 <= min(joints) <= max(joints) < len(skeleton):
@@ -229,7 +228,7 @@ def _library(content: Content, arrays: Arrays) -> GestureLibrary:
             raise ValueError("its rotations do not belong to its joints")
     lengths = [len(each.turns) for each in recordings]
     phrases = tuple(_phrase(each, lengths) for each in content["phrases"])
-    rate, rest = float(content["rate"]), _unpacked(arrays["rest"])
+    rate, rest = float(content["rate"]), _unpack(arrays["rest"])
     if not rate > 0 or rest.shape != (len(joints), 4):
         raise ValueError("its rest or its rate is damaged")
     return GestureLibrary(skeleton, anatomy, joints, rate, rest, recordings, phrases)

@@ -43,7 +43,6 @@ class GestureNode:
     """A node of the graph: a phrase, or its stroke alone."""
 
     phrase: GesturePhrase
-    """The phrase."""
 
     number: int
     """The phrase's number in the library."""

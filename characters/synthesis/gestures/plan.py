@@ -14,9 +14,9 @@ from cubeling.characters.synthesis.gestures.library import PHASES
 from cubeling.characters.synthesis.gestures.nodes import GestureNode
 from cubeling.characters.synthesis.gestures.playing import (
     Ends,
-    GestureMotion,
-    GestureSpan,
-    Segment,
+    PlannedGestureMotion,
+    PlayedSegment,
+    RestToRestSpan,
     bridge,
     weight_curve,
 )
@@ -48,13 +48,13 @@ class PlannedGesture:
     """A gesture with its times."""
 
     accent: Accent
-    """What it stresses."""
+    """The pitch accent whose time its stroke meets."""
 
     emphasized: float
     """The accent's strength with the slider, 0…1."""
 
     node: GestureNode
-    """What is played."""
+    """The gesture phrase that is played."""
 
     number: int
     """Its number in the graph."""
@@ -78,7 +78,6 @@ class PlannedGesture:
     """GSI as it is played."""
 
     costs: GestureCosts
-    """What it costs."""
 
     @property
     def relaxed(self) -> bool:
@@ -137,26 +136,26 @@ class GesturePlan:
     cost: float
     """Sum of all costs, weighted; of a skipped accent 5 to 15."""
 
-    def motion(self) -> GestureMotion:
+    def motion(self) -> PlannedGestureMotion:
         """Return the motion of these gestures, from rest to rest."""
         library, blends, rest = self.graph.library, self.graph.blends, self.graph.rest
         still, rate = Ends.still(library.rest), library.rate
-        segments, spans = [Segment(0.0, library.rest[None])], []
+        segments, spans = [PlayedSegment(0.0, library.rest[None])], []
         for group in self._groups():
             first, last = group[0], group[-1]
             up, down = float(blends[rest, first.number]), float(blends[last.number, rest])
             left, again = first.start - up, last.end + down
             segments += [
                 bridge(left, up, still, self._ends(first, leaving=False), rate),
-                *self._joined(group),
+                *self._join(group),
                 bridge(last.end, down, self._ends(last, leaving=True), still, rate),
-                Segment(again, library.rest[None]),
+                PlayedSegment(again, library.rest[None]),
             ]
             begin = first.time_of(first.node.phrase.stroke[0])
             end = last.time_of(last.node.phrase.stroke[1])
-            spans.append(GestureSpan(left, begin, end, again))
+            spans.append(RestToRestSpan(left, begin, end, again))
         ended = max([self.duration, *(span.again for span in spans[-1:])])
-        return GestureMotion(library, tuple(segments), ended, weight_curve(spans))
+        return PlannedGestureMotion(library, tuple(segments), ended, weight_curve(spans))
 
     def _groups(self) -> list[list[PlannedGesture]]:
         """Return the gestures from rest to rest."""
@@ -167,14 +166,14 @@ class GesturePlan:
             groups[-1].append(gesture)
         return groups
 
-    def _joined(self, group: Sequence[PlannedGesture]) -> Iterator[Segment]:
+    def _join(self, group: Sequence[PlannedGesture]) -> Iterator[PlayedSegment]:
         """Yield what is played of gestures, with bridges between them."""
         library = self.graph.library
         for number, gesture in enumerate(group):
             turns = library.recordings[gesture.node.phrase.recording].turns
             for (start, first), (end, last) in pairwise(gesture.knots):
                 if last > first:
-                    yield Segment(start, turns, float(first), (last - first) / (end - start))
+                    yield PlayedSegment(start, turns, float(first), (last - first) / (end - start))
             if number + 1 < len(group):
                 after = group[number + 1]
                 if after.start - gesture.end > SHORTEST_BRIDGE_S:

@@ -22,7 +22,7 @@ from cubeling.characters.synthesis.gestures.plan import (
     knots_of,
 )
 from cubeling.characters.synthesis.gestures.rules import IntensityRule, SynchronyRule
-from cubeling.characters.synthesis.gestures.search import BeamSearch, SearchWeights, Step
+from cubeling.characters.synthesis.gestures.search import BeamSearch, SearchStep, SearchWeights
 
 EQUAL_COST = 1e-3
 """Gestures whose costs differ by less are equals [of a cost]."""
@@ -33,7 +33,7 @@ class GestureSettings:
     """How gestures are chosen."""
 
     model: CostModel = "bodyspeech"
-    """Costs and warps."""
+    """Which costs choose gestures, and which warps fit them."""
 
     database: Database = "full"
     """Which phrases are used."""
@@ -142,9 +142,9 @@ class GesturePlanner:
         leads = rng.uniform(window.shortest, window.longest, shape)
         favour = rng.uniform(0.0, EQUAL_COST, (*shape, len(self.graph.nodes)))
         apices = np.array([each.time for each in carried])[:, None] - leads
-        strengths = [self._emphasized(each.strength, emphasis) for each in carried]
+        strengths = [self._emphasize(each.strength, emphasis) for each in carried]
         widths = sorted({1, self.settings.beam})
-        searches = [self._searched(width, apices, strengths, favour) for width in widths]
+        searches = [self._search(width, apices, strengths, favour) for width in widths]
         best = min(searches, key=lambda search: search.cost)
         gestures, skipped = [], []
         for accent, strength, (step, state) in zip(carried, strengths, best.path(), strict=True):
@@ -154,7 +154,7 @@ class GesturePlanner:
                 gestures.append(self._gesture(accent, strength, step, state))
         return GesturePlan(self.graph, tuple(gestures), tuple(skipped), duration, best.cost)
 
-    def _searched(
+    def _search(
         self, width: int, apices: Array, strengths: list[float], favour: Array
     ) -> BeamSearch:
         """Return a finished search of a width; the greedy one, of width 1, looks no further."""
@@ -168,7 +168,7 @@ class GesturePlanner:
             search.step(apices[number], ways, cost, skips[number], favour[number], ahead)
         return search
 
-    def _emphasized(self, strength: float, emphasis: float) -> float:
+    def _emphasize(self, strength: float, emphasis: float) -> float:
         """Return the strength of an accent above the floor, with the slider, 0…1 (erratum 11)."""
         floor = self.settings.accent_floor
         return min(max((strength - floor) / (1.0 - floor) + emphasis, 0.0), 1.0)
@@ -183,7 +183,9 @@ class GesturePlanner:
         shares: Array = (played - self._weakest) / self._range
         return np.abs(strength - shares)
 
-    def _gesture(self, accent: Accent, strength: float, step: Step, state: int) -> PlannedGesture:
+    def _gesture(
+        self, accent: Accent, strength: float, step: SearchStep, state: int
+    ) -> PlannedGesture:
         number, ways, apex = int(step.node[state]), step.ways, float(step.apex[state])
         node, warp = self.graph.nodes[number], float(ways.warp[state])
         weight = self.settings.strength_weight

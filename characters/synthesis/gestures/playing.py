@@ -23,7 +23,7 @@ _SNAP = 1e-6  # frames: rounding of times must not change a recorded frame
 
 
 @dataclass(frozen=True, eq=False)
-class Segment:
+class PlayedSegment:
     """A stretch of rotations that is played at an even pace."""
 
     start: float
@@ -36,7 +36,7 @@ class Segment:
     """The frame that it begins with."""
 
     pace: float = 0.0
-    """Frames a second."""
+    """Frames of the recording that are played in a second; 0 holds the first."""
 
     def at(self, time: float) -> Array:
         """Return the rotations at a time [s] not before its start, (joints, 4)."""
@@ -80,7 +80,9 @@ class Ends:
         return Ends(turns, np.zeros((len(turns), 3)))
 
 
-def bridge(start: float, length: float, leaving: Ends, arriving: Ends, rate: float) -> Segment:
+def bridge(
+    start: float, length: float, leaving: Ends, arriving: Ends, rate: float
+) -> PlayedSegment:
     """Return the way from one posture to another, with the speeds that they have.
 
     Both are carried on while their speed fades away, and cross-faded with a smoothstep (M7).
@@ -92,11 +94,11 @@ def bridge(start: float, length: float, leaving: Ends, arriving: Ends, rate: flo
     arrived = rotations.align(arriving.turns, leaving.turns)  # once: both move while they fade
     coming = rotations.multiply(arrived, rotations.from_rotation_vector(-arriving.spins * back))
     mixed = gone + (coming - gone) * smoothstep(times / length)
-    return Segment(start, rotations.normalize(mixed), 0.0, steps / length)
+    return PlayedSegment(start, rotations.normalize(mixed), 0.0, steps / length)
 
 
 @dataclass(frozen=True, eq=False)
-class GestureMotion:
+class PlannedGestureMotion:
     """Gestures from rest to rest; a `Motion` of the upper body.
 
     What is not of `mask` is at rest in its poses. `motion.layers.lay_over` lays it over a
@@ -106,7 +108,7 @@ class GestureMotion:
     library: GestureLibrary
     """Whose gestures they are."""
 
-    segments: tuple[Segment, ...]
+    segments: tuple[PlayedSegment, ...]
     """What is played, in order; the last one is held."""
 
     duration: float
@@ -149,7 +151,7 @@ class GestureMotion:
 
 
 @dataclass(frozen=True)
-class GestureSpan:
+class RestToRestSpan:
     """Gestures from rest to rest; times in seconds."""
 
     left: float
@@ -165,7 +167,7 @@ class GestureSpan:
     """When hands are in rest again."""
 
 
-def weight_curve(spans: Sequence[GestureSpan]) -> Keyed:
+def weight_curve(spans: Sequence[RestToRestSpan]) -> Keyed:
     """Return 0 in rest and 1 from the first to the last stroke of a span."""
     times, values = [-RAMP_S], [0.0]
     for span in spans:

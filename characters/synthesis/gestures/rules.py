@@ -72,7 +72,7 @@ class IntensityRule:
         return inside
 
     @staticmethod
-    def fitted(psi: Array, strengths: Array, margin: float | None = 1.0) -> "IntensityRule":
+    def fit(psi: Array, strengths: Array, margin: float | None = 1.0) -> "IntensityRule":
         """Return the rule of paired accents and gestures, (n,) each, by least squares.
 
         Without a margin it is the standard deviation of the residuals.
@@ -104,7 +104,7 @@ class IntensityRule:
         return IntensityRule((strong - weak) / math.log(10.0), strong, margin)
 
 
-def paired(apices: Array, strengths: Array, accents: Array, psi: Array) -> NDArray[np.intp]:
+def pair(apices: Array, strengths: Array, accents: Array, psi: Array) -> NDArray[np.intp]:
     """Return the number of the accent of each gesture, −1 for none, (gestures,).
 
     One to one and in order; an accent is between 0.2 s before and 0.5 s after the apex. By dynamic

@@ -44,7 +44,7 @@ class SearchWeights:
 
 
 @dataclass(frozen=True, eq=False)
-class Ways:
+class GestureConnections:
     """How gestures follow states; arrays (states, apices, nodes), or of some of them (n,)."""
 
     warp: Array
@@ -62,20 +62,20 @@ class Ways:
     time: Array
     """Cost of warp or hold, 0…1; infinite if there is none in time."""
 
-    def at(self, rows: tuple[NDArray[np.intp], ...]) -> "Ways":
+    def at(self, rows: tuple[NDArray[np.intp], ...]) -> "GestureConnections":
         """Return some of them, by state, apex and node."""
         warp, hold, smooth, time = (
             part[rows] for part in (self.warp, self.hold, self.smooth, self.time)
         )
-        return Ways(warp, hold, self.by_rest[rows], smooth, time)
+        return GestureConnections(warp, hold, self.by_rest[rows], smooth, time)
 
 
 @dataclass(frozen=True, eq=False)
-class Step:
+class SearchStep:
     """What each state that goes on has chosen for an accent, (states,)."""
 
     parent: NDArray[np.intp]
-    """The state before."""
+    """Index of each one's best predecessor in the step before."""
 
     node: NDArray[np.intp]
     """The gesture; −1 if the accent is skipped."""
@@ -83,8 +83,7 @@ class Step:
     apex: Array
     """When its apex is [s]."""
 
-    ways: Ways
-    """How it follows."""
+    ways: GestureConnections
 
     strength: Array
     """Cost of its strength."""
@@ -118,14 +117,14 @@ class BeamSearch:
         hands = [get_args(Hand).index(node.phrase.hand) for node in graph.nodes]
         self._hands, self._hand = np.array(hands), np.array([-1])
         self._row = np.zeros(1, np.intp)  # gestures in a row by the same hands
-        self._steps: list[Step] = []
+        self._steps: list[SearchStep] = []
 
     @property
     def cost(self) -> float:
         """Cost of the cheapest state."""
         return float(self._cost.min())
 
-    def ways(self, apices: Array) -> Ways:
+    def ways(self, apices: Array) -> GestureConnections:
         """Return how gestures may follow states, by possible times of their apices (n,) [s]."""
         graph, timings, node = self._graph, self._timings, self._node
         rest, longest = graph.rest, self._weights.longest_hold
@@ -144,7 +143,7 @@ class BeamSearch:
         in_time = ~resting & (left >= ends + graph.blends[node, rest, None, None] + MIN_REST_S)
         detour = (graph.costs[node, rest, None, None] + graph.costs[rest, :-1]) / 2.0
         by_rest = in_time & (self._weights.smooth * detour < self._total(edges, time))
-        return Ways(
+        return GestureConnections(
             np.where(held | by_rest, 1.0, warp),
             np.where(held & ~by_rest & ~resting, hold, 0.0),
             by_rest | resting,
@@ -155,7 +154,7 @@ class BeamSearch:
     def step(
         self,
         apices: Array,
-        ways: Ways,
+        ways: GestureConnections,
         strength: Array,
         skip_cost: float,
         favour: Array,
@@ -197,7 +196,7 @@ class BeamSearch:
         parent = np.where(chosen, parent, kept - nodes)
         rows = parent, pick, node
         self._steps.append(
-            Step(
+            SearchStep(
                 parent,
                 np.where(chosen, node, -1),
                 apices[pick],
@@ -238,7 +237,7 @@ class BeamSearch:
         own = self._end + self._least[self._node]
         return np.where(ends + self._least[:-1] > apex, cost, 0.0), np.where(own > apex, cost, 0.0)
 
-    def path(self) -> list[tuple[Step, int]]:
+    def path(self) -> list[tuple[SearchStep, int]]:
         """Return the steps of the cheapest way, and its state in each."""
         state, found = int(self._cost.argmin()), []
         for step in reversed(self._steps):

@@ -56,7 +56,7 @@ MINOR_STROKE = 0.4
 
 
 @dataclass(frozen=True)
-class Move:
+class HandMove:
     """A hand goes from one place to another."""
 
     first: int
@@ -158,7 +158,7 @@ def _until(labels: Labels, frame: int, limit: int, wanted: tuple[int, ...]) -> i
     return min(frame, limit)
 
 
-def _moves(path: Array, speed: Array, begin: int, end: int) -> list[Move]:
+def _moves(path: Array, speed: Array, begin: int, end: int) -> list[HandMove]:
     """Return the moves between two rests."""
     inner = np.arange(begin + 1, end)
     lowest = inner[(speed[inner] <= speed[inner - 1]) & (speed[inner] < speed[inner + 1])]
@@ -174,25 +174,25 @@ def _moves(path: Array, speed: Array, begin: int, end: int) -> list[Move]:
                 parts[-1] = (parts[-1][0], last)
                 continue
         parts.append((first, last))
-    moves = [_trimmed(path, speed, *part) for part in parts]
+    moves = [_trim(path, speed, *part) for part in parts]
     return [move for move in moves if move.length >= MIN_MOVE]
 
 
-def _trimmed(path: Array, speed: Array, first: int, last: int) -> Move:
+def _trim(path: Array, speed: Array, first: int, last: int) -> HandMove:
     """Return a move without the slow frames at its ends."""
     fast = np.flatnonzero(speed[first : last + 1] > SLOW)
     begin, end = first + max(int(fast[0]) - 1, 0), min(first + int(fast[-1]) + 1, last)
-    return Move(begin, end, float(np.linalg.norm(path[end] - path[begin])))
+    return HandMove(begin, end, float(np.linalg.norm(path[end] - path[begin])))
 
 
-def _label_unit(labels: Labels, moves: Sequence[Move], rate: float) -> None:
+def _label_unit(labels: Labels, moves: Sequence[HandMove], rate: float) -> None:
     """Label the frames of a unit from its moves: the last one leads back to rest."""
     labels[moves[0].first : moves[-1].last + 1] = HOLD
     *others, back = moves
     if not others:
         return
     labels[back.first : back.last + 1] = RETRACTION
-    chains: list[list[Move]] = [[]]
+    chains: list[list[HandMove]] = [[]]
     for move in others:
         chain = chains[-1]
         right_after = chain and (move.first - chain[-1].last) / rate < MIN_HOLD_S

@@ -115,18 +115,18 @@ def critical_threshold(joined: Callable[[float], int], low: float, high: float) 
     True
     """
 
-    def reached(threshold: float) -> int:
+    def count_joined(threshold: float) -> int:
         try:
             return joined(threshold)
         except CharacterError:  # it connects nothing
             return 0
 
-    most = reached(high)
-    if reached(low) >= most:
+    most = count_joined(high)
+    if count_joined(low) >= most:
         return low
     while high > low * _STEP:
         middle = math.sqrt(low * high)
-        low, high = (low, middle) if reached(middle) >= most else (middle, high)
+        low, high = (low, middle) if count_joined(middle) >= most else (middle, high)
     return high
 
 

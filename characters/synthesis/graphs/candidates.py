@@ -19,10 +19,10 @@ class Candidates:
     """The one frame, (n,)."""
 
     columns: Frames
-    """The other, (n,)."""
+    """Frames at which the transitions arrive, (n,)."""
 
     distances: Array
-    """Their distance, (n,)."""
+    """Distance of the two frames of each, (n,)."""
 
     barred: Array
     """Distances of pairs that would be minima but have different labels, ascending."""

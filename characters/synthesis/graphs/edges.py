@@ -13,7 +13,7 @@ _FOLD = 16
 """Edges to a node whose costs are compared together; from 8 to 16 the search is fastest."""
 
 Nodes = NDArray[np.intp]
-"""Numbers of nodes."""
+"""Indices of nodes, (n,)."""
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Edges:
     """The edges of a graph, sorted by their first nodes. What is not there costs ∞ (erratum 3)."""
 
     count: int
-    """Number of nodes."""
+    """Number of nodes, with and without edges."""
 
     sources: Nodes
     """First node of each edge, ascending, (edges,)."""

@@ -53,7 +53,6 @@ class MotionGraph:
     """A pruned graph: from every kept frame, every other kept frame can be reached."""
 
     library: MotionLibrary
-    """The frames."""
 
     edges: Edges
     """Continuations and jumps between kept frames."""

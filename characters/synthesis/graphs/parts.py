@@ -82,7 +82,7 @@ class PartGraphs:
 
     @property
     def library(self) -> MotionLibrary:
-        """The frames."""
+        """The library that the graphs of all parts share."""
         return self.graphs[0].library
 
     @cached_property

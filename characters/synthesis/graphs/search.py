@@ -57,7 +57,6 @@ class HopCosts:
     """The least costs of reaching each node at each time, from starts at several times."""
 
     edges: Edges
-    """The graph."""
 
     starts: tuple[int, ...]
     """Node at which a path may start, for each time from 0; −1 for none."""

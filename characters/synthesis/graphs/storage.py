@@ -20,7 +20,7 @@ from cubeling.characters.synthesis.graphs.candidates import Candidates
 from cubeling.characters.synthesis.library import MotionLibrary
 
 GRAPH_FORMAT = ArchiveFormat("cubeling motion graph", 1, "motion graph", "cubeling motions build")
-"""The .graph file."""
+"""The format of `.graph` files: `cubeling motions build` writes them."""
 
 WHOLE_BODY = "BP123456"
 """The name of the whole body among the parts."""
@@ -31,7 +31,6 @@ class StoredGraph:
     """What a .graph file holds."""
 
     library: MotionLibrary
-    """The frames."""
 
     distance: str
     """Name of the distance by which they were compared."""
@@ -87,10 +86,10 @@ def load_graph(path: Path) -> StoredGraph:
     CharacterError
         If it is missing, damaged, of another version, or no graph at all.
     """
-    return GRAPH_FORMAT.load(path, _stored)
+    return GRAPH_FORMAT.load(path, _read_stored)
 
 
-def _stored(content: Content, arrays: Arrays) -> StoredGraph:
+def _read_stored(content: Content, arrays: Arrays) -> StoredGraph:
     skeleton, anatomy = read_skeleton(content, arrays)
     frames, joints = arrays["rotations"].shape[:2]
     translations = np.tile(arrays["fixed_translations"].astype(float), (frames, 1, 1))

@@ -76,7 +76,7 @@ def bridge(
         u = np.linspace(0.0, 1.0, round(EASED_S * database.rate) + 1)[:, None]
         eased: Array = start.vector + smoothstep(u) * (end - start.vector)
         return eased
-    between = [_drawn(database, name, rng) for name in way[:-1]]
+    between = [_draw_posture(database, name, rng) for name in way[:-1]]
     parts = []
     for (a, b), (p, q) in zip(
         pairwise([start.balance, *way]), pairwise([start.vector, *between, end]), strict=True
@@ -93,10 +93,10 @@ def bridge(
     return np.concatenate(rows)
 
 
-def hurried(rows: Array, limit: int) -> Array:
+def hurry(rows: Array, limit: int) -> Array:
     """Return rows (frames, size) after the first one, played faster if more than `limit`.
 
-    >>> hurried(np.arange(5.0)[:, None], 2).ravel().tolist()
+    >>> hurry(np.arange(5.0)[:, None], 2).ravel().tolist()
     [2.0, 4.0]
     """
     count = len(rows) - 1
@@ -108,7 +108,7 @@ def hurried(rows: Array, limit: int) -> Array:
     return faster
 
 
-def _drawn(database: IdleDatabase, balance: str, rng: np.random.Generator) -> Array:
+def _draw_posture(database: IdleDatabase, balance: str, rng: np.random.Generator) -> Array:
     own = database.by_balance.get(balance) or database.postures
     return own[int(rng.integers(len(own)))].vector
 

@@ -15,9 +15,9 @@ from cubeling.affect import Emotion
 from cubeling.affect.regions import Region
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.idle.motion_texture import Stretches
 from cubeling.characters.synthesis.idle.posture_space import PostureSpace, PostureVectors
 from cubeling.characters.synthesis.idle.recordings import StandingRecording
-from cubeling.characters.synthesis.idle.stretches import Stretches
 from cubeling.characters.synthesis.idle.variations import COMPONENTS, Variations
 
 
@@ -32,7 +32,7 @@ class BalanceShift:
     """Balance before: "left", "both" or "right"."""
 
     end: str
-    """Balance after."""
+    """The balance that it leads to, one of `BALANCES`."""
 
     feeling: Region | None = None
     """The emotions that it leads to; None if it suits any."""
@@ -75,10 +75,10 @@ class IdleDatabase:
     """Frame rate of the shifts [Hz]."""
 
     space: PostureSpace
-    """The person's postures."""
+    """Principal components in which her postures are compared and mixed."""
 
     postures: tuple[RestingPosture, ...]
-    """Where she rests."""
+    """The postures in which she rests between shifts."""
 
     shifts: tuple[BalanceShift, ...]
     """How she shifts her balance."""
@@ -178,11 +178,11 @@ class IdleDatabase:
         longest = max(each.duration for each in own)
         return min(whole, default=longest), longest
 
-    def added(self, shift: BalanceShift) -> "IdleDatabase":
+    def with_shift(self, shift: BalanceShift) -> "IdleDatabase":
         """Return it with one more shift."""
         return replace(self, shifts=(*self.shifts, shift))
 
-    def removed(self, number: int) -> "IdleDatabase":
+    def without_shift(self, number: int) -> "IdleDatabase":
         """Return it without one of its shifts."""
         return replace(self, shifts=self.shifts[:number] + self.shifts[number + 1 :])
 

@@ -16,11 +16,11 @@ from cubeling.characters.smoothing import hermite
 from cubeling.characters.synthesis.idle.bridges import (
     bridge,
     fitted_shift,
-    hurried,
+    hurry,
     nearest_balance,
 )
 from cubeling.characters.synthesis.idle.database import IdleDatabase, RestingPosture
-from cubeling.characters.synthesis.idle.stretches import StretchStream
+from cubeling.characters.synthesis.idle.motion_texture import StretchStream
 from cubeling.characters.synthesis.idle.variations import VariationStream
 
 Small = Literal["recorded", "extrema", "none"]
@@ -59,7 +59,7 @@ class IdleMotion:
         elif small == "extrema":
             variations = self._suiting.variations
             self._variations = VariationStream(variations, database.space, self._rng)
-        self._posture = self._drawn(self._suiting.postures)
+        self._posture = self._draw(self._suiting.postures)
         self._rested, self._chance = 0.0, self._rng.uniform()
         self._here = self._posture.vector  # the posture of the latest frame
         self._shift: deque[Array] = deque()  # postures on the way to the next rest
@@ -72,12 +72,12 @@ class IdleMotion:
 
     @property
     def duration(self) -> float:
-        """Infinite."""
+        """Infinite: it goes on for as long as it is sampled."""
         return math.inf
 
     @property
     def database(self) -> IdleDatabase:
-        """Her idle motion; may be replaced by one with other shifts, see `IdleDatabase.added`."""
+        """Her idle motion; may be replaced by one with other shifts (`with_shift`)."""
         return self._database
 
     @database.setter
@@ -146,7 +146,7 @@ class IdleMotion:
         if math.isfinite(within):
             limit = max(int(asked + within * rate + 1e-6) - self._made + 1, 1)
         way = bridge(database, self._posture, posture, self._rng, limit - len(self._shift))
-        rows = hurried(np.stack([self._here, *self._shift, *way[1:]]), limit)
+        rows = hurry(np.stack([self._here, *self._shift, *way[1:]]), limit)
         self._shift = deque(rows)
         self._posture = RestingPosture(posture, nearest_balance(database, posture), 0.0, cut=True)
         self._calming = min(round(RAMP_S * rate), len(rows))
@@ -223,11 +223,11 @@ class IdleMotion:
             return None
         names, odds = [*chances], np.array([*chances.values()])
         balance = names[int(self._rng.choice(len(names), p=odds / odds.sum()))]
-        end = self._drawn(database.by_balance.get(balance) or database.postures)
+        end = self._draw(database.by_balance.get(balance) or database.postures)
         fitting = [each for each in shifts if each.end == balance]
         return end, fitted_shift(database, fitting, posture.vector, end.vector)
 
-    def _drawn(self, postures: tuple[RestingPosture, ...]) -> RestingPosture:
+    def _draw(self, postures: tuple[RestingPosture, ...]) -> RestingPosture:
         return postures[int(self._rng.integers(len(postures)))]
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from cubeling.characters.motion.motion import Motion, RootDelta
 from cubeling.characters.skeleton.pose import Pose
 from cubeling.characters.synthesis.idle.database import IdleDatabase
-from cubeling.characters.synthesis.idle.stretches import StretchStream
+from cubeling.characters.synthesis.idle.motion_texture import StretchStream
 
 
 @dataclass
@@ -28,7 +28,7 @@ class Varied:
     """How much of them is added."""
 
     seed: int = 0
-    """Of their choice."""
+    """Seed of the generator that chooses them."""
 
     def __post_init__(self) -> None:
         rng = np.random.default_rng([self.seed, 2])

@@ -37,10 +37,9 @@ class PostureVectors:
     """
 
     skeleton: Skeleton
-    """The skeleton."""
 
     joints: tuple[int, ...]
-    """The joints, (n,)."""
+    """Indices of the joints whose rotations are compared, (n,)."""
 
     hips: int | None
     """The joint whose translation counts, or None."""

@@ -16,7 +16,7 @@ from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.feet import find_feet
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
-from cubeling.characters.smoothing import gaussian_smoothed
+from cubeling.characters.smoothing import gaussian_smooth
 from cubeling.characters.synthesis.choices import Alignment
 from cubeling.characters.synthesis.idle.posture_space import PostureVectors
 
@@ -40,11 +40,11 @@ _MAX_SPEED = 5.0  # [body heights/s]: a joint that is faster has jumped
 
 
 @dataclass(frozen=True)
-class Rest:
+class RestSpan:
     """Frames of a recording in which a person rests, between two shifts."""
 
     first: int
-    """Their first frame."""
+    """Index of the first frame that belongs to it."""
 
     end: int
     """The frame after their last."""
@@ -58,7 +58,7 @@ class StandingRecording:
     """A recording of a standing person, with the root held in the middle between the feet."""
 
     name: str
-    """Of its clip."""
+    """Name of the clip it was cut from."""
 
     rate: float
     """[Hz]."""
@@ -70,14 +70,14 @@ class StandingRecording:
     """Where the hips are between the feet, (frames,) [stances]: 0.5 above the left, −0.5 above the
     right one."""
 
-    rests: tuple[Rest, ...]
+    rests: tuple[RestSpan, ...]
     """Where she rests, in order; what is between them are balance shifts."""
 
     feeling: Region | None = None
     """The emotions that it shows; None if it suits any."""
 
     @property
-    def shifts(self) -> tuple[tuple[Rest, Rest], ...]:
+    def shifts(self) -> tuple[tuple[RestSpan, RestSpan], ...]:
         """The pairs of rests between which the balance shifts."""
         return tuple(pairwise(self.rests))
 
@@ -171,7 +171,7 @@ def _on_the_spot(poses: Pose, skeleton: Skeleton, hips: int, places: Array, turn
     return Pose(translations, local)
 
 
-def find_rests(balance: Array, rate: float) -> tuple[Rest, ...]:
+def find_rests(balance: Array, rate: float) -> tuple[RestSpan, ...]:
     """Return where a person rests between her balance shifts, (frames,) [stances].
 
     A shift is a way to one side of at least `MIN_SHIFT`, without a stop. Between a shift and the
@@ -181,7 +181,7 @@ def find_rests(balance: Array, rate: float) -> tuple[Rest, ...]:
     >>> [(rest.balance, rest.first, rest.end) for rest in find_rests(sway, 25.0)]
     [('left', 0, 38), ('right', 62, 100)]
     """
-    smooth = gaussian_smoothed(balance, _SMOOTHING_S * rate)
+    smooth = gaussian_smooth(balance, _SMOOTHING_S * rate)
     speed = np.gradient(smooth) * rate if len(smooth) > 1 else np.zeros(1)
     bounds = [0]
     for sign in (1, -1):
@@ -195,7 +195,7 @@ def find_rests(balance: Array, rate: float) -> tuple[Rest, ...]:
         end = max(end, first + 1)
         side = float(np.median(smooth[first:end]))
         name = "both" if abs(side) < STANDING_SHARE else "left" if side > 0 else "right"
-        rests.append(Rest(first, end, name))
+        rests.append(RestSpan(first, end, name))
     inner = [
         rest
         for rest in rests

@@ -79,7 +79,7 @@ class StandingPerson:
 
     @property
     def duration(self) -> float:
-        """Infinite."""
+        """Infinite: it goes on for as long as it is sampled."""
         return math.inf
 
     def feel(self, emotion: Emotion | None) -> None:

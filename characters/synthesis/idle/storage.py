@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cubeling.affect.regions import Box, Region, Sector
+from cubeling.affect.regions import Region, RegionBox, Sector
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.pose import Skeleton
@@ -18,10 +18,10 @@ from cubeling.characters.synthesis.archive import (
     skeleton_content,
 )
 from cubeling.characters.synthesis.idle.posture_space import PostureVectors
-from cubeling.characters.synthesis.idle.recordings import BALANCES, Rest, StandingRecording
+from cubeling.characters.synthesis.idle.recordings import BALANCES, RestSpan, StandingRecording
 
 IDLE_FORMAT = ArchiveFormat("cubeling idle motion", 2, "idle motion", "cubeling idle learn")
-"""The .idle file."""
+"""The format of `.idle` files: `cubeling idle learn` writes them."""
 
 STEP = 1e-4
 """Resolution of postures in the file [rad and m]."""
@@ -35,7 +35,7 @@ def save_person(person: Person, path: Path) -> None:
     skeleton, anatomy, recordings = person
     content, arrays = map(dict, skeleton_content(skeleton, anatomy))
     content["recordings"] = [
-        [each.name, each.rate, *([_written(each.feeling)] if each.feeling else [])]
+        [each.name, each.rate, *([_write_region(each.feeling)] if each.feeling else [])]
         for each in recordings
     ]
     for number, each in enumerate(recordings):
@@ -72,15 +72,16 @@ def _person(content: Content, arrays: Arrays) -> Person:
     return skeleton, anatomy, recordings
 
 
-def _written(region: Region) -> list[str | list[float]]:
+def _write_region(region: Region) -> list[str | list[float]]:
     """Return a region as it is written: its kind and its numbers."""
-    return [type(region).__name__, *astuple(region)]
+    # Names of the file format, whatever the classes are called.
+    return ["Box" if isinstance(region, RegionBox) else "Sector", *astuple(region)]
 
 
 def _region(kind: str, *values: Any) -> Region:
     if kind == "Box":
         (a, b), (c, d) = values
-        return Box((float(a), float(b)), (float(c), float(d)))
+        return RegionBox((float(a), float(b)), (float(c), float(d)))
     middle, width, inner = map(float, values)
     return Sector(middle, width, inner)
 
@@ -100,7 +101,9 @@ def _recording(
         raise ValueError("its rests are damaged")
     if rests[:, :2].min() < 0 or rests[:, :2].max() > frames or (rests[:, 1] <= rests[:, 0]).any():
         raise ValueError("its rests are not in its frames")
-    found = tuple(Rest(int(first), int(end), BALANCES[side]) for first, end, side in rests.tolist())
+    found = tuple(
+        RestSpan(int(first), int(end), BALANCES[side]) for first, end, side in rests.tolist()
+    )
     return StandingRecording(name, rate, vectors, balance, found, *feelings[:1])
 
 

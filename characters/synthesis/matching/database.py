@@ -161,7 +161,7 @@ class MotionDatabase:
         row = self.row(now)
         query = self.legs.values[row].copy()
         for name, feature in ahead.items():
-            query[self.legs.columns[name]] = self.legs.scaled(name, feature)
+            query[self.legs.columns[name]] = self.legs.scale_feature(name, feature)
         return self._jump(self._leg_rows, self.legs, query, row, staying)
 
     def match_arms(self, arms: Playhead, legs: Playhead, staying: float = 1.0) -> Playhead | None:
@@ -188,7 +188,7 @@ class MotionDatabase:
         for name in ("foot velocities", "path"):
             columns = self.legs.columns[name]
             values = self.legs.values[self._candidates, columns]
-            at_rest = self.legs.scaled(name, np.zeros(values.shape[1]))
+            at_rest = self.legs.scale_feature(name, np.zeros(values.shape[1]))
             still += np.square(values - at_rest).sum(1)
         return self.head(int(self._candidates[still.argmin()]))
 

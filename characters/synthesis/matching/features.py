@@ -27,7 +27,7 @@ class FeatureJoints:
     """The joints of a skeleton that features are taken from."""
 
     hips: int
-    """The hips."""
+    """Index of the joint that carries the body."""
 
     feet: tuple[int, ...]
     """Left and right ankle."""
@@ -86,7 +86,7 @@ class _RootPath:
     def of(clip: Clip) -> "_RootPath":
         steps = np.diff(clip.track, axis=0)
         halfway = (clip.track[1:, 2] + clip.track[:-1, 2]) / 2
-        steps[:, :2] = _turned(steps[:, :2], -halfway)
+        steps[:, :2] = _turn(steps[:, :2], -halfway)
         return _RootPath(steps, clip.rate, clip.loop)
 
     def velocity_at(self, positions: Array) -> Array:
@@ -110,13 +110,13 @@ class _RootPath:
             more = np.tile(last.mean(0), (count, 1))
         steps = np.concatenate([self.steps, more])
         yaw = np.concatenate([[0.0], np.cumsum(steps[:, 2])])
-        walked = np.cumsum(_turned(steps[:, :2], (yaw[1:] + yaw[:-1]) / 2), axis=0)
+        walked = np.cumsum(_turn(steps[:, :2], (yaw[1:] + yaw[:-1]) / 2), axis=0)
         place = np.concatenate([np.zeros((1, 2)), walked])
         here, heading = _at(place, frames), _at(yaw[:, None], frames)[:, 0]
         path, facing = [], []
         for horizon in HORIZONS_S:
             later = frames + horizon * self.rate
-            path.append(_turned(_at(place, later) - here, -heading))
+            path.append(_turn(_at(place, later) - here, -heading))
             turn = _at(yaw[:, None], later)[:, 0] - heading
             facing.append(np.stack([np.sin(turn), np.cos(turn)], axis=-1))
         return {"path": np.concatenate(path, 1), "facing": np.concatenate(facing, 1)}
@@ -132,7 +132,7 @@ def _rate_of_change(values: Array, clip: Clip) -> Array:
     return slopes
 
 
-def _turned(vectors: Array, yaw: Array) -> Array:
+def _turn(vectors: Array, yaw: Array) -> Array:
     """Return vectors (n, 2) of x and z, turned about +y by angles (n,)."""
     flat = np.zeros((len(vectors), 3))
     flat[:, [0, 2]] = vectors
@@ -183,7 +183,7 @@ class FeatureSpace:
         mean: Array = raw.mean(0)
         return FeatureSpace(columns, mean, scale, (raw - mean) * scale)
 
-    def scaled(self, name: str, feature: Array) -> Array:
+    def scale_feature(self, name: str, feature: Array) -> Array:
         """Return one feature, scaled as the columns of that name."""
         own = self.columns[name]
         scaled: Array = (feature - self.mean[own]) * self.scale[own]

@@ -43,7 +43,7 @@ class _From:
         return self.motion.travel(self.start + start, self.start + end)
 
 
-class _Part:
+class _BodyPartPlayback:
     """What a part of the body plays."""
 
     def __init__(self, database: MotionDatabase, head: Playhead) -> None:
@@ -98,13 +98,13 @@ class MatchedMotion:
 
     @property
     def duration(self) -> float:
-        """Infinite."""
+        """Infinite: it goes on for as long as it is sampled."""
         return math.inf
 
     def restart(self, start: Playhead) -> None:
         """Begin at a moment of the database; its time is 0 again."""
-        self._legs = _Part(self.database, start)
-        self._arms = _Part(self.database, start)
+        self._legs = _BodyPartPlayback(self.database, start)
+        self._arms = _BodyPartPlayback(self.database, start)
 
     def match(self, time: float, ahead: Callable[[], Mapping[str, Array]], sudden: bool) -> None:
         """Jump, at a time [s], where frames suit better than those that come next.

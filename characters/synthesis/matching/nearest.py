@@ -30,7 +30,7 @@ class NearestRow:
         _, axes = np.linalg.eigh(centred.T @ centred)
         self._axes = axes[:, ::-1].astype(np.float32)
         turned = centred.astype(np.float32) @ self._axes
-        boxes = _halved(turned)
+        boxes = _halve(turned)
         size, columns = max(map(len, boxes)), turned.shape[1]
         self._numbers = np.zeros((len(boxes), size), np.intp)
         self._rows = np.full((len(boxes), size, columns), _FAR, np.float32)
@@ -106,7 +106,7 @@ class _Boxes:
         return squared
 
 
-def _halved(rows: _Array32) -> list[NDArray[np.intp]]:
+def _halve(rows: _Array32) -> list[NDArray[np.intp]]:
     """Return a power of two of boxes, as numbers of rows, each halved along its longest side."""
     boxes = [np.arange(len(rows))]
     while max(map(len, boxes)) > _BOX_ROWS:

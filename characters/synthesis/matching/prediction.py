@@ -52,7 +52,7 @@ class Impulse:
     turn_rate: float = 0.0
     """To the left [rad/s]."""
 
-    def advanced(
+    def advance(
         self, place: RootDelta, wish: Wish, body_height: float, elapsed: float
     ) -> tuple["Impulse", RootDelta]:
         """Return the motion, and where it leads from a place [m], a time later [s].
@@ -82,7 +82,7 @@ def predict(place: RootDelta, moving: Impulse, wish: Wish, body_height: float) -
     compared = [round(horizon / elapsed) for horizon in HORIZONS_S]
     there, path, facing = place, [], []
     for step in range(1, _STEPS + 1):
-        moving, there = moving.advanced(there, wish, body_height, elapsed)
+        moving, there = moving.advance(there, wish, body_height, elapsed)
         if step in compared:
             ahead = place.to(there)
             path += [ahead.x, ahead.z]

@@ -37,7 +37,6 @@ class Comparison:
     """A library, compared once, of which graphs at any threshold are made."""
 
     library: MotionLibrary
-    """The frames."""
 
     costs: EdgeCosts
     """What edges cost in all graphs."""
@@ -101,7 +100,6 @@ class SplitComparison:
     """The library, and the graph of the whole body."""
 
     parts: tuple[BodyPart, ...]
-    """The parts."""
 
     candidates: Mapping[str, Candidates]
     """Look-alikes of each part, by its name."""

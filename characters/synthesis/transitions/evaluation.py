@@ -20,7 +20,7 @@ Goals = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class Outcome:
+class TransitionOutcome:
     """The answer to one request."""
 
     duration: int
@@ -33,35 +33,37 @@ class Outcome:
     """Sum of the distances of consecutive full-body frames until the target plays."""
 
     fallback: str = ""
-    """How far the search went; see `Transition`."""
+    """How far the search went; see `transition.Transition`."""
 
 
-def standard_outcome(graph: MotionGraph, request: int, goals: Goals) -> Outcome:
+def standard_outcome(graph: MotionGraph, request: int, goals: Goals) -> TransitionOutcome:
     """Return how the graph of the whole body answers a request."""
     path = np.array(graph.path(request, goals))
     leaves = np.flatnonzero(graph.library.successors[path[:-1]] != path[1:])
     response = int(leaves[0]) if len(leaves) else len(path) - 2
     library = graph.library
     cost = consecutive_distances(library, library.poses[path], path).sum()
-    return Outcome(len(path) - 1, response, float(cost))
+    return TransitionOutcome(len(path) - 1, response, float(cost))
 
 
-def part_outcome(planners: Sequence[TransitionPlanner], request: int, goals: Goals) -> Outcome:
+def part_outcome(
+    planners: Sequence[TransitionPlanner], request: int, goals: Goals
+) -> TransitionOutcome:
     """Return how the graphs of the parts answer a request, with the best of several profiles.
 
     The cost is that of the synchronised motion before it is smoothed.
     """
     graphs, transition = cheapest_plan(planners, request, goals)
     cost = played_cost(graphs, transition)
-    return Outcome(transition.duration, transition.response, cost, transition.fallback)
+    return TransitionOutcome(transition.duration, transition.response, cost, transition.fallback)
 
 
 @dataclass(frozen=True)
-class Summary:
+class TransitionSummary:
     """The answers to many requests."""
 
-    outcomes: tuple[Outcome, ...]
-    """All of them."""
+    outcomes: tuple[TransitionOutcome, ...]
+    """One for each trial, in their order."""
 
     @property
     def duration(self) -> float:
@@ -91,7 +93,7 @@ class Summary:
 Requests: TypeAlias = dict[tuple[int, int], list[int]]
 """The frames that ask, by the numbers of their clip and of the target clip."""
 
-Answers: TypeAlias = dict[tuple[int, int], Summary]
+Answers: TypeAlias = dict[tuple[int, int], TransitionSummary]
 """The answers to requests, by the same."""
 
 
@@ -111,7 +113,7 @@ def graph_requests(library: MotionLibrary, kept: Goals, stride: int = 1) -> Requ
 
 
 def by_pair(
-    answer: Callable[[int, Goals], Outcome],
+    answer: Callable[[int, Goals], TransitionOutcome],
     library: MotionLibrary,
     asked: Requests,
 ) -> Answers:
@@ -120,13 +122,15 @@ def by_pair(
     `answer` is `standard_outcome` or `part_outcome` of what answers.
     """
     return {
-        (origin, target): Summary(
+        (origin, target): TransitionSummary(
             tuple(answer(frame, library.clip_of == target) for frame in frames)
         )
         for (origin, target), frames in asked.items()
     }
 
 
-def merge_answers(answers: Answers) -> Summary:
+def merge_answers(answers: Answers) -> TransitionSummary:
     """Return the answers of all pairs of clips as one."""
-    return Summary(tuple(outcome for each in answers.values() for outcome in each.outcomes))
+    return TransitionSummary(
+        tuple(outcome for each in answers.values() for outcome in each.outcomes)
+    )

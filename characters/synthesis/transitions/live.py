@@ -30,11 +30,10 @@ clips."""
 _SAMPLED_FRAMES = 32  # played frames that can still be sampled
 
 
-class FrameSource(Protocol):
+class GraphPlayback(Protocol):
     """Plays a graph, one frame at a time."""
 
     library: MotionLibrary
-    """The frames."""
 
     frame: int
     """The frame that is played; with parts, that of the legs."""
@@ -48,7 +47,7 @@ class FrameSource(Protocol):
 
 
 class StandardSource:
-    """Plays the graph of the whole body; a `FrameSource`."""
+    """Plays the graph of the whole body; a `GraphPlayback`."""
 
     def __init__(self, graph: MotionGraph, start: int) -> None:
         self.library = graph.library
@@ -67,7 +66,7 @@ class StandardSource:
 
 
 class PartsSource:
-    """Plays the graphs of the parts; a `FrameSource`.
+    """Plays the graphs of the parts; a `GraphPlayback`.
 
     A transition is planned as a whole and played until all parts have arrived. What was shown goes
     over into it by a decaying offset, so it may begin in the very frame of the request.
@@ -141,7 +140,7 @@ class LiveMotion:
     It can be sampled at the present time and shortly before, not far behind.
     """
 
-    def __init__(self, source: FrameSource, goals: Goals) -> None:
+    def __init__(self, source: GraphPlayback, goals: Goals) -> None:
         self.source = source
         self.goals = goals
         """Which frames meet the request, (frames,); may be replaced at any time."""
@@ -154,7 +153,7 @@ class LiveMotion:
 
     @property
     def duration(self) -> float:
-        """Infinite."""
+        """Infinite: it goes on for as long as frames come."""
         return math.inf
 
     def restart(self) -> None:
@@ -168,16 +167,16 @@ class LiveMotion:
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]."""
         frame, u = self._position(time)
-        first, second = self._played(frame)[0], self._played(frame + 1)[0]
+        first, second = self._play(frame)[0], self._play(frame + 1)[0]
         return first if u == 0.0 else mix([first, second], [1.0 - u, u])
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
-        return self._placed(start).to(self._placed(end))
+        return self._place_at(start).to(self._place_at(end))
 
-    def _placed(self, time: float) -> RootDelta:
+    def _place_at(self, time: float) -> RootDelta:
         frame, u = self._position(time)
-        return self._played(frame)[1].interpolated(self._played(frame + 1)[1], u)
+        return self._play(frame)[1].interpolate(self._play(frame + 1)[1], u)
 
     def _position(self, time: float) -> tuple[int, float]:
         at = self._frames_at(time)
@@ -187,7 +186,7 @@ class LiveMotion:
     def _frames_at(self, time: float) -> float:
         return max(self._start + (time - self._since) * self._rate * self._tempo, 0.0)
 
-    def _played(self, frame: int) -> tuple[Pose, RootDelta]:
+    def _play(self, frame: int) -> tuple[Pose, RootDelta]:
         """Return pose and place of a frame; play on until it is reached."""
         while self._newest < frame:
             self._place = self._place.then(self.source.advance(self.goals))

@@ -50,7 +50,7 @@ class GraphPlayer:
 
     def advance(self, frame: int) -> RootDelta:
         """Go to the next frame, and return how the root moves on the way there."""
-        step = self._nested(self.library.steps, lambda a, b, weight: a + (b - a) * weight)
+        step = self._nest(self.library.steps, lambda a, b, weight: a + (b - a) * weight)
         following = self.library.successors
         jumps = following[self.frame] != frame
         for stream in self._streams if jumps else self._streams[:-1]:
@@ -69,11 +69,11 @@ class GraphPlayer:
         """Return the pose now, with the root at the origin."""
         poses = self.library.poses
         return Pose(
-            self._nested(poses.translations, lambda a, b, weight: a + (b - a) * weight),
-            self._nested(poses.rotations, rotations.slerp),
+            self._nest(poses.translations, lambda a, b, weight: a + (b - a) * weight),
+            self._nest(poses.rotations, rotations.slerp),
         )
 
-    def _nested(self, rows: Array, mix: Callable[[Array, Array, float], Array]) -> Array:
+    def _nest(self, rows: Array, mix: Callable[[Array, Array, float], Array]) -> Array:
         """Return the mix of the streams' rows: each new stream takes over from all before it."""
         first, *others = self._streams
         value: Array = rows[first.frame]

@@ -51,7 +51,7 @@ class SearchSettings:
     """Arrivals of the legs that are tried before the window is widened."""
 
     wide_window: int = 20
-    """The widened window."""
+    """Window after `arrivals` have been tried in vain [frames]."""
 
     horizon: int = 120
     """Frames within which other arrivals of the legs are looked for."""
@@ -143,7 +143,7 @@ class TransitionPlanner:
 
     def _complete(self, request: int, prior: PartMove, window: int) -> Transition | None:
         """Return the transition in which all other parts follow the legs, or None."""
-        find = self._bounded if self.settings.search == "bounded" else self._shortest
+        find = self._bound if self.settings.search == "bounded" else self._shortest
         moves = [prior]
         for part in range(1, len(self.graphs.parts)):
             move = find(part, request, prior, window)
@@ -184,7 +184,7 @@ class TransitionPlanner:
         length, required = len(path) - 1, arrival - departure
         return required > 0 and abs(length - required) <= self.settings.tolerance * required + 1e-9
 
-    def _bounded(self, part: int, request: int, prior: PartMove, window: int) -> PartMove | None:
+    def _bound(self, part: int, request: int, prior: PartMove, window: int) -> PartMove | None:
         """Return the cheapest path whose length fits."""
         starts, arrivals = self._windows(request, prior, window)
         first = next((time for time, start in enumerate(starts) if start >= 0), None)

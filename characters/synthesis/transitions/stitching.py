@@ -12,7 +12,7 @@ from cubeling.characters.motion.clip import Clip
 from cubeling.characters.motion.motion import RootDelta
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array, Pose
-from cubeling.characters.smoothing import gaussian_smoothed, smoothstep
+from cubeling.characters.smoothing import gaussian_smooth, smoothstep
 from cubeling.characters.synthesis.distances import thesis_distance
 from cubeling.characters.synthesis.graphs.edges import Nodes
 from cubeling.characters.synthesis.graphs.parts import PartGraphs
@@ -88,12 +88,12 @@ def stitch(
     """
     before = low_pass.context_frames if low_pass else 0
     streams = PartStreams.of(transition, graphs.library, before, before)
-    poses, steps = _composed(graphs, streams)
+    poses, steps = _compose(graphs, streams)
     if low_pass:
         start, end = before + transition.response, before + transition.duration
         weights = low_pass.weights(len(steps), start, end)
-        poses = _smoothed(poses, weights, low_pass)
-        steps = steps + (gaussian_smoothed(steps, low_pass.sigma_frames) - steps) * weights[:, None]
+        poses = _smooth(poses, weights, low_pass)
+        steps = steps + (gaussian_smooth(steps, low_pass.sigma_frames) - steps) * weights[:, None]
     arrived = before + transition.duration
     return StitchedMotion(poses, steps, streams.before[0], before, arrived)
 
@@ -123,7 +123,7 @@ def consecutive_distances(library: MotionLibrary, poses: Pose, frames: Nodes) ->
     return thesis_distance(played).pairs(times, times + 1)
 
 
-def _composed(graphs: PartGraphs, streams: PartStreams) -> tuple[Pose, Array]:
+def _compose(graphs: PartGraphs, streams: PartStreams) -> tuple[Pose, Array]:
     """Return the poses of all parts together, and the steps of the legs."""
     library = graphs.library
     source = library.poses
@@ -144,11 +144,11 @@ def _composed(graphs: PartGraphs, streams: PartStreams) -> tuple[Pose, Array]:
     return Pose(translations, turns), library.steps[streams.before[0]]
 
 
-def _smoothed(poses: Pose, weights: Array, low_pass: LowPass) -> Pose:
+def _smooth(poses: Pose, weights: Array, low_pass: LowPass) -> Pose:
     """Return poses of which a share, (times,), is low-passed: rotations and translations."""
     turns = rotations.continuous(poses.rotations)
-    low = rotations.normalize(gaussian_smoothed(turns, low_pass.sigma_frames))
-    moved = gaussian_smoothed(poses.translations, low_pass.sigma_frames)
+    low = rotations.normalize(gaussian_smooth(turns, low_pass.sigma_frames))
+    moved = gaussian_smooth(poses.translations, low_pass.sigma_frames)
     share = weights[:, None]
     return Pose(
         poses.translations + (moved - poses.translations) * share[..., None],

@@ -70,14 +70,14 @@ def longer_body_used(probe: Probe) -> None:
     probe.open_session()
     for more in (1, 4, 40):
         count = probe.next_beat()
-        probe.write(_extended(m.Beat(count), probe, more))
+        probe.write(_extend(m.Beat(count), probe, more))
         probe.expect(m.State, f"a BEAT with a {more}-byte extension", beat=count)
         number = probe.next_number()
-        probe.write(_extended(m.Express(number, 0.0, 0.0), probe, more))
+        probe.write(_extend(m.Express(number, 0.0, 0.0), probe, more))
         what = f"an EXPRESS with a {more}-byte extension"
         probe.expect(m.Ack, what, number=number, result=m.RESULT_TAKEN)
         probe.next_session()
-        probe.write(_extended(m.Hello(2, probe.host), probe, more))
+        probe.write(_extend(m.Hello(2, probe.host), probe, more))
         probe.expect(m.Welcome, f"a HELLO with a {more}-byte extension")
 
 
@@ -125,7 +125,7 @@ def express_of_version_2_used(probe: Probe) -> None:
         expect_mood(probe, mood, "EXPRESS with it")
 
 
-def _extended(message: object, probe: Probe, more: int) -> bytes:
+def _extend(message: object, probe: Probe, more: int) -> bytes:
     body = pack(message, probe.session) + b"\x17" * more
     return encode_frame(body[:MAX_BODY])
 

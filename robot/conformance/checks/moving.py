@@ -32,7 +32,6 @@ class Way:
     """A joint's way to an angle, for a test."""
 
     joint: m.Joint
-    """The joint."""
 
     start: float
     """Its angle before [rad]."""
@@ -45,7 +44,7 @@ class Way:
 
     @property
     def bit(self) -> int:
-        """The joint's bit."""
+        """Bit of the joint in the masks of MOVE and STATE."""
         return 1 << self.joint.index
 
     def command(self, number: int) -> m.Move:

@@ -45,6 +45,7 @@ class HostLink(SendBuffer):
         self.reader = FrameReader()
         """Decodes the received frames."""
         self._host = host
+        # `_greet` counts on before it sends, so the first session is `session`.
         self._session = session - 1
         self._phase: Phase = "port"
         self._query: CapabilityQuery | None = None
@@ -80,13 +81,15 @@ class HostLink(SendBuffer):
         self.scheduler.stop()
 
     def port_opened(self, now: float) -> None:
-        """Start a session."""
+        """Greet the robot with HELLO: a new session begins."""
         self._greet(now)
 
     def port_lost(self) -> None:
         """Send nothing until `port_opened`."""
         self.scheduler.end_session()
         self._phase = "port"
+        # What waits belongs to the session that ended with the port; the next one begins with
+        # HELLO.
         self._out.clear()
 
     def close(self) -> None:
@@ -103,6 +106,9 @@ class HostLink(SendBuffer):
                 session, message = unpack(body, "robot")
             except MessageError:
                 session, message = 0, None
+            # An answer to an earlier session may come late; taken for this one, it would
+            # acknowledge a
+            # command that was never received.
             if message is None or session != self._session or self._phase in ("port", "closed"):
                 self._skipped += 1
             else:
@@ -112,6 +118,7 @@ class HostLink(SendBuffer):
     def tick(self, now: float) -> None:
         """Do what is due at time `now` [s]: HELLO, ASK, BEAT, commands and retries."""
         if self._phase in ("asking", "open") and (
+            # A robot that answers BEATs but never acknowledges is as lost as one that is silent.
             self._silence(now) >= timing.LOST_AFTER or self.scheduler.exhausted
         ):
             self._greet(now)
@@ -171,6 +178,7 @@ class HostLink(SendBuffer):
     def _greet(self, now: float) -> None:
         self.scheduler.end_session()
         self._phase = "greeting"
+        # 1…65535, again and again: 0 is no session on the wire.
         self._session = self._session % 0xFFFF + 1
         self._hello(now)
 
@@ -185,6 +193,7 @@ class HostLink(SendBuffer):
             case m.Joint() | m.Name() if self._phase == "asking":
                 if self._query is not None and self._query.answer(message):
                     self._ask(now)
+            # While greeting it answers an older frame; a second HELLO would only restart the first.
             case m.Gone() if self._phase != "greeting":
                 self._greet(now)
             case m.State():
@@ -206,8 +215,11 @@ class HostLink(SendBuffer):
         self._version = welcome.version
         self._beat_due = now
         self._reports.start_session()
+        # Before the catalogue: commands that the robot took in the last session are not sent twice.
         self.scheduler.start_session(welcome.taken)
         if self.catalogue is not None and last is not None and (
+            # The same robot as before but for the last command taken: its catalogue need not be
+            # read again.
             replace(last.welcome, taken=0) == replace(welcome, taken=0)
         ):  # fmt: skip
             self._phase = "open"
@@ -252,7 +264,7 @@ def _make(host: int, settings: Path | None) -> Driver:
 
 
 CUBELING = DriverKind(_make, timing.BAUD, timing.ANSWER_WITHIN)
-"""The protocol "cubeling"."""
+"""Drivers of robots that speak the protocol of `robot/PROTOCOL.md`."""
 
 
 class CapabilityQuery:

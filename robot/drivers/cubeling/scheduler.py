@@ -19,7 +19,6 @@ class PendingCommand:
     """The command that waits for its acknowledgement."""
 
     command: m.Command
-    """The command."""
 
     emotion: Emotion | None
     """The emotion of an EXPRESS."""
@@ -36,7 +35,6 @@ class Refusal:
     """A command that the robot did not take."""
 
     command: m.Command
-    """The command."""
 
     result: int
     """Why, one of `REFUSALS` or another."""
@@ -66,13 +64,16 @@ class RoundTrip:
         if self.smoothed is None:
             return timing.RETRY_FIRST
         timeout = self.smoothed + 4 * self._deviation
+        # At least RETRY_MIN, or one late thread on either side sends everything twice.
         return min(max(timeout, timing.RETRY_MIN), timing.RETRY_MAX)
 
     def start(self, now: float) -> int:
         """Return the count of a BEAT that is sent at `now` [s]."""
+        # A u16 on the wire; `MAX_BEATS` is so small that a number is never awaited twice.
         self._count = (self._count + 1) & 0xFFFF
         self._sent[self._count] = now
         if len(self._sent) > MAX_BEATS:
+            # Dictionaries keep their order: the first is the oldest.
             del self._sent[next(iter(self._sent))]
         return self._count
 
@@ -88,6 +89,7 @@ class RoundTrip:
         if self.smoothed is None:
             self.smoothed, self._deviation = took, took / 2
         else:
+            # The deviation first, from the old mean, with the gains ¼ and ⅛ of RFC 6298.
             self._deviation += (abs(took - self.smoothed) - self._deviation) / 4
             self.smoothed += (took - self.smoothed) / 8
         return sent
@@ -127,7 +129,7 @@ class CommandScheduler:
         return self.tries >= timing.TRIES_MAX
 
     def express(self, emotion: Emotion) -> None:
-        """Request an emotion."""
+        """Request an emotion; it replaces one that has not been sent yet."""
         if emotion != self.state.commanded:
             self._request(emotion)
 

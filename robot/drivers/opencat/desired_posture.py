@@ -7,7 +7,7 @@ from cubeling.affect.words import closest_word
 from cubeling.robot.drivers.commands import DesiredState
 from cubeling.robot.drivers.opencat import tokens
 from cubeling.robot.drivers.opencat.echo import BoardCommand
-from cubeling.robot.drivers.opencat.settings import Behaviour, OpenCatMood
+from cubeling.robot.drivers.opencat.settings import ModelBehaviour, OpenCatMood
 
 POSTURE_TIMEOUT_S = 5.0
 """Longest time of a posture [s]; a joint moves from end to end in less than 2 s."""
@@ -22,7 +22,7 @@ MAX_REFUSALS = 2
 class DesiredPosture(DesiredState):
     """The mood or stop that was requested last, and which of its commands are due."""
 
-    def __init__(self, behaviour: Behaviour) -> None:
+    def __init__(self, behaviour: ModelBehaviour) -> None:
         super().__init__()
         self.number = 0
         """Number of the desired state; 0 while there is none."""
@@ -63,7 +63,7 @@ class DesiredPosture(DesiredState):
         self.commanded = None
         self._request(None)
 
-    def set_behaviour(self, behaviour: Behaviour) -> None:
+    def set_behaviour(self, behaviour: ModelBehaviour) -> None:
         """Use the behaviour of another model for the same request."""
         self._behaviour = behaviour
         if self.commanded is not None:

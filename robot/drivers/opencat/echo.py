@@ -33,10 +33,10 @@ class BoardCommand:
     """A line with an effect."""
 
     kind: Kind
-    """Its purpose."""
+    """What the line starts, which tells what echo and what text follow."""
 
     line: bytes
-    """The line."""
+    """The bytes on the wire."""
 
     name: str
     """The skill or melody; empty for others."""
@@ -59,7 +59,6 @@ class PendingLine:
     """The command that waits for its echo."""
 
     command: BoardCommand
-    """The command."""
 
     sent: float
     """Time of the send [s]."""
@@ -73,13 +72,13 @@ class Question:
     """The question that waits for its echo."""
 
     line: bytes
-    """The line."""
+    """The bytes on the wire."""
 
     sent: float
     """Time of the last send [s]."""
 
     tries: int = 1
-    """Number of sends."""
+    """Number of sends so far; see `MAX_QUESTION_TRIES`."""
 
     settles: bool = True
     """Whether its echo makes later echoes reliable: it was asked after the doubt began."""
@@ -120,11 +119,14 @@ class EchoMatcher:
     def match(self, line: str, now: float) -> PendingLine | Question | None:
         """Return what a received line is the echo of. No command is pending after a question."""
         question, pending = self.question, self.pending
+        # The board echoes only the token, the first letter of a line.
         if question is not None and line == question.line[:1].decode():
+            # Of a repeated question it is unknown which send was echoed (Karn's rule).
             if question.tries == 1:
                 self.round_trip = now - question.sent
             self._end_question(question)
             self.answered = now
+            # A question asked before the fall says nothing about what came after it.
             self.doubtful = self.doubtful and not question.settles
             return question
         if pending is None:
@@ -169,5 +171,6 @@ class EchoMatcher:
         self.doubtful = False
 
     def _end_question(self, question: Question) -> None:
+        # Alternate, or a late echo of this one would count for the next.
         self._next_question = tokens.ANGLES if question.line == tokens.QUERY else tokens.QUERY
         self.question = None

@@ -68,7 +68,7 @@ class OpenCatHost:
         self._scheduler.stop()
 
     def port_opened(self, now: float) -> None:
-        """Start a session."""
+        """Wait for the board to boot and greet it; what was known of it is forgotten."""
         self._phase = "greeting"
         self._reader.clear()
         self._end_session()
@@ -266,4 +266,4 @@ OPENCAT = DriverKind(
     25.0,  # a board takes seconds to start when its port is opened, and a new one asks its owner
     spacing=0.1,  # lines that arrive within a few milliseconds are read as one
 )
-"""The protocol "opencat"."""
+"""Drivers of OpenCat boards: Petoi's Bittle and Nybble."""

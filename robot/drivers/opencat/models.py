@@ -22,7 +22,7 @@ class OpenCatJoint:
     """Its number on the board."""
 
     name: str
-    """Its name."""
+    """Name in the catalogue, such as "left front knee"."""
 
     low: int
     """Smallest angle [°]: the narrower limit of the two firmwares."""
@@ -30,10 +30,10 @@ class OpenCatJoint:
     high: int
     """Largest angle [°]: the narrower limit of the two firmwares."""
 
-    def clamped(self, angle: float) -> int:
+    def clamp(self, angle: float) -> int:
         """Return an angle [°] within the limits.
 
-        >>> OpenCatJoint(1, "head tilt", -75, 40).clamped(90)
+        >>> OpenCatJoint(1, "head tilt", -75, 40).clamp(90)
         40
         """
         low, high = max(self.low, -MAX_ANGLE_DEG), min(self.high, MAX_ANGLE_DEG)

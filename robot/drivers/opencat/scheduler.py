@@ -10,7 +10,7 @@ from cubeling.robot.drivers.commands import CommandQueue
 from cubeling.robot.drivers.opencat import tokens
 from cubeling.robot.drivers.opencat.desired_posture import POSTURE_TIMEOUT_S, DesiredPosture
 from cubeling.robot.drivers.opencat.echo import BoardCommand
-from cubeling.robot.drivers.opencat.settings import Behaviour, OpenCatSettings
+from cubeling.robot.drivers.opencat.settings import ModelBehaviour, OpenCatSettings
 
 GESTURE_TIMEOUT_S = 15.0
 """Longest time of a skill [s]; an earlier question would interrupt it on new boards."""
@@ -25,7 +25,7 @@ REST_COMMAND = BoardCommand("rest", tokens.REST, "", POSTURE_TIMEOUT_S)
 class SkillScheduler:
     """The commands for one board, over all its sessions."""
 
-    def __init__(self, settings: OpenCatSettings, behaviour: Behaviour) -> None:
+    def __init__(self, settings: OpenCatSettings, behaviour: ModelBehaviour) -> None:
         self.desired = DesiredPosture(behaviour)
         """The mood or stop that was requested last."""
         self.actions: CommandQueue[str] = CommandQueue(MAX_QUEUED_ACTIONS)
@@ -66,7 +66,7 @@ class SkillScheduler:
         self._requested |= taken
         return taken
 
-    def set_behaviour(self, behaviour: Behaviour) -> None:
+    def set_behaviour(self, behaviour: ModelBehaviour) -> None:
         """Use the behaviour of another model."""
         if behaviour is not self._behaviour:
             self._behaviour = behaviour

@@ -12,7 +12,7 @@ from cubeling.robot.contract.catalogue import MAX_NAME_BYTES, Catalogue
 from cubeling.robot.drivers.opencat import tokens
 from cubeling.robot.drivers.opencat.models import MODELS
 from cubeling.robot.errors import RobotError
-from cubeling.toml_file import TomlTable, read, shown
+from cubeling.toml_file import TomlTable, excerpt, read
 
 BUNDLED_SETTINGS = Path(__file__).with_name("opencat.toml")
 """The bundled settings; a person's own file overrides parts of them."""
@@ -48,7 +48,7 @@ class OpenCatMood:
 
 
 @dataclass(frozen=True)
-class Behaviour:
+class ModelBehaviour:
     """How a model behaves."""
 
     moods: Mapping[str, OpenCatMood]
@@ -58,7 +58,7 @@ class Behaviour:
     """Skills that can be played by name: those of the settings, and every posture and gesture."""
 
     sounds: Mapping[str, Notes]
-    """Melodies by name."""
+    """Melodies by the name that `play` takes."""
 
     stop: str
     """The posture for a stop."""
@@ -77,7 +77,7 @@ class Behaviour:
 
 @dataclass(frozen=True)
 class OpenCatSettings:
-    """A settings file."""
+    """What a settings file of a board says, checked; defaults come from the bundled file."""
 
     baud: int
     """Bits per second on the serial line."""
@@ -97,7 +97,7 @@ class OpenCatSettings:
     rest_after: float
     """Time without a new request after which the servos are switched off [s]; 0 for never."""
 
-    behaviours: Mapping[str, Behaviour]
+    behaviours: Mapping[str, ModelBehaviour]
     """The behaviour of each of `MODELS`."""
 
 
@@ -112,13 +112,13 @@ def load_settings(path: Path | None = None) -> OpenCatSettings:
 
 
 @cache
-def _bundled() -> Mapping[str, Any]:
+def _read_bundled() -> Mapping[str, Any]:
     return read(BUNDLED_SETTINGS, RobotError)
 
 
 def parse_settings(document: Mapping[str, Any], source: str) -> OpenCatSettings:
     """Return the settings in a TOML document, over the bundled ones."""
-    top = TomlTable(_merged(_bundled(), document), source, error=RobotError)
+    top = TomlTable(_merge(_read_bundled(), document), source, error=RobotError)
     top.only("opencat", *MODELS)
     common = top.table("opencat")
     common.only("baud", "model", "commands_per_s", "dwell_s", "ask_every_s", "rest_after_s")
@@ -137,7 +137,7 @@ def parse_settings(document: Mapping[str, Any], source: str) -> OpenCatSettings:
     )
 
 
-def _behaviour(table: TomlTable, model: str) -> Behaviour:
+def _behaviour(table: TomlTable, model: str) -> ModelBehaviour:
     table.only("stop", "motions", "sounds", "moods")
     melodies = table.table("sounds")
     sounds = {name: _melody(melodies, name) for name in melodies.names(MAX_NAME_BYTES)}
@@ -155,7 +155,7 @@ def _behaviour(table: TomlTable, model: str) -> Behaviour:
         motions |= dict.fromkeys((mood.posture, *mood.gestures))
     if both := motions.keys() & sounds.keys():
         raise melodies.wrong(min(both), "a skill has this name too; give the sound another name")
-    return Behaviour(moods, tuple(motions), sounds, stop)
+    return ModelBehaviour(moods, tuple(motions), sounds, stop)
 
 
 def _mood(table: TomlTable, model: str, sounds: Mapping[str, Notes]) -> OpenCatMood:
@@ -163,7 +163,7 @@ def _mood(table: TomlTable, model: str, sounds: Mapping[str, Notes]) -> OpenCatM
     sound = table.text("sound", "")
     if sound and sound not in sounds:
         known = ", ".join(sounds) or "none"
-        raise table.wrong("sound", f"there is no sound {shown(sound)}; there is {known}")
+        raise table.wrong("sound", f"there is no sound {excerpt(sound)}; there is {known}")
     mood = OpenCatMood(
         posture=_skill(table, "posture"),
         pose=_pose(table, model),
@@ -185,7 +185,7 @@ def _pose(table: TomlTable, model: str) -> Mapping[int, int]:
         if name not in joints:
             known = ", ".join(joints) or "none that is known"
             raise angles.wrong(name, f"no joint is called that; a {model} has {known}")
-        pose[joints[name].number] = joints[name].clamped(angles.number(name, -360.0, 360.0))
+        pose[joints[name].number] = joints[name].clamp(angles.number(name, -360.0, 360.0))
     if pose:
         _check_line(table, "pose", lambda: tokens.pose(pose))
     return pose
@@ -228,11 +228,11 @@ def _check_line(table: TomlTable, key: str, make: Callable[[], bytes]) -> None:
         raise table.wrong(key, str(error)) from error
 
 
-def _merged(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+def _merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
     """Return `base` overridden by `over`, key by key; a mood with a posture is replaced whole."""
     merged = dict(base)
     for key, value in over.items():
         old = merged.get(key)
         deeper = isinstance(old, Mapping) and isinstance(value, Mapping) and "posture" not in value
-        merged[key] = _merged(old, value) if deeper else value  # type: ignore[arg-type] # see above
+        merged[key] = _merge(old, value) if deeper else value  # type: ignore[arg-type] # see above
     return merged

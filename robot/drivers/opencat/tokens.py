@@ -62,7 +62,7 @@ def skill(name: str) -> bytes:
     >>> skill("sit")
     b'ksit\n'
     """
-    return checked(f"k{name}\n".encode("latin-1", "replace"))
+    return check_line(f"k{name}\n".encode("latin-1", "replace"))
 
 
 def pose(angles: Mapping[int, int]) -> bytes:
@@ -71,7 +71,7 @@ def pose(angles: Mapping[int, int]) -> bytes:
     >>> pose({0: 30, 8: -20})
     b'i0 30 8 -20\n'
     """
-    return checked(f"i{_pairs(angles.items())}\n".encode())
+    return check_line(f"i{_pairs(angles.items())}\n".encode())
 
 
 def melody(notes: Iterable[tuple[int, int]]) -> bytes:
@@ -80,14 +80,14 @@ def melody(notes: Iterable[tuple[int, int]]) -> bytes:
     >>> melody([(14, 8), (16, 8)])
     b'b14 8 16 8\n'
     """
-    return checked(f"b{_pairs(notes)}\n".encode())
+    return check_line(f"b{_pairs(notes)}\n".encode())
 
 
 def _pairs(pairs: Iterable[tuple[int, int]]) -> str:
     return " ".join(f"{first} {second}" for first, second in pairs)
 
 
-def checked(line: bytes) -> bytes:
+def check_line(line: bytes) -> bytes:
     """Return the line if it may be sent; raises RobotError with the reason if it may not."""
     reason = why_not(line)
     if reason is not None:
@@ -147,7 +147,7 @@ class RateLimitedWriter(SendBuffer):
 
     def send(self, line: bytes, now: float) -> None:
         """Send a line at time `now` [s]; raises RobotError for one that may not be sent."""
-        self._out += checked(line)
+        self._out += check_line(line)
         self._last = now
         self.sent += 1
 

@@ -18,7 +18,6 @@ class CommandResult:
     """The result of a command."""
 
     command: Command
-    """The command."""
 
     sent: float
     """Time of the send [s]."""
@@ -38,7 +37,6 @@ class PromptedCommand:
     """The command that waits for its prompt."""
 
     command: Command
-    """The command."""
 
     sent: float
     """Time of the send [s]."""
@@ -50,7 +48,7 @@ class PromptedCommand:
     """Time of its last send or nudge [s]."""
 
     nudges: int = 0
-    """Number of nudges."""
+    """Empty lines sent since to make the console print its prompt again."""
 
 
 class Console(SendBuffer):
@@ -84,6 +82,7 @@ class Console(SendBuffer):
         wait = timing.NUDGE_INTERVAL_S if pending.nudges else pending.command.timeout
         if now - pending.asked < wait or self.reader.prompt_came is not None:
             return None  # also while a prompt still has to settle
+        # Text went on after the prompt, so it never settled; the command was executed all the same.
         if pending.patient and self.reader.answer.prompted:
             return self._finish(pending)
         searching = pending.command is NUDGE and pending.patient  # the caller sends the next one
@@ -108,6 +107,7 @@ class Console(SendBuffer):
         self.answered += not silent
         outcome: Outcome = "silent" if silent else "answered"
         if pending.nudges and not silent and not answer.spoke and pending.command is not NUDGE:
+            # The prompt that came may be the answer to the nudge alone.
             outcome = "unsure"
         return CommandResult(pending.command, pending.sent, ended, outcome, answer)
 

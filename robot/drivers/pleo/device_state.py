@@ -29,7 +29,7 @@ class DeviceState:
         """Return whether a command may be sent: a joint must have reached its last angle."""
         return command.sets is None or now >= self._arrival.get(command.sets[0], now)
 
-    def sent(self, command: Command, now: float) -> None:
+    def record_send(self, command: Command, now: float) -> None:
         """Record a command that is sent at time `now` [s]."""
         if command.sets is not None:
             self._set(*command.sets, now)
@@ -37,14 +37,14 @@ class DeviceState:
             for move in _MOVES:
                 self._set(move, 0, now)
 
-    def refused(self, command: Command) -> None:
+    def record_refusal(self, command: Command) -> None:
         """Forget the values of a command that was answered with an error."""
         if command.sets is not None:
             self._values.pop(command.sets[0], None)
         elif command is commands.JOINT_NEUTRAL:
-            self.motion_played()
+            self.forget_angles()
 
-    def motion_played(self) -> None:
+    def forget_angles(self) -> None:
         """Forget the angles: a motion moves the joints anywhere."""
         for move in _MOVES:
             self._values.pop(move, None)
@@ -76,7 +76,6 @@ class CommandStep(NamedTuple):
     """One command of a mood or an action."""
 
     command: Command
-    """The command."""
 
     part: Literal["tone", "body", "sound", "action"]
     """tone: the speed of the motion. body: it shows the mood. sound: the sound of the mood.

@@ -76,6 +76,7 @@ class PleoDriver:
 
     def close(self) -> None:
         """Send Pleo to its neutral pose if the console is free, and nothing afterwards."""
+        # A busy console would take the line for a part of the pending command.
         if self._phase == "open" and self.console.pending is None:
             self.console.send(commands.JOINT_NEUTRAL, 0.0)
         elif self._phase != "closed":
@@ -96,6 +97,7 @@ class PleoDriver:
         result = self.console.tick(now)
         if result is not None:
             self._process(result, now)
+        # Only now: while a command is pending, all text belongs to its answer.
         elif self.console.pending is None:
             self._process_unsolicited(now)
         if self.console.pending is None and self._phase in ("starting", "open"):
@@ -187,7 +189,7 @@ class PleoDriver:
         if result.outcome == "unsure":  # every one of these may be sent twice
             self._start.appendleft(result.command)
             return
-        self._scheduler.started(result.command, result.sent)
+        self._scheduler.record_start(result.command, result.sent)
         if not self._start:
             self._open(now)
 
@@ -196,6 +198,7 @@ class PleoDriver:
         took = result.ended - result.sent
         if command is commands.NUDGE and math.isfinite(result.ended):  # its answer needs no work
             before = took if self._round_trip is None else self._round_trip
+            # The gain of RFC 6298, as for the other robots.
             self._round_trip = before + (took - before) / 8
         # Each of these may be a restart that was not detected.
         late = took >= timing.MIN_RESTART_S
@@ -223,6 +226,8 @@ class PleoDriver:
             command = self._start.popleft()
             self.console.send(command, now, patient=command is commands.APP_UNLOAD)
             return
+        # Before any motion: Pleo's own behaviour, back after a restart, fights with ours for the
+        # joints.
         if self._unload_again:
             self.console.send(commands.APP_UNLOAD, now)
             return
@@ -239,4 +244,4 @@ class PleoDriver:
 PLEO = DriverKind(
     lambda host, settings: PleoDriver(load_settings(settings)), timing.BAUD, timing.ANSWER_TIMEOUT_S
 )
-"""The protocol "pleo"."""
+"""Drivers of Ugobe's Pleo, over the monitor console of its USB port."""

@@ -17,7 +17,7 @@ class PleoJoint:
     """One joint. Zero is neutral; positive is forward, up or right."""
 
     name: str
-    """Its name."""
+    """Name in the catalogue."""
 
     low: int
     """Smallest angle [°]."""

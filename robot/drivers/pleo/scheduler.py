@@ -85,9 +85,9 @@ class StepScheduler:
         self._steps.clear()
         self._device = DeviceState()
 
-    def started(self, command: Command, sent: float) -> None:
+    def record_start(self, command: Command, sent: float) -> None:
         """Record a command with which a session began."""
-        self._device.sent(command, sent)
+        self._device.record_send(command, sent)
 
     def next(self, now: float) -> Command | None:
         """Return the command to send at time `now` [s], if one is due."""
@@ -99,10 +99,10 @@ class StepScheduler:
             self._repeat_at = None
             self.state.begin(self._current)
         if step.length:
-            self._device.motion_played()
+            self._device.forget_angles()
         if step.part in ("action", "body"):
             self.state.stopped = False
-        self._device.sent(step.command, now)
+        self._device.record_send(step.command, now)
         return step.command
 
     def complete(self, result: CommandResult) -> bool:
@@ -116,7 +116,7 @@ class StepScheduler:
             return False
         if result.answer.error is not None:
             self.refused += 1
-            self._device.refused(step.command)
+            self._device.record_refusal(step.command)
             self._body_refused |= step.part == "body"
         if step.part == "action" and step.length:
             self._resume_after(result.sent + step.length)

@@ -62,7 +62,7 @@ class PleoMood:
 
 @dataclass(frozen=True)
 class PleoSettings:
-    """A settings file."""
+    """What a settings file of a Pleo says, checked; defaults come from the bundled file."""
 
     moods: Mapping[str, PleoMood]
     """The moods by word, neutral first."""
@@ -74,7 +74,7 @@ class PleoSettings:
     """The sound files of `play`, by name."""
 
     volume: int = 70
-    """First volume [%]."""
+    """Volume that is set when a session begins [%]."""
 
     battery_every: float = 30.0
     """Interval at which the battery is read [s]."""

@@ -50,7 +50,7 @@ class PendingTarget:
     """The target that waits for its acknowledgement."""
 
     number: int
-    """Its number."""
+    """Sequence number that the acknowledgement repeats."""
 
     emotion: Emotion | None
     """The emotion that it belongs to."""
@@ -115,7 +115,7 @@ class ReachyDriver(SendBuffer):
         self._state.commanded, self._mood, self._still = None, motions.MOODS[0], True
 
     def port_opened(self, now: float) -> None:
-        """Start a session."""
+        """Start a session with nothing commanded and no telemetry."""
         self._open, self._last_received, self._pending = True, None, None
         self._last_target = None
         self.reader.clear()
@@ -136,7 +136,7 @@ class ReachyDriver(SendBuffer):
     def receive(self, data: bytes, now: float) -> None:
         """Process received bytes at time `now` [s]."""
         for line in self.reader.feed(data):
-            message = _decoded(line)
+            message = _decode(line)
             if message is None:
                 self._skipped += 1
             elif self._open and not self._closed:
@@ -234,7 +234,7 @@ class ReachyDriver(SendBuffer):
         self._sent += 1
 
 
-def _decoded(line: str) -> dict[str, Any] | None:
+def _decode(line: str) -> dict[str, Any] | None:
     """Return the message of a line; None if it has none."""
     try:
         message = json.loads(line)

@@ -72,7 +72,7 @@ class SdkRobot:
             self._mini.disable_motors()
 
     def close(self) -> None:
-        """Disconnect."""
+        """Disconnect from the daemon; errors are ignored, as it may be gone already."""
         with contextlib.suppress(Exception):
             self._mini.client.disconnect()
 

@@ -75,7 +75,7 @@ class DinoBody:
         self._start(index, True)
 
     def play_sound(self, index: int) -> None:
-        """Play a sound."""
+        """Play a sound by its index in `SOUNDS`, from its start."""
         self.stopped = False
         self.sounds.play(index)
 
@@ -122,6 +122,7 @@ class DinoBody:
         if elapsed < STEP_MS:
             return
         self._last_step = now
+        # After a hang joints go on from where they are, at their speed, instead of leaping.
         elapsed = min(elapsed, MAX_STEP_MS)
         resting = now - self._last_attended >= self._rest_after
         self._approach_emotion(elapsed)
@@ -137,6 +138,7 @@ class DinoBody:
         d_valence, d_arousal = self._target[0] - self.valence, self._target[1] - self.arousal
         if d_valence or d_arousal:
             max_change = EMOTION_SPEED * elapsed
+            # Rounded up, so that the length is never zero and the speed never exceeded.
             length = int(sqrt(d_valence * d_valence + d_arousal * d_arousal)) + 1
             if length > max_change:
                 d_valence = int(d_valence * max_change / length)
@@ -157,6 +159,8 @@ class DinoBody:
     def _next_mood(self) -> int:
         """Return the mood of the emotion, with hysteresis; happy and angry only follow neutral."""
         if self.mood == _HAPPY:
+            # It leaves at a lower valence than it entered: an emotion at the border does not
+            # flutter.
             return _HAPPY if self.valence >= HAPPY_ABOVE - HYSTERESIS else _NEUTRAL
         if self.mood == _ANGRY:
             return _ANGRY if self.valence <= ANGRY_BELOW + HYSTERESIS else _NEUTRAL
@@ -183,8 +187,10 @@ class DinoBody:
         if not hold:
             for joint, offset, amplitude, cycles, begin in self._sines[self._motion]:
                 part = cycles * self._time * TURN // period + begin
+                # Integers: a float would be allocated for each joint and step.
                 targets[joint] = offset + amplitude * _SINE[part % TURN] // _UNIT
         for index in range(len(targets)):
+            # After the motion: a joint that the host holds overrides it.
             if self.held >> index & 1:
                 start, goal, time, duration = self._ways[index]
                 time = min(time + elapsed, duration)

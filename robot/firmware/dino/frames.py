@@ -26,6 +26,7 @@ def crc16(data: bytes | bytearray, start: int, end: int, register: int = 0xFFFF)
     """Return the CRC-16/CCITT-FALSE of `data[start:end]`, continued from `register`."""
     for index in range(start, end):
         byte = data[index]
+        # The high half of the byte first, as CCITT-FALSE is not reflected.
         register = (register << 4 & 0xFFFF) ^ _CRC_TABLE[register >> 12 ^ byte >> 4]
         register = (register << 4 & 0xFFFF) ^ _CRC_TABLE[register >> 12 ^ byte & 15]
     return register
@@ -45,7 +46,9 @@ def encode(body: bytearray, size: int, out: bytearray, at: int) -> int:
             code = at
         at += 1
     out[code] = at - code
+    # Over the encoded bytes, from the COBS code on: the guarantee holds for the bits on the line.
     crc = crc16(out, first, at)
+    # 4 + 6 + 6 bits with marks above them: none of the three bytes can be zero.
     out[at] = 0xE0 | crc >> 12
     out[at + 1] = 0x80 | crc >> 6 & 0x3F
     out[at + 2] = 0x80 | crc & 0x3F
@@ -124,7 +127,7 @@ class TransmitBuffer:
             return
         self.end = encode(body, size, self.data, self.end)
 
-    def sent(self, count: int) -> None:
+    def drop(self, count: int) -> None:
         """Remove the first `count` bytes, which were sent."""
         self.start += count
         if self.start >= self.end:

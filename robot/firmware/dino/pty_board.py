@@ -73,7 +73,7 @@ class PtyBoard(RobotBoard):
         self.pulses[pin] = us
 
     def tone(self, hertz: int) -> None:
-        """Record the frequency."""
+        """Record the frequency of the buzzer [Hz]; 0 is silence."""
         self.hertz = hertz
 
     def log_error(self, error: BaseException) -> None:
@@ -87,7 +87,7 @@ class PtyBoard(RobotBoard):
         os.write(self._wake_writer, b"!")
 
     def release(self) -> None:
-        """Close the pseudo-terminal."""
+        """Close both ends of the pseudo-terminal and the pipe that wakes it."""
         for descriptor in (self._master, self._slave, self._wake_reader, self._wake_writer):
             os.close(descriptor)
 

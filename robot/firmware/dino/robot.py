@@ -44,7 +44,7 @@ class Firmware:
         self._report_servos(now)
         buffer = self._send_buffer
         if buffer.end:
-            buffer.sent(board.write(self._to_send[buffer.start : buffer.end]))
+            buffer.drop(board.write(self._to_send[buffer.start : buffer.end]))
         if attended and not self._watchdog_started:
             # Not earlier: before the first session a developer may interrupt the program.
             self._watchdog_started = True
@@ -87,6 +87,7 @@ def run(board: RobotBoard, table: ServoTable) -> None:
                 return
             except Exception as error:
                 log.write(SEVERITY_ERROR, f"restarted after {error!r}", 0)
+                # Before the pause: whatever went wrong, the servos must not hold on to it.
                 joints.release()
                 board.tone(0)
                 board.log_error(error)

@@ -30,12 +30,12 @@ class SoundPlayer:
         return [name for name, _ in SOUNDS] if self._buzzer else []
 
     def play(self, index: int) -> None:
-        """Start a sound."""
+        """Start a sound by its index in `SOUNDS`; one that is playing ends."""
         self.sound, self._time = index, 0
         self._update_tone()
 
     def end(self) -> None:
-        """End the sound."""
+        """End the sound, if one is playing, and switch the buzzer off."""
         self.sound = -1
         self._set_tone(0)
 

@@ -51,7 +51,7 @@ class Address:
     """Host name or IP address."""
 
     port: int
-    """TCP port."""
+    """TCP port of the broker."""
 
     user: str | None = None
     """User name; None for an anonymous client."""

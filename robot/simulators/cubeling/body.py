@@ -195,7 +195,7 @@ class DinosaurBody:
 
     @property
     def target(self) -> Emotion:
-        """The commanded emotion."""
+        """The commanded emotion, towards which the shown one moves."""
         valence, arousal = self._target.tolist()
         return Emotion(valence, arousal)
 

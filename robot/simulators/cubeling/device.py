@@ -13,7 +13,7 @@ from cubeling.robot.protocol.schema import pack, spec_of, unpack
 from cubeling.robot.protocol.wire import FrameReader, crc16, encode_frame
 
 
-class Body(Protocol):
+class SimulatedBody(Protocol):
     """What the protocol commands."""
 
     catalogue: Catalogue
@@ -44,7 +44,7 @@ class Body(Protocol):
 class DeviceLink(SendBuffer):
     """The robot side of one link. A reboot is a new `DeviceLink`."""
 
-    def __init__(self, body: Body) -> None:
+    def __init__(self, body: SimulatedBody) -> None:
         super().__init__()
         self.body = body
         self.session = 0
@@ -64,7 +64,7 @@ class DeviceLink(SendBuffer):
         self._gone_sent = float("-inf")
         self._log_sent = float("-inf")
         self._booted: float | None = None
-        self.log = LogQueue()
+        self.log = SimulatedLogQueue()
         """What it has to say to its owner."""
         self.log.write(m.SEVERITY_INFO, "started", 0)
         self.reader = FrameReader()
@@ -218,7 +218,7 @@ MAX_WAITING_LINES = 8
 _TEXT_BYTES = spec_of(m.Log).fields[-1].size
 
 
-class LogQueue:
+class SimulatedLogQueue:
     """The first lines that were written and not yet sent."""
 
     def __init__(self) -> None:

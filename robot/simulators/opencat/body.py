@@ -53,7 +53,7 @@ SKILLS = {
     "pu": Skill(4.5, (0, -20, 0), (60, 45), (-40, 10), (0.3, "exercising")),
     "pd": Skill(3.5, (40, 40, 0), (10, 10), (70, 70), (-0.2, "playing dead")),
 }
-"""Skills by name."""
+"""What the simulated board's skills do, by the name after "k"."""
 
 
 class OpenCatBody:

@@ -27,10 +27,9 @@ class Played(NamedTuple):
     """Its start by the clock of the body [s]."""
 
     kind: Literal["motion", "sound"]
-    """Which of them."""
 
     name: str
-    """Its file."""
+    """Its file, as the console names it."""
 
 
 @dataclass

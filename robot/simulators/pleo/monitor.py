@@ -51,7 +51,7 @@ class Monitor:
     """Whether Pleo's own behaviour is running."""
 
     def execute(self, line: str) -> Answer:
-        """Execute a line."""
+        """Execute a line; return the lines that it prints and how long that takes [s]."""
         words = line.split()
         if not words:
             return [], self._duration(*SIMPLE_RANGE_S)

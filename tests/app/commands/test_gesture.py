@@ -34,7 +34,7 @@ def run(tmp_path, monkeypatch):
 
 
 def test_lists_all_gestures_and_says_which_are_yours(run, tmp_path):
-    collection = GestureCollection.bundled()
+    collection = GestureCollection.load_bundled()
     save_gesture(collection.get("WAVE"), tmp_path / "gestures" / "wave.toml")
     lines = run("list").splitlines()
     for name in collection.names:
@@ -61,7 +61,7 @@ def recording(tmp_path_factory):
     """The robot claps: a clip made by the layer that performs gestures."""
     robot = Character.load("robot")
     preview = Preview(None)
-    performance = Performance(GestureCollection.bundled().get("CLAP"), "right", "robot")
+    performance = Performance(GestureCollection.load_bundled().get("CLAP"), "right", "robot")
     times = np.arange(0.0, performance.cycle, 1 / 30)
     poses = [preview.pose(performance, float(time)).pose for time in times]
     path = tmp_path_factory.mktemp("recordings") / "claps.glb"

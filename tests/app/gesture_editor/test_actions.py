@@ -25,7 +25,7 @@ from cubeling.characters.behaviour.gestures.collection import GestureCollection
 
 @pytest.fixture
 def state():
-    collection = GestureCollection.bundled()
+    collection = GestureCollection.load_bundled()
     document = GestureDocument(collection.get("WAVE")).select("right", 1)
     return EditorState(document, document, names=collection.names)
 

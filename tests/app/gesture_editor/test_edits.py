@@ -84,7 +84,7 @@ def test_a_new_edit_forgets_what_was_undone():
 
 @pytest.mark.parametrize("name", ["WAVE", "CLAP", "BOW"])
 def test_mirroring_twice_gives_the_same_gesture(name):
-    document = GestureDocument(GestureCollection.bundled().get(name))
+    document = GestureDocument(GestureCollection.load_bundled().get(name))
     assert edits.mirror(edits.mirror(document)) == document
 
 
@@ -136,7 +136,7 @@ def test_a_left_key_makes_a_gesture_two_handed():
 
 @pytest.mark.parametrize("repeats", [1, 3])
 def test_a_dragged_stroke_ends_where_it_was_dragged_to(repeats):
-    gesture = replace(GestureCollection.bundled().get("WAVE"), repeats=repeats)
+    gesture = replace(GestureCollection.load_bundled().get("WAVE"), repeats=repeats)
     start, _ = phase_spans(gesture)["stroke"]
     longer = replace(gesture, stroke=stroke_for(gesture, 4.2))
     assert phase_spans(longer)["stroke"] == pytest.approx((start, start + 4.2))

@@ -52,7 +52,7 @@ def test_a_gesture_is_made_from_empty_to_saved(opened, tmp_path):
 
 
 def test_every_gesture_of_the_library_survives_the_editor(opened, tmp_path):
-    session, library = opened(), GestureCollection.bundled()
+    session, library = opened(), GestureCollection.load_bundled()
     for gesture in library:
         session.settle(asked(session.state, Open(gesture.name)))
         session.do(save)
@@ -75,7 +75,7 @@ def test_the_preview_shows_what_is_edited(editing):
 
 def test_a_time_shows_the_same_pose_however_it_was_reached(context):
     preview = Preview(context)
-    performance = Performance(GestureCollection.bundled().get("WAVE"), "right", "human")
+    performance = Performance(GestureCollection.load_bundled().get("WAVE"), "right", "human")
     first = preview.pose(performance, 0.9).pose.rotations
     preview.pose(performance, 0.2)
     np.testing.assert_allclose(preview.pose(performance, 0.9).pose.rotations, first, atol=1e-9)
@@ -197,7 +197,7 @@ def test_an_import_that_fails_changes_nothing(editing):
 
 def test_a_recording_is_imported_and_waits_for_a_name(opened, context, tmp_path):
     preview, human = Preview(context), Character.load("human")
-    performance = Performance(GestureCollection.bundled().get("CHEER"), "right", "human")
+    performance = Performance(GestureCollection.load_bundled().get("CHEER"), "right", "human")
     times = np.arange(0.0, performance.cycle, 1 / 30)
     poses = Pose.of_frames([preview.pose(performance, float(time)).pose for time in times])
     clip = Clip("cheer", 30.0, poses, loop=False)

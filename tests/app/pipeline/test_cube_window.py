@@ -18,7 +18,7 @@ from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.session.encoding import encode
 from cubeling.characters import ActionIntent, Character, CharacterCommand
-from cubeling.characters.rendering import WALL_SHARE, Stage, View, create_context
+from cubeling.characters.rendering import WALL_SHARE, CameraView, Stage, create_context
 from cubeling.characters.rendering.projection import project
 from cubeling.tracking import CubeModel, CubeState
 from cubeling.tracking.gestures.table import SIDE_NORMALS
@@ -263,7 +263,7 @@ def test_a_character_in_the_cube_leaves_nothing_on_the_table(source, frames):
     assert step.interior.box.opening == 1.0
     stage = Stage(context, source.size)
     lens = playing.intrinsics
-    bare = stage.draw(View(frames[-1].image, lens.matrix, lens.distortion, None), [])
+    bare = stage.draw(CameraView(frames[-1].image, lens.matrix, lens.distortion, None), [])
     rows, columns = np.nonzero((step.picture != bare).any(axis=2))
     assert len(rows) > 800
     corners = 0.03 * np.stack(np.meshgrid([-1, 1], [-1, 1], [-1, 1]), -1).reshape(-1, 3)

@@ -9,7 +9,7 @@ import pytest
 
 from cubeling.app.pipeline.scenario import Inputs, ScenarioSettings
 from cubeling.app.pipeline.situation import Situation
-from cubeling.app.pipeline.things import GRIP, Body, BodyParts, Thing
+from cubeling.app.pipeline.things import GRIP, BodyParts, PosedBody, Thing
 from cubeling.app.scenarios.reach import HINTS, Reach
 from cubeling.app.scenarios.reach_behaviour import GESTURES
 from cubeling.app.scenarios.reach_gifts import AT_HAND_M
@@ -55,7 +55,7 @@ class Play:
                 cube=cube if controls.visible else None,
             )
             outcome = self.reach.update(controls, situation, Inputs())
-            self.body = Body(self.character, self.parts, self.animator.update(outcome.command))
+            self.body = PosedBody(self.character, self.parts, self.animator.update(outcome.command))
             self.events += outcome.events
             self.outcomes.append(outcome)
             titles.append(outcome.icon)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from cubeling.app.sound import NoSoundError
-from cubeling.app.speaking.live import LivePerformer
+from cubeling.app.speaking.live import LiveRealizer
 from cubeling.app.speaking.microphone import BLOCK, MAX_BLOCKS, MICROPHONE_HZ, Microphone
 from cubeling.characters import Character
 from cubeling.characters.face.visemes.mouth_morphs import MouthMorphs
@@ -32,7 +32,7 @@ def voice(seconds, loudness=0.3):
 
 def performed(character, sound):
     """Return the time and the pose of each frame."""
-    performer, frames = LivePerformer(character), []
+    performer, frames = LiveRealizer(character), []
     for number in range(int(len(sound) / MICROPHONE_HZ / FRAME)):
         now = (number + 1) * FRAME
         part = sound[round(number * FRAME * MICROPHONE_HZ) : round(now * MICROPHONE_HZ)]

@@ -24,12 +24,18 @@ from cubeling.app.ui.playback.requests import (
     StartOver,
     WindowRequest,
 )
-from cubeling.app.ui.playback.status import Choice, EndCard, Mark, Position, SessionStatus
+from cubeling.app.ui.playback.status import (
+    EndCard,
+    MenuChoice,
+    PlaybackMark,
+    Position,
+    SessionStatus,
+)
 
 HERE = Path(__file__).parent
 PICTURE = np.full((360, 640, 3), 90, np.uint8)
 WIDTH = 1280.0
-POSITION = Position(3.0, 20.0, 0.0, 20.0, marks=(Mark(10.0, "placed front"),))
+POSITION = Position(3.0, 20.0, 0.0, 20.0, marks=(PlaybackMark(10.0, "placed front"),))
 NOW = datetime(2026, 5, 4, 15, 3, 9)
 
 
@@ -193,10 +199,10 @@ def test_a_part_is_all_that_the_timeline_reaches():
 
 
 CHOICES = (
-    Choice("camera", "camera:0", "camera 0", present=True),
-    Choice("character", "vleo", "vleo", present=True),
-    Choice("character", "human", "human"),
-    Choice("robot", "sim", "simulated robot", present=True),
+    MenuChoice("camera", "camera:0", "camera 0", present=True),
+    MenuChoice("character", "vleo", "vleo", present=True),
+    MenuChoice("character", "human", "human"),
+    MenuChoice("robot", "sim", "simulated robot", present=True),
 )
 
 

@@ -180,9 +180,9 @@ def posed(body: Character, pose: Pose, table_from_character: Array) -> Triangles
     palette = vertices.palette(table_from_character @ pose.globals(body.skeleton))
     turns = palette.copy()
     turns[:, :3, 3] = 0.0
-    normals = vertices.skinned(turns, slice(None), shape[:, 3:])
+    normals = vertices.skin(turns, slice(None), shape[:, 3:])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
-    positions = vertices.skinned(palette, slice(None), shape[:, :3])
+    positions = vertices.skin(palette, slice(None), shape[:, :3])
     return Triangles.of(positions, normals, vertices.indices.reshape(-1, 3))
 
 

@@ -9,7 +9,7 @@ from cubeling.tracking.cube.marker import marker_cells
 from cubeling.tracking.cube.model import FACE_AXES, CubeModel, Face
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.intrinsics import Intrinsics
-from cubeling.tracking.synthetic.camera_rays import CameraRays, averaged
+from cubeling.tracking.synthetic.camera_rays import CameraRays, average_blocks
 from tests.bench.cube_light.rooms import RATE, Room
 
 Array = NDArray[np.float64]
@@ -111,7 +111,7 @@ class Drawing:
                 albedo = np.where(covered[..., None], SKIN, albedo)
             drawn[inside, :3] = (albedo * light)[inside]
             drawn[inside, 3] = 1
-        drawn = averaged(drawn, SAMPLES)
+        drawn = average_blocks(drawn, SAMPLES)
         part = image[region.index]
         part *= 1 - drawn[..., 3:]
         part += drawn[..., :3]

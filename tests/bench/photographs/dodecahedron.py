@@ -234,7 +234,7 @@ def _adjusted(seen: dict[int, dict[int, Array]], body: Array, cameras: Array) ->
 def _moved(poses: Array, deltas: Array) -> Array:
     """`se3.moved` of each pose, (N, 4, 4), by its own delta, (N, 6), or by the same, (6,)."""
     each = np.broadcast_to(deltas, (len(poses), 6))
-    return np.stack([se3.moved(*both) for both in zip(poses, each, strict=True)])
+    return np.stack([se3.apply_delta(*both) for both in zip(poses, each, strict=True)])
 
 
 def one_marker(number: int, side: float = SIDE) -> CubeModel:

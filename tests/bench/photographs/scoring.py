@@ -87,7 +87,7 @@ def consensus(poses: list[Array]) -> tuple[Array, Array]:
         shift, turn = (size / max(float(np.median(size)), 1e-9) for size in sizes(deltas))
         weights = 1 / (1 + (shift**2 + turn**2) / 2 / OUTLIER**2)
         weights /= weights.sum()
-        mean = se3.moved(mean, weights @ deltas)
+        mean = se3.apply_delta(mean, weights @ deltas)
     return mean, weights
 
 

@@ -47,7 +47,7 @@ def half_size(picture: Picture, number: int) -> View:
     height, width = picture.shape[:2]
     size = (width // 2, height // 2)
     small = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
-    return View(np.asarray(small, np.uint8), camera().scaled(size))
+    return View(np.asarray(small, np.uint8), camera().scale(size))
 
 
 def blurred(picture: Picture, number: int) -> View:

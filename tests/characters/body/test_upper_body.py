@@ -10,7 +10,7 @@ from hypothesis import given, strategies as st
 from cubeling.characters import Animator, Character, CharacterError, Pose
 from cubeling.characters.body.capsules import CapsuleBody, segment_distances
 from cubeling.characters.body.dependent_joints import DependentJoints, fade
-from cubeling.characters.body.self_collision import SafeRanges, damped
+from cubeling.characters.body.self_collision import SafeRanges, damp
 from cubeling.characters.control.layers import BODY_LAYERS
 from cubeling.characters.model.sidecar import BODY_LAYERS as KNOWN_TO_SIDECARS
 from cubeling.characters.skeleton import rotations
@@ -43,13 +43,13 @@ def ranges(human: Character, kind: PostureVectors, body: CapsuleBody) -> SafeRan
 def test_damping_has_the_values_of_the_corrected_formula() -> None:
     values = np.array([0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1.0, 3.0, -2.0])
     known = [0.6, 0.7, 0.762059, 0.835, 0.90375, 0.958125, 0.990713, 1.0, 1.0, -2.0]
-    assert damped(values, np.ones(10), 0.7, 0.9) == pytest.approx(known, abs=5e-7)
+    assert damp(values, np.ones(10), 0.7, 0.9) == pytest.approx(known, abs=5e-7)
 
 
 @given(st.floats(0.1, 0.95), st.floats(0.78, 1.0), st.floats(0.01, 100.0))
 def test_damping_is_continuous_and_never_turns_back(threshold, scale, limit) -> None:
     values = np.linspace(-limit, 2.0 * limit, 3000)
-    found = damped(values, np.full(3000, limit), threshold, scale)
+    found = damp(values, np.full(3000, limit), threshold, scale)
     assert found.max() <= limit * (1 + 1e-12)
     steps = np.diff(found)
     assert steps.min() >= -1e-9 * limit

@@ -63,20 +63,20 @@ def places(character: Character, pose: Pose) -> np.ndarray:
 
 def test_standing_feet_stay_where_both_motions_have_them(vleo: Character) -> None:
     feet, own = FeetInTransition(vleo), vleo.skeleton.rest
-    first = feet.held(own, own, 1.0, 0.0, LENGTH_S)
-    later = feet.held(bent(vleo), own, 1.0, 0.1, LENGTH_S)
+    first = feet.hold(own, own, 1.0, 0.0, LENGTH_S)
+    later = feet.hold(bent(vleo), own, 1.0, 0.1, LENGTH_S)
     assert np.abs(places(vleo, bent(vleo)) - places(vleo, own)).max() > 0.002
     assert np.allclose(places(vleo, later), places(vleo, first), atol=1e-9)
 
 
 def test_a_foot_in_the_air_follows_the_transition(vleo: Character) -> None:
     feet, own = FeetInTransition(vleo), vleo.skeleton.rest
-    feet.held(raised(vleo, 0.1), own, 1.0, 0.0, LENGTH_S)
+    feet.hold(raised(vleo, 0.1), own, 1.0, 0.0, LENGTH_S)
     shown = raised(vleo, 0.05)
-    later = feet.held(shown, own, 1.0, 0.1, LENGTH_S)
+    later = feet.hold(shown, own, 1.0, 0.1, LENGTH_S)
     assert np.allclose(places(vleo, later)[0], places(vleo, shown)[0], atol=1e-9)
 
 
 def test_after_a_transition_poses_are_left_alone(vleo: Character) -> None:
     shown = bent(vleo)
-    assert FeetInTransition(vleo).held(shown, shown, 1.0, LENGTH_S, LENGTH_S) is shown
+    assert FeetInTransition(vleo).hold(shown, shown, 1.0, LENGTH_S, LENGTH_S) is shown

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from cubeling.characters.formats import Performance
+from cubeling.characters.formats import RecordedMotion
 
 ASF = """# made by hand
 :version 1.10
@@ -75,6 +75,6 @@ def hopper(folder: Path, asf: str = ASF, amc: str = AMC) -> Path:
     return folder / "hopper.amc"
 
 
-def places(performance: Performance) -> np.ndarray:
+def places(performance: RecordedMotion) -> np.ndarray:
     """World positions of every joint, (frames, joints, 3)."""
     return performance.clip.poses.globals(performance.skeleton)[..., :3, 3]

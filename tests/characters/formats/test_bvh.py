@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from cubeling.characters import CharacterError
-from cubeling.characters.formats import Performance, load_motion
+from cubeling.characters.formats import RecordedMotion, load_motion
 from cubeling.characters.formats.mocap.axes_and_units import CMU_UNIT_M
 from cubeling.characters.skeleton import rotations
 from tests.characters.formats.mutated_text import mutated
@@ -55,7 +55,7 @@ def written(folder: Path, text: str | bytes, name: str = "leg.bvh") -> Path:
     return path
 
 
-def places(performance: Performance) -> np.ndarray:
+def places(performance: RecordedMotion) -> np.ndarray:
     """World positions of every joint, (frames, joints, 3)."""
     return performance.clip.poses.globals(performance.skeleton)[..., :3, 3]
 

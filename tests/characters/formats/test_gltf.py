@@ -234,7 +234,7 @@ def test_characters_made_elsewhere_load_and_play(path):
             assert np.ptp(moved, axis=0).max() < 3 * np.ptp(character.bounds, axis=0).max()
 
 
-@pytest.mark.parametrize("name", Character.bundled())
+@pytest.mark.parametrize("name", Character.bundled_names())
 def test_bundled_characters_load(name):
     character = Character.load(name)
     assert character.name == name

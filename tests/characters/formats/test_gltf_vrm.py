@@ -197,7 +197,7 @@ def test_vrm_states_how_eyes_follow_a_point(tmp_path, version):
     look_at = load(tmp_path, build.bytes()).look_at
     assert look_at.by == "expression"
     assert look_at.eye_offset == (0, 0.06, 0.01)
-    assert look_at.mapped(np.radians(18), np.radians(9)) == pytest.approx((0.2, 0.1))
+    assert look_at.map_angles(np.radians(18), np.radians(9)) == pytest.approx((0.2, 0.1))
 
 
 @pytest.mark.parametrize(
@@ -211,7 +211,7 @@ def test_joints_of_eyes_turn_by_10_of_90_degrees_unless_it_is_stated(tmp_path, e
     build = build_arm()
     build.document["extensions"] = {extension: content}
     look_at = load(tmp_path, build.bytes()).look_at
-    turns = look_at.mapped(np.radians(45), np.radians(180), "left")
+    turns = look_at.map_angles(np.radians(45), np.radians(180), "left")
     assert np.degrees(turns) == pytest.approx([5.0, 10.0])
 
 

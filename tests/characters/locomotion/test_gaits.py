@@ -8,7 +8,7 @@ from hypothesis import given, strategies as st
 from cubeling.characters import Character
 from cubeling.characters.locomotion.gaits import MAX_ANGULAR_RAD, RUN_CLIPS, WALK_CLIPS, Gaits
 from cubeling.characters.retargeting.locomotion.gait_cycle import ArcPath
-from cubeling.characters.retargeting.root import moved_to_trajectory
+from cubeling.characters.retargeting.root import move_to_trajectory
 
 SPEEDS = np.linspace(0.5, 5.0, 91)
 
@@ -90,7 +90,7 @@ def test_a_cycle_that_turns_a_whole_circle_has_the_radius_of_the_circle(walker, 
             clip, side = clips[tree[knot]], -np.sign(knot)
             circle = ArcPath(clip.cycle.length / clip.duration, turn / clip.duration)
             path = circle.at(np.arange(len(clip)) / clip.rate) * [side, 1, side]
-            clips[tree[knot]] = replace(clip, poses=moved_to_trajectory(clip.in_place, path))
+            clips[tree[knot]] = replace(clip, poses=move_to_trajectory(clip.in_place, path))
     gaits = Gaits(clips, walker.skeleton, clips["idle"].sample(0.0))
     for speed in (1.0, 2.0, 4.0):
         cycle = gaits.at(speed, MAX_ANGULAR_RAD)

@@ -95,7 +95,7 @@ def test_a_mesh_without_texture_coordinates_is_refused(folder):
 def test_only_the_bundled_human_has_them():
     faces = {
         name: {mesh.name for mesh in Character.load(name).meshes if mesh.material.face is not None}
-        for name in Character.bundled()
+        for name in Character.bundled_names()
     }
     (skin,) = (mesh for mesh in Character.load("human").meshes if mesh.name == "explorer")
     assert skin.material.scattering == 1.0

@@ -34,7 +34,7 @@ def test_inspection_reports_an_odd_scale_and_walks_in_place():
     assert len(found.problems) == 2
 
 
-@pytest.mark.parametrize("name", Character.bundled())
+@pytest.mark.parametrize("name", Character.bundled_names())
 def test_inspection_finds_no_problems_in_bundled_characters(name):
     found = inspect(Character.load(name))
     assert found.problems == ()

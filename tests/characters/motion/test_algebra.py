@@ -30,8 +30,8 @@ from cubeling.characters import (
     StateMachine,
     Stretch,
     TimeCurve,
+    TimeWindow,
     Warped,
-    Window,
     mask_of,
 )
 from cubeling.characters.motion.blend import TimeScaled
@@ -87,7 +87,7 @@ def machine(first: Motion, second: Motion, at: float) -> StateMachine:
 
 
 def finite(motion: Motion) -> Motion:
-    return motion if math.isfinite(motion.duration) else Window(motion, 0.0, 1.5)
+    return motion if math.isfinite(motion.duration) else TimeWindow(motion, 0.0, 1.5)
 
 
 def nested(inner: st.SearchStrategy[Motion]) -> st.SearchStrategy[Motion]:
@@ -105,7 +105,7 @@ def nested(inner: st.SearchStrategy[Motion]) -> st.SearchStrategy[Motion]:
     )
     return st.one_of(
         st.builds(lambda m, d: Stretch(finite(m), d), inner, st.floats(0.3, 3.0)),
-        st.builds(lambda m, a, d: Window(m, a, a + d), inner, times, unit),
+        st.builds(lambda m, a, d: TimeWindow(m, a, a + d), inner, times, unit),
         inner.map(lambda m: Loop(finite(m))),
         inner.map(lambda m: Mirrored(m, MIRROR)),
         st.builds(lambda m, x, yaw: RootOffset(m, RootDelta(x, 1.0, yaw)), inner, unit, unit),
@@ -185,7 +185,7 @@ def test_a_loop_continues_from_its_end():
 
 def test_stretch_window_and_warp_address_the_same_times():
     clip = CLIPS[1]
-    cut = Stretch(Window(clip, 0.25, 0.75), 5.0)  # the specification's window and stretch
+    cut = Stretch(TimeWindow(clip, 0.25, 0.75), 5.0)  # the specification's window and stretch
     warp = Warped(clip, TimeCurve((0.0, 5.0), (0.25, 0.75)))
     assert cut.duration == warp.duration == 5.0
     for time in (0.0, 1.7, 5.0, 6.0):
@@ -221,8 +221,8 @@ def test_a_root_offset_moves_the_whole_motion():
     ("make", "message"),
     [
         (lambda: Stretch(CLIPS[0], 0.0), "stretch to 0.0 s"),
-        (lambda: Loop(LiveSchedule(Schedule((), REST))), "has no end; take a Window"),
-        (lambda: Window(CLIPS[0], 1.0, 0.5), "a later end"),
+        (lambda: Loop(LiveSchedule(Schedule((), REST))), "has no end; take a TimeWindow"),
+        (lambda: TimeWindow(CLIPS[0], 1.0, 0.5), "a later end"),
         (lambda: TimeCurve((0.0, 0.0), (0.0, 1.0)), "times ascending"),
         (lambda: TimeCurve((0.0, math.nan), (0.0, 1.0)), "time curve"),
         (lambda: Blend((CLIPS[0],), (0.7,)), "sum one"),

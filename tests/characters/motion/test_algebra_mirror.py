@@ -6,7 +6,7 @@ import pytest
 
 from cubeling.characters import Blend, Character, CharacterError, Mirror, Mirrored, Pose, Skeleton
 from cubeling.characters.model.mirroring import mirror_of
-from cubeling.characters.motion.phase import PhasedMotion, phased
+from cubeling.characters.motion.phase import PhasedMotion, with_phase
 from cubeling.characters.skeleton import rotations
 
 DATA = Path(__file__).parents[4] / "shared" / "data" / "gltf"
@@ -67,7 +67,7 @@ def test_the_left_footfall_of_a_mirrored_walk_is_the_right_footfall_of_the_walk(
     human = load("human")
     skeleton, walk = human.skeleton, human.clips["Walk"]
     mirror = Mirror.of(skeleton)
-    original, mirrored = phased(walk, skeleton), phased(mirror.clip(walk), skeleton)
+    original, mirrored = with_phase(walk, skeleton), with_phase(mirror.clip(walk), skeleton)
     assert mirrored.marks[0] == pytest.approx(original.marks[1], abs=1e-6)
     # A motion of phases knows so by itself.
     by_phase = Mirrored(original, mirror)
@@ -83,7 +83,7 @@ def test_the_left_footfall_of_a_mirrored_walk_is_the_right_footfall_of_the_walk(
 def test_a_mirrored_turn_goes_the_other_way_and_blends_to_a_straight_one():
     human = load("human")
     mirror = Mirror.of(human.skeleton)
-    left = phased(human.clips["WalkLeftWide"], human.skeleton)
+    left = with_phase(human.clips["WalkLeftWide"], human.skeleton)
     right = Mirrored(left, mirror)
     a, b = left.between(0.0, 1.0), right.between(0.0, 1.0)
     assert (b.x, b.z, b.yaw) == pytest.approx((-a.x, a.z, -a.yaw), abs=0.02)

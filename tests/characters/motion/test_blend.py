@@ -13,7 +13,7 @@ from cubeling.characters import (
     StateMachine,
 )
 from cubeling.characters.motion.blend import Blend, TimeScaled, mix, shares
-from cubeling.characters.motion.phase import Cyclic, PhasedMotion, StaticPose, as_cyclic, phased
+from cubeling.characters.motion.phase import Cyclic, PhasedMotion, StaticPose, as_cyclic, with_phase
 from cubeling.characters.skeleton import rotations
 
 coordinates = st.floats(-2, 2)
@@ -116,7 +116,7 @@ def test_a_mix_does_not_depend_on_order_or_on_signs(order):
 
 
 def test_blends_nest_and_are_motions(walker, skeleton):
-    walk, run = (phased(walker.clips[name], skeleton) for name in ("Walk", "Run"))
+    walk, run = (with_phase(walker.clips[name], skeleton) for name in ("Walk", "Run"))
     inner = Blend((walk, run), (0.5, 0.5))
     outer = TimeScaled(Blend((inner, walk), (0.5, 0.5)), 1.5)
     flat = TimeScaled(Blend((walk, run), (0.75, 0.25)), 1.5)
@@ -128,14 +128,14 @@ def test_blends_nest_and_are_motions(walker, skeleton):
 
 
 def test_the_speed_of_a_blend_is_the_mean_of_its_members_speeds(walker, skeleton):
-    walk, run = (phased(walker.clips[name], skeleton) for name in ("Walk", "Run"))
+    walk, run = (with_phase(walker.clips[name], skeleton) for name in ("Walk", "Run"))
     blend = Blend((walk, run), (0.25, 0.75))
     assert 1 / blend.duration == pytest.approx(0.25 / walk.duration + 0.75 / run.duration)
 
 
 @pytest.mark.parametrize("weight", [0.0, 0.25, 0.5, 0.75, 1.0])
 def test_in_any_blend_of_walk_and_run_left_feet_land_together(walker, skeleton, weight):
-    members = tuple(phased(walker.clips[name], skeleton) for name in ("Walk", "Run"))
+    members = tuple(with_phase(walker.clips[name], skeleton) for name in ("Walk", "Run"))
     blend = Blend(members, (1 - weight, weight))
     phases = np.arange(200) / 200
     feet = np.array([blend.at(phase).globals(skeleton)[3:5, :3, 3] for phase in phases])

@@ -26,7 +26,7 @@ def test_a_repeated_delta_equals_repeated_composition(step, times):
     walked = RootDelta()
     for _ in range(times):
         walked = walked.then(step)
-    assert close(step.repeated(times), walked)
+    assert close(step.repeat(times), walked)
 
 
 def test_a_clip_is_a_motion(walker):

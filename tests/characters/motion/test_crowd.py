@@ -66,7 +66,7 @@ def test_matrices_of_any_skeleton_are_those_of_its_poses(seed):
     np.testing.assert_allclose(crowd_globals(bank, *one_each), expected, atol=1e-9)
 
 
-@pytest.mark.parametrize("name", Character.bundled())
+@pytest.mark.parametrize("name", Character.bundled_names())
 def test_crowd_matrices_are_those_of_the_sampled_poses(name):
     character = Character.load(name)
     clips = list(character.clips.values())

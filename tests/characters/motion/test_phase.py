@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from cubeling.characters import Character, Clip, Pose
-from cubeling.characters.motion.phase import PhasedMotion, phased
+from cubeling.characters.motion.phase import PhasedMotion, with_phase
 from cubeling.characters.skeleton import rotations
 
 
@@ -11,7 +11,7 @@ from cubeling.characters.skeleton import rotations
 @pytest.mark.parametrize("yaw_rate", [0.0, 1.5, -2.0])
 def test_phase_0_is_the_left_footfall(gait, skeleton, lead, yaw_rate):
     clip = gait("walk", 1.3, yaw_rate, 1.0, lead)
-    motion = phased(clip, skeleton)
+    motion = with_phase(clip, skeleton)
     frame = 1.0 / clip.rate
     lands = [lead * clip.duration, (lead + 0.5) * clip.duration]
     for phase, time in zip((0.0, 0.5), lands, strict=True):
@@ -24,7 +24,7 @@ def test_a_clip_of_two_cycles_has_half_its_length_as_cycle(gait, skeleton):
     once = clip.poses[np.arange(len(clip) - 1)]
     twice = Pose(*(np.concatenate([a, a, a[:1]]) for a in (once.translations, once.rotations)))
     double = Clip("twice", clip.rate, twice, loop=True)
-    motion = phased(double, skeleton)
+    motion = with_phase(double, skeleton)
     assert len(motion.marks) == 4
     assert motion.duration == pytest.approx(clip.duration)
 
@@ -32,11 +32,11 @@ def test_a_clip_of_two_cycles_has_half_its_length_as_cycle(gait, skeleton):
 def test_a_clip_that_walks_in_place_has_footfalls_too(gait, skeleton):
     clip = gait("walk", 1.3, 0.0, 1.0, 0.4)
     in_place = Clip("in place", clip.rate, clip.in_place, loop=True)
-    assert phased(in_place, skeleton).time(0.0) == pytest.approx(0.4, abs=0.05)
+    assert with_phase(in_place, skeleton).time(0.0) == pytest.approx(0.4, abs=0.05)
 
 
 def test_a_clip_without_steps_has_no_marks(walker, skeleton):
-    assert phased(walker.clips["idle"], skeleton).marks == ()
+    assert with_phase(walker.clips["idle"], skeleton).marks == ()
 
 
 @given(st.lists(st.floats(0.05, 1.0), min_size=2, max_size=2), st.floats(-5, 5), st.floats(0, 1))
@@ -56,7 +56,7 @@ def test_the_bundled_gaits_land_their_left_foot_at_phase_0():
     for name, clip in human.clips.items():
         if name == "idle" or not clip.loop:
             continue
-        motion = phased(clip, human.skeleton)
+        motion = with_phase(clip, human.skeleton)
         assert np.allclose(np.array(motion.marks) / clip.duration, [0.0, 0.5], atol=0.03), name
 
 
@@ -67,5 +67,5 @@ def test_feet_that_land_together_make_one_mark(gait, skeleton):
     late = np.roll(left, 5, axis=0) * [-1, 1, 1]
     translations[:, 4] = np.concatenate([late, late[:1]])
     hop = Clip("hop", clip.rate, Pose(translations, clip.poses.rotations), True, True)
-    marks = np.array(phased(hop, skeleton).marks)
+    marks = np.array(with_phase(hop, skeleton).marks)
     assert np.diff(marks) == pytest.approx([clip.duration / 2])

@@ -306,7 +306,7 @@ def test_an_invalid_sidecar_is_refused(tmp_path, text, message):
         read_sidecar(path, CLIPS)
 
 
-@pytest.mark.parametrize("name", Character.bundled())
+@pytest.mark.parametrize("name", Character.bundled_names())
 def test_a_graph_shows_every_clip_that_a_character_plays(name):
     character = Character.load(name)
     shown = built_in_trees(character)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from cubeling.characters.control.command import PosedCharacter
 from cubeling.characters.model.mesh import Material, Mesh
-from cubeling.characters.rendering import Box, SceneCharacter, Stage, View, create_context
+from cubeling.characters.rendering import Box, CameraView, SceneCharacter, Stage, create_context
 from cubeling.characters.skeleton.pose import Pose, Skeleton
 
 Array = NDArray[np.float64]
@@ -101,18 +101,18 @@ def pawn() -> Pawn:
 
 
 @pytest.fixture(scope="session")
-def view() -> View:
+def view() -> CameraView:
     """Return a grey table seen from above its front edge, without a cube."""
     return _table(SIZE)
 
 
 @pytest.fixture(scope="session")
-def hd_view() -> View:
+def hd_view() -> CameraView:
     return _table((1280, 720))
 
 
 @pytest.fixture(scope="session")
-def cube(view: View) -> Box:
+def cube(view: CameraView) -> Box:
     """Return a cube of 6 cm that stands before the pawn's place, to its left."""
     assert view.camera_from_table is not None
     table_from_box = np.eye(4)
@@ -126,7 +126,7 @@ def regenerate() -> bool:
     return os.environ.get("CUBELING_GOLDEN") == "write"
 
 
-def _table(size: tuple[int, int]) -> View:
+def _table(size: tuple[int, int]) -> CameraView:
     width, height = size
     matrix = np.array(
         [[0.95 * width, 0, width / 2 - 0.5], [0, 0.95 * width, height / 2 - 0.5], [0, 0, 1]]
@@ -141,4 +141,4 @@ def _table(size: tuple[int, int]) -> View:
     camera_from_table[:3, 3] = 0.0, 0.05, 0.45
     image = np.full((height, width, 3), 150, np.uint8)
     image += (np.arange(width)[None, :, None] // 8 % 2 * 6).astype(np.uint8)
-    return View(image, matrix, np.zeros(5), camera_from_table)
+    return CameraView(image, matrix, np.zeros(5), camera_from_table)

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from cubeling.characters.rendering.passes.resolve import MAX_BLUR_PX, OWN_BLUR_PX, blurred
+from cubeling.characters.rendering.passes.resolve import MAX_BLUR_PX, OWN_BLUR_PX, blur_picture
 from cubeling.characters.rendering.passes.table_factors import darken
 from cubeling.characters.rendering.passes.table_image import TableImage
 from cubeling.characters.rendering.projection import Rectangle, project
@@ -57,7 +57,7 @@ def test_a_shadow_behind_the_camera_is_not_seen_in_the_sky():
 def test_what_is_drawn_gets_the_blur_of_the_picture(blur):
     line = np.zeros((41, 41, 4), np.uint8)
     line[:, 20] = 255
-    across = blurred(line, blur)[20, :, 0].astype(float)
+    across = blur_picture(line, blur)[20, :, 0].astype(float)
     places = np.arange(41) - 20
     variance = (across * places**2).sum() / across.sum()
     assert variance == pytest.approx(blur**2 - OWN_BLUR_PX**2, rel=0.06, abs=0.01)
@@ -65,4 +65,4 @@ def test_what_is_drawn_gets_the_blur_of_the_picture(blur):
 
 def test_in_sharp_pictures_characters_stay_as_they_are():
     layer = np.random.default_rng(1).integers(0, 256, (20, 30, 4)).astype(np.uint8)
-    assert np.array_equal(blurred(layer, 0.2), layer)
+    assert np.array_equal(blur_picture(layer, 0.2), layer)

@@ -18,7 +18,7 @@ from cubeling.characters.rendering.geometry.detail_levels import (
     with_levels,
 )
 from cubeling.characters.rendering.geometry.edge_collapse import Tolerance, collapsed_levels
-from cubeling.characters.rendering.geometry.places import CELL_SHARE, connected, places_of
+from cubeling.characters.rendering.geometry.places import CELL_SHARE, connect, places_of
 from cubeling.characters.rendering.geometry.vertices import CharacterVertices
 from cubeling.characters.rendering.toys import TOYS, toy
 from tests.bench.detail import compared
@@ -226,7 +226,7 @@ def test_a_joint_without_a_bind_pose_hinders_nothing(human):
     assert len(levels[-1].indices) < len(levels[0].indices)
 
 
-@pytest.mark.parametrize("name", some(["flower", *Character.bundled()]))
+@pytest.mark.parametrize("name", some(["flower", *Character.bundled_names()]))
 def test_a_part_that_is_closed_is_closed_in_all_levels(name):
     meshes = toy(name).meshes if name in TOYS else Character.load(name).meshes
     vertices, levels = with_levels(CharacterVertices.of(meshes))
@@ -234,7 +234,7 @@ def test_a_part_that_is_closed_is_closed_in_all_levels(name):
     _, places = np.unique(positions, axis=0, return_inverse=True)
     places = places.ravel()
     triangles = [level.indices.reshape(-1, 3) for level in levels]
-    parts = connected(places[triangles[0]], len(places))
+    parts = connect(places[triangles[0]], len(places))
     of_open = np.unique(parts[open_edges(places, triangles[0])])
     assert len(levels) > 1
     assert len(of_open) < len(np.unique(parts[places]))
@@ -301,7 +301,7 @@ def test_a_character_without_levels_keeps_its_triangles(human):
     assert np.array_equal(np.sort(before.ravel()), np.sort(after.ravel()))
 
 
-@pytest.mark.parametrize("name", some(Character.bundled()))
+@pytest.mark.parametrize("name", some(Character.bundled_names()))
 def test_what_casts_a_shadow_is_as_large_in_all_directions(name):
     given = CharacterVertices.of(Character.load(name).meshes)
     shape = shape_only(given)

@@ -119,7 +119,7 @@ def test_the_extreme_vertices_bound_morphed_shapes_too(jester, grin, tall, bend)
         shape[: geometry.moved] = mixed[:, :3]
     palette = geometry.palette(jester.posed(bend).posed.pose.globals(jester.skeleton))
     outline = geometry.extreme()
-    every = geometry.skinned(palette, slice(None), shape)
-    some = geometry.skinned(palette, outline, shape[outline])
+    every = geometry.skin(palette, slice(None), shape)
+    some = geometry.skin(palette, outline, shape[outline])
     assert np.abs(some.min(axis=0) - every.min(axis=0)).max() < 0.05
     assert np.abs(some.max(axis=0) - every.max(axis=0)).max() < 0.05

@@ -93,7 +93,7 @@ def test_points_are_skinned_by_a_product_as_defined(count):
     points.move(np.arange(count), positions)
     blended = np.einsum("vk,vkij->vij", weights.astype(float), palette[joints])
     expected = np.einsum("vij,vj->vi", blended[..., :3], positions) + blended[..., 3]
-    assert np.abs(points.skinned(palette) - expected).max() < 1e-5
+    assert np.abs(points.skin(palette) - expected).max() < 1e-5
 
 
 def test_two_hundred_joints_are_supported(ctx, programs, pawn):
@@ -116,7 +116,7 @@ def test_two_hundred_joints_are_supported(ctx, programs, pawn):
     joints = matrices(2, count)
     vertices, _ = skinned_on_the_card(ctx, programs, character, joints, np.eye(4))
     geometry = CharacterVertices.of([crowd])
-    expected = geometry.skinned(geometry.palette(joints), slice(None))
+    expected = geometry.skin(geometry.palette(joints), slice(None))
     assert np.abs(vertices[:, :3] - expected).max() < 1e-4
 
 
@@ -148,8 +148,8 @@ def test_the_extreme_vertices_bound_all_vertices(pawn, bend, turn):
     turned = np.eye(4)
     turned[[0, 0, 2, 2], [0, 2, 0, 2]] = np.cos(turn), np.sin(turn), -np.sin(turn), np.cos(turn)
     palette = geometry.palette(turned @ pose.globals(pawn.skeleton))
-    every = geometry.skinned(palette, slice(None))
-    outline = geometry.skinned(palette, geometry.extreme())
+    every = geometry.skin(palette, slice(None))
+    outline = geometry.skin(palette, geometry.extreme())
     assert np.abs(outline.min(axis=0) - every.min(axis=0)).max() < 0.03
     assert np.abs(outline.max(axis=0) - every.max(axis=0)).max() < 0.03
 
@@ -181,7 +181,7 @@ def test_the_extreme_vertices_of_a_sphere_bound_it_from_any_side(pawn, seed):
 
 def test_the_simplified_mesh_has_fewer_triangles_and_the_same_size(pawn):
     geometry = CharacterVertices.of(pawn.meshes)
-    coarse, runs = geometry.simplified(16)
+    coarse, runs = geometry.simplify(16)
     assert 0 < coarse.size < geometry.indices.size
     assert runs == (CasterRun(0, coarse.size, False, False),)
     kept = geometry.positions[coarse]

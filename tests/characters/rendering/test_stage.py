@@ -11,9 +11,9 @@ import pytest
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.rendering import (
     QUALITIES,
+    CameraView,
     SceneCharacter,
     Stage,
-    View,
 )
 from cubeling.characters.rendering.passes.hand_occlusion import HAND_DEPTH_M
 from cubeling.characters.rendering.passes.render_pass import RenderPass
@@ -285,13 +285,13 @@ def test_a_second_release_does_nothing(ctx, view, pawn):
     stage.release()
 
 
-def on_screen(view: View, point):
+def on_screen(view: CameraView, point):
     assert view.camera_from_table is not None
     seen = view.camera_from_table @ [*point, 1.0]
     return (view.matrix @ seen[:3] / seen[2])[:2]
 
 
-def cube_mask(view: View, cube, shrink):
+def cube_mask(view: CameraView, cube, shrink):
     corners = np.array(list(np.ndindex(2, 2, 2))) - 0.5
     seen = cube.edge * corners @ cube.camera_from_box[:3, :3].T + cube.camera_from_box[:3, 3]
     pixels = (seen / seen[:, 2:] @ view.matrix.T)[:, :2].astype(np.float32)

@@ -13,7 +13,7 @@ from cubeling.characters.retargeting.locomotion.grading import refuse_other_moti
 from cubeling.characters.retargeting.locomotion.recorded_gait import extract_gait
 from cubeling.characters.retargeting.measures import bone_change, facing_error, knee_bends, sole_dip
 from cubeling.characters.retargeting.rig import Rig
-from cubeling.characters.retargeting.root import moved_to_trajectory
+from cubeling.characters.retargeting.root import move_to_trajectory
 from cubeling.characters.skeleton import rotations
 from tests.characters.retargeting.test_retarget_locomotion import exported
 from tests.examples import some
@@ -33,7 +33,7 @@ def made(human, recording):
 def moving(human, way):
     """The walk of the human on another way: rows of x, z and yaw are multiplied by it."""
     walk = human.clips["Walk"]
-    poses = moved_to_trajectory(walk.in_place, walk.track * way)
+    poses = move_to_trajectory(walk.in_place, walk.track * way)
     return Recording("moved", replace(walk, poses=poses), human.skeleton, human.anatomy)
 
 
@@ -73,7 +73,7 @@ def test_steps_on_the_spot_are_refused_as_a_walk(human):
     deltas = [steps.between(0.0, float(phase)) for phase in phases]
     pose = Pose(np.stack([p.translations for p in poses]), np.stack([p.rotations for p in poses]))
     track = np.array([[delta.x, delta.z, delta.yaw] for delta in deltas])
-    boxing = replace(walk, poses=moved_to_trajectory(pose, track))
+    boxing = replace(walk, poses=move_to_trajectory(pose, track))
     with pytest.raises(CharacterError, match=r"no walk, at 0\.\d\d m/s|goes nowhere \(0\.\d\d m/s"):
         made(human, exported(human, "boxing", 3.0, boxing))
 
@@ -96,7 +96,7 @@ def test_a_walk_that_does_not_repeat_is_refused(human):
 def test_feet_that_never_stand_still_are_refused(human):
     walk = human.clips["Walk"]
     gait = extract_gait(moving(human, 1.0), human, human)
-    skating = moved_to_trajectory(walk.in_place, walk.track * [1.0, 1.9, 1.0])
+    skating = move_to_trajectory(walk.in_place, walk.track * [1.0, 1.9, 1.0])
     with pytest.raises(CharacterError, match="no foot stands still; they slide at"):
         refuse_other_motion(replace(gait, clip=replace(walk, poses=skating)))
 

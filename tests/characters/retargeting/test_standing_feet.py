@@ -209,10 +209,10 @@ def test_a_heel_rises_where_the_foot_is_out_of_reach_of_its_leg(human):
     away[:, 0, 1] = -0.02
     held = standing_on(human, away, standing)
     heels, tilts = heels_of(human, held, standing)
-    raised, pose = heels.raised(held, tilts), at_rest(human, 30)
+    raised, pose = heels.raise_legs(held, tilts), at_rest(human, 30)
     assert held.extensions(pose)[:, 0].min() > held.reach[0]
     assert raised.extensions(pose)[:, 0] == pytest.approx(held.reach[0], abs=1e-3)
-    turned = heels.turned(pose, tilts)
+    turned = heels.turn_by(pose, tilts)
     foot = turns_from_rest(turned, held.rig, [held.legs[0].foot])[:, 0]
     balls = raised.ankles[:, 0] + rotations.rotate(foot, held.rig.sole(held.legs[0]).ball)
     assert balls == pytest.approx(held.ankles[:, 0] + heels.to_balls[:, 0], abs=1e-9)

@@ -7,7 +7,7 @@ from hypothesis import given, strategies as st
 from cubeling.characters import Character
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.skeleton import rotations
-from cubeling.characters.skeleton.joint_limits import EDGE_RAD, JointLimits
+from cubeling.characters.skeleton.joint_limits import EDGE_RAD, AngleLimits
 from cubeling.characters.skeleton.natural_limits import natural_limits
 
 BUNDLED = ("human", "robot", "vleo")
@@ -18,7 +18,7 @@ def test_angles_make_the_rotations_that_they_were_made_of(seed: int) -> None:
     random = np.random.default_rng(seed)
     low = random.uniform(-1.4, 0.0, (4, 3))
     before, after = rotations.normalize(random.normal(size=(2, 4, 4)))
-    limits = JointLimits(low, low + random.uniform(0.1, 1.4, (4, 3)), before, after)
+    limits = AngleLimits(low, low + random.uniform(0.1, 1.4, (4, 3)), before, after)
     angles = random.uniform(limits.low, limits.high)
     local = limits.rotations(angles)
     assert np.allclose(limits.angles(local), angles, atol=1e-9)
@@ -26,14 +26,14 @@ def test_angles_make_the_rotations_that_they_were_made_of(seed: int) -> None:
     assert np.array_equal(limits.clamp(local), local)
     wild = rotations.normalize(random.normal(size=(20, 4, 4)))
     assert limits.excess(limits.clamp(wild)).max() <= EDGE_RAD
-    assert limits.widened(0.1).excess(limits.rotations(limits.high + 0.05)).max() <= EDGE_RAD
+    assert limits.widen(0.1).excess(limits.rotations(limits.high + 0.05)).max() <= EDGE_RAD
 
 
 def test_limits_that_are_none_are_refused() -> None:
     with pytest.raises(CharacterError, match="joint 1 turns from"):
-        JointLimits.of_angles(np.array([[0.0] * 3, [1.0, 0, 0]]), np.full((2, 3), 0.5))
+        AngleLimits.of_angles(np.array([[0.0] * 3, [1.0, 0, 0]]), np.full((2, 3), 0.5))
     with pytest.raises(CharacterError, match="not of one size"):
-        JointLimits.of_angles(np.zeros((2, 3)), np.zeros((3, 3)))
+        AngleLimits.of_angles(np.zeros((2, 3)), np.zeros((3, 3)))
 
 
 @pytest.mark.parametrize("name", BUNDLED)

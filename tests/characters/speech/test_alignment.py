@@ -11,7 +11,7 @@ from hypothesis import given, strategies as st
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.speech.alignment import align, align_with_sphinx
 from cubeling.characters.speech.alignment.warping import warp
-from cubeling.characters.speech.audio import resampled
+from cubeling.characters.speech.audio import resample
 from cubeling.characters.speech.closures import with_closures
 from cubeling.characters.speech.speech import SILENCE, Phone, Speech, Word
 from cubeling.characters.speech.voices import Manner
@@ -62,7 +62,7 @@ def test_a_pause_that_the_voice_lacks_lies_between_words(spoken_voice):
 @pytest.mark.parametrize("rate", some([8000, 96_000]))
 def test_other_sample_rates_are_aligned(spoken_voice, rate):
     truth = spoken_voice.say(TEXT, "en-us+m5")
-    samples = resampled(truth.samples, truth.rate, rate)
+    samples = resample(truth.samples, truth.rate, rate)
     made = align(Speech(samples, rate), TEXT, spoken_voice, "en-us")
     assert np.median(word_errors(truth, made)) < 0.03
 

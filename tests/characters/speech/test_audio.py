@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.speech.audio import read_speech, resampled
+from cubeling.characters.speech.audio import read_speech, resample
 
 
 def tone(rate, seconds=0.5, frequency=440.0):
@@ -116,19 +116,19 @@ def test_any_bytes_after_a_wav_header_are_read_or_refused(tmp_path_factory, data
 
 @pytest.mark.parametrize("new_rate", [8000, 11_025, 22_050, 44_100, 96_000])
 def test_a_tone_stays_a_tone_at_another_rate(new_rate):
-    made = resampled(tone(48_000).astype(np.float32), 48_000, new_rate)
+    made = resample(tone(48_000).astype(np.float32), 48_000, new_rate)
     inside = slice(new_rate // 50, new_rate // 2 - new_rate // 50)
     assert len(made) == -(-new_rate // 2)
     assert np.abs(made[inside] - tone(new_rate)[inside]).max() < 1e-4
 
 
 def test_what_a_lower_rate_cannot_carry_is_gone():
-    made = resampled(tone(48_000, frequency=9500).astype(np.float32), 48_000, 16_000)
+    made = resample(tone(48_000, frequency=9500).astype(np.float32), 48_000, 16_000)
     assert np.abs(made[400:-400]).max() < 1e-3
 
 
 def test_an_empty_sound_stays_empty():
-    assert len(resampled(np.zeros(0, np.float32), 48_000, 16_000)) == 0
+    assert len(resample(np.zeros(0, np.float32), 48_000, 16_000)) == 0
 
 
 def test_wave_of_the_standard_library_agrees(tmp_path):

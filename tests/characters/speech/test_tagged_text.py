@@ -60,7 +60,7 @@ WORDS = (Word("Hello", 0.1, 0.5, 0), Word("there", 0.6, 1.2, 6), Word("you", 1.3
 
 def test_a_gesture_lasts_from_its_first_word_to_its_last():
     found = TaggedText.read(f"Hello {begin('g', 'wave')}there you{end('g')}")
-    ((span),) = found.timed(WORDS, 2.1)
+    ((span),) = found.gesture_spans(WORDS, 2.1)
     assert (span.name, span.start, span.end) == ("wave", 0.6, 2.0)
 
 
@@ -73,6 +73,6 @@ def test_a_gesture_lasts_from_its_first_word_to_its_last():
     ],
 )
 def test_a_gesture_of_a_short_word_or_none_has_time_enough(marked):
-    ((span),) = TaggedText.read(marked).timed(WORDS, 2.1)
+    ((span),) = TaggedText.read(marked).gesture_spans(WORDS, 2.1)
     assert span.end - span.start >= MIN_SPAN_S - 1e-9
     assert 0.0 <= span.start <= 2.1 - MIN_SPAN_S + 1e-9

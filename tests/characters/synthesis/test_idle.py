@@ -28,7 +28,7 @@ from cubeling.characters.synthesis.idle.idle_motion import REACTION_S, IdleMotio
 from cubeling.characters.synthesis.idle.layering import Varied
 from cubeling.characters.synthesis.idle.posture_space import PostureVectors
 from cubeling.characters.synthesis.idle.recordings import (
-    Rest,
+    RestSpan,
     StandingRecording,
     find_rests,
     read_standing,
@@ -91,7 +91,7 @@ def test_rests_and_shifts_are_found_where_they_are() -> None:
 
 
 def test_somebody_who_never_shifts_has_one_rest() -> None:
-    assert find_rests(np.full(100, 0.3), RATE) == (Rest(0, 100, "left"),)
+    assert find_rests(np.full(100, 0.3), RATE) == (RestSpan(0, 100, "left"),)
 
 
 def test_probabilities_and_pauses_are_those_of_the_stander(database: IdleDatabase) -> None:
@@ -212,9 +212,9 @@ def test_entered_again_it_goes_on(database: IdleDatabase) -> None:
 def test_shifts_can_be_added_and_removed_while_it_plays(database: IdleDatabase) -> None:
     motion = IdleMotion(database, 9)
     motion.sample(3.0)
-    motion.database = database.removed(0)
+    motion.database = database.without_shift(0)
     motion.sample(6.0)
-    motion.database = motion.database.added(database.shifts[0])
+    motion.database = motion.database.with_shift(database.shifts[0])
     motion.sample(9.0)
     assert set(map(id, motion.database.shifts)) == set(map(id, database.shifts))
 
@@ -332,7 +332,7 @@ def test_people_who_walk_or_sit_or_jump_are_refused(human: Character) -> None:
     standing = Pose(*(np.repeat(each[None], 50, axis=0) for each in (
         human.skeleton.rest.translations, human.skeleton.rest.rotations)))  # fmt: skip
     still = Clip("still", RATE, standing, root_motion=True)
-    assert read_standing(still, *body).rests == (Rest(0, 50, "both"),)
+    assert read_standing(still, *body).rests == (RestSpan(0, 50, "both"),)
     low = standing.translations.copy()
     low[:, human.anatomy.joints["hips"], 1] -= 0.4
     with pytest.raises(CharacterError, match="hips are at 52% of their standing height"):

@@ -86,4 +86,4 @@ def test_a_feature_has_one_scale_and_its_weight():
     assert math.hypot(*spreads[:2]) == pytest.approx(2.0 * math.sqrt(2))
     assert spreads[1] / spreads[0] == pytest.approx(2.0, rel=0.2)
     assert spreads[2] == pytest.approx(0.5)
-    np.testing.assert_allclose(space.scaled("a", features[0]["a"][7]), space.values[7, :2])
+    np.testing.assert_allclose(space.scale_feature("a", features[0]["a"][7]), space.values[7, :2])

@@ -15,7 +15,7 @@ def walked(wish, seconds, elapsed=1 / 60):
     """Return where a wish leads in a time [s]."""
     place, impulse = RootDelta(), Impulse()
     for _ in range(round(seconds / elapsed)):
-        impulse, place = impulse.advanced(place, wish, HEIGHT_M, elapsed)
+        impulse, place = impulse.advance(place, wish, HEIGHT_M, elapsed)
     return place, impulse
 
 
@@ -38,7 +38,7 @@ def test_it_turns_no_faster_than_a_body_can():
     wish, elapsed = Wish(0.0, (0.0, -1.0)), 1 / 60
     place, impulse = RootDelta(), Impulse()
     for _ in range(120):
-        impulse, after = impulse.advanced(place, wish, HEIGHT_M, elapsed)
+        impulse, after = impulse.advance(place, wish, HEIGHT_M, elapsed)
         assert abs(after.yaw - place.yaw) <= MAX_TURN_RATE * elapsed + 1e-9
         place = after
     assert abs(math.remainder(place.yaw - math.pi, math.tau)) < 0.1

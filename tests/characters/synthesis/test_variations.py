@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from cubeling.characters.synthesis.idle.motion_texture import Stretches, StretchStream
 from cubeling.characters.synthesis.idle.posture_space import PostureSpace
-from cubeling.characters.synthesis.idle.stretches import Stretches, StretchStream
 from cubeling.characters.synthesis.idle.variations import Variations, VariationStream, extrema
 
 RATE = 25.0

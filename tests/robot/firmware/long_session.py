@@ -15,7 +15,7 @@ def say(*message):
     body = bytearray(struct.pack(*message))
     box.put(body, len(body))
     board.incoming += box.data[: box.end]
-    box.sent(box.end)
+    box.drop(box.end)
 
 
 def again():

@@ -148,5 +148,5 @@ def test_a_frame_without_room_is_dropped_as_a_whole():
         out.put(bytearray(40), size)
     assert (out.end, out.dropped) == (92, 2)
     assert read(bytes(out.data[: out.end])) == [bytes(40)] * 2
-    out.sent(92)
+    out.drop(92)
     assert (out.start, out.end) == (0, 0)

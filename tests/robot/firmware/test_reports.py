@@ -23,7 +23,7 @@ def told(dino: Dino, kind: type[Any]) -> list[Any]:
 
 @given(st.lists(st.text(max_size=90), max_size=12))
 def test_lines_are_shortened_counted_and_dropped_as_by_the_simulated_robot(texts):
-    ours, simulated = firmware_log.LogQueue(), device.LogQueue()
+    ours, simulated = firmware_log.LogQueue(), device.SimulatedLogQueue()
     for index, text in enumerate(texts):
         text = text.encode(errors="ignore").decode()
         ours.write(m.SEVERITY_WARNING, text, index)

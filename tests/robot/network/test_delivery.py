@@ -271,12 +271,12 @@ def test_a_late_acknowledgement_changes_nothing():
     followers.receive_status(rex, StatusMessage(1, 1, "online", ("hall/a",)), 0.0)
     assert followers.acknowledge(rex, 5)
     assert not followers.acknowledge(rex, 3)
-    assert followers.taken_by_all() == 5
+    assert followers.number_taken_by_all() == 5
 
 
 def test_an_acknowledgement_of_an_earlier_session_is_ignored(network):
     ann = Player(Member("hall", "player", "a"), session=5)
-    ann.connected(0.0)
+    ann.on_connect(0.0)
     robot = "cubeling/1/hall/robot/rex"
     ann.receive(f"{robot}/status", encode(StatusMessage(1, 1, "online", ("*/*",))), 0.0)
     ann.act("a1", 0.0, 0.0)

@@ -17,7 +17,7 @@ from tools.authoring.people import STANDING, recording_of
 pytestmark = pytest.mark.full
 
 
-@pytest.fixture(scope="module", params=Character.bundled())
+@pytest.fixture(scope="module", params=Character.bundled_names())
 def someone(request: pytest.FixtureRequest) -> Character:
     return Character.load(request.param)
 

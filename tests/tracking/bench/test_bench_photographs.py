@@ -166,7 +166,9 @@ def drawn_poses(rng, count, covariance):
     """Draw poses about one, with errors of a covariance each."""
     truth = se3.pose(Rotation.random(rng=rng).as_matrix(), np.array([0.02, -0.01, 0.03]))
     errors = [rng.multivariate_normal(np.zeros(6), covariance(n)) for n in range(count)]
-    return truth, [StatedPose(se3.moved(truth, e), covariance(n)) for n, e in enumerate(errors)]
+    return truth, [
+        StatedPose(se3.apply_delta(truth, e), covariance(n)) for n, e in enumerate(errors)
+    ]
 
 
 def test_a_true_covariance_holds_95_percent_of_the_distances_from_the_consensus():
@@ -192,7 +194,7 @@ def test_a_covariance_of_half_the_errors_holds_far_fewer():
 
 def test_one_wrong_pose_does_not_move_the_consensus():
     truth, stated = drawn_poses(np.random.default_rng(5), 7, lambda n: 1e-7 * np.eye(6))
-    wrong = se3.moved(truth, np.array([0.05, 0, 0, 0, 1.5, 0]))
+    wrong = se3.apply_delta(truth, np.array([0.05, 0, 0, 0, 1.5, 0]))
     mean, weights = consensus([*(each.pose for each in stated), wrong])
     assert np.abs(se3.delta(mean, truth)).max() < 5e-4
     assert weights[-1] < 0.01
@@ -211,7 +213,7 @@ def test_the_covariance_of_a_relative_pose_is_that_of_drawn_errors():
     assert expected.covariance is not None
     for _ in range(1000):
         one, other = (
-            StatedPose(se3.moved(cube, rng.normal(0, sizes))).at(marker) for cube in cubes
+            StatedPose(se3.apply_delta(cube, rng.normal(0, sizes))).at(marker) for cube in cubes
         )
         found = one.relative(other).pose
         chi2.append(chi_square(se3.delta(expected.pose, found), expected.covariance))
@@ -225,7 +227,8 @@ def test_the_tilt_between_two_markers_has_two_degrees_of_freedom():
     covariance, inside = turn @ np.diag(sizes**2) @ turn.T, []
     for _ in range(1000):
         pair = [
-            StatedPose(se3.moved(pose, turn @ rng.normal(0, sizes)), covariance) for _ in range(2)
+            StatedPose(se3.apply_delta(pose, turn @ rng.normal(0, sizes)), covariance)
+            for _ in range(2)
         ]
         inside.append(tilt_between(*pair)[1] <= 5.991)
     assert np.mean(inside) == pytest.approx(0.95, abs=0.03)

@@ -120,7 +120,7 @@ def test_half_the_size_is_the_same_camera() -> None:
     full = Intrinsics(WEBCAM_LENS.matrix, WEBCAM_LENS.distortion, WEBCAM_LENS.size)
     assert half.size == (320, 240)
     assert half.frame(0).shape == (240, 320, 3)
-    assert np.allclose(half.matrix, full.scaled((320, 240)).matrix)
+    assert np.allclose(half.matrix, full.scale((320, 240)).matrix)
 
 
 def dotted(side: Side, column: int, row: int) -> Side:

@@ -93,19 +93,19 @@ def test_derivatives_match_finite_differences():
     for number in range(9):
         shared = np.zeros(9 + 6 * len(model.plates))
         shared[number] = small * max(1.0, abs(TRUE[number]))
-        moved = model.moved(shared, [np.zeros(7)] * len(kept))
+        moved = model.apply_step(shared, [np.zeros(7)] * len(kept))
         slope = (at_rest - moved.linearise(view, 2)[0]) / shared[number]
         np.testing.assert_allclose(camera[:, number], slope, rtol=1e-3, atol=1e-3)
     for number in range(6):
         shared = np.zeros(9 + 6 * len(model.plates))
         shared[9 + number :: 6] = small
-        moved = model.moved(shared, [np.zeros(7)] * len(kept))
+        moved = model.apply_step(shared, [np.zeros(7)] * len(kept))
         slope = (at_rest - moved.linearise(view, 2)[0]) / small
         np.testing.assert_allclose(plate[:, number], slope, rtol=1e-3, atol=0.2)
     for number in range(7):
         step = np.zeros(7)
         step[number] = small
-        moved = model.moved(np.zeros(9 + 6 * len(model.plates)), [step] * len(kept))
+        moved = model.apply_step(np.zeros(9 + 6 * len(model.plates)), [step] * len(kept))
         slope = (at_rest - moved.linearise(view, 2)[0]) / small
         np.testing.assert_allclose(own[:, number], slope, rtol=1e-3, atol=0.2)
 
@@ -174,6 +174,6 @@ def test_a_measured_cube_follows_its_plates():
     plates = np.tile(np.eye(4), (6, 1, 1))
     for old, new in zip(CUBE.faces, measured_cube(CUBE, plates).faces, strict=True):
         np.testing.assert_allclose(new.corners, old.corners, atol=1e-15)
-    plates[2] = se3.moved(np.eye(4), np.array([0.001, 0, 0, 0, 0, 0]))
+    plates[2] = se3.apply_delta(np.eye(4), np.array([0.001, 0, 0, 0, 0, 0]))
     moved = measured_cube(CUBE, plates).faces[2].corners - CUBE.faces[2].corners
     np.testing.assert_allclose(moved, np.tile([0.001, 0, 0], (4, 1)), atol=1e-15)

@@ -167,7 +167,7 @@ def rays_of(camera):
     """The direction that each pixel sees, (H, W, 3)."""
     width, height = camera.size
     x, y = np.meshgrid(np.arange(width), np.arange(height))
-    straight = camera.undistorted(np.stack([x, y], axis=-1).astype(np.float64))
+    straight = camera.undistort(np.stack([x, y], axis=-1).astype(np.float64))
     rays = np.concatenate([straight, np.ones((height, width, 1))], axis=-1)
     return rays @ np.linalg.inv(camera.matrix).T
 

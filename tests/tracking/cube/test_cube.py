@@ -86,7 +86,7 @@ def test_a_roll_turns_the_marker_clockwise(roll):
 @given(edge=st.floats(0.01, 1.0))
 def test_a_scaled_cube_keeps_its_proportions(edge):
     cube = CubeModel.load("companion")
-    scaled = cube.scaled(edge)
+    scaled = cube.scale(edge)
     assert scaled.marker_size / scaled.edge == pytest.approx(cube.marker_size / cube.edge)
     for face, before in zip(scaled.faces, cube.faces, strict=True):
         fresh = face_corners(face.name, face.roll_deg, scaled.marker_size, scaled.edge)
@@ -97,7 +97,7 @@ def test_a_scaled_cube_keeps_its_proportions(edge):
 @pytest.mark.parametrize("edge", [0.0, -0.06, 0.009, 1.1, math.nan, math.inf])
 def test_a_cube_is_not_scaled_to_an_impossible_size(edge):
     with pytest.raises(TrackingError, match="10 to 1000 mm"):
-        CubeModel.load("companion").scaled(edge)
+        CubeModel.load("companion").scale(edge)
 
 
 def test_a_file_with_some_faces_is_a_cube(tmp_path):

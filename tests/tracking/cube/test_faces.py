@@ -31,7 +31,7 @@ def test_a_pose_mirrored_twice_is_the_same_pose(
     pose = posed(turn, place)
     # Seen from behind there is no line of sight to mirror on.
     assume(FACES.cosines(pose)[face] > -0.99)
-    assert np.allclose(FACES.mirrored(FACES.mirrored(pose, face), face), pose, atol=1e-8)
+    assert np.allclose(FACES.mirror(FACES.mirror(pose, face), face), pose, atol=1e-8)
 
 
 @given(turns, places, st.integers(0, 5))
@@ -41,7 +41,7 @@ def test_a_mirrored_face_keeps_its_centre_and_tilts_as_far_to_the_other_side(
     pose = posed(turn, place)
     cosine = FACES.cosines(pose)[face]
     assume(cosine > 0.05)
-    other = FACES.mirrored(pose, face)
+    other = FACES.mirror(pose, face)
     centres = [each[:3, :3] @ FACES.centres[face] + each[:3, 3] for each in (pose, other)]
     assert np.allclose(centres[0], centres[1], atol=1e-12)
     assert FACES.cosines(other)[face] == pytest.approx(cosine, abs=1e-9)

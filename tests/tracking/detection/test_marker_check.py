@@ -66,7 +66,7 @@ def test_the_cells_disagree_one_cell_off(seen: tuple[Picture, Array]) -> None:
         right, down = (face.corners[to] - face.corners[0] for to in (1, 3))
         for way in (right, down, -right, -down):
             shift = pose[:3, :3] @ way / CUBE.marker_size * CELL
-            shifted = se3.moved(pose, np.append(shift, np.zeros(3)))
+            shifted = se3.apply_delta(pose, np.append(shift, np.zeros(3)))
             shares.append(read(picture, shifted).agreement[name])
     assert max(shares) < 0.8
     assert np.mean(shares) < 0.65

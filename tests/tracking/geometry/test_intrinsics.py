@@ -69,18 +69,18 @@ def test_undistorted_points_are_those_of_the_pinhole(rays):
     none = np.zeros(3)
     seen, _ = cv2.projectPoints(points, none, none, camera.matrix, camera.distortion)
     perfect = (points @ matrix.T)[:, :2]
-    np.testing.assert_allclose(camera.undistorted(seen[:, 0]), perfect, atol=1e-6)
+    np.testing.assert_allclose(camera.undistort(seen[:, 0]), perfect, atol=1e-6)
 
 
 def test_undistorting_keeps_any_shape():
     camera = Intrinsics.guess((640, 480))
-    assert camera.undistorted(np.zeros((3, 4, 2))).shape == (3, 4, 2)
-    assert camera.undistorted(np.zeros((0, 2))).shape == (0, 2)
+    assert camera.undistort(np.zeros((3, 4, 2))).shape == (3, 4, 2)
+    assert camera.undistort(np.zeros((0, 2))).shape == (0, 2)
 
 
 def test_a_scaled_camera_sees_the_same_rays():
     camera = Intrinsics.guess((1280, 720))
-    half = camera.scaled((640, 360))
+    half = camera.scale((640, 360))
     corner = np.linalg.inv(camera.matrix) @ (-0.5, -0.5, 1)
     np.testing.assert_allclose(np.linalg.inv(half.matrix) @ (-0.5, -0.5, 1), corner, atol=1e-12)
 

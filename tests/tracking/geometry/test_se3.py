@@ -50,22 +50,24 @@ def test_delta_is_the_inverse_of_moved(
 ) -> None:
     start = se3.pose(se3.rotation(vector(first, angle)), shift)
     step = np.concatenate([shift * 2, vector(second, other)])
-    end = se3.moved(start, step)
-    assert np.allclose(se3.moved(start, se3.delta(start, end)), end, atol=1e-9)
+    end = se3.apply_delta(start, step)
+    assert np.allclose(se3.apply_delta(start, se3.delta(start, end)), end, atol=1e-9)
     assert np.allclose(se3.inverse(start) @ start, np.eye(4), atol=1e-12)
 
 
 @given(st.lists(st.tuples(directions, angles), min_size=1, max_size=4))
 def test_deltas_of_several_poses_are_those_of_each(turns: list[tuple[Array, float]]) -> None:
     start = se3.pose(se3.rotation(np.array([0.3, -0.2, 0.1])), np.array([0.1, 0.2, 0.5]))
-    ends = np.stack([se3.moved(start, np.append(place, vector(place, a))) for place, a in turns])
+    ends = np.stack(
+        [se3.apply_delta(start, np.append(place, vector(place, a))) for place, a in turns]
+    )
     expected = [se3.delta(start, end) for end in ends]
     assert np.allclose(se3.deltas(start, ends), expected, atol=1e-12)
 
 
 @pytest.mark.parametrize("angle", [0.0, 1e-9, 1e-7, 1e-5, 0.5])
 def test_deltas_are_exact_near_zero(angle: float) -> None:
-    ends = np.stack([se3.moved(np.eye(4), np.array([0, 0, 0, angle, 0, 0]))] * 2)
+    ends = np.stack([se3.apply_delta(np.eye(4), np.array([0, 0, 0, angle, 0, 0]))] * 2)
     assert np.allclose(se3.deltas(np.eye(4), ends)[:, 3], angle, rtol=1e-9, atol=1e-16)
 
 

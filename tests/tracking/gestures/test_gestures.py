@@ -62,7 +62,7 @@ class Hand:
         pose = None
         if table_from_cube is not None:
             jitter = self.generator.normal(0, 1, 6) * ([5e-5] * 3 + [3e-4] * 3) * self.noise
-            pose = se3.moved(self.camera @ table_from_cube, jitter)
+            pose = se3.apply_delta(self.camera @ table_from_cube, jitter)
         state = CubeState(
             pose is not None, pose, np.zeros(6), COVARIANCE, "markers", ("top",), 0.1, self.time
         )
@@ -94,7 +94,7 @@ def between(start: Array, end: Array, seconds: float, lift: float = 0.0) -> Iter
     """From pose to pose, with an arc above the table."""
     step = se3.delta(start, end)
     for share in np.linspace(0, 1, round(seconds * RATE)):
-        yield se3.moved(start, step * share + np.eye(6)[1] * lift * np.sin(np.pi * share))
+        yield se3.apply_delta(start, step * share + np.eye(6)[1] * lift * np.sin(np.pi * share))
 
 
 @pytest.fixture
@@ -209,7 +209,7 @@ def test_a_tip_that_was_hidden_is_placed(hand: Hand) -> None:
 def test_a_brief_wrong_tilt_changes_nothing(hand: Hand) -> None:
     hand.hold(standing(), 1)
     hand.play(turning(0, 180, 1))
-    wrong = se3.moved(standing(turn_deg=180), np.array([0, 0.004, 0, np.deg2rad(50), 0, 0]))
+    wrong = se3.apply_delta(standing(turn_deg=180), np.array([0, 0.004, 0, np.deg2rad(50), 0, 0]))
     hand.play([wrong, wrong])
     hand.play(turning(180, 360, 1))
     controls = hand.hold(standing(turn_deg=360), 0.5)
@@ -249,7 +249,7 @@ def shaking(frequency: float, amplitude: float, seconds: float, axis: int) -> It
     for t in np.arange(0, seconds, 1 / RATE):
         offset = np.zeros(6)
         offset[axis] = amplitude * np.sin(2 * np.pi * frequency * t)
-        yield se3.moved(standing(), offset + np.eye(6)[1] * 0.1)
+        yield se3.apply_delta(standing(), offset + np.eye(6)[1] * 0.1)
 
 
 @pytest.mark.parametrize(
@@ -278,7 +278,7 @@ def test_a_registered_gesture_is_reported_once_beside_the_others(
     monkeypatch.setitem(DETECTORS, "raised", RaiseDetector)
     hand = Hand()
     hand.hold(standing(), 1)
-    hand.play(between(standing(), se3.moved(standing(), 0.3 * np.eye(6)[1]), 0.5))
+    hand.play(between(standing(), se3.apply_delta(standing(), 0.3 * np.eye(6)[1]), 0.5))
     hand.hold(None, 0.1)
     made = [name for controls in hand.all for name in controls.gestures]
     assert made == ["raised"]

@@ -52,7 +52,7 @@ class Desk:
             phase = 2 * np.pi * 9 * self.time
             shake[:3] = tremor * np.sin([phase, phase + 1, phase + 2])
             noise = self.generator.normal(0, 1, 6) * NOISE
-            pose = se3.moved(self.camera @ table_from_cube, noise + shake)
+            pose = se3.apply_delta(self.camera @ table_from_cube, noise + shake)
             state = CubeState(
                 True, pose, np.zeros(6), np.diag(NOISE**2), "markers", ("top",), 0.1, self.time
             )

@@ -43,7 +43,7 @@ def search(
 def mirrored(pose: Array) -> Array:
     """The pose in which the front tilts the other way."""
     planes = FacePlanes(CUBE)
-    return planes.mirrored(pose, planes.names.index("front"))
+    return planes.mirror(pose, planes.names.index("front"))
 
 
 TILTS = [(lean, distance) for distance in (2.2, 0.6, 1.5) for lean in (0.3, 0.5, 0.8)]
@@ -165,7 +165,7 @@ def test_two_partly_covered_faces_prove_the_cube_and_one_does_not() -> None:
 
 def test_a_start_a_cell_away_is_found_coarsely_first() -> None:
     pose = held(at=(0.0, 0.0, 0.7))
-    start = se3.moved(pose, np.array([0.9 * CUBE.marker_size / 6, 0, 0, 0.05, 0.0, 0.0]))
+    start = se3.apply_delta(pose, np.array([0.9 * CUBE.marker_size / 6, 0, 0, 0.05, 0.0, 0.0]))
     match = search(picture(drawn(CUBE, pose)), start)
     assert corners_off(CUBE, match.alignment.camera_from_cube, pose, ("front",)) < 0.2
 

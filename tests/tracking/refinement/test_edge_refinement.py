@@ -50,7 +50,7 @@ def test_a_rough_start_converges_to_the_truth(
 ) -> None:
     refiner, patch, truth = scene
     offset = np.random.default_rng(seed).uniform(-1, 1, 6) * ([1e-3] * 3 + [0.015] * 3)
-    result = refiner.refine(patch, se3.moved(truth, offset))
+    result = refiner.refine(patch, se3.apply_delta(truth, offset))
     assert result is not None
     step = se3.delta(result.camera_from_cube, truth)
     assert np.linalg.norm(step[:3]) < 1e-4

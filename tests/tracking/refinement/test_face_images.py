@@ -25,7 +25,7 @@ SHEARED = np.array([[1.2, 0.5], [-0.2, 0.8]])
 
 def drawn(texels_to_pixels: Array, sigma: float, face: int = 0) -> tuple[Image, float]:
     """One face, (SIDE, SIDE, 3), and its widest blur [m]."""
-    layers, widest = DRAWING.blurred(np.array([face]), texels_to_pixels[None], sigma)
+    layers, widest = DRAWING.blur(np.array([face]), texels_to_pixels[None], sigma)
     return layers, float(widest[0])
 
 
@@ -106,7 +106,7 @@ def test_blur_keeps_the_light_and_the_paper_white() -> None:
 
 def test_faces_are_stacked_each_blurred_by_its_own_tilt() -> None:
     seen = np.stack([SQUARE, LEANING, ROLLED])
-    layers, widest = DRAWING.blurred(np.array([4, 0, 2]), seen, 1.5)
+    layers, widest = DRAWING.blur(np.array([4, 0, 2]), seen, 1.5)
     assert layers.shape == (3 * SIDE, SIDE, 3)
     for number, face in enumerate((4, 0, 2)):
         alone, spread = drawn(seen[number], 1.5, face)

@@ -66,7 +66,7 @@ def offset_pose(pose: Array, random: np.random.Generator) -> Array:
     """A pose 3 mm and 2° off."""
     step = random.normal(0, 1, (2, 3))
     step *= np.array([[0.003], [np.deg2rad(2)]]) / np.linalg.norm(step, axis=1, keepdims=True)
-    return se3.moved(pose, step.ravel())
+    return se3.apply_delta(pose, step.ravel())
 
 
 @pytest.fixture(scope="module")
@@ -155,14 +155,14 @@ def test_a_good_start_needs_no_coarse_search(shots: list[Shot]) -> None:
     random = np.random.default_rng(3)
     for each in shots:
         step = random.normal(0, 1, 6) * np.repeat([3e-4, 4e-3], 3)
-        alignment = each.align(se3.moved(each.pose, step), coarse=False)
+        alignment = each.align(se3.apply_delta(each.pose, step), coarse=False)
         assert alignment is not None
         assert off(alignment.camera_from_cube, each.pose)[0] < 0.5
 
 
 def test_the_blur_motion_of_a_cube_at_rest_is_below_the_blur_of_a_lens() -> None:
     still = shot(VIEWS[0], np.zeros(6))
-    alignment = still.found(se3.moved(VIEWS[0], np.array([4e-4, -3e-4, 5e-4, 4e-3, 0, 3e-3])))
+    alignment = still.found(se3.apply_delta(VIEWS[0], np.array([4e-4, -3e-4, 5e-4, 4e-3, 0, 3e-3])))
     assert off(alignment.camera_from_cube, VIEWS[0])[0] < 0.2
     pixels = np.linalg.norm(alignment.blur_motion[:2]) * CAMERA.matrix[0, 0] / VIEWS[0][2, 3]
     assert pixels < MIN_BLUR_PX
@@ -173,7 +173,7 @@ def test_a_finger_on_a_face_does_not_shift_the_pose(shots: list[Shot]) -> None:
     grey = each.patch.grey.copy()
     grey[236:262, 282:306] = 90
     covered = Shot(Patch(grey, 0, 0), each.pose, each.motion)
-    alignment = covered.found(se3.moved(each.pose, np.array([1e-3, 0, 0, 0, 0.01, 0])))
+    alignment = covered.found(se3.apply_delta(each.pose, np.array([1e-3, 0, 0, 0, 0.01, 0])))
     assert off(alignment.camera_from_cube, each.pose)[0] < 1.0
     assert np.linalg.norm((alignment.blur_motion - each.motion)[:2]) < 0.15 * DISTANCE
 
@@ -214,7 +214,7 @@ def test_a_finger_over_one_face_does_not_hide_two_others_in_motion() -> None:
     cv2.fillConvexPoly(light, np.rint(pixels).astype(np.int32), 0.3)
     track, projection = Track(), Projection(CAMERA)
     for time in (-1 / 15, -1 / 30):
-        past = se3.moved(pose, time * across)
+        past = se3.apply_delta(pose, time * across)
         track = track.add(TrackedPose(past, across, 1e-8 * np.eye(6), time))
     edges = EdgeSearch(CUBE, projection)
     cells, blur = CellSearch(CUBE, projection), BlurSearch(CUBE, projection, edges)

@@ -43,7 +43,7 @@ def half_a_cell_off(pose: Array, seed: int) -> Array:
     aside = 0.4 * CELL * np.array([np.cos(way), np.sin(way)])
     tilt *= np.deg2rad(3) / np.linalg.norm(tilt)
     depth = 0.02 * pose[2, 3] * random.choice([-1, 1])
-    return se3.moved(pose, np.array([*aside, depth, *tilt]))
+    return se3.apply_delta(pose, np.array([*aside, depth, *tilt]))
 
 
 def aligned(seen: Patch, start: Array) -> StillAlignment:
@@ -200,7 +200,7 @@ def test_bent_paper_does_not_tell_the_wrong_lean(lean: float) -> None:
     pose = held(lean, 0.1, 0.2, at=(0.01, 0.0, 0.6))
     light = drawn(replace(CUBE, faces=(CUBE.face("front"),)), pose)
     planes = FacePlanes(CUBE)
-    mirrored = planes.mirrored(pose, planes.names.index("front"))
+    mirrored = planes.mirror(pose, planes.names.index("front"))
     for dome in (-0.0008, 0.0008):
         seen = bent(light, pose, (dome, 0.0, dome))
         right, wrong = (ALIGNER.align(seen, start, ("front",)) for start in (pose, mirrored))

@@ -60,7 +60,7 @@ def solved_with_k1(points: Array, pixels: Array, start: Array) -> Array:
     """Do the same where k1 stretches the cube about its own centre by an unknown amount."""
 
     def residuals(change: Array) -> Array:
-        pose = se3.moved(start, change[:6])
+        pose = se3.apply_delta(start, change[:6])
         seen = shown(points, pose, CAMERA)
         placed = points @ pose[:3, :3].T + pose[:3, 3]
         seen += change[6] * Projection(CAMERA).bends(placed, pose[:3, 3])

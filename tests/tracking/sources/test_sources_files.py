@@ -112,7 +112,7 @@ def test_a_session_knows_size_rate_duration_and_intrinsics(session):
             np.array([[200, 0, 159.5], [0, 200, 119.5], [0, 0, 1]]),
             np.array([0.1, 0, 0, 0, 0]),
             (320, 240),
-        ).scaled(SIZE)
+        ).scale(SIZE)
         assert source.intrinsics is not None
         np.testing.assert_allclose(source.intrinsics.matrix, expected.matrix)
         np.testing.assert_array_equal(source.intrinsics.distortion, expected.distortion)

@@ -68,7 +68,7 @@ class Way:
 
 def falling(velocity: Array, acceleration: Array) -> Callable[[float], Array]:
     """A motion of constant acceleration, (6,) each; the rotation about one axis."""
-    return lambda t: se3.moved(START, velocity * t + acceleration * t**2 / 2)
+    return lambda t: se3.apply_delta(START, velocity * t + acceleration * t**2 / 2)
 
 
 @pytest.mark.parametrize("times", [EVEN, UNEVEN])
@@ -100,7 +100,7 @@ def test_the_velocity_at_rest_is_hardly_noisier_than_a_difference_of_two_poses()
     random, covariance = np.random.default_rng(1), np.diag(SPREAD**2)
     velocities = []
     for _ in range(500):
-        noisy = [se3.moved(START, random.normal(0, SPREAD)) for _ in range(3)]
+        noisy = [se3.apply_delta(START, random.normal(0, SPREAD)) for _ in range(3)]
         velocities.append(last_of(Way(noisy).at, EVEN, covariance).velocity)
     of_a_difference = np.sqrt(2) * SPREAD * RATE
     assert np.mean(np.std(velocities, axis=0) / of_a_difference) < 1.5
@@ -119,7 +119,7 @@ def test_noise_is_not_taken_for_acceleration_but_a_push_is() -> None:
 
 def test_after_a_pause_there_is_no_velocity_and_no_prediction() -> None:
     track = followed(falling(np.full(6, 0.3), np.zeros(6)), EVEN, EXACT)
-    away = se3.moved(START, np.full(6, 0.1))
+    away = se3.apply_delta(START, np.full(6, 0.1))
     just, late = (EVEN[2] + MAX_PREDICTION_S * share for share in (0.99, 1.01))
     assert np.linalg.norm(track.motion(away, EXACT, just)[0]) > 0.1
     for each in track.motion(away, EXACT, late):
@@ -150,12 +150,12 @@ def test_fifty_milliseconds_ahead_are_predicted_better_than_at_constant_velocity
     reach = 0.5 / (2 * np.pi)
 
     def way(time: float) -> Array:
-        return se3.moved(START, reach * np.sin(2 * np.pi * time) * np.eye(6)[0])
+        return se3.apply_delta(START, reach * np.sin(2 * np.pi * time) * np.eye(6)[0])
 
     ahead, track = 0.05, Track()
     errors: dict[str, list[float]] = {"held": [], "steady": [], "predicted": []}
     for time in np.arange(90) / RATE:
-        pose = se3.moved(way(time), random.normal(0, SPREAD))
+        pose = se3.apply_delta(way(time), random.normal(0, SPREAD))
         before = track.poses[-1] if track.poses else None
         velocity, acceleration = track.motion(pose, covariance, time)
         track = track.add(TrackedPose(pose, velocity, covariance, time, acceleration))
@@ -164,7 +164,7 @@ def test_fifty_milliseconds_ahead_are_predicted_better_than_at_constant_velocity
         step = se3.delta(before.camera_from_cube, pose) * RATE * ahead
         for name, guess in (
             ("held", pose),
-            ("steady", se3.moved(pose, step)),
+            ("steady", se3.apply_delta(pose, step)),
             ("predicted", predict(track, time + ahead).camera_from_cube),
         ):
             errors[name].append(off(guess, way(time + ahead))[0])
@@ -194,7 +194,7 @@ def tracker() -> CubeTracker:
     """A tracker that has seen a cube move to the right in three frames."""
     tracker = CubeTracker(CUBE, CAMERA)
     for number in range(3):
-        pose = se3.moved(START, SPEED * number / RATE)
+        pose = se3.apply_delta(START, SPEED * number / RATE)
         picture = photograph(scene((CUBE, pose)), seed=number)
         assert tracker.update(Frame(picture, number / RATE, number)).visible
     return tracker
@@ -216,7 +216,7 @@ def test_the_tracker_predicts_a_steady_motion(tracker: CubeTracker) -> None:
     for ahead in (0.0, 1 / 60, 0.05, 0.15):
         time = 2 / RATE + ahead
         predicted = tracker.predict(time)
-        millimetres, degrees = off(predicted.camera_from_cube, se3.moved(START, SPEED * time))
+        millimetres, degrees = off(predicted.camera_from_cube, se3.apply_delta(START, SPEED * time))
         assert millimetres < 0.1 + 12 * ahead
         assert degrees < 0.1 + 3 * ahead
         assert predicted.velocity[0] == pytest.approx(0.3, rel=0.05)

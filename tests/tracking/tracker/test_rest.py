@@ -17,7 +17,7 @@ def means(deltas):
     """The stated pose deltas of a cube whose poses are `deltas` from START."""
     rest, stated = Rest(), []
     for index, delta in enumerate(deltas):
-        rest = rest.add(se3.moved(START, delta), NOISE, index / RATE)
+        rest = rest.add(se3.apply_delta(START, delta), NOISE, index / RATE)
         stated.append(se3.delta(START, rest.pose()[0]))
     return np.array(stated)
 
@@ -56,7 +56,7 @@ def test_a_slow_drift_lags_by_less_than_the_noise(speed, axis):
 
 def test_a_pause_begins_anew():
     rest = Rest().add(START, NOISE, 0.0)
-    later = se3.moved(START, DEVIATIONS)
+    later = se3.apply_delta(START, DEVIATIONS)
     pose, covariance = rest.add(later, NOISE, MAX_FRAME_GAP_S + 0.01).pose()
     np.testing.assert_allclose(pose, later)
     np.testing.assert_allclose(covariance, NOISE)
@@ -64,6 +64,6 @@ def test_a_pause_begins_anew():
 
 @pytest.mark.parametrize("step", [0.0, -0.1])
 def test_a_clock_that_stands_still_or_runs_back_begins_anew(step):
-    later = se3.moved(START, DEVIATIONS)
+    later = se3.apply_delta(START, DEVIATIONS)
     pose, _ = Rest().add(START, NOISE, 1.0).add(later, NOISE, 1.0 + step).pose()
     np.testing.assert_allclose(pose, later)

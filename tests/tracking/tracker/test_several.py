@@ -24,8 +24,8 @@ def pose_of(cube: CubeModel, number: int) -> Array:
     time = number / RATE
     if cube is LEFT:
         start = held(at=(-0.09, 0.02, 0.4))
-        return se3.moved(start, time * np.array([0.05, 0, -0.1, 0, 0.8, 0]))
-    return se3.moved(held(0.8, -0.5, 0.4, at=(0.09, -0.01, 0.42)), time * -0.1 * np.eye(6)[0])
+        return se3.apply_delta(start, time * np.array([0.05, 0, -0.1, 0, 0.8, 0]))
+    return se3.apply_delta(held(0.8, -0.5, 0.4, at=(0.09, -0.01, 0.42)), time * -0.1 * np.eye(6)[0])
 
 
 def frame(number: int, *cubes: CubeModel) -> Frame:

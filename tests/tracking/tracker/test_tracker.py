@@ -185,7 +185,7 @@ def true_states(name: str) -> Iterator[tuple[CubeState, str]]:
     spread = np.array([2e-5, 2e-5, 4e-5, 2e-4, 2e-4, 2e-4])
     generator = np.random.default_rng(0)
     for index in range(source.count):
-        pose = se3.moved(source.truth(index), generator.normal(0, spread))
+        pose = se3.apply_delta(source.truth(index), generator.normal(0, spread))
         up = source.state(index).table_from_cube[1, :3]
         covariance = np.diag(spread**2)
         yield (

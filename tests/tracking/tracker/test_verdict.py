@@ -48,7 +48,7 @@ def test_a_pose_that_may_be_off_by_a_centimetre_is_uncertain() -> None:
 
 def test_the_evidence_of_the_cells_tells_two_poses_apart() -> None:
     """And only a clear lead of it does."""
-    tilted = se3.moved(HERE, np.array([0, 0, 0, np.deg2rad(40), 0, 0]))
+    tilted = se3.apply_delta(HERE, np.array([0, 0, 0, np.deg2rad(40), 0, 0]))
     blocks = np.ones((1, 30))
     right = replace(FOUND, faces=("front",), evidence=Evidence(blocks))
     few, all_blocks = np.zeros((1, 30)), np.full((1, 30), 1 / 3)
@@ -95,7 +95,7 @@ def test_after_a_second_out_of_sight_the_cube_may_be_anywhere() -> None:
 
 
 def test_of_two_equally_good_poses_the_predicted_one_is_chosen() -> None:
-    tilted = se3.moved(HERE, np.array([0, 0, 0, np.deg2rad(40), 0, 0]))
+    tilted = se3.apply_delta(HERE, np.array([0, 0, 0, np.deg2rad(40), 0, 0]))
     both = [replace(FOUND, camera_from_cube=pose, faces=("front",)) for pose in (tilted, HERE)]
     assert judge_detected(both, None, Past(), 0.0).refused == "ambiguous"
     past = tracked(0.0)

@@ -9,7 +9,7 @@ from cubeling.tracking.appearance.hand.background import GRID_PX, MIDDLES, Box
 from cubeling.tracking.appearance.hand.components import holding
 from cubeling.tracking.appearance.hand.mask import HandMask
 from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_3
-from cubeling.tracking.appearance.hand.window import Window
+from cubeling.tracking.appearance.hand.window import HandWindow
 from cubeling.tracking.geometry.arrays import Flags, Image
 
 ARM_EDGES, ARM_UP_EDGES = 12.0, 3.0
@@ -27,7 +27,7 @@ ARM_SHARE = np.uint8(225)
 covered, on average."""
 
 
-def arm_samples(window: Window, size: tuple[int, int]) -> Box:
+def arm_samples(window: HandWindow, size: tuple[int, int]) -> Box:
     """Return rows and columns of the samples in which the arm is looked for.
 
     Parameters
@@ -45,7 +45,7 @@ def arm_samples(window: Window, size: tuple[int, int]) -> Box:
     return rows, columns
 
 
-def with_arm(hand: HandMask, changed: Flags, samples: Box, window: Window) -> HandMask:
+def with_arm(hand: HandMask, changed: Flags, samples: Box, window: HandWindow) -> HandMask:
     """Return what a hand covers together with its arm: what has changed and is connected to it.
 
     Parameters

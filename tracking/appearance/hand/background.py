@@ -93,7 +93,7 @@ Box = tuple[slice, slice]
 
 
 @dataclass(frozen=True)
-class Place:
+class WindowChange:
     """What a window of the picture is, compared with the background there."""
 
     odds: Floats
@@ -115,7 +115,7 @@ class Place:
     lights: tuple[Floats, Floats]
     """L + 16 of CIELab of picture and background, in bytes, (h, w)."""
 
-    def without(self, mistaken: Flags) -> "Place":
+    def without(self, mistaken: Flags) -> "WindowChange":
         """Return the same where the background is not known in some pixels."""
         odds = self.odds.copy()
         odds[mistaken] = UNKNOWN
@@ -175,7 +175,7 @@ class Background:
         now, before = lab[:, *SPARSE][:, known], self._mean[:, *box][:, *SPARSE][:, known]
         return camera_change(now, before)
 
-    def compare(self, lab: Floats, box: Box, outside: Flags, whole: bool) -> Place:
+    def compare(self, lab: Floats, box: Box, outside: Flags, whole: bool) -> WindowChange:
         """Compare a window of the picture with the background.
 
         Parameters
@@ -196,7 +196,7 @@ class Background:
         if whole and not _is_enough(known):
             self._trust = 1.0
             odds, none = np.float32(UNKNOWN) * outside, np.zeros(age.shape, bool)
-            return Place(odds, none, np.zeros_like(light), none, none, (light, mean))
+            return WindowChange(odds, none, np.zeros_like(light), none, none, (light, mean))
         gain = light / mean
         off_a, off_b = a - gain * mean_a, b - gain * mean_b
         # What is large at a pixel and around it is neither noise nor the blur of its neighbour.
@@ -224,7 +224,7 @@ class Background:
         difference = (shade + np.float32(2) * off) * known
         recoloured = off > np.float32(RECOLOURED_SHARE) * light
         changed, relit = (odds > 0) & ~lit, lit & ~unchanged
-        return Place(odds, changed, difference, relit, recoloured, (light, mean))
+        return WindowChange(odds, changed, difference, relit, recoloured, (light, mean))
 
     def _odds(self, looks: Image, age: Image, outside: Flags) -> Floats:
         """Return what each pixel speaks for a hand, (h, w): logarithm of odds.
@@ -278,7 +278,7 @@ class Background:
         """Return what `lab` does, of some samples, (3, n)."""
         return self._sampled_mean[:, *samples][:, where]
 
-    def learn(self, lab: Floats, box: Box, free: Flags, place: Place) -> None:
+    def learn(self, lab: Floats, box: Box, free: Flags, place: WindowChange) -> None:
         """Learn the pixels of a window that are free of cube and hand, after `compare`."""
         age = self._age[box]
         relit = place.relit & (age > FULL_AGE)

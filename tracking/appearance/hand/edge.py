@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 
 from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_3, SQUARE_5
-from cubeling.tracking.appearance.hand.window import Window
+from cubeling.tracking.appearance.hand.window import HandWindow
 from cubeling.tracking.geometry.arrays import Floats, Image
 
 ODDS_RANGE = 2.0
@@ -17,7 +17,7 @@ of that, beside the share by odds."""
 
 
 def soft_cover(
-    hand: Image, odds: Floats, difference: Floats, window: Window
+    hand: Image, odds: Floats, difference: Floats, window: HandWindow
 ) -> tuple[int, int, Image]:
     """Return the cover of a part of the window, 0…255, after its first column and row.
 

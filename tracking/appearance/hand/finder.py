@@ -7,7 +7,7 @@ import numpy as np
 
 from cubeling.tracking.appearance.colour_space import LAB_FROM_ROOTS, lab
 from cubeling.tracking.appearance.hand.arm import arm_samples, with_arm
-from cubeling.tracking.appearance.hand.background import Background, Box, Place
+from cubeling.tracking.appearance.hand.background import Background, Box, WindowChange
 from cubeling.tracking.appearance.hand.colour_model import (
     MAX_ODDS,
     MIN_DIFFERENCE,
@@ -26,8 +26,8 @@ from cubeling.tracking.appearance.hand.on_cube.face_pattern import FacePattern
 from cubeling.tracking.appearance.hand.shape import connected
 from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_3, SQUARE_5
 from cubeling.tracking.appearance.hand.window import (
+    HandWindow,
     Stillness,
-    Window,
     WindowFinder,
     sampled,
     shrunk,
@@ -69,8 +69,8 @@ hand."""
 class _View:
     """What a window of the image shows."""
 
-    window: Window
-    """Where it is."""
+    window: HandWindow
+    """Part of the picture that it is cut from."""
 
     lab: Floats
     """L + 16, a and b of CIELab, in bytes, (3, h, w)."""
@@ -147,7 +147,7 @@ class HandFinder:
         """Whether so few frames were seen from the camera's place that all is looked at."""
         return self._frames < MANY_FRAMES
 
-    def _with_arm(self, image: Image, window: Window, hand: HandMask) -> HandMask:
+    def _with_arm(self, image: Image, window: HandWindow, hand: HandMask) -> HandMask:
         """Return a hand that was found in a window together with its arm beyond that."""
         samples = arm_samples(window, self._projection.size)
         planes = self._lab(sampled(image, window.scale, samples))
@@ -168,7 +168,7 @@ class HandFinder:
         """Return the planes of `lab` as the camera showed them at first."""
         return lab(image, self._from_roots)
 
-    def _view(self, image: Image, window: Window, samples: Image) -> _View:
+    def _view(self, image: Image, window: HandWindow, samples: Image) -> _View:
         """Look at the window, or at the part of it where something differs, as `samples` tell."""
         whole = self._is_early or self._since_whole >= WHOLE_FRAMES
         if whole:
@@ -212,14 +212,14 @@ class HandFinder:
         x, y = (window.left + left) * window.scale, (window.top + top) * window.scale
         return HandMask(x, y, share, cube.behind, window.scale, EDGE_SLOPE)
 
-    def _without(self, mistaken: Flags, place: Place, window: Window) -> Place:
+    def _without(self, mistaken: Flags, place: WindowChange, window: HandWindow) -> WindowChange:
         """Forget the background where it was `mistaken`, (h, w), for the desk."""
         if not mistaken.any():
             return place
         self._background.forget_some(window.box, mistaken)
         return place.without(mistaken)
 
-    def _uncovered(self, place: Place, view: _View, by_colour: Floats) -> Flags:
+    def _uncovered(self, place: WindowChange, view: _View, by_colour: Floats) -> Flags:
         """Return where the background was a hand, there from the beginning, which has gone."""
         box = view.window.box
         doubtful = place.changed & (by_colour < MAX_ODDS - MIN_DIFFERENCE)
@@ -229,7 +229,9 @@ class HandFinder:
         doubtful[doubtful] = self._colours.uncovered(view.colours[doubtful], before)
         return doubtful
 
-    def _resting(self, place: Place, view: _View, by_colour: Floats, cube: CubePart) -> Flags:
+    def _resting(
+        self, place: WindowChange, view: _View, by_colour: Floats, cube: CubePart
+    ) -> Flags:
         """Return where the background is a hand that has not moved since the beginning.
 
         It has the colours of what hides the print, and is connected to that.
@@ -253,7 +255,7 @@ class HandFinder:
             self._colours.learn_behind(view.colours, cube.outside)  # a hand is only little of it
 
     def _learn(
-        self, view: _View, cube: CubePart, place: Place, odds: Floats, hand: Image | None
+        self, view: _View, cube: CubePart, place: WindowChange, odds: Floats, hand: Image | None
     ) -> None:
         """Learn the colours of the hand and what is behind it, each in its turn."""
         self._frames += 1
@@ -267,7 +269,7 @@ class HandFinder:
                 free = free & (cv2.dilate(hand, SQUARE_5) == 0)
             self._learn_desk(view, place, free)
 
-    def _learn_hand(self, view: _View, cube: CubePart, place: Place, sure: Flags) -> None:
+    def _learn_hand(self, view: _View, cube: CubePart, place: WindowChange, sure: Flags) -> None:
         """Learn the colours of the hand where it is `sure`, (h, w), and was not before."""
         sure = sure & place.changed
         before = colours(self._background.lab(view.window.box, sure))
@@ -278,13 +280,13 @@ class HandFinder:
         if np.count_nonzero(sure) > MIN_SHOWN_PX:
             self._colours.learn_hand(view.colours, sure)
 
-    def _learn_desk(self, view: _View, place: Place, free: Flags) -> None:
+    def _learn_desk(self, view: _View, place: WindowChange, free: Flags) -> None:
         """Learn the desk and its colours where it is `free` of cube and hand, (h, w)."""
         self._background.learn(view.lab, view.window.box, free, place)
         if view.whole:
             self._colours.learn_behind(view.colours, free & ~place.changed)
 
-    def _learn_strip(self, image: Image, window: Window) -> None:
+    def _learn_strip(self, image: Image, window: HandWindow) -> None:
         """Learn a strip of the whole image: the cube may come there."""
         scale = window.scale
         columns, rows = (side // scale for side in self._projection.size)

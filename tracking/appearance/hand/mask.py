@@ -20,7 +20,7 @@ class HandMask:
     """First column of the camera's frame that `share` is of [px]."""
 
     y: int
-    """First row [px]."""
+    """First row of the picture that it covers [px]."""
 
     share: NDArray[np.uint8]
     """Share of each square of pixels that the hand covers, 0…255, (height, width)."""

@@ -3,12 +3,12 @@
 import cv2
 import numpy as np
 
-from cubeling.tracking.appearance.hand.background import SHADED, UNKNOWN, Place
+from cubeling.tracking.appearance.hand.background import SHADED, UNKNOWN, WindowChange
 from cubeling.tracking.appearance.hand.edge import ODDS_RANGE
 from cubeling.tracking.appearance.hand.on_cube.cube_part import CubePart
 from cubeling.tracking.appearance.hand.shape import filled
 from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_3
-from cubeling.tracking.appearance.hand.window import Window
+from cubeling.tracking.appearance.hand.window import HandWindow
 from cubeling.tracking.geometry.arrays import Floats
 
 SLANTED_EVIDENCE = -1.0
@@ -21,7 +21,7 @@ without doubt; a colour that was never seen speaks neither for nor against it.""
 
 
 def hand_odds(
-    window: Window, cube: CubePart, place: Place, by_colour: Floats, distinctness: float
+    window: HandWindow, cube: CubePart, place: WindowChange, by_colour: Floats, distinctness: float
 ) -> Floats:
     """Return what all speaks for a hand, (h, w): smooth, but sure where the cube is not hidden.
 
@@ -54,7 +54,7 @@ def hand_odds(
     return smooth
 
 
-def _credible(place: Place, by_colour: Floats, distinctness: float) -> Floats:
+def _credible(place: WindowChange, by_colour: Floats, distinctness: float) -> Floats:
     """Return what the place speaks for a hand, less where nothing near has its colours, (h, w).
 
     The more its colours tell the hand from the desk, the less can it have those of the desk: then

@@ -3,11 +3,11 @@
 import cv2
 import numpy as np
 
-from cubeling.tracking.appearance.hand.background import UNKNOWN, Place
+from cubeling.tracking.appearance.hand.background import UNKNOWN, WindowChange
 from cubeling.tracking.appearance.hand.components import at_border
 from cubeling.tracking.appearance.hand.on_cube.cube_part import CubePart
 from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_3, SQUARE_5
-from cubeling.tracking.appearance.hand.window import Window
+from cubeling.tracking.appearance.hand.window import HandWindow
 from cubeling.tracking.geometry.arrays import Flags, Floats, Image
 
 CLOSED_EDGES = 0.25
@@ -43,9 +43,9 @@ def filled(odds: Floats, inner: Flags, doubtful: Flags, edge: float) -> Flags:
 
 def connected(
     flags: Flags,
-    window: Window,
+    window: HandWindow,
     cube: CubePart,
-    place: Place,
+    place: WindowChange,
     by_colour: Floats,
     distinctness: float,
 ) -> Image | None:
@@ -96,7 +96,7 @@ def connected(
 
 
 def _like_hand(
-    part: Flags, place: Place, by_colour: Floats, least: float, distinctness: float
+    part: Flags, place: WindowChange, by_colour: Floats, least: float, distinctness: float
 ) -> bool:
     """Return whether a component may be a hand; `least` is what its colours speak for one.
 
@@ -111,7 +111,7 @@ def _like_hand(
     return bool(by_colour[part].mean() > least and place.likeness(part) < MAX_LIKENESS)
 
 
-def _within_reach(window: Window) -> tuple[slice, slice]:
+def _within_reach(window: HandWindow) -> tuple[slice, slice]:
     low, high = window.quads.min(axis=(0, 1)), window.quads.max(axis=(0, 1))
     far = MIN_EXTENT_EDGES * window.edge
     (left, top), (right, bottom) = (low - far).tolist(), (high + far).tolist()

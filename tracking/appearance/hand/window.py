@@ -33,7 +33,7 @@ STILL_PX, STILL_LEVELS, MIN_CHANGE_EDGES2 = 0.1, 8, 0.02
 
 
 @dataclass(frozen=True)
-class Window:
+class HandWindow:
     """A part of the image at working resolution."""
 
     left: int
@@ -43,10 +43,10 @@ class Window:
     """First row [px of the window]: also a multiple."""
 
     width: int
-    """Number of columns."""
+    """Number of columns, in pixels of the picture."""
 
     height: int
-    """Number of rows."""
+    """Number of rows, in pixels of the picture."""
 
     scale: int
     """Pixels of the image per pixel of the window."""
@@ -80,7 +80,7 @@ class Window:
             slice(columns.start * self.scale, columns.stop * self.scale),
         )
 
-    def part(self, box: Box) -> "Window":
+    def part(self, box: Box) -> "HandWindow":
         """Return a part of the window, with some rows and columns of it, that holds the cube."""
         rows, columns = (
             range(side)[part] for side, part in zip((self.height, self.width), box, strict=True)
@@ -114,7 +114,7 @@ class WindowFinder:
         corners = np.array(signs, np.float64) * cube.edge / 2
         self._points = np.concatenate([corners, prints.reshape(-1, 3)])
 
-    def window(self, camera_from_cube: Array, scale: int = 0) -> Window | None:
+    def window(self, camera_from_cube: Array, scale: int = 0) -> HandWindow | None:
         """Return the window at a pose, (4, 4); None where the cube is hardly in the picture.
 
         `scale` is that of the window before, which is kept as long as it suits; 0 without one.
@@ -145,18 +145,18 @@ class WindowFinder:
             ranges.append((start, length, slice(begin, end)))
         (left, width, columns), (top, height, rows) = ranges
         quads = (quads - (left, top)).reshape(-1, 4, 2)
-        return Window(left, top, width, height, scale, edge / scale, quads, (rows, columns))
+        return HandWindow(left, top, width, height, scale, edge / scale, quads, (rows, columns))
 
 
 class Stillness:
     """Tells whether a window shows what it showed when it was last looked at."""
 
     def __init__(self) -> None:
-        self._window: Window | None = None
+        self._window: HandWindow | None = None
         self._picture: Image = np.zeros((0, 0, 3), np.uint8)
         self._frames = 0
 
-    def is_still(self, window: Window, picture: Image) -> bool:
+    def is_still(self, window: HandWindow, picture: Image) -> bool:
         """Return True for at most `STILL_FRAMES` in turn; False means that it is looked at now.
 
         `picture` is the window in samples, (h, w, 3) BGR.
@@ -167,7 +167,7 @@ class Stillness:
         self._window, self._picture, self._frames = window, picture, 0
         return False
 
-    def _is_same(self, window: Window, picture: Image) -> bool:
+    def _is_same(self, window: HandWindow, picture: Image) -> bool:
         last = self._window
         if last is None or (last.scale, last.box) != (window.scale, window.box):
             return False

@@ -22,16 +22,12 @@ class PageArea:
     """Part of the page [mm from the top left]."""
 
     left: float
-    """Its left side."""
 
     top: float
-    """Its upper side."""
 
     right: float
-    """Its right side."""
 
     bottom: float
-    """Its lower side."""
 
 
 class SheetLayout:

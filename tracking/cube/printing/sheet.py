@@ -46,7 +46,7 @@ def write_sheet(
         written.
     """
     if edge_mm is not None:
-        cube = cube.scaled(edge_mm / 1000)
+        cube = cube.scale(edge_mm / 1000)
     sheet = SheetLayout(cube, paper.lower())
     page = PdfPage(*sheet.page_size, f"{cube.name} cube, {cube.edge * 1000:g} mm")
     draw_net(page, sheet)

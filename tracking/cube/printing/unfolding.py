@@ -83,7 +83,7 @@ class Unfolding:
         return self.centre(face) + half * np.array([(1, -1), (1, 1), (-1, 1), (-1, -1)])
 
     def tabs(self) -> tuple[Tab, ...]:
-        """All glue tabs."""
+        """Return the glue tabs, one for each edge of the cube that is cut open."""
         return tuple(
             Tab(face, side, under, self._tab(face, side)) for (face, side), under in TABS.items()
         )

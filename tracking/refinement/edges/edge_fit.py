@@ -98,6 +98,7 @@ def fit_edges(
     """
     measured = measure_profiles(patch, profiles, shifts, width_px)
     good = _is_printed(profiles, measured)
+    # An offset at the end of the profile says only that the edge is somewhere beyond it.
     good &= np.abs(measured.offset) < profiles.reach
     strong = np.flatnonzero(good)
     if len(strong) < MIN_EDGE_POINTS:
@@ -107,6 +108,7 @@ def fit_edges(
     unknowns = len(columns)
     prior, pull = PRIOR_INFORMATION[:unknowns, :unknowns], np.zeros(unknowns)
     if profiles.bends is not None:
+        # The unknown is a change of k1; its prior is about k1 itself, so it pulls the sum to zero.
         pull[8] = -prior[8, 8] * profiles.k1
     information = measured.information[strong]
     weights, robust = information, np.ones(len(strong))
@@ -118,6 +120,8 @@ def fit_edges(
         _, solved = cv2.solve(normal, right, flags=cv2.DECOMP_CHOLESKY)
         solution = np.asarray(solved, np.float64)[:, 0]
         residual = np.asarray(offset - solution @ columns, np.float64)
+        # The median of absolute values as a standard deviation (Gaussian), and Tukey's constant for
+        # 95 % efficiency; below 0.1 px no residual is an outlier.
         scale = 1.4826 * quantile(np.abs(residual), 0.5)
         robust = tukey_weight(residual, max(4.685 * scale, 0.1))
         weights = information * robust

@@ -118,7 +118,7 @@ class EdgeRefiner:
             found = current, profiles, step
             if np.abs(profiles.shifts(step.solution)).max() < MAX_SHIFT_PX:
                 break
-            current = se3.moved(current, step.solution[:6])
+            current = se3.apply_delta(current, step.solution[:6])
             k1 += float(step.solution[8:].sum())
         return self._summary(*found) if found else None
 
@@ -147,7 +147,7 @@ class EdgeRefiner:
         wanted = np.bincount(face, minlength=count)
         found = np.bincount(face[kept], minlength=count)
         return EdgeRefinement(
-            se3.moved(start, step.solution[:6]),
+            se3.apply_delta(start, step.solution[:6]),
             covariance(step, model.line[numbers[step.strong]], profiles.pixels[step.strong]),
             float(np.sqrt((step.robust * step.residual**2).sum() / step.robust.sum())),
             len(kept) / len(numbers),

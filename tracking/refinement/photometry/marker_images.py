@@ -37,7 +37,7 @@ class MarkerTextures:
         self._powers = np.stack([x * x, 2 * x * y, y * y]).astype(np.float32)
         self._slopes = [each.astype(np.complex64) for each in slopes]
 
-    def seen(self, faces: Indices, texels_to_pixels: Array, variance: float) -> Floats:
+    def blur(self, faces: Indices, texels_to_pixels: Array, variance: float) -> Floats:
         """Blur the markers of faces by a Gaussian that is round in the camera's image.
 
         `texels_to_pixels` is the Jacobian of the image by the texels of each face, (faces, 2, 2),

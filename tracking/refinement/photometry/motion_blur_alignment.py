@@ -90,7 +90,7 @@ class MotionBlurAligner:
         pose, motion = start, blur_motion
         last: tuple[_Samples, PhotometricFit, Array, Array] | None = None
         for blur, count, steps in SEARCH_STAGES if coarse else SEARCH_STAGES[1:]:
-            samples = self._sampled(patch, pose, blur, count)
+            samples = self._sample(patch, pose, blur, count)
             if samples is None:
                 return None
             for _ in range(steps):
@@ -99,7 +99,7 @@ class MotionBlurAligner:
                     return None
                 step = fit.step(blur_motion - motion, prior)
                 last = samples, fit, motion, step
-                pose, motion = se3.moved(pose, step[:6]), motion + step[6:]
+                pose, motion = se3.apply_delta(pose, step[:6]), motion + step[6:]
                 if (np.abs(step[:6]) < CONVERGED_STEP).all():
                     break
         return self._alignment(pose, motion, prior, *last) if last else None
@@ -130,7 +130,7 @@ class MotionBlurAligner:
             *fit.mixture_tones,
         )
 
-    def _sampled(self, patch: Patch, pose: Array, blur: float, count: int) -> "_Samples | None":
+    def _sample(self, patch: Patch, pose: Array, blur: float, count: int) -> "_Samples | None":
         """Place the samples, read the image there, and differentiate their places on the faces."""
         facing = np.array(self._faces.facing(pose, MIN_FACING_COSINE), np.intp)
         if not len(facing):
@@ -143,12 +143,12 @@ class MotionBlurAligner:
         pixels = self._projection.project(flat)
         sigma = blur * self._cell * float(self._projection.matrix[0, 0]) / pose[2, 3]
         smooth = sigma > LENS_BLUR_PX
-        seen = patch.smoothed(sigma) if smooth else patch
+        seen = patch.smooth(sigma) if smooth else patch
         values = seen.sample(pixels[:, None])[:, 0].astype(np.float64)
         blurred = np.hypot(sigma if smooth else 0.0, LENS_BLUR_PX)
         texel = 2 * self._half / self._side
         to_pixels = texels_to_pixels(self._projection, frames, texel)
-        layers, widest = self._textures.blurred(facing, to_pixels, blurred)
+        layers, widest = self._textures.blur(facing, to_pixels, blurred)
         rays = points / points[:, 2:]
         slides = texel_slides(frames, points - pose[:3, 3, None], rays, texel)
         inside = patch.border_distance(pixels) > 1
@@ -159,7 +159,7 @@ class MotionBlurAligner:
         """Render the cube along its motion, and fit the tones of the rendering to the image."""
         when = self._moments(motion)
         poses = se3.along(pose, motion, when)
-        texture, inside = self._looked_up(samples, *self._on_faces(samples, poses))
+        texture, inside = self._look_up(samples, *self._on_faces(samples, poses))
         use = np.flatnonzero(inside & samples.inside)
         if len(use) < MIN_SAMPLES:
             return None
@@ -168,7 +168,7 @@ class MotionBlurAligner:
         means = (weights @ texture.reshape(len(when), -1)).reshape(2, -1, 3)[:, use]
         right, down = samples.slides[..., use]
         jacobian = [mean[:, 1] * right + mean[:, 2] * down for mean in means]
-        face, _, block = self._grids[samples.count].divided(use)
+        face, _, block = self._grids[samples.count].locate(use)
         rendered = means[0, :, 0].astype(np.float64)
         values, by_motion = samples.values[use], np.concatenate(jacobian).T
         mixture = PhotometricSamples(face, block, values, rendered, by_motion)
@@ -187,7 +187,7 @@ class MotionBlurAligner:
         met = np.linalg.inv(planes) @ samples.rays
         return met[:, :, 0] / met[:, :, 2], met[:, :, 1] / met[:, :, 2]
 
-    def _looked_up(self, samples: "_Samples", u: Array, v: Array) -> tuple[Floats, Flags]:
+    def _look_up(self, samples: "_Samples", u: Array, v: Array) -> tuple[Floats, Flags]:
         """Read the textures with their gradients; tell which samples always stay on their face."""
         size, half = self._side, self._half
         inside = np.maximum(np.abs(u), np.abs(v)) < half - samples.border[:, None]
@@ -241,9 +241,7 @@ class FaceTextures:
         self._x, self._y, slopes = frequencies(side)
         self._derivatives = np.stack([np.ones_like(slopes[0]), *slopes]).astype(np.complex64)
 
-    def blurred(
-        self, faces: Indices, texels_to_pixels: Array, sigma: float
-    ) -> tuple[Floats, Array]:
+    def blur(self, faces: Indices, texels_to_pixels: Array, sigma: float) -> tuple[Floats, Array]:
         """Blur faces by a Gaussian that is round in the camera's image, not on the paper.
 
         `texels_to_pixels` is the Jacobian of the image by the texels of each face, (faces, 2, 2),

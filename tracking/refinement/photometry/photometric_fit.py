@@ -51,7 +51,7 @@ class PhotometricFit:
     """The rendered tones fitted to the image, and the step to a better pose and motion."""
 
     samples: PhotometricSamples
-    """The fitted samples."""
+    """Points of the cube whose brightness was compared."""
 
     rows: Array
     """Jacobian of the residual: pose, the K others, then the tones, (N, 6 + K + tones)."""
@@ -139,7 +139,7 @@ class PhotometricFit:
         """Correlation of rendering and image over some samples, (N,), for each face, (faces,)."""
         return self._alike(self.light * chosen)
 
-    def explained(self, blocks: int) -> Array:
+    def block_evidence(self, blocks: int) -> Array:
         """How well the rendering explains each block of each face, (faces, blocks).
 
         Twice the logarithm of the likelihood ratio to an even surface, mean of the samples, with

@@ -136,7 +136,7 @@ class SamplePlacer:
         ray = np.linalg.inv(frames)[:, :3, 3]
         moved = (to_pixels / self.texel @ (ray[:, :2] / ray[:, 2:])[..., None])[..., 0]
         bend_errors = CELL_ERROR_PX / np.maximum(np.linalg.norm(moved, axis=1), 1e-6)
-        face, place, block = grid.divided(used)
+        face, place, block = grid.locate(used)
         chosen = slice(None) if len(used) == len(pixels) else used
         return PlacedSamples(
             facing, chosen, values, rays, by_k1, slides[..., chosen], stretches[:, chosen], lifts,

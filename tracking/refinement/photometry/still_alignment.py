@@ -180,13 +180,13 @@ class StillAligner:
                     return None
             if layers is None or not 1 / REDRAW_RATIO < optics[0] / drawn < REDRAW_RATIO:
                 drawn = float(optics[0])
-                layers = self._textures.seen(placed.facing, placed.texels_to_pixels, drawn)
+                layers = self._textures.blur(placed.facing, placed.texels_to_pixels, drawn)
             fit = self._fit(placed, layers, pose, optics - (drawn, 0.0, 0.0), bends)
             # The bend of a single face is estimated, too.
             lone = placed.facing[: len(placed.facing) == 1]
             off = np.concatenate([expected - optics, -bends[lone].ravel()])
             step = fit.step(off, prior[: len(off)])
-            pose, moved = se3.moved(pose, step[:6]), self._slide_px(pose, step)
+            pose, moved = se3.apply_delta(pose, step[:6]), self._slide_px(pose, step)
             optics = optics + step[6:9]
             bends = bends.copy()
             bends[lone] += step[9:].reshape(-1, 3)
@@ -242,7 +242,7 @@ class StillAligner:
         count = np.minimum(self._cells / CELLS_PER_MEASUREMENT, area / PIXELS_PER_MEASUREMENT)
         blocks = BLOCKS_PER_SIDE**2
         evidence = np.zeros((len(bends), blocks + BEND_BLOCKS))
-        evidence[placed.facing, :blocks] = fit.explained(blocks) * count[:, None] / blocks
+        evidence[placed.facing, :blocks] = fit.block_evidence(blocks) * count[:, None] / blocks
         bent, seen = np.square(bends[placed.facing]), np.square(placed.bend_errors)[:, None]
         cost = (bent / (self._bend_errors**2 + seen)).sum(axis=1)
         evidence[placed.facing, blocks:] = -cost[:, None] / BEND_BLOCKS

@@ -23,7 +23,7 @@ class SampleGrid:
         self._block = (number[:, None] * blocks + number).ravel()
         self._blocks = blocks**2
 
-    def divided(self, samples: Indices) -> tuple[Indices, Indices, Indices]:
+    def locate(self, samples: Indices) -> tuple[Indices, Indices, Indices]:
         """Return the face, the sample on it, and the block of samples of several faces, (N,)."""
         face, place = np.divmod(samples, len(self._block))
         return face, place, face * self._blocks + self._block[place]

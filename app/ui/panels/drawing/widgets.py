@@ -11,7 +11,7 @@ from cubeling.app.ui.palette import ANGRY, HAPPY, INK, NEUTRAL, QUIET, RULE, Col
 from cubeling.app.ui.panels.content import (
     Choice,
     Fact,
-    Log,
+    LogLines,
     Note,
     Plot,
     Share,
@@ -187,7 +187,7 @@ def _label(name: str, width: float) -> None:
     imgui.set_next_item_width(width / 2)
 
 
-def _log(log: Log, width: float) -> None:
+def _log(log: LogLines, width: float) -> None:
     x, y = imgui.get_cursor_screen_pos()
     canvas, unit = imgui.get_window_draw_list(), _unit()
     step = imgui.get_text_line_height_with_spacing()
@@ -219,6 +219,6 @@ _DRAW: dict[type, Callable[[Any, float], SessionRequest | None]] = {
     Choice: _choice,
     Slider: _slider,
     Switch: _switch,
-    Log: _log,
+    LogLines: _log,
 }
 """What draws each kind of widget; it returns what the player asks for."""

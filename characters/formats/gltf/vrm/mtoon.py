@@ -22,7 +22,7 @@ def extension_of(file: GltfFile, number: int, material: Json) -> Json | None:
     properties = all_properties[number]
     if properties.get("shader") != "VRM/MToon":
         return None
-    return _converted(properties, material, len(file.all("textures")))
+    return _convert(properties, material, len(file.all("textures")))
 
 
 def shading(stated: Json) -> ToonShading:
@@ -36,7 +36,7 @@ def shading(stated: Json) -> ToonShading:
     )
 
 
-def written(toon: ToonShading, texture: Json | None) -> Json:
+def write(toon: ToonShading, texture: Json | None) -> Json:
     """Return the extension for a reference to its texture."""
     stated: Json = {
         "specVersion": "1.0",
@@ -48,7 +48,7 @@ def written(toon: ToonShading, texture: Json | None) -> Json:
     return stated if texture is None else stated | {"shadeMultiplyTexture": texture}
 
 
-def _converted(properties: Json, material: Json, textures: int) -> Json:
+def _convert(properties: Json, material: Json, textures: int) -> Json:
     """Return the properties of VRM 0.x as the extension of VRM 1.0.
 
     The formulas are those by which UniVRM and three-vrm convert them; colours were sRGB.

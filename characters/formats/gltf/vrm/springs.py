@@ -133,7 +133,7 @@ def _springs_1(file: GltfFile, extension: Json) -> list[_Spring]:
                     following["node"],
                     float(joint.get("stiffness", 1.0)),
                     float(joint.get("dragForce", _DEFAULT_DRAG)),
-                    _scaled((x, y, z), joint.get("gravityPower", 0.0)),
+                    _scale((x, y, z), joint.get("gravityPower", 0.0)),
                     float(joint.get("hitRadius", 0.0)),
                     own,
                     _node(chain.get("center"), nodes),
@@ -168,7 +168,7 @@ def _springs_0(file: GltfFile, extension: Json) -> list[_Spring]:
                     next(iter(nodes[node].get("children", ())), None),
                     float(group.get("stiffiness", 1.0)),
                     float(group.get("dragForce", _DEFAULT_DRAG)),
-                    _scaled(gravity, group.get("gravityPower", 0.0)),
+                    _scale(gravity, group.get("gravityPower", 0.0)),
                     float(group.get("hitRadius", 0.0)),
                     own,
                     _node(group.get("center"), len(nodes)),
@@ -211,6 +211,6 @@ def _node(number: int | None, nodes: int) -> int | None:
     return number if number is not None and 0 <= number < nodes else None
 
 
-def _scaled(direction: Point, length: float) -> Point:
+def _scale(direction: Point, length: float) -> Point:
     x, y, z = direction
     return x * length, y * length, z * length

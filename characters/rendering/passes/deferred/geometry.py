@@ -9,7 +9,7 @@ class DeferredGeometryPass(CharacterPass):
     """Draws the skinned characters on the geometry buffer (pass 1 of deferred shading)."""
 
     def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
-        """Draw all characters."""
+        """Draw depth, normals and colours of all characters for the lighting pass."""
         framebuffer = layer.use_geometry()
         framebuffer.depth_mask = False  # the depth of real cubes stays
         framebuffer.clear()

@@ -38,7 +38,7 @@ class DeferredLightingPass(RenderPass):
         self.owned = (self._triangle, self._records)
 
     def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
-        """Light all texels."""
+        """Light every texel that the geometry pass has covered."""
         records = surface_records(frame.characters)[:MAX_SURFACES].astype("f4")
         self._records.write(np.ascontiguousarray(records), viewport=(0, 0, 3, len(records)))
         light, rotation = frame.light, frame.camera_from_table[:3, :3]

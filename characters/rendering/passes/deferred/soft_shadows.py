@@ -63,7 +63,7 @@ class SoftShadowPass(ShadowPass):
         lamp = Lamp.over(casters, frame.light.to_light)
         self._blockers.render(frame.on_table, lamp)
         around = [sky_extent(each.enclosing, each.height) for each in frame.on_table]
-        self._extent = _united([lamp.shadow(casters), *around])
+        self._extent = _unite([lamp.shadow(casters), *around])
         self._find_openness()
         self._find_left(key_share(frame.light))
 
@@ -127,7 +127,7 @@ class SoftShadowPass(ShadowPass):
         self._combine.render(moderngl.TRIANGLES, vertices=3)
 
 
-def _united(extents: Sequence[Array]) -> Array:
+def _unite(extents: Sequence[Array]) -> Array:
     """Return lowest x and z, highest x and z of several extents (4,)."""
     rows = np.stack(extents)
     return np.concatenate([rows[:, :2].min(axis=0), rows[:, 2:].max(axis=0)])

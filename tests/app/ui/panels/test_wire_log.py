@@ -5,7 +5,7 @@ import dataclasses
 from hypothesis import given, strategies as st
 
 from cubeling.app.ui.panels.wire_log import MAX_CHUNKS, MAX_MESSAGES, RATE_SPAN_S, WireLog
-from cubeling.app.ui.panels.wire_words import WORDS, FrameDecoder
+from cubeling.app.ui.panels.wire_words import WORDS, CubelingDecoder
 from cubeling.robot import Catalogue, JointLimits
 from cubeling.robot.protocol import messages as m
 from cubeling.robot.protocol.schema import MESSAGES, pack
@@ -103,5 +103,5 @@ def test_every_message_can_be_told_without_names():
         fields = {
             field.name: kinds[field.metadata["wire"][0]] for field in dataclasses.fields(spec.kind)
         }
-        (words,) = FrameDecoder(spec.sender).feed(frame(spec.kind(**fields)), None)
+        (words,) = CubelingDecoder(spec.sender).feed(frame(spec.kind(**fields)), None)
         assert words.text

@@ -10,7 +10,7 @@ from cubeling.characters.behaviour.bml import (
     SHIFT_SYNCS,
     Behaviour,
     Block,
-    CannotPerform,
+    CannotRealize,
     Timing,
     elastic,
     rigid,
@@ -27,13 +27,13 @@ class Estimates:
             return self.parameter(behaviour)
         of_kind = getattr(self, f"of_{behaviour.kind}", None)
         if of_kind is None:
-            raise CannotPerform(f"no {behaviour.kind} is known")
+            raise CannotRealize(f"no {behaviour.kind} is known")
         timing: Timing = of_kind(behaviour)
         return timing
 
     def parameter(self, behaviour: Behaviour) -> Timing:
         if behaviour.get("paramId") != "volume":
-            raise CannotPerform(f"no parameter {behaviour.get('paramId')}")
+            raise CannotRealize(f"no parameter {behaviour.get('paramId')}")
         return elastic(SHIFT_SYNCS, (0.5,), holds=frozenset({"start"}))
 
     def of_speech(self, behaviour: Behaviour) -> Timing:

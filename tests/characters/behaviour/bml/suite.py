@@ -12,13 +12,13 @@ import pytest
 from cubeling.characters.behaviour.bml import (
     BML,
     BMLA,
+    BlockPrediction,
     BlockProgress,
     BmlWarning,
     Feedback,
-    Performer,
-    Prediction,
     Realizer,
     SyncPointProgress,
+    TimingEstimator,
 )
 from tests.characters.behaviour.bml.estimates import Estimates
 
@@ -53,7 +53,7 @@ def block(inside: str = "", *, name: str = "bml1", more: str = "") -> str:
 class Session:
     """Performs documents, and keeps all feedback."""
 
-    def __init__(self, *steps: Step, performer: Performer | None = None) -> None:
+    def __init__(self, *steps: Step, performer: TimingEstimator | None = None) -> None:
         self.realizer = Realizer(performer or Estimates())
         self.now = 0.0
         self.feedback: list[Feedback] = []
@@ -61,7 +61,7 @@ class Session:
             if isinstance(step, Until):
                 self._wait(step)
             else:
-                self.realizer.perform(step)
+                self.realizer.accept(step)
 
     def _wait(self, until: Until) -> None:
         end = self.now + until.seconds
@@ -156,5 +156,5 @@ class Session:
         start, end = self.block_time(later, "start"), self.block_time(earlier, "end")
         assert end <= start <= end + TOLERANCE, self.trace()
 
-    def predictions(self, name: str) -> list[Prediction]:
-        return [f for f in self.of(Prediction) if f.block == name]
+    def predictions(self, name: str) -> list[BlockPrediction]:
+        return [f for f in self.of(BlockPrediction) if f.block == name]

@@ -224,11 +224,11 @@ def test_interrupt_of_some_behaviours_again_after_all_is_replaced() -> None:
         assert session.block_time("bml3", "start") == session.report("bml1:speech1:s1").time
         session.check_syncs("bml3", "speech1", SHIFT_SYNCS)
         assert session.syncs("bml1", "nod1") == []
-        session.realizer.perform(REPLACE_ALL)
+        session.realizer.accept(REPLACE_ALL)
         session.finish()
         session.feedback.clear()
         for text in texts:
-            session.realizer.perform(text)
+            session.realizer.accept(text)
         session.finish()
 
 

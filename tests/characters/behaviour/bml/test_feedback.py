@@ -5,10 +5,10 @@ from xml.etree import ElementTree
 
 from cubeling.characters.behaviour.bml import (
     BML,
+    BlockPrediction,
     BlockProgress,
     BmlWarning,
     PredictedBehaviour,
-    Prediction,
     SyncPointProgress,
     feedback_xml,
 )
@@ -40,7 +40,7 @@ def test_warnings_with_signs_of_xml():
 
 def test_predictions():
     gaze = PredictedBehaviour("z", "gaze", (("start", 0.5), ("end", math.inf)))
-    tag, element = written(Prediction("bml1", 3.0, math.inf, (gaze,)))
+    tag, element = written(BlockPrediction("bml1", 3.0, math.inf, (gaze,)))
     assert tag == "predictionFeedback"
     assert [child.attrib for child in element] == [
         {"id": "bml1", "globalStart": "3"},

@@ -3,7 +3,7 @@
 import pytest
 from hypothesis import given, strategies as st
 
-from cubeling.characters.behaviour.bml import BML, Mark, SyncReference, parse
+from cubeling.characters.behaviour.bml import BML, SyncMark, SyncReference, parse
 from cubeling.characters.behaviour.bml.parser import MAX_BEHAVIOURS, reference
 from cubeling.characters.behaviour.bml.xml_elements import MAX_BYTES, MAX_DEPTH, MAX_ELEMENTS
 from cubeling.characters.errors import CharacterError
@@ -16,7 +16,7 @@ def test_text_has_single_spaces_and_marks_between_words():
               "ya\twant?<sync id='c'/> </text></speech>")
     ).behaviours  # fmt: skip
     assert speech.text == "Hey punk what do ya want?"
-    assert speech.marks == (Mark("a", 9), Mark("b", 17), Mark("c", 25))
+    assert speech.marks == (SyncMark("a", 9), SyncMark("b", 17), SyncMark("c", 25))
 
 
 def test_attributes_are_sync_points_or_others():

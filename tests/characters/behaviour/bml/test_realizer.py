@@ -8,7 +8,7 @@ from cubeling.characters.behaviour.bml import (
     HOLD_SYNCS,
     SHIFT_SYNCS,
     SYNCS,
-    Prediction,
+    BlockPrediction,
 )
 from tests.characters.behaviour.bml.suite import Session, Until, block
 
@@ -47,7 +47,7 @@ def test_a_document_that_is_no_block_is_one_warning():
 def test_an_id_is_used_again_only_when_its_block_is_over():
     session = Session(block("<head id='n'/>"), block("<head id='n'/>")).finish()
     assert [w.type for w in session.warnings] == ["PARSING_FAILURE"]
-    session.realizer.perform(block("<head id='n'/>"))
+    session.realizer.accept(block("<head id='n'/>"))
     session.finish()
     assert session.blocks("end") == ["bml1", "bml1"]
 
@@ -121,7 +121,7 @@ def test_replace_ends_all_before_it_starts():
 def test_what_never_ends_is_ended_by_replace():
     session = Session(block("<posture id='p'/>"), Until(seconds=60.0))
     assert session.syncs("bml1", "p") == ["start", "ready"]
-    session.realizer.perform(block(name="bml2", more='composition="REPLACE"'))
+    session.realizer.accept(block(name="bml2", more='composition="REPLACE"'))
     session.finish().check_blocks("bml1", "bml2")
 
 
@@ -183,7 +183,7 @@ def test_a_planned_block_waits_to_be_activated():
     )
     assert not session.blocks("start")
     assert session.predictions("later")
-    session.realizer.perform(
+    session.realizer.accept(
         block("<head id='n'/><bmla:activate id='a' target='later' start='n:end'/>")
     )
     session.finish().check_clean()
@@ -257,7 +257,7 @@ def test_controls_are_not_for_the_performer():
 
 def test_predictions_tell_when_a_block_will_be():
     session = Session(block("<head id='n' start='2'/>", more='characterId="Anna"')).finish()
-    (prediction,) = session.of(Prediction)
+    (prediction,) = session.of(BlockPrediction)
     assert prediction.start == session.block_time("bml1", "start")
     assert prediction.end == pytest.approx(session.block_time("bml1", "end"))
     assert dict(prediction.behaviours[0].times)["start"] == pytest.approx(2.0)
@@ -267,6 +267,6 @@ def test_predictions_tell_when_a_block_will_be():
 def test_a_large_frame_shifts_nothing():
     fine = Session(block(LONG + "<gesture id='g' stroke='s:m'/>")).finish()
     realizer = Session().realizer
-    realizer.perform(block(LONG + "<gesture id='g' stroke='s:m'/>"))
+    realizer.accept(block(LONG + "<gesture id='g' stroke='s:m'/>"))
     coarse = [f for now in (0.0, 7.0, 50.0) for f in realizer.update(now)]
     assert coarse == fine.feedback

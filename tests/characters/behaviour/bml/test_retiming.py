@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cubeling.characters.behaviour.bml import Prediction, Scheduled
+from cubeling.characters.behaviour.bml import BlockPrediction, Scheduled
 from tests.characters.behaviour.bml.suite import FRAME, Session, Until, block
 
 TALK = (
@@ -85,7 +85,7 @@ def test_a_new_time_is_predicted():
     session = Session(block(TALK), Until(seconds=0.5))
     session.realizer.retime("bml1", "s", "end", 9.0)
     session.frame()
-    assert session.of(Prediction)[-1].end > 9.0
+    assert session.of(BlockPrediction)[-1].end > 9.0
 
 
 @pytest.mark.parametrize("point", ["x:s:end", "bml1:x:end", "bml1:s:x"])

@@ -2,7 +2,7 @@
 
 import pytest
 
-from cubeling.characters.behaviour.bml import BmlWarning, Prediction, Realizer
+from cubeling.characters.behaviour.bml import BlockPrediction, BmlWarning, Realizer
 from tests.characters.behaviour.bml.estimates import Estimates
 from tests.characters.behaviour.bml.suite import block
 
@@ -12,12 +12,12 @@ SPEECH = "<speech id='s'><text>one two three <sync id='m'/>four five</text></spe
 def schedule(inside: str, now: float = 100.0) -> tuple[dict[str, float], list[BmlWarning]]:
     """Return block times by "behaviour:sync", and warnings."""
     realizer = Realizer(Estimates())
-    realizer.perform(block(inside))
+    realizer.accept(block(inside))
     feedback = realizer.update(now)
     times = {
         f"{behaviour.id}:{sync}": time
         for prediction in feedback
-        if isinstance(prediction, Prediction)
+        if isinstance(prediction, BlockPrediction)
         for behaviour in prediction.behaviours
         for sync, time in behaviour.times
     }

@@ -70,7 +70,7 @@ def test_what_it_is_about_is_what_behaviours_turn_to():
 def test_what_is_not_known_gets_the_warning_of_the_standard():
     block = behaviours_of("<fml id='f'><emotion id='e' type='ennui'/></fml>", LEXICON)
     session = Session()
-    session.realizer.perform(block)
+    session.realizer.accept(block)
     session.finish()
     assert [(w.id, w.type) for w in session.warnings] == [("f:e", "CUSTOM_BEHAVIOR_NOT_SUPPORTED")]
     session.check_blocks("f")
@@ -92,14 +92,14 @@ def test_every_entry_of_the_bundled_lexicon_is_performed(kind, name):
     shown = planned(meant, BUNDLED)
     assert len(shown) == len(BUNDLED.entries[kind, name])
     session = Session()
-    session.realizer.perform(behaviours_of(f"<fml id='f'>{SPEECH}{meant}</fml>"))
+    session.realizer.accept(behaviours_of(f"<fml id='f'>{SPEECH}{meant}</fml>"))
     session.finish().check_clean()
     for behaviour in shown:
         session.check_syncs("f", behaviour.id, SYNCS[behaviour.kind])
 
 
 def test_the_gestures_of_the_bundled_lexicon_are_in_the_library():
-    gestures = GestureCollection.bundled()
+    gestures = GestureCollection.load_bundled()
     lexemes = {
         str(shown.attributes["lexeme"])
         for entry in BUNDLED.entries.values()

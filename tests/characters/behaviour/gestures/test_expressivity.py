@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from cubeling.characters.behaviour.expressivity import GestureExpressivity
-from cubeling.characters.behaviour.gestures.easing import eased, out_back, out_bounce, out_quart
+from cubeling.characters.behaviour.gestures.easing import ease_time, out_back, out_bounce, out_quart
 from cubeling.characters.behaviour.gestures.splines import TcbSpline
 from cubeling.characters.behaviour.gestures.trunk import torso_controller
 
@@ -69,7 +69,7 @@ def test_bias_overshoots_after_a_key():
 
 
 def test_a_straight_segment_stays_on_its_line():
-    spline = TcbSpline.of(TIMES, POINTS).straightened(1)
+    spline = TcbSpline.of(TIMES, POINTS).straighten(1)
     way = spline.segment(1, np.linspace(0.0, 1.0, 20)) - POINTS[1]
     chord = POINTS[2] - POINTS[1]
     assert way[:, 0] * chord[1] == pytest.approx(way[:, 1] * chord[0], abs=1e-12)
@@ -101,13 +101,13 @@ def test_out_bounce_rebounds_and_never_overshoots():
 def test_power_switches_from_linear_to_out_quart_to_out_back():
     x = np.linspace(0.0, 1.0, 11)
     for power, easing in ((0.0, lambda t: t), (0.7, out_quart), (1.0, out_back)):
-        assert eased(x, GestureExpressivity(power=power)) == pytest.approx(easing(x))
+        assert ease_time(x, GestureExpressivity(power=power)) == pytest.approx(easing(x))
 
 
 @given(st.floats(0.0, 1.0), st.floats(-1.0, 1.0))
 def test_every_style_arrives(power, tension):
     style = GestureExpressivity(power=power, tension=tension)
-    assert eased(np.array([0.0, 1.0]), style) == pytest.approx([0.0, 1.0])
+    assert ease_time(np.array([0.0, 1.0]), style) == pytest.approx([0.0, 1.0])
 
 
 def test_the_torso_controller_is_linear_in_power():

@@ -109,13 +109,13 @@ def test_a_missing_file_is_refused(tmp_path):
 
 def test_a_folder_that_cannot_be_made_is_refused_and_leaves_no_draft(tmp_path):
     (tmp_path / "file").write_text("")
-    gesture = GestureCollection.bundled().get("WAVE")
+    gesture = GestureCollection.load_bundled().get("WAVE")
     with pytest.raises(CharacterError, match="cannot be written"):
         save_gesture(gesture, tmp_path / "file" / "wave.toml")
 
 
 def test_at_least_forty_gestures_are_bundled():
-    gestures = GestureCollection.bundled()
+    gestures = GestureCollection.load_bundled()
     assert len(gestures) >= 40
     assert all(gesture.summary for gesture in gestures)
     for name in ("BEAT", "POINT_LEFT", "CIRCLE", "OPEN_ARMS", "FAR_REACH", "WAVE", "SHRUG", "BOW"):
@@ -124,25 +124,25 @@ def test_at_least_forty_gestures_are_bundled():
 
 @pytest.mark.parametrize("name", ["wave", "Wave", "WAVE", " thumbs-up ", "Thumbs up"])
 def test_names_are_found_in_any_case(name):
-    assert name in GestureCollection.bundled()
-    assert GestureCollection.bundled().get(name).name in ("WAVE", "THUMBS_UP")
+    assert name in GestureCollection.load_bundled()
+    assert GestureCollection.load_bundled().get(name).name in ("WAVE", "THUMBS_UP")
 
 
 def test_an_unknown_name_suggests_the_nearest():
     with pytest.raises(CharacterError, match="did you mean WAVE"):
-        GestureCollection.bundled().get("WAFE")
+        GestureCollection.load_bundled().get("WAFE")
 
 
 def test_gestures_of_the_user_go_first_and_are_kept(tmp_path):
     own = SymbolicGesture("WAVE", "mine", right=(HandKey(0.0),))
-    GestureCollection.bundled(tmp_path / "gestures").save(own)
-    again = GestureCollection.bundled(tmp_path / "gestures")
+    GestureCollection.load_bundled(tmp_path / "gestures").save(own)
+    again = GestureCollection.load_bundled(tmp_path / "gestures")
     assert again.get("wave") == own
-    assert len(again) == len(GestureCollection.bundled())
+    assert len(again) == len(GestureCollection.load_bundled())
 
 
 def test_a_name_is_never_a_way_out_of_the_folder(tmp_path):
-    collection = GestureCollection.bundled(tmp_path / "gestures")
+    collection = GestureCollection.load_bundled(tmp_path / "gestures")
     path = collection.save(SymbolicGesture("../../x", right=(HandKey(0.0),)))
     assert path.parent == tmp_path / "gestures"
-    assert GestureCollection.bundled(tmp_path / "gestures").get("../../x").name == "../../x"
+    assert GestureCollection.load_bundled(tmp_path / "gestures").get("../../x").name == "../../x"

@@ -7,7 +7,7 @@ import pytest
 
 from cubeling.characters import ActionIntent, Animator, Character, CharacterCommand
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
-from cubeling.characters.behaviour.gestures.planning import Performer
+from cubeling.characters.behaviour.gestures.planning import GestureRealizer
 from cubeling.characters.behaviour.gestures.timing import natural_times, phase_at
 from cubeling.characters.behaviour.intents import BehaviourIntent, GestureIntent, ReachIntent, Times
 from cubeling.characters.behaviour.symbolic_gesture import HandKey, Place, SymbolicGesture
@@ -52,7 +52,7 @@ def human(characters):
 
 @pytest.fixture(scope="module")
 def performer(human):
-    return Performer.of(human)
+    return GestureRealizer.of(human)
 
 
 def _play(character, behaviour_at, end, **kw):
@@ -189,7 +189,7 @@ SHOWN += [(name, gesture) for gesture in GESTURES for name in ("human", "vleo", 
 
 @pytest.mark.parametrize(("name", "gesture"), some(dict.fromkeys(SHOWN), 4))
 def test_gestures_have_no_jumps_on_any_character(characters, name, gesture):
-    symbolic = GestureCollection.bundled().get(gesture)
+    symbolic = GestureCollection.load_bundled().get(gesture)
     times = natural_times(symbolic, 0.5)
     _, poses = _play(characters[name], _asked(symbolic, times), (times.end or 0.0) + 0.3)
     assert _largest_step(poses) < 45.0

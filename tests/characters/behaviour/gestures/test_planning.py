@@ -11,7 +11,7 @@ from hypothesis import given, settings, strategies as st
 from cubeling.characters import Character, CharacterWarning
 from cubeling.characters.behaviour.expressivity import GestureExpressivity
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
-from cubeling.characters.behaviour.gestures.planning import GesturePlanning, Performer
+from cubeling.characters.behaviour.gestures.planning import GesturePlanning, GestureRealizer
 from cubeling.characters.behaviour.gestures.timing import apex_share
 from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
 from cubeling.characters.skeleton import rotations
@@ -33,7 +33,7 @@ SWING = SymbolicGesture(
 
 @pytest.fixture(scope="module")
 def performers():
-    return {name: Performer.of(Character.load(name)) for name in NAMES}
+    return {name: GestureRealizer.of(Character.load(name)) for name in NAMES}
 
 
 def _palms(performer, motion, side="right", count=41):
@@ -44,7 +44,7 @@ def _palms(performer, motion, side="right", count=41):
 @pytest.mark.parametrize("name", some(NAMES))
 def test_every_bundled_gesture_is_performed_by_every_bundled_character(performers, name):
     performer = performers[name]
-    for gesture in GestureCollection.bundled():
+    for gesture in GestureCollection.load_bundled():
         motion = performer.plan(gesture)
         shown = motion.sample(0.5 * motion.duration).rotations
         assert np.isfinite(shown).all()
@@ -71,7 +71,7 @@ def test_what_a_processor_rounds_changes_no_posture(performers, name, one_of):
     performer = performers[name]
     turns = performer.posture.rotations
     shares = itertools.cycle((-1e-12, 1e-12))
-    gestures = list(GestureCollection.bundled())[::one_of]
+    gestures = list(GestureCollection.load_bundled())[::one_of]
     for gesture, share in zip(gestures, shares, strict=False):
         planned = performer.plan(gesture).arm_turns
         posture = replace(performer.posture, rotations=turns * (1.0 + share))
@@ -111,7 +111,7 @@ def test_a_hand_on_the_other_side_is_the_mirror_image(performers):
 
 def test_hands_that_meet_meet(performers):
     performer = performers["human"]
-    motion = performer.plan(GestureCollection.bundled().get("CLAP"))
+    motion = performer.plan(GestureCollection.load_bundled().get("CLAP"))
     gap = np.linalg.norm(
         _palms(performer, motion, "left", 201) - _palms(performer, motion, "right", 201), axis=1
     )
@@ -181,7 +181,7 @@ def test_power_overshoots_in_rotation_and_comes_back(performers):
 
 
 def test_repeated_strokes_are_the_same_and_the_apex_is_that_of_the_first(performers):
-    clap = GestureCollection.bundled().get("CLAP")
+    clap = GestureCollection.load_bundled().get("CLAP")
     motion = performers["human"].plan(clap)
     first = motion.turns(apex_share(clap))
     assert motion.turns(apex_share(clap) + 1.0 / clap.repeats) == pytest.approx(first)
@@ -198,7 +198,7 @@ def test_an_open_stroke_goes_back_before_it_is_repeated(performers):
 
 
 def test_without_arms_the_rest_of_the_body_performs_and_says_so(actor):
-    performer = Performer.of(actor)
+    performer = GestureRealizer.of(actor)
     with pytest.warns(CharacterWarning, match="without its right arm"):
         motion = performer.plan(SWING)
     assert not len(motion.arms)
@@ -215,7 +215,7 @@ def test_a_gesture_of_the_body_or_of_one_key_is_held(performers, keys):
 
 def test_a_frame_takes_less_than_a_millisecond(performers):
     performer = performers["human"]
-    motion = performer.plan(GestureCollection.bundled().get("OPEN_ARMS"))
+    motion = performer.plan(GestureCollection.load_bundled().get("OPEN_ARMS"))
     spans = []
     for _ in range(50):
         start = time.perf_counter()
@@ -225,7 +225,7 @@ def test_a_frame_takes_less_than_a_millisecond(performers):
 
 
 def test_a_plan_made_bit_by_bit_is_the_plan_made_at_once(performers):
-    wave = GestureCollection.bundled().get("WAVE")
+    wave = GestureCollection.load_bundled().get("WAVE")
     style = GestureExpressivity(spatial=0.123)
     planning = performers["human"].planning(wave, "right", style)
     opening = planning.opening.sample(0.0).rotations

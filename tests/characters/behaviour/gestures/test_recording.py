@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cubeling.characters import Character, CharacterError, Clip, Pose
-from cubeling.characters.behaviour.gestures.planning import Performer
+from cubeling.characters.behaviour.gestures.planning import GestureRealizer
 from cubeling.characters.behaviour.gestures.recording import gesture_from_recording, polyline
 from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
 
@@ -20,7 +20,7 @@ GESTURE = SymbolicGesture("Z", right=KEYS, one_handed=True, stroke=1.0)
 
 @pytest.fixture(scope="module")
 def performer():
-    return Performer.of(Character.load("human"))
+    return GestureRealizer.of(Character.load("human"))
 
 
 def _recorded(performer, gesture, hand):

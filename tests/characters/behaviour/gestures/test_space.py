@@ -42,7 +42,7 @@ def test_longer_arms_have_a_larger_space():
 def test_a_torso_that_turns_by_20_degrees_turns_all_cells_by_20_degrees():
     upright = GestureSpace(CHEST, 0.6)
     turn = rotations.to_matrix(rotations.about("y", math.radians(20.0)))
-    turned = upright.turned(turn, CHEST)
+    turned = upright.turn_by(turn, CHEST)
     for cell, centre in upright.cells(left=False).items():
         moved = turned.cells(left=False)[cell]
         assert moved - CHEST == pytest.approx(turn @ (centre - CHEST), abs=1e-12)
@@ -52,7 +52,7 @@ def test_a_torso_that_turns_by_20_degrees_turns_all_cells_by_20_degrees():
 
 def test_a_bent_torso_scales_its_space():
     upright = GestureSpace(CHEST, 0.6)
-    bent = upright.turned(np.eye(3), CHEST, torso_scale=0.9)
+    bent = upright.turn_by(np.eye(3), CHEST, torso_scale=0.9)
     place = Place("XP", "YUpperP", "ZFar")
     assert bent.point(place, True) - CHEST == pytest.approx(
         0.9 * (upright.point(place, True) - CHEST)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cubeling.characters.behaviour.gestures.targeting import PathFormula, ramped
+from cubeling.characters.behaviour.gestures.targeting import PathFormula, ramp
 from cubeling.characters.behaviour.symbolic_gesture import HandKey
 
 TIMES = np.linspace(0.0, 1.0, 41)
@@ -54,7 +54,7 @@ def test_a_wave_goes_to_and_fro_as_often_as_asked_and_ends_at_its_key():
 
 def test_ramped_times_start_and_stop_at_rest_and_run_evenly_between():
     t = np.linspace(0.0, 1.0, 2001)
-    speed = np.gradient(ramped(t), t)
-    assert ramped(np.array([0.0, 1.0])) == pytest.approx([0.0, 1.0])
+    speed = np.gradient(ramp(t), t)
+    assert ramp(np.array([0.0, 1.0])) == pytest.approx([0.0, 1.0])
     assert speed[[0, -1]] == pytest.approx([0.0, 0.0], abs=0.01)
     assert np.ptp(speed[400:1600]) < 1e-6

@@ -57,7 +57,7 @@ def test_a_hand_is_within_a_centimetre_of_all_that_it_can_reach(name: str, side:
     for _ in range(80):
         direction = seed.normal(size=3) * [1.0, 1.0, 0.5] + [0.0, 0.0, 0.8]
         where = target(body, side, direction, seed.uniform(0.45, 1.3))
-        found = body.upper.reached(body.rest, **hand(side, HandTarget(where)))
+        found = body.upper.reach_for(body.rest, **hand(side, HandTarget(where)))
         if found.effort < 1.0:
             within += 1
             assert body.person_mm(body.palm(side, found.pose) - where) < 10.0
@@ -74,7 +74,7 @@ def test_a_torso_stays_upright_for_what_is_near() -> None:
 def test_a_torso_leans_for_what_is_beyond_the_arm_and_the_hand_gets_there(name: str) -> None:
     body = stick() if name == "stick" else bundled(name)
     where = target(body, "left", AHEAD, 1.15)
-    found = body.upper.reached(body.rest, left=HandTarget(where))
+    found = body.upper.reach_for(body.rest, left=HandTarget(where))
     assert 0.0 < found.effort < 1.0
     assert math.radians(5.0) < body.lean(found.pose) <= MAX_LEAN_RAD
     assert body.person_mm(body.palm("left", found.pose) - where) < 10.0
@@ -110,7 +110,7 @@ def test_a_torso_turns_to_what_is_far_to_the_side(side: str) -> None:
 def test_an_arm_is_straight_and_aligned_with_what_is_beyond(name: str, direction: Array) -> None:
     body = bundled(name)
     where = target(body, "left", np.asarray(direction), 6.0)
-    found = body.upper.reached(body.rest, left=HandTarget(where))
+    found = body.upper.reach_for(body.rest, left=HandTarget(where))
     pose = found.pose
     shoulder, elbow = body.shoulder("left", pose), body.elbow("left", pose)
     palm = body.palm("left", pose)
@@ -201,7 +201,7 @@ def test_no_joint_jumps_while_a_place_moves_smoothly(name: str) -> None:
         before = None
         for ahead in np.arange(0.4, 2.5, step / size * body.height / PERSON_M):
             place = body.shoulder("left") + size * np.array([out, height, ahead])
-            found = body.upper.reached(body.rest, HandTarget(place))
+            found = body.upper.reach_for(body.rest, HandTarget(place))
             turns = found.pose.rotations
             if before is not None:
                 cosine = np.clip(np.abs((before * turns).sum(-1)), 0.0, 1.0)
@@ -313,7 +313,7 @@ def test_both_hands_get_to_what_is_beyond_both_arms() -> None:
     middle = 0.5 * (body.shoulder("left") + body.shoulder("right"))
     size = body.reach_of("left")
     places = [middle + [x * size, -0.2 * size, 1.0 * size] for x in (0.15, -0.15)]
-    found = body.upper.reached(body.rest, HandTarget(places[0]), HandTarget(places[1]))
+    found = body.upper.reach_for(body.rest, HandTarget(places[0]), HandTarget(places[1]))
     assert 0.0 < found.effort < 1.0
     for side, where in zip(SIDES, places, strict=True):
         assert body.person_mm(body.palm(side, found.pose) - where) < 10.0

@@ -7,13 +7,13 @@ import pytest
 
 from cubeling.characters.ik.solvers import columns
 from cubeling.characters.ik.solvers.chains import Chains
-from cubeling.characters.ik.solvers.limiting import propagated
+from cubeling.characters.ik.solvers.limiting import propagate
 from cubeling.characters.ik.solvers.measures import arc_targets
 from cubeling.characters.ik.solvers.positional import PositionalSolver
 from cubeling.characters.ik.solvers.springs import MassSprings
 from cubeling.characters.ik.solvers.task import Limiting, Task
 from cubeling.characters.skeleton import rotations
-from cubeling.characters.skeleton.joint_limits import JointLimits
+from cubeling.characters.skeleton.joint_limits import AngleLimits
 from cubeling.characters.skeleton.pose import Array
 
 COUNT = 200
@@ -23,7 +23,7 @@ def planar_chains(first_deg: float = 120.0, others_deg: float = 50.0) -> Chains:
     """Return a chain of six joints that turn about z only."""
     high = np.zeros((6, 3))
     high[:, 2] = np.radians([first_deg, *[others_deg] * 5])
-    return Chains.straight(np.full(6, 1 / 6), JointLimits.of_angles(-high, high))
+    return Chains.straight(np.full(6, 1 / 6), AngleLimits.of_angles(-high, high))
 
 
 def planar_task(limiting: Limiting) -> Task:
@@ -55,7 +55,7 @@ def test_parent_takes_what_its_child_cannot() -> None:
     target = np.array([[0.9, 0.3, 0.0]])
     task = Task.of(chains, target, arc_targets(6, 1), np.full(1, 1e-3), "propagate")
     _, points = task.frames(columns.to_columns(turned))
-    angles = np.degrees(columns.to_euler(propagated(task, columns.to_columns(turned), points)))
+    angles = np.degrees(columns.to_euler(propagate(task, columns.to_columns(turned), points)))
     levers = np.linalg.norm(target - points[:-1, :, 0], axis=-1)
     assert angles[5, 2, 0] == pytest.approx(50.0)
     assert angles[4, 2, 0] == pytest.approx(30.0 * levers[5] / levers[4])
@@ -65,7 +65,7 @@ def test_what_the_base_cannot_take_is_lost() -> None:
     task = planar_task("propagate")
     wild = rotations.about("z", np.random.default_rng(1).uniform(-3, 3, (COUNT, 6)))
     turns = columns.to_columns(wild)
-    kept = propagated(task, turns, task.frames(turns)[1])
+    kept = propagate(task, turns, task.frames(turns)[1])
     angles = columns.to_euler(kept)
     assert task.bounds is not None
     assert np.maximum(task.bounds.low - angles, angles - task.bounds.high).max() < 1e-9

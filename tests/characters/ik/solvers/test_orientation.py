@@ -5,7 +5,7 @@ from hypothesis import given, settings, strategies as st
 
 from cubeling.characters.ik.solvers import columns
 from cubeling.characters.ik.solvers.chains import Chains
-from cubeling.characters.ik.solvers.measures import Problem, arc_targets, target_path, twist
+from cubeling.characters.ik.solvers.measures import ReachingProblem, arc_targets, target_path, twist
 from cubeling.characters.ik.solvers.orientation import horn
 from cubeling.characters.ik.solvers.solving import solve
 from cubeling.characters.skeleton import rotations
@@ -37,7 +37,7 @@ def test_horn_finds_the_best_turn_of_noisy_vectors() -> None:
 
 
 def test_up_vectors_stay_perpendicular_to_their_bones() -> None:
-    problem = Problem.random(6, 50, np.random.default_rng(2))
+    problem = ReachingProblem.random(6, 50, np.random.default_rng(2))
     found = solve(problem.free, problem.targets, problem.start, method="springs")
     frames, _ = problem.free.frames(found.rotations)
     bones = np.diff(found.positions, axis=1)
@@ -47,7 +47,7 @@ def test_up_vectors_stay_perpendicular_to_their_bones() -> None:
 
 def test_bones_do_not_twist_while_a_chain_follows_its_target() -> None:
     count, start = 20, arc_targets(6, 20)
-    problem = Problem.random(6, count, np.random.default_rng(3))
+    problem = ReachingProblem.random(6, count, np.random.default_rng(3))
     random = np.random.default_rng(4)
     paths = np.stack([target_path(60, 0.01, random) for _ in range(count)], 1)
     for chains, share, most in ((problem.free, 1.0, 0.01), (problem.chains, 0.99, 5.0)):

@@ -7,7 +7,7 @@ from hypothesis import given, settings, strategies as st
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.ik.solvers.chains import Chains
 from cubeling.characters.ik.solvers.measures import (
-    Problem,
+    ReachingProblem,
     arc_targets,
     joint_change,
     violations,
@@ -17,7 +17,7 @@ from cubeling.characters.ik.solvers.single import SingleChain
 from cubeling.characters.ik.solvers.solving import SOLVERS, solve
 from cubeling.characters.ik.solvers.springs import MassSprings, verlet
 from cubeling.characters.skeleton import rotations
-from cubeling.characters.skeleton.joint_limits import JointLimits
+from cubeling.characters.skeleton.joint_limits import AngleLimits
 from cubeling.characters.skeleton.pose import Array
 from tests.examples import examples, some
 
@@ -25,8 +25,8 @@ COUNT = 25
 
 
 @pytest.fixture(scope="module", params=some([6, 10]))
-def problem(request: pytest.FixtureRequest) -> Problem:
-    return Problem.random(request.param, COUNT, np.random.default_rng(3))
+def problem(request: pytest.FixtureRequest) -> ReachingProblem:
+    return ReachingProblem.random(request.param, COUNT, np.random.default_rng(3))
 
 
 def bone_errors(chains: Chains, positions: Array) -> Array:
@@ -37,7 +37,9 @@ def bone_errors(chains: Chains, positions: Array) -> Array:
 
 
 @pytest.mark.parametrize("method", SOLVERS)
-def test_rotations_reproduce_the_points_with_exact_bones(method: str, problem: Problem) -> None:
+def test_rotations_reproduce_the_points_with_exact_bones(
+    method: str, problem: ReachingProblem
+) -> None:
     found = solve(problem.free, problem.targets, problem.start, method=method, alone=True)
     _, points = problem.free.frames(found.rotations)
     assert np.abs(points - found.positions).max() < 1e-9
@@ -48,7 +50,7 @@ def test_rotations_reproduce_the_points_with_exact_bones(method: str, problem: P
 @pytest.mark.parametrize(
     "method", ["springs-force", "springs", "fabrik", "pseudo-inverse", "damped"]
 )
-def test_method_alone_reaches_nearly_all_targets(method: str, problem: Problem) -> None:
+def test_method_alone_reaches_nearly_all_targets(method: str, problem: ReachingProblem) -> None:
     found = solve(problem.free, problem.targets, problem.start, method=method, alone=True)
     assert found.solved.mean() >= 0.99
     ends = np.linalg.norm(found.positions[:, -1] - problem.targets, axis=-1)
@@ -58,7 +60,7 @@ def test_method_alone_reaches_nearly_all_targets(method: str, problem: Problem) 
 @pytest.mark.parametrize("limits", some(["propagate", "clamp"]))
 @pytest.mark.parametrize("method", SOLVERS)
 def test_every_method_made_sure_reaches_all_within_limits(
-    method: str, limits: str, problem: Problem
+    method: str, limits: str, problem: ReachingProblem
 ) -> None:
     found = solve(
         problem.chains,
@@ -72,7 +74,7 @@ def test_every_method_made_sure_reaches_all_within_limits(
 
 
 @pytest.mark.parametrize("method", SOLVERS)
-def test_method_alone_never_leaves_the_limits(method: str, problem: Problem) -> None:
+def test_method_alone_never_leaves_the_limits(method: str, problem: ReachingProblem) -> None:
     """Neither for targets that are reached nor for those beyond."""
     targets = np.concatenate([problem.targets, 1.5 * problem.targets])
     start = np.concatenate([problem.start, problem.start])
@@ -80,7 +82,7 @@ def test_method_alone_never_leaves_the_limits(method: str, problem: Problem) -> 
     assert violations(problem.chains, found) == 0
 
 
-def test_position_based_springs_need_fewer_steps_than_force_based(problem: Problem) -> None:
+def test_position_based_springs_need_fewer_steps_than_force_based(problem: ReachingProblem) -> None:
     steps = [
         solve(problem.free, problem.targets, problem.start, method=method, alone=True).iterations
         for method in ("springs", "springs-force")
@@ -89,7 +91,7 @@ def test_position_based_springs_need_fewer_steps_than_force_based(problem: Probl
 
 
 @pytest.mark.parametrize("method", ["springs-force", "springs", "damped"])
-def test_joints_change_less_than_by_cyclic_descent(method: str, problem: Problem) -> None:
+def test_joints_change_less_than_by_cyclic_descent(method: str, problem: ReachingProblem) -> None:
     changes = []
     for each in (method, "ccd"):
         found = solve(problem.free, problem.targets, problem.start, method=each, alone=True)
@@ -110,7 +112,7 @@ def test_chain_points_straight_to_what_is_out_of_reach(method: str) -> None:
     assert not found.solved.any()
 
 
-def test_target_too_near_for_one_long_bone_is_approached(problem: Problem) -> None:
+def test_target_too_near_for_one_long_bone_is_approached(problem: ReachingProblem) -> None:
     chains = Chains.straight(np.array([0.4, 0.1, 0.1]))
     found = solve(chains, np.array([[0.05, 0.0, 0.0], [0.0, 0.0, 0.0]]))
     assert np.allclose(found.errors, [0.15, 0.2], atol=2e-3)
@@ -133,14 +135,14 @@ def test_constant_acceleration_is_exact_by_verlet_and_late_by_euler() -> None:
 
 
 def test_pinned_end_stays_at_the_target() -> None:
-    problem = Problem.random(6, 5, np.random.default_rng(0))
+    problem = ReachingProblem.random(6, 5, np.random.default_rng(0))
     found = solve(problem.free, problem.targets, problem.start, method="springs", tolerance=1e-5)
     assert found.errors.max() < 1e-5 * problem.free.reach
     assert MassSprings(pinned=True).stiffness < (2 - MassSprings(pinned=True).damping) / 2
 
 
-def test_limits_wide_open_change_nothing(problem: Problem) -> None:
-    wide = Chains(problem.free.offsets, JointLimits.none(problem.free.joints))
+def test_limits_wide_open_change_nothing(problem: ReachingProblem) -> None:
+    wide = Chains(problem.free.offsets, AngleLimits.none(problem.free.joints))
     for method in SOLVERS:
         free = solve(problem.free, problem.targets, problem.start, method=method, alone=True)
         open_ = solve(wide, problem.targets, problem.start, method=method, alone=True)
@@ -190,7 +192,7 @@ HARD = [
 def test_hard_targets_and_bones_give_numbers(method: str, lengths: list[float]) -> None:
     targets = hard_places()
     for limited in (False, True):
-        limits = JointLimits.of_angles(
+        limits = AngleLimits.of_angles(
             np.full((len(lengths), 3), -1.0), np.full((len(lengths), 3), 1.0)
         )
         chains = Chains.straight(np.array(lengths), limits if limited else None)
@@ -215,7 +217,7 @@ def test_arrays_that_do_not_fit_are_refused_in_one_line() -> None:
     with pytest.raises(CharacterError, match="not finite"):
         Chains.straight(np.array([0.1, np.nan]))
     with pytest.raises(CharacterError, match="limits of 2 joints for chains of 3"):
-        Chains.straight(np.full(3, 0.1), JointLimits.none(2))
+        Chains.straight(np.full(3, 0.1), AngleLimits.none(2))
 
 
 def test_each_chain_of_a_batch_may_have_its_own_bones() -> None:
@@ -232,7 +234,7 @@ def test_each_chain_of_a_batch_may_have_its_own_bones() -> None:
 @settings(max_examples=examples(40), deadline=None)
 @given(st.integers(0, 10_000), st.booleans())
 def test_one_chain_in_scalars_is_the_batch_of_one(seed: int, limited: bool) -> None:
-    problem = Problem.random(5, 1, np.random.default_rng(seed))
+    problem = ReachingProblem.random(5, 1, np.random.default_rng(seed))
     chains = problem.chains if limited else problem.free
     batch = solve(chains, problem.targets, problem.start, alone=True)
     x, y, z = problem.targets[0].tolist()
@@ -242,7 +244,7 @@ def test_one_chain_in_scalars_is_the_batch_of_one(seed: int, limited: bool) -> N
 
 
 def test_one_chain_made_sure_is_solved_like_a_batch() -> None:
-    problem = Problem.random(4, 60, np.random.default_rng(8))
+    problem = ReachingProblem.random(4, 60, np.random.default_rng(8))
     one = SingleChain(problem.chains)
     for (x, y, z), start in zip(problem.targets.tolist(), problem.start, strict=True):
         found = one.solve((x, y, z), start.tolist())

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.synthesis.gestures.rules import IntensityRule, SynchronyRule, paired
+from cubeling.characters.synthesis.gestures.rules import IntensityRule, SynchronyRule, pair
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def speech(seed=1, count=200):
 
 def test_gestures_find_their_accents_one_to_one_and_in_order():
     apices, gsi, accents, psi, truth = speech()
-    found = paired(apices, gsi, accents, psi)
+    found = pair(apices, gsi, accents, psi)
     kept = found[found >= 0]
     assert (np.diff(kept) > 0).all()
     assert (found == truth).mean() > 0.97
@@ -59,27 +59,27 @@ def test_gestures_find_their_accents_one_to_one_and_in_order():
 
 
 def test_gestures_without_an_accent_nearby_stay_alone():
-    found = paired(np.array([1.0, 9.0]), np.ones(2), np.array([1.1]), np.ones(1))
+    found = pair(np.array([1.0, 9.0]), np.ones(2), np.array([1.1]), np.ones(1))
     assert found.tolist() == [0, -1]
-    assert paired(np.array([1.0]), np.ones(1), np.zeros(0), np.zeros(0)).tolist() == [-1]
+    assert pair(np.array([1.0]), np.ones(1), np.zeros(0), np.zeros(0)).tolist() == [-1]
 
 
 def test_the_fit_finds_the_line_of_paired_data():
     apices, gsi, accents, psi, truth = speech()
     slope, intercept = np.polyfit(np.log(psi[truth]), gsi, 1)
-    found = paired(apices, gsi, accents, psi)
+    found = pair(apices, gsi, accents, psi)
     own = psi[found[found >= 0]]
     assert np.corrcoef(np.log(own), gsi[found >= 0])[0, 1] > 0.3
-    rule = IntensityRule.fitted(own, gsi[found >= 0], margin=None)
+    rule = IntensityRule.fit(own, gsi[found >= 0], margin=None)
     assert rule.slope == pytest.approx(slope, abs=0.05)
     assert rule.intercept == pytest.approx(intercept, abs=0.05)
     assert rule.margin == pytest.approx(0.6, abs=0.1)
-    assert IntensityRule.fitted(own, gsi[found >= 0]).margin == 1.0
+    assert IntensityRule.fit(own, gsi[found >= 0]).margin == 1.0
 
 
 def test_too_little_to_fit_is_refused_in_one_line():
     with pytest.raises(CharacterError, match="give three or more"):
-        IntensityRule.fitted(np.ones(9), np.arange(9.0))
+        IntensityRule.fit(np.ones(9), np.arange(9.0))
 
 
 def test_without_pairs_the_rule_spreads_over_the_library():

@@ -28,7 +28,7 @@ def test_no_other_token_is_allowed(token, rest):
     line = (token + rest + "\n").encode("latin-1", "replace")
     if line[0] not in ALLOWED:
         with pytest.raises(RobotError):
-            tokens.checked(line)
+            tokens.check_line(line)
 
 
 @pytest.mark.parametrize("line", [
@@ -45,13 +45,13 @@ def test_no_other_token_is_allowed(token, rest):
 ])  # fmt: skip
 def test_this_is_never_sent(line):
     with pytest.raises(RobotError, match="is not sent"):
-        tokens.checked(line)
+        tokens.check_line(line)
 
 
 @pytest.mark.parametrize("line", [b"?\n", b"j\n", b"d\n", b"ksit\n", b"kbuttUp\n", b"kpu1\n",
                                   b"i0 -40 8 125\n", b"b14 8 0 4\n"])  # fmt: skip
 def test_this_may_be_sent(line):
-    assert tokens.checked(line) == line
+    assert tokens.check_line(line) == line
 
 
 @given(st.text(string.printable, max_size=12))
@@ -153,7 +153,9 @@ def test_the_bundled_settings_may_be_sent_and_all_moods_differ():
 def test_every_line_of_a_host_is_checked(monkeypatch):
     host = OpenCatHost()
     host.port_opened(0.0)
-    monkeypatch.setattr(tokens, "checked", lambda line: (_ for _ in ()).throw(RobotError("gate")))
+    monkeypatch.setattr(
+        tokens, "check_line", lambda line: (_ for _ in ()).throw(RobotError("gate"))
+    )
     with pytest.raises(RobotError, match="gate"):
         host.tick(60.0)
     assert host.bytes_to_send() == b""

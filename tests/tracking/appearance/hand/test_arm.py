@@ -15,7 +15,7 @@ from cubeling.tracking.appearance.hand.arm import (
 from cubeling.tracking.appearance.hand.background import GRID_PX
 from cubeling.tracking.appearance.hand.finder import HandFinder
 from cubeling.tracking.appearance.hand.mask import EDGE_SLOPE, HandMask
-from cubeling.tracking.appearance.hand.window import Window
+from cubeling.tracking.appearance.hand.window import HandWindow
 from tests.bench.hand_mask import covered, overlap
 from tests.bench.hand_scenes import SKINS, HandView
 from tests.examples import some
@@ -28,7 +28,7 @@ SCALE, EDGE = 3, 30.0
 SIZE = 1280, 721
 """Of the image, (width, height) [px]."""
 
-WINDOW = Window(150, 60, 120, 90, SCALE, EDGE, np.zeros((6, 4, 2)), np.s_[30:60, 40:70])
+WINDOW = HandWindow(150, 60, 120, 90, SCALE, EDGE, np.zeros((6, 4, 2)), np.s_[30:60, 40:70])
 
 
 def hand(box: tuple[slice, slice] = np.s_[20:60, 80:120]) -> HandMask:
@@ -38,7 +38,7 @@ def hand(box: tuple[slice, slice] = np.s_[20:60, 80:120]) -> HandMask:
     return HandMask(SCALE * WINDOW.left, SCALE * WINDOW.top, share, np.zeros(3), SCALE, EDGE_SLOPE)
 
 
-def found(changed: np.ndarray, window: Window = WINDOW) -> np.ndarray:
+def found(changed: np.ndarray, window: HandWindow = WINDOW) -> np.ndarray:
     """What is covered of an image in which some pixels of the working resolution have changed."""
     samples = arm_samples(window, SIZE)
     middles = changed[1::GRID_PX, 1::GRID_PX][samples]
@@ -125,7 +125,7 @@ def test_a_hand_without_an_arm_stays_as_it_is(top, left, height, width):
 @pytest.mark.parametrize("corner", [(0, 0), (306, 150), (306, 0)])
 def test_a_window_at_the_border_of_the_image_keeps_its_hand(corner):
     left, top = corner
-    window = Window(left, top, 120, 90, SCALE, EDGE, np.zeros((6, 4, 2)), np.s_[30:60, 40:70])
+    window = HandWindow(left, top, 120, 90, SCALE, EDGE, np.zeros((6, 4, 2)), np.s_[30:60, 40:70])
     share = np.full((90, 120), 255, np.uint8)
     mask = HandMask(SCALE * left, SCALE * top, share, np.zeros(3), SCALE, EDGE_SLOPE)
     samples = arm_samples(window, SIZE)

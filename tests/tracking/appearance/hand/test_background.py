@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from cubeling.tracking.appearance.hand.background import GRID_PX, MARGIN_PX, MIDDLES, Background
-from cubeling.tracking.appearance.hand.window import Window
+from cubeling.tracking.appearance.hand.window import HandWindow
 
 HEIGHT, WIDTH = 120, 150
 BOX = np.s_[9 : 9 + HEIGHT, 21 : 21 + WIDTH]
@@ -105,7 +105,7 @@ def test_a_picture_of_something_else_is_not_steady(background):
 
 def test_a_part_of_a_window_shows_the_same_of_the_image():
     quads = np.arange(48.0).reshape(6, 4, 2)
-    window = Window(20, 10, WIDTH, HEIGHT, 3, 30.0, quads, CUBE)
+    window = HandWindow(20, 10, WIDTH, HEIGHT, 3, 30.0, quads, CUBE)
     part = window.part(np.s_[40:200, 30:100])
     assert part.image_box == (slice(150, 390), slice(150, 360))
     assert part.cube_box == np.s_[10:40, 30:60]

@@ -5,7 +5,7 @@ import pytest
 
 from cubeling.tracking.appearance.hand.edge import ODDS_RANGE, soft_cover
 from cubeling.tracking.appearance.hand.mask import EDGE_SLOPE, HandMask
-from cubeling.tracking.appearance.hand.window import Window
+from cubeling.tracking.appearance.hand.window import HandWindow
 from tests.bench.hand_mask import covered
 
 SIDE, SCALE, EDGE = 40, 3, 20.3
@@ -27,7 +27,7 @@ def difference(hand: tuple[float, ...], desk: tuple[float, ...], light: float) -
 @pytest.mark.parametrize("hand", [(70, 3, 4), (250, 4, 10), (190, 20, 25)])
 @pytest.mark.parametrize("grown", [0, 1])
 def test_the_edge_is_where_the_hand_ends(hand, light, grown):
-    window = Window(0, 0, SIDE, SIDE, SCALE, 28.0, np.zeros((6, 4, 2)), np.s_[0:1, 0:1])
+    window = HandWindow(0, 0, SIDE, SIDE, SCALE, 28.0, np.zeros((6, 4, 2)), np.s_[0:1, 0:1])
     mask = np.zeros((SIDE, SIDE), np.uint8)
     mask[5:35, : 20 + grown] = 1
     odds = np.where(mask, np.float32(ODDS_RANGE), np.float32(-ODDS_RANGE))

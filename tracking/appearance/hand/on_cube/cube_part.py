@@ -10,7 +10,7 @@ from cubeling.tracking.appearance.hand.colour_model import MIN_SHOWN_PX
 from cubeling.tracking.appearance.hand.on_cube.face_check import FaceCheck
 from cubeling.tracking.appearance.hand.on_cube.face_pattern import FacePattern
 from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_3
-from cubeling.tracking.appearance.hand.window import Window
+from cubeling.tracking.appearance.hand.window import HandWindow
 from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.geometry.arrays import Array, Flags, Floats, Image
 
@@ -61,7 +61,7 @@ class CubeCheck:
         self._hidden = np.zeros(3)  # the point behind the hand, in the cube's frame [m]
 
     def part(
-        self, window: Window, pose: Array, lab: Floats, by_colour: Floats, nearest_is_due: bool
+        self, window: HandWindow, pose: Array, lab: Floats, by_colour: Floats, nearest_is_due: bool
     ) -> CubePart:
         """Compare the cube in a window with its print.
 

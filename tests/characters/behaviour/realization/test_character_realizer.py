@@ -9,10 +9,10 @@ from cubeling.characters import Character
 from cubeling.characters.behaviour.bml import BmlWarning, Realizer, parse
 from cubeling.characters.behaviour.expressivity import GestureExpressivity
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
-from cubeling.characters.behaviour.performing.character_performer import CharacterPerformer
-from cubeling.characters.behaviour.performing.performed import CUBELING, Performing
-from cubeling.characters.behaviour.performing.speech_kind import estimated, retime_speeches
-from cubeling.characters.behaviour.performing.surroundings import Surroundings
+from cubeling.characters.behaviour.realization.character_realizer import CharacterRealizer
+from cubeling.characters.behaviour.realization.frame import CUBELING, RealizationContext
+from cubeling.characters.behaviour.realization.speech_kind import estimate, retime_speeches
+from cubeling.characters.behaviour.realization.surroundings import NamedPlaces
 from cubeling.characters.behaviour.symbolic_gesture import HandKey, SymbolicGesture
 from cubeling.characters.speech.speech import Utterance, Word
 
@@ -29,8 +29,10 @@ class Stage:
     def __init__(self, character=HUMAN, utterance_of=lambda _text, _language: None, **changes):
         places = {"cube": np.array([0.2, 0.03, 0.1]), "viewer": np.array([0.0, 0.2, 0.7])}
         collection = GestureCollection({"WAVE": WAVE})
-        self.who = Performing(character, collection, Surroundings(places), utterance_of, **changes)
-        self.performer = CharacterPerformer(self.who)
+        self.who = RealizationContext(
+            character, collection, NamedPlaces(places), utterance_of, **changes
+        )
+        self.performer = CharacterRealizer(self.who)
         self.realizer = Realizer(self.performer)
         self.feedback = []
         self.blocks = 0
@@ -38,12 +40,12 @@ class Stage:
     def perform(self, inside, head=""):
         space = f'xmlns="http://www.bml-initiative.org/bml/bml-1.0" xmlns:c="{CUBELING}"'
         self.blocks += 1
-        self.realizer.perform(f'<bml {space} id="b{self.blocks}" {head}>{inside}</bml>')
+        self.realizer.accept(f'<bml {space} id="b{self.blocks}" {head}>{inside}</bml>')
 
     def at(self, now):
         self.feedback += self.realizer.update(now)
         retime_speeches(self.realizer, self.who, now)
-        return self.performer.performed(self.realizer.active(now), now)
+        return self.performer.frame_of(self.realizer.active(now), now)
 
     @property
     def warnings(self):
@@ -191,7 +193,7 @@ def test_a_slower_voice_moves_the_rest_and_no_sync_point_is_out_of_order():
     stage = Stage(utterance_of=lambda text, _language: voice.get(text))
     stage.perform(SPEECH)
     assert not stage.at(0.0).sayings
-    guess = estimated(TEXT)
+    guess = estimate(TEXT)
     assert stage.times("s")["m"] == pytest.approx(guess.words[1].start)
     stage.at(0.08)
     voice[TEXT] = spoken(0.7)
@@ -217,7 +219,7 @@ def test_without_a_voice_the_estimate_counts():
 
 
 def test_a_target_of_an_offset_is_beside_it():
-    point = Surroundings(eyes=np.array([0.0, 0.1, 0.0])).seen_aside(
+    point = NamedPlaces(eyes=np.array([0.0, 0.1, 0.0])).point_aside(
         np.array([0.0, 0.1, 1.0]), math.radians(90), 0.0
     )
     assert point == pytest.approx(np.array([1.0, 0.1, 0.0]))

@@ -9,22 +9,22 @@ from cubeling.characters.behaviour.bml import (
     HOLD_SYNCS,
     SHIFT_SYNCS,
     Behaviour,
-    CannotPerform,
+    CannotRealize,
     Scheduled,
     Timing,
     elastic,
 )
 from cubeling.characters.behaviour.intents import GazeIntent, HeadIntent, Influence, Times
-from cubeling.characters.behaviour.performing.head_movements import HALF_AMOUNT, HEAD_MOVEMENTS
-from cubeling.characters.behaviour.performing.performed import (
-    Performed,
-    Performing,
+from cubeling.characters.behaviour.realization.frame import (
+    RealizationContext,
+    RealizedFrame,
     number,
     shift_times_of,
     stroke_times_of,
     times_of,
 )
-from cubeling.characters.behaviour.performing.surroundings import DIRECTIONS
+from cubeling.characters.behaviour.realization.head_movements import HALF_AMOUNT, HEAD_MOVEMENTS
+from cubeling.characters.behaviour.realization.surroundings import DIRECTIONS
 from cubeling.characters.skeleton.pose import Array
 
 SWING_S = 0.45
@@ -53,7 +53,7 @@ class HeadKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of the movement, with all its swings."""
         who.require_head()
         lexeme = _movement(behaviour)
@@ -66,7 +66,7 @@ class HeadKind:
         # A head that has more time goes on to nod; it does not wait.
         return replace(natural, longest=(*natural.longest[:3], math.inf, *natural.longest[4:]))
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Add the movement; one that takes longer has more swings unless their number is told."""
         behaviour, times = scheduled.behaviour, stroke_times_of(scheduled)
         repeats = _repeats(behaviour)
@@ -74,9 +74,7 @@ class HeadKind:
             lasting = times.stroke_end - times.stroke_start
             repeats = min(max(round(lasting / (1.6 * SWING_S)), 1), MAX_REPEATS)
         amount = number(behaviour, "amount", HALF_AMOUNT, 0.0, 1.0)
-        performed.heads.append(
-            HeadIntent(scheduled.key, _movement(behaviour), times, amount, repeats)
-        )
+        frame.heads.append(HeadIntent(scheduled.key, _movement(behaviour), times, amount, repeats))
 
 
 class GazeKind:
@@ -84,17 +82,17 @@ class GazeKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of a look, which lasts as long as it is to."""
         who.require_head()
-        _looked_at(behaviour, who)
+        _gaze_target(behaviour, who)
         return elastic(
             HOLD_SYNCS, GAZE_SPANS_S, holds=frozenset({"ready"}), occupies=frozenset({"gaze"})
         )
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Add the look to where the target is now."""
-        look(scheduled, times_of(scheduled), who, performed)
+        look(scheduled, times_of(scheduled), who, frame)
 
 
 class GazeShiftKind:
@@ -102,37 +100,37 @@ class GazeShiftKind:
 
     channel = "gaze"
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of a turn."""
         who.require_head()
-        _looked_at(behaviour, who)
+        _gaze_target(behaviour, who)
         return elastic(SHIFT_SYNCS, (SHIFT_S,), least=0.2, most=math.inf)
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Add the look to where the target is now."""
-        look(scheduled, shift_times_of(scheduled), who, performed)
+        look(scheduled, shift_times_of(scheduled), who, frame)
 
 
-def look(scheduled: Scheduled, times: Times, who: Performing, performed: Performed) -> None:
+def look(scheduled: Scheduled, times: Times, who: RealizationContext, frame: RealizedFrame) -> None:
     """Add a look at the target of a behaviour; with WHOLE, the feet turn too."""
-    point = _looked_at(scheduled.behaviour, who)
+    point = _gaze_target(scheduled.behaviour, who)
     influence = _influence(scheduled.behaviour)
-    performed.gazes.append(GazeIntent(scheduled.key, point, times, influence))
-    released = times.relax is not None and performed.now >= times.relax
+    frame.gazes.append(GazeIntent(scheduled.key, point, times, influence))
+    released = times.relax is not None and frame.now >= times.relax
     if influence == "WHOLE" and not released:
-        performed.facing = point
+        frame.facing = point
 
 
-def _looked_at(behaviour: Behaviour, who: Performing) -> Array:
+def _gaze_target(behaviour: Behaviour, who: RealizationContext) -> Array:
     point = who.surroundings.point(behaviour.get("target"))
     angle = math.radians(number(behaviour, "offsetAngle", 0.0, -180.0, 180.0))
     if not angle:
         return point
     direction = behaviour.get("offsetDirection", "RIGHT").upper()
     if direction not in DIRECTIONS:
-        raise CannotPerform(f'offsetDirection="{direction}" is none of {", ".join(DIRECTIONS)}')
+        raise CannotRealize(f'offsetDirection="{direction}" is none of {", ".join(DIRECTIONS)}')
     left, up = DIRECTIONS[direction]
-    return who.surroundings.seen_aside(point, angle * left, angle * up)
+    return who.surroundings.point_aside(point, angle * left, angle * up)
 
 
 def _influence(behaviour: Behaviour) -> Influence:
@@ -143,7 +141,7 @@ def _influence(behaviour: Behaviour) -> Influence:
 def _movement(behaviour: Behaviour) -> str:
     lexeme = behaviour.get("lexeme").upper()
     if lexeme not in HEAD_MOVEMENTS:
-        raise CannotPerform(f'a head cannot "{lexeme}"; choose one of {", ".join(HEAD_MOVEMENTS)}')
+        raise CannotRealize(f'a head cannot "{lexeme}"; choose one of {", ".join(HEAD_MOVEMENTS)}')
     return lexeme
 
 

@@ -1,4 +1,4 @@
-"""What a BML realizer asks of whoever performs the behaviours."""
+"""The natural times of behaviours, and who tells them to a BML realizer."""
 
 import math
 from collections.abc import Mapping
@@ -9,8 +9,8 @@ from cubeling.characters.behaviour.bml.document import Behaviour, Block
 from cubeling.characters.behaviour.bml.feedback import WarningType
 
 
-class CannotPerform(Exception):  # noqa: N818 -- a verdict on a document, not a bug
-    """A behaviour that a performer cannot do; the message says why, in one line."""
+class CannotRealize(Exception):  # noqa: N818 -- a verdict on a document, not a bug
+    """A behaviour that cannot be done; the message says why, in one line."""
 
     def __init__(self, reason: str, type: WarningType | None = None) -> None:
         super().__init__(reason)
@@ -54,7 +54,6 @@ class Scheduled:
     """Which block it is of."""
 
     behaviour: Behaviour
-    """What it is."""
 
     times: Mapping[str, float]
     """When its sync points are, in their order [s]; inf for what comes only by an interrupt."""
@@ -78,16 +77,16 @@ class Scheduled:
         return self.times["end"]
 
 
-class Performer(Protocol):
-    """Whoever performs behaviours: a character, or a stand-in with fixed estimates."""
+class TimingEstimator(Protocol):
+    """Tells natural times: a character, or a stand-in with fixed estimates."""
 
     def timing(self, behaviour: Behaviour, block: Block) -> Timing:
         """Return the natural times of a behaviour.
 
         Raises
         ------
-        CannotPerform
-            If it cannot perform it.
+        CannotRealize
+            If nobody here can do it.
         """
 
 

@@ -7,22 +7,22 @@ from cubeling.characters.behaviour.bml import (
     HOLD_SYNCS,
     SHIFT_SYNCS,
     Behaviour,
-    CannotPerform,
+    CannotRealize,
     Scheduled,
     Timing,
     elastic,
 )
 from cubeling.characters.behaviour.intents import GestureIntent, PostureIntent, StrokeTimes, Times
-from cubeling.characters.behaviour.performing.hand_kinds import held
-from cubeling.characters.behaviour.performing.performed import (
+from cubeling.characters.behaviour.realization.frame import (
     Going,
     Manner,
-    Performed,
-    Performing,
+    RealizationContext,
+    RealizedFrame,
     number,
     shift_times_of,
     times_of,
 )
+from cubeling.characters.behaviour.realization.hand_kinds import hold
 from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
 
 POSTURE_SPANS_S = (0.9, 1.5, 0.9)
@@ -49,14 +49,14 @@ class PostureKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of a posture, which lasts as long as it is to."""
         _check_posture(behaviour, who)
         return elastic(HOLD_SYNCS, POSTURE_SPANS_S, holds=frozenset({"ready"}))
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
-        """Add the posture."""
-        take(scheduled, times_of(scheduled), who, performed)
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
+        """Add the posture, and the arms' share of it as a held gesture."""
+        take(scheduled, times_of(scheduled), who, frame)
 
 
 class PostureShiftKind:
@@ -64,14 +64,14 @@ class PostureShiftKind:
 
     channel = "posture"
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of the change."""
         _check_posture(behaviour, who)
         return elastic(SHIFT_SYNCS, (SHIFT_S,), least=0.3, most=math.inf)
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
-        """Add the posture."""
-        take(scheduled, shift_times_of(scheduled), who, performed)
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
+        """Add the posture, which stays when the behaviour is over."""
+        take(scheduled, shift_times_of(scheduled), who, frame)
 
 
 class LocomotionKind:
@@ -79,16 +79,16 @@ class LocomotionKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the time that the way takes from where the character is."""
         target = who.surroundings.point(behaviour.get("target"))[[0, 2]]
         span = max(who.walk_time(target, _manner(behaviour)), 0.1)
         return elastic(SHIFT_SYNCS, (span,), least=0.3, most=math.inf)
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Go to where the target is now."""
         target = who.surroundings.point(scheduled.behaviour.get("target"))[[0, 2]]
-        performed.going = Going(scheduled.key, scheduled.end, target, _manner(scheduled.behaviour))
+        frame.going = Going(scheduled.key, scheduled.end, target, _manner(scheduled.behaviour))
 
 
 class WaitKind:
@@ -96,20 +96,20 @@ class WaitKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the time to wait."""
         span = number(behaviour, "duration", WAIT_S, 0.0, 3600.0)
         return elastic(SHIFT_SYNCS, (span,), holds=frozenset({"start"}))
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
-        """Do nothing."""
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
+        """Do nothing: only its times count, for what is tied to them."""
 
 
-def take(scheduled: Scheduled, times: Times, who: Performing, performed: Performed) -> None:
+def take(scheduled: Scheduled, times: Times, who: RealizationContext, frame: RealizedFrame) -> None:
     """Add a posture of trunk and legs, and one of the arms as a gesture that is held."""
     names = [*_names(scheduled.behaviour)]
     stance = "+".join(name for name in names if who.stances.knows(name)) or UPRIGHT[0]
-    performed.postures.append(PostureIntent(scheduled.key, stance, times))
+    frame.postures.append(PostureIntent(scheduled.key, stance, times))
     for name in names:
         arms = _arms(name, who)
         if arms is not None:
@@ -117,12 +117,12 @@ def take(scheduled: Scheduled, times: Times, who: Performing, performed: Perform
                 times.start, times.ready, times.relax, times.end, *(times.ready,) * 3
             )
             key = f"{scheduled.key}:{name}"
-            performed.gestures.append(
-                GestureIntent(key, held(arms), strokes, "both", who.how(scheduled))
+            frame.gestures.append(
+                GestureIntent(key, hold(arms), strokes, "both", who.how(scheduled))
             )
 
 
-def _check_posture(behaviour: Behaviour, who: Performing) -> None:
+def _check_posture(behaviour: Behaviour, who: RealizationContext) -> None:
     """Refuse a posture of which the body can do nothing."""
     names = [*_names(behaviour)]
     able = [
@@ -132,10 +132,10 @@ def _check_posture(behaviour: Behaviour, who: Performing) -> None:
     ]
     if not able:
         asked = ", ".join(names) or "a posture without stance, pose or lexeme"
-        raise CannotPerform(f"{who.character.name} cannot take {asked}")
+        raise CannotRealize(f"{who.character.name} cannot take {asked}")
 
 
-def _arms(name: str, who: Performing) -> SymbolicGesture | None:
+def _arms(name: str, who: RealizationContext) -> SymbolicGesture | None:
     """Return the gesture with which arms take a posture; None if it is no posture of arms."""
     lexeme = ARM_POSTURES.get(name, name)
     if who.arms and not who.stances.knows(name) and lexeme in who.collection:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cubeling.characters.behaviour.intents import HeadIntent, StrokeTimes
-from cubeling.characters.behaviour.performing.planned_values import presence
+from cubeling.characters.behaviour.realization.planned_values import presence
 from cubeling.characters.motion.curves import ease
 from cubeling.characters.skeleton.pose import Array
 

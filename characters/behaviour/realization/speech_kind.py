@@ -5,13 +5,17 @@ from itertools import pairwise
 
 from cubeling.characters.behaviour.bml import (
     Behaviour,
-    CannotPerform,
+    CannotRealize,
     Realizer,
     Scheduled,
     Timing,
     rigid,
 )
-from cubeling.characters.behaviour.performing.performed import Performed, Performing, Saying
+from cubeling.characters.behaviour.realization.frame import (
+    RealizationContext,
+    RealizedFrame,
+    Saying,
+)
 from cubeling.characters.speech.speech import Utterance, Word
 
 LETTER_S, WORD_S = 0.06, 0.06
@@ -27,7 +31,7 @@ MAX_LETTERS = 5000
 """Longer texts are refused."""
 
 XML = "http://www.w3.org/XML/1998/namespace"
-"""Namespace of `xml:lang`."""
+"""Namespace of the attribute `xml:lang`."""
 
 
 class SpeechKind:
@@ -35,31 +39,31 @@ class SpeechKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of the voice, or those of an estimate."""
         if len(behaviour.text) > MAX_LETTERS:
-            raise CannotPerform(f"a text of more than {MAX_LETTERS} letters; say it in parts")
-        utterance = heard(behaviour, who)
+            raise CannotRealize(f"a text of more than {MAX_LETTERS} letters; say it in parts")
+        utterance = utterance_of(behaviour, who)
         if utterance is None:
-            who.estimated.add(_asked(behaviour))
-            utterance = estimated(behaviour.text)
+            who.estimated.add(_text_and_language(behaviour))
+            utterance = estimate(behaviour.text)
         marks = [(mark.id, mark_time(utterance, mark.at)) for mark in behaviour.marks]
         names = ("start", *(name for name, _ in marks), "end")
         times = [0.0, *(time for _, time in marks), utterance.duration]
         spans = tuple(max(b - a, 0.0) for a, b in pairwise(times))
         return rigid(names, spans)
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Say it, as soon as the voice has answered."""
-        utterance, key = heard(scheduled.behaviour, who), scheduled.key
+        utterance, key = utterance_of(scheduled.behaviour, who), scheduled.key
         if utterance is None:
             who.late[key] = math.inf
         start = who.late.get(key, scheduled.start)
         if utterance is not None and start < math.inf:
-            performed.sayings.append(Saying(key, utterance, start))
+            frame.sayings.append(Saying(key, utterance, start))
 
 
-def retime_speeches(realizer: Realizer, who: Performing, now: float) -> None:
+def retime_speeches(realizer: Realizer, who: RealizationContext, now: float) -> None:
     """Move the sync points of speeches that were estimated to where the voice has them.
 
     A speech that had begun without its voice sounds from now on.
@@ -69,12 +73,12 @@ def retime_speeches(realizer: Realizer, who: Performing, now: float) -> None:
     known: set[tuple[str, str]] = set()
     for scheduled in realizer.scheduled:
         behaviour = scheduled.behaviour
-        if behaviour.kind != "speech" or _asked(behaviour) not in who.estimated:
+        if behaviour.kind != "speech" or _text_and_language(behaviour) not in who.estimated:
             continue
-        utterance = heard(behaviour, who)
+        utterance = utterance_of(behaviour, who)
         if utterance is None:
             continue
-        known.add(_asked(behaviour))
+        known.add(_text_and_language(behaviour))
         if scheduled.key in who.late:
             who.late[scheduled.key] = now
         start = who.late.get(scheduled.key, scheduled.start)
@@ -84,15 +88,15 @@ def retime_speeches(realizer: Realizer, who: Performing, now: float) -> None:
     who.estimated -= known
 
 
-def heard(behaviour: Behaviour, who: Performing) -> Utterance | None:
+def utterance_of(behaviour: Behaviour, who: RealizationContext) -> Utterance | None:
     """Return what the voice says for a speech; None if it has not answered."""
-    return who.utterance_of(*_asked(behaviour))
+    return who.utterance_of(*_text_and_language(behaviour))
 
 
-def estimated(text: str) -> Utterance:
+def estimate(text: str) -> Utterance:
     """Return an utterance with the words of a text at times that a voice might take.
 
-    >>> estimated("No, never.").words
+    >>> estimate("No, never.").words
     (Word(text='No,', start=0.0, end=0.18, offset=0), Word(text='never.', start=0.33, end=0.69, offset=4))
     """  # noqa: E501
     words, at, offset = list[Word](), 0.0, 0
@@ -110,6 +114,6 @@ def mark_time(utterance: Utterance, at: int) -> float:
     return min((w.start for w in utterance.words if w.offset >= at), default=utterance.duration)
 
 
-def _asked(behaviour: Behaviour) -> tuple[str, str]:
+def _text_and_language(behaviour: Behaviour) -> tuple[str, str]:
     """Return what a voice is asked for: text and language."""
     return behaviour.text, behaviour.get("lang", namespace=XML)

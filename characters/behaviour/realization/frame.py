@@ -1,11 +1,11 @@
-"""What a performer knows of a body, and what the body does in one frame."""
+"""What is known of a body, and what the body does in one frame."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
-from cubeling.characters.behaviour.bml import Behaviour, CannotPerform, Scheduled
+from cubeling.characters.behaviour.bml import Behaviour, CannotRealize, Scheduled
 from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
 from cubeling.characters.behaviour.intents import (
@@ -19,9 +19,9 @@ from cubeling.characters.behaviour.intents import (
     StrokeTimes,
     Times,
 )
-from cubeling.characters.behaviour.performing.face_names import FaceNames
-from cubeling.characters.behaviour.performing.stances import StanceJoints
-from cubeling.characters.behaviour.performing.surroundings import Surroundings, numbers_of
+from cubeling.characters.behaviour.realization.face_names import FaceNames
+from cubeling.characters.behaviour.realization.stances import StanceJoints
+from cubeling.characters.behaviour.realization.surroundings import NamedPlaces, numbers_of
 from cubeling.characters.ik.reaching.hands import find_hand
 from cubeling.characters.model.character import Character
 from cubeling.characters.skeleton.anatomy import SIDES
@@ -52,7 +52,6 @@ class Going:
     """Where to, (x, z) in the table frame [m]."""
 
     manner: Manner = "walk"
-    """How."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,14 +62,13 @@ class Saying:
     """Tells it from other speeches."""
 
     utterance: Utterance
-    """What is said."""
 
     start: float
     """When its sound begins [s]."""
 
 
 @dataclass(eq=False)
-class Performed:
+class RealizedFrame:
     """What a character does in one frame."""
 
     now: float
@@ -106,16 +104,15 @@ class Performed:
 
 
 @dataclass(eq=False)
-class Performing:
-    """Who performs: the body with its abilities, its surroundings and its voice."""
+class RealizationContext:
+    """Who plays it: the body with its abilities, its surroundings and its voice."""
 
     character: Character
-    """The character."""
 
     collection: GestureCollection
     """The gestures that it may be asked for."""
 
-    surroundings: Surroundings
+    surroundings: NamedPlaces
     """Where it is, and the places that may be named."""
 
     utterance_of: UtteranceOf = lambda _text, _language: None
@@ -152,15 +149,15 @@ class Performing:
     def require_head(self) -> None:
         """Refuse what a body without a head cannot do."""
         if self.character.anatomy.joint("head") is None:
-            raise CannotPerform(f"{self.character.name} has no head")
+            raise CannotRealize(f"{self.character.name} has no head")
 
     def require_arms(self, mode: str = "") -> None:
         """Refuse what needs arms that the body lacks."""
         if not self.arms:
-            raise CannotPerform(f"{self.character.name} has no arms")
+            raise CannotRealize(f"{self.character.name} has no arms")
         side = mode.lower().removesuffix("_hand")
         if side in SIDES and side not in self.arms:
-            raise CannotPerform(f"{self.character.name} has no {side} arm")
+            raise CannotRealize(f"{self.character.name} has no {side} arm")
 
     def how(self, scheduled: Scheduled) -> GestureExpressivity:
         """Return how a behaviour is performed: as it says, or its block, or as usual."""
@@ -178,7 +175,7 @@ def number(behaviour: Behaviour, name: str, default: float, low: float, high: fl
 
     Raises
     ------
-    CannotPerform
+    CannotRealize
         If it is no number.
     """
     text = behaviour.get(name)
@@ -186,14 +183,14 @@ def number(behaviour: Behaviour, name: str, default: float, low: float, high: fl
         return default
     found = numbers_of(text)
     if len(found) != 1:
-        raise CannotPerform(f'{name}="{text}" is no number')
+        raise CannotRealize(f'{name}="{text}" is no number')
     return min(max(found[0], low), high)
 
 
 def times_of(scheduled: Scheduled, ready: str = "ready") -> Times:
     """Return the times of something that rises to one sync point and falls from "relax"."""
     times, start = scheduled.times, scheduled.start
-    relax, end = (_known(times.get(sync)) for sync in ("relax", "end"))
+    relax, end = (_finite(times.get(sync)) for sync in ("relax", "end"))
     return Times(start, times.get(ready, start), relax, end)
 
 
@@ -210,7 +207,7 @@ def stroke_times_of(scheduled: Scheduled) -> StrokeTimes:
     return StrokeTimes(plain.start, plain.ready, plain.relax, plain.end, *strokes)
 
 
-def _known(time: float | None) -> float | None:
+def _finite(time: float | None) -> float | None:
     return None if time is None or time == float("inf") else time
 
 

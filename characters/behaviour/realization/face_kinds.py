@@ -7,20 +7,20 @@ from cubeling.characters.behaviour.bml import (
     FACE_SYNCS,
     SHIFT_SYNCS,
     Behaviour,
-    CannotPerform,
-    Element,
+    BmlElement,
+    CannotRealize,
     Scheduled,
     Timing,
     elastic,
 )
 from cubeling.characters.behaviour.intents import FaceIntent
-from cubeling.characters.behaviour.performing.performed import (
-    Performed,
-    Performing,
+from cubeling.characters.behaviour.realization.frame import (
+    RealizationContext,
+    RealizedFrame,
     shift_times_of,
     times_of,
 )
-from cubeling.characters.behaviour.performing.surroundings import numbers_of
+from cubeling.characters.behaviour.realization.surroundings import numbers_of
 
 FACE_SPANS_S = (0.4, 1.2, 0.5)
 """Times between the sync points of an expression [s]."""
@@ -38,16 +38,16 @@ class FaceKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of an expression, which lasts as long as it is to."""
-        _shown(behaviour, who)
+        _face_weights(behaviour, who)
         return elastic(FACE_SYNCS, FACE_SPANS_S, holds=frozenset({"attackPeak"}))
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
-        """Add the expression."""
-        names, weights = _shown(scheduled.behaviour, who)
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
+        """Add the expression, with its peak at "attackPeak"."""
+        names, weights = _face_weights(scheduled.behaviour, who)
         times = times_of(scheduled, "attackPeak")
-        performed.faces.append(FaceIntent(scheduled.key, names, weights, times))
+        frame.faces.append(FaceIntent(scheduled.key, names, weights, times))
 
 
 class FaceShiftKind:
@@ -55,31 +55,35 @@ class FaceShiftKind:
 
     channel = "face"
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times in which the face changes."""
-        _shown(behaviour, who)
+        _face_weights(behaviour, who)
         return elastic(SHIFT_SYNCS, (SHIFT_S,), least=0.2, most=math.inf)
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
-        """Add the expression."""
-        names, weights = _shown(scheduled.behaviour, who)
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
+        """Add the expression, which stays when the behaviour is over."""
+        names, weights = _face_weights(scheduled.behaviour, who)
         times = shift_times_of(scheduled)
-        performed.faces.append(FaceIntent(scheduled.key, names, weights, times))
+        frame.faces.append(FaceIntent(scheduled.key, names, weights, times))
 
 
-def _shown(behaviour: Behaviour, who: Performing) -> tuple[tuple[str, ...], tuple[float, ...]]:
+def _face_weights(
+    behaviour: Behaviour, who: RealizationContext
+) -> tuple[tuple[str, ...], tuple[float, ...]]:
     """Return the names and weights that a behaviour and its children give."""
-    found = [*_named(behaviour, USUAL_AMOUNT)]
+    found = [*_names_and_weights(behaviour, USUAL_AMOUNT)]
     if not found:
-        raise CannotPerform("an expression without a lexeme, au or name")
+        raise CannotRealize("an expression without a lexeme, au or name")
     unknown = [name for name, _ in found if who.faces.weights(name) is None]
     if len(unknown) == len(found):
-        raise CannotPerform(f"the face of {who.character.name} cannot show {', '.join(unknown)}")
+        raise CannotRealize(f"the face of {who.character.name} cannot show {', '.join(unknown)}")
     names, weights = zip(*found, strict=True)
     return names, weights
 
 
-def _named(element: Behaviour | Element, usual: float) -> Iterator[tuple[str, float]]:
+def _names_and_weights(
+    element: Behaviour | BmlElement, usual: float
+) -> Iterator[tuple[str, float]]:
     given: Mapping[str, str] = element.attributes
     amount = _amount(given, usual)
     unit, side = given.get("au", "").strip(), given.get("side", "BOTH").upper()
@@ -89,7 +93,7 @@ def _named(element: Behaviour | Element, usual: float) -> Iterator[tuple[str, fl
         if given.get(attribute):
             yield given[attribute], amount
     for child in element.children:
-        yield from _named(child, amount)
+        yield from _names_and_weights(child, amount)
 
 
 def _amount(attributes: Mapping[str, str], usual: float) -> float:

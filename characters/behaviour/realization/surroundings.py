@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from cubeling.characters.behaviour.bml import CannotPerform
+from cubeling.characters.behaviour.bml import CannotRealize
 from cubeling.characters.skeleton.pose import Array
 
 SAME_AS_VIEWER = ("camera", "user", "listener", "audience")
@@ -20,7 +20,7 @@ _NUMBERS = re.compile(r"[\s,;]+")
 
 
 @dataclass
-class Surroundings:
+class NamedPlaces:
     """Places by name, which may move from frame to frame, and where the character is."""
 
     places: dict[str, Array] = field(default_factory=dict)
@@ -40,12 +40,12 @@ class Surroundings:
     def point(self, text: str) -> Array:
         """Return the place that a text names: a name, or three numbers [m].
 
-        >>> Surroundings({"cube": np.zeros(3)}).point("0.1, 0.05 0.2").tolist()
+        >>> NamedPlaces({"cube": np.zeros(3)}).point("0.1, 0.05 0.2").tolist()
         [0.1, 0.05, 0.2]
 
         Raises
         ------
-        CannotPerform
+        CannotRealize
             If it names none.
         """
         name = text.strip().lower()
@@ -57,11 +57,11 @@ class Surroundings:
         if len(numbers) == 3 and max(map(abs, numbers)) <= MAX_DISTANCE_M:
             return np.array(numbers)
         known = ", ".join(sorted(self.places)) or "none"
-        raise CannotPerform(
+        raise CannotRealize(
             f'no target "{text}"; name a known one ({known}), or give x,y,z in metres'
         )
 
-    def seen_aside(self, point: Array, yaw: float, pitch: float) -> Array:
+    def point_aside(self, point: Array, yaw: float, pitch: float) -> Array:
         """Return a point that lies to the left of another one and above it by angles [rad]."""
         way = point - self.eyes
         distance = float(np.linalg.norm(way))

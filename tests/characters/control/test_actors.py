@@ -20,12 +20,12 @@ from tests.examples import some
 
 
 @pytest.fixture(scope="module", params=some(["actor", "vleo"]))
-def performer(request, actor):
+def character(request, actor):
     return actor if request.param == "actor" else Character.load("vleo")
 
 
-def test_an_action_plays_and_says_its_name(performer):
-    animator = Animator(performer)
+def test_an_action_plays_and_says_its_name(character):
+    animator = Animator(character)
     frames = play(animator, 1.0, activity="kiss", weight=1.0)
     assert frames[-1].state == "kiss"
     assert frames[-1].weight == pytest.approx(1.0)
@@ -33,33 +33,33 @@ def test_an_action_plays_and_says_its_name(performer):
 
 
 @pytest.mark.parametrize(("weight", "ending"), [(-1.0, "head"), (0.0, "legs"), (1.0, "tail")])
-def test_each_intensity_is_its_clip(performer, weight, ending):
-    frames = play(Animator(performer, layers=FOOT_LAYERS), 1.0, activity="shout", weight=weight)
-    clip = performer.clips[f"shout_{ending}"]
+def test_each_intensity_is_its_clip(character, weight, ending):
+    frames = play(Animator(character, layers=FOOT_LAYERS), 1.0, activity="shout", weight=weight)
+    clip = character.clips[f"shout_{ending}"]
     expected = clip.sample(29 / RATE_HZ)
     shown = rotations.align(frames[-1].pose.rotations, expected.rotations)
     assert np.allclose(shown, expected.rotations, atol=1e-3)
 
 
-def test_more_weight_moves_more(performer):
+def test_more_weight_moves_more(character):
     def liveliness(weight):
-        frames = play(Animator(performer), 2.0, activity="kiss", weight=weight)
+        frames = play(Animator(character), 2.0, activity="kiss", weight=weight)
         return np.abs(velocities(frames[15:], RATE_HZ)).sum()
 
     effort = [liveliness(weight) for weight in (-1.0, -0.5, 0.0, 0.5, 1.0)]
     assert (np.diff(effort) > 0).all()
 
 
-def test_no_joint_jumps_between_actions(performer):
+def test_no_joint_jumps_between_actions(character):
     rng = np.random.default_rng(8)
-    rate, animator, frames, time = 60, Animator(performer), [], 0.0
+    rate, animator, frames, time = 60, Animator(character), [], 0.0
     for _ in range(20):
         length, weight = rng.uniform(0.1, 1.2), rng.uniform(-1, 1)
         action = rng.choice(["idle", "kiss", "shout"])
         frames += play(animator, length, time, rate, activity=str(action), weight=weight)
         time += round(length * rate) / rate
     fastest = 0.0
-    for clip in performer.clips.values():
+    for clip in character.clips.values():
         turns = clip.in_place.rotations
         steps = rotations.multiply(turns[1:], rotations.conjugate(turns[:-1]))
         speed = np.linalg.norm(rotations.to_rotation_vector(steps), axis=-1).max() * clip.rate
@@ -67,8 +67,8 @@ def test_no_joint_jumps_between_actions(performer):
     assert np.linalg.norm(velocities(frames, rate), axis=-1).max() < 2.0 * fastest + 3.0
 
 
-def test_it_starts_on_its_target_and_hops_to_another(performer):
-    animator = Animator(performer)
+def test_it_starts_on_its_target_and_hops_to_another(character):
+    animator = Animator(character)
     first = animator.update(CharacterCommand(0.0, LocomotionIntent(target=np.array([0.2, 0.1]))))
     assert np.allclose(place(first), [0.2, 0.1])
     frames = play(animator, 3.0, 0.1, target=np.array([0.0, 0.0]))
@@ -81,11 +81,11 @@ def test_it_starts_on_its_target_and_hops_to_another(performer):
     assert np.linalg.norm(np.diff(ways, axis=0), axis=1).max() < 0.02
 
 
-def test_it_turns_to_what_it_is_to_look_at(performer):
-    frames = play(Animator(performer), 5.0, facing=np.array([1.0, 0.0]))
+def test_it_turns_to_what_it_is_to_look_at(character):
+    frames = play(Animator(character), 5.0, facing=np.array([1.0, 0.0]))
     assert heading(frames[-1]) == pytest.approx(math.pi / 2, abs=0.05)
 
 
-def test_an_action_that_it_does_not_know_is_refused(performer):
+def test_an_action_that_it_does_not_know_is_refused(character):
     with pytest.raises(CharacterError, match="does not know 'sing'; it knows idle, kiss, shout"):
-        Animator(performer).update(CharacterCommand(0.0, action=ActionIntent("sing")))
+        Animator(character).update(CharacterCommand(0.0, action=ActionIntent("sing")))

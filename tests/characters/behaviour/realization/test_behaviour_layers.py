@@ -15,8 +15,8 @@ from cubeling.characters.behaviour.intents import (
     StrokeTimes,
     Times,
 )
-from cubeling.characters.behaviour.performing.face_names import ACTION_UNITS, LEXEMES, FaceNames
-from cubeling.characters.behaviour.performing.stances import STANCES, StanceJoints
+from cubeling.characters.behaviour.realization.face_names import ACTION_UNITS, LEXEMES, FaceNames
+from cubeling.characters.behaviour.realization.stances import STANCES, StanceJoints
 from cubeling.characters.control.layers.behaviour import FaceShiftLayer, StanceLayer
 from cubeling.characters.control.layers.foot_lock import FootLockLayer
 from cubeling.characters.control.layers.gaze import GazeLayer

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from cubeling.characters.behaviour.intents import FaceIntent
-from cubeling.characters.behaviour.performing.planned_values import presence
+from cubeling.characters.behaviour.realization.planned_values import presence
 from cubeling.characters.face.affect_display import FACE_RECIPES
 from cubeling.characters.face.expressions import EXPRESSIONS, ExpressionMorphs
 from cubeling.characters.face.lids import Lids, numbers_by_name
@@ -94,10 +94,10 @@ class FaceNames:
         [0.0, 1.0]
         """
         if name not in self._found:
-            self._found[name] = self._resolved(name)
+            self._found[name] = self._resolve(name)
         return self._found[name]
 
-    def shown(self, intents: Sequence[FaceIntent], now: float) -> Array:
+    def morph_weights(self, intents: Sequence[FaceIntent], now: float) -> Array:
         """Return the morph weights that intents show at a time [s], (morphs,)."""
         total = np.zeros(len(self._morphs))
         for intent in intents:
@@ -121,7 +121,7 @@ class FaceNames:
                 shown[name][found.numbers] = found.weights[:, column]
         return shown
 
-    def _resolved(self, name: str) -> Array | None:
+    def _resolve(self, name: str) -> Array | None:
         lower = name.lower()
         if lower in NEUTRAL_NAMES:
             return np.zeros(len(self._morphs))
@@ -129,25 +129,25 @@ class FaceNames:
         if unit is not None:
             return self._unit(int(unit[1]), (unit[2] or "").lower())
         if name.upper() in LEXEMES:
-            parts = [self._resolved(each) for each in LEXEMES[name.upper()]]
+            parts = [self._resolve(each) for each in LEXEMES[name.upper()]]
             able = [part for part in parts if part is not None]
             return np.minimum(np.sum(able, axis=0), 1.0) if able else None
         if lower in FACE_RECIPES:
             *recipe, closed = FACE_RECIPES[lower]
-            mixed = self._mixed(dict(zip(EXPRESSIONS, recipe, strict=True)))
+            mixed = self._mix(dict(zip(EXPRESSIONS, recipe, strict=True)))
             if mixed is not None:
                 Lids.of(self._morphs).close(mixed, closed)
             return mixed
-        return self._mixed({name: 1.0})
+        return self._mix({name: 1.0})
 
     def _unit(self, number: int, side: str) -> Array | None:
         for mix in ACTION_UNITS.get(number, ()):
-            shown = self._mixed(mix, side)
+            shown = self._mix(mix, side)
             if shown is not None:
                 return shown
         return None
 
-    def _mixed(self, mix: Mix, side: str = "") -> Array | None:
+    def _mix(self, mix: Mix, side: str = "") -> Array | None:
         """Return the weights of a mix of parts and expressions; None if the face has none."""
         total, able = np.zeros(len(self._morphs)), False
         for name, weight in mix.items():

@@ -1,11 +1,11 @@
-"""One gesture that is performed, from its first frame to its last."""
+"""One gesture that plays, from its first frame to its last."""
 
 import math
 from dataclasses import dataclass
 
 from cubeling.characters.behaviour.expressivity import NEUTRAL
-from cubeling.characters.behaviour.gestures.easing import eased
-from cubeling.characters.behaviour.gestures.planning import Performer
+from cubeling.characters.behaviour.gestures.easing import ease_time
+from cubeling.characters.behaviour.gestures.planning import GestureRealizer
 from cubeling.characters.behaviour.gestures.timing import (
     GONE,
     PREPARED,
@@ -34,8 +34,8 @@ STEP_S = 1e-3
 
 
 @dataclass(eq=False)
-class PerformedGesture:
-    """One gesture that is performed, from its first frame to its last."""
+class GesturePlayback:
+    """One gesture that plays, from its first frame to its last."""
 
     intent: GestureIntent
     """What is asked, last heard of."""
@@ -43,8 +43,7 @@ class PerformedGesture:
     hand: Hand
     """Which hand performs it, if it is one-handed."""
 
-    performer: Performer
-    """Whose body."""
+    realizer: GestureRealizer
 
     present: float
     """How far it has joined in, 0…1."""
@@ -58,13 +57,13 @@ class PerformedGesture:
     def __post_init__(self) -> None:
         gesture, style = self.intent.gesture, self.intent.expressivity
         self._style = gesture.expressivity if style == NEUTRAL else style
-        self._planning = self.performer.planning(gesture, self.hand, self._style)
+        self._planning = self.realizer.planning(gesture, self.hand, self._style)
         self._apex = apex_share(gesture)
         self._touches = any(
             keys and keys[0].place.contact for keys in (gesture.right, gesture.left)
         )
 
-    def performs(self, intent: GestureIntent) -> bool:
+    def plays(self, intent: GestureIntent) -> bool:
         """Return whether an intent asks for it, at whatever times."""
         own = self.intent
         return intent is own or (
@@ -127,7 +126,7 @@ class PerformedGesture:
         weight, prepares = 1.0, phase < PREPARED
         if prepares:
             self._planning.advance(POSTURES_PER_FRAME)
-            weight = eased(smoothstep(phase), self._style)
+            weight = ease_time(smoothstep(phase), self._style)
             weight = min(weight, 1.0) if self._touches else weight
         elif phase > STROKE_END:
             weight = smoothstep(GONE - phase)

@@ -1,4 +1,4 @@
-"""A block that is being performed, or waits for its turn."""
+"""A block laid out in time, which plays or waits for its turn."""
 
 import math
 from collections.abc import Collection, Iterator
@@ -7,21 +7,20 @@ from typing import Literal
 
 from cubeling.characters.behaviour.bml.constraints import External, Resolver
 from cubeling.characters.behaviour.bml.document import Block, Constraint
-from cubeling.characters.behaviour.bml.feedback import PredictedBehaviour, Prediction
-from cubeling.characters.behaviour.bml.performer import Scheduled
+from cubeling.characters.behaviour.bml.feedback import BlockPrediction, PredictedBehaviour
 from cubeling.characters.behaviour.bml.planner import plan
-from cubeling.characters.behaviour.bml.problem import Problem
-from cubeling.characters.behaviour.bml.schedule import Track
+from cubeling.characters.behaviour.bml.problem import TimingProblem
+from cubeling.characters.behaviour.bml.schedule import BehaviourTrack
+from cubeling.characters.behaviour.bml.timing import Scheduled
 
 State = Literal["preplanned", "waiting", "running", "over"]
 
 
 @dataclass(eq=False)
-class Performance:
+class Realization:
     """A block and how far it has got."""
 
     block: Block
-    """What it is."""
 
     state: State
     """Whether it waits to be activated, waits for others, or runs."""
@@ -35,7 +34,7 @@ class Performance:
     latest: float = math.inf
     """When something last happened to it [s]."""
 
-    tracks: dict[str, Track] = field(default_factory=dict)
+    tracks: dict[str, BehaviourTrack] = field(default_factory=dict)
     """Its behaviours by id, in the document's order."""
 
     constraints: tuple[Constraint, ...] = ()
@@ -77,7 +76,7 @@ class Performance:
         releases = [track.release for track in self.tracks.values()]
         return max([self.start, *releases]) if math.isfinite(self.start) else math.inf
 
-    def next_track(self) -> Track | None:
+    def next_track(self) -> BehaviourTrack | None:
         """Return the behaviour whose sync point comes next, the first of those that tie."""
         found, earliest = None, math.inf
         for track in self.tracks.values():
@@ -87,15 +86,15 @@ class Performance:
                     found, earliest = track, time
         return found
 
-    def scheduled(self, at: float | None = None) -> Iterator[Scheduled]:
-        """Yield its behaviours for a performer that are not over, or only those that go on then."""
+    def behaviours(self, at: float | None = None) -> Iterator[Scheduled]:
+        """Yield its behaviours that are not over, or only those that go on then."""
         for track in self.tracks.values():
             goes_on = not track.over if at is None else track.times[0] <= at < track.times[-1]
             if goes_on and not track.control:
                 times = dict(zip(track.timing.syncs, track.times, strict=True))
                 yield Scheduled(self.block.id, track.behaviour, times, self.block.attributes)
 
-    def prediction(self) -> Prediction:
+    def prediction(self) -> BlockPrediction:
         """Return when it is expected to be."""
         origin = self.start if math.isfinite(self.start) else self.ready
         behaviours = tuple(
@@ -109,7 +108,9 @@ class Performance:
             )
             for name, track in self.tracks.items()
         )
-        return Prediction(self.block.id, self.start, self.end, behaviours, self.block.character)
+        return BlockPrediction(
+            self.block.id, self.start, self.end, behaviours, self.block.character
+        )
 
     def interrupt(self, now: float, only: Collection[str], but: Collection[str]) -> None:
         """End behaviours: those that run relax now, those that have not started never do.
@@ -145,7 +146,7 @@ class Performance:
             references += [constraint.reference] if constraint.reference else []
         return any(reference.block in blocks for reference in references)
 
-    def move(self, track: Track, index: int, time: float, now: float) -> None:
+    def move(self, track: BehaviourTrack, index: int, time: float, now: float) -> None:
         """Note when a sync point that has not happened is to be [s]."""
         lowest = max(now, track.times[track.happened - 1] if track.happened else self.start)
         time = max(time, lowest)
@@ -168,6 +169,6 @@ class Performance:
             for name, track in self.tracks.items()
         }
         moved = frozenset(name for name, track in self.tracks.items() if track.moved)
-        problem = Problem(timings, links, orders, self.start, now, facts, moved, strict=False)
+        problem = TimingProblem(timings, links, orders, self.start, now, facts, moved, strict=False)
         for name, times in plan(problem).items():
             self.tracks[name].times = times

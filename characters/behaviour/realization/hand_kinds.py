@@ -5,15 +5,15 @@ from dataclasses import replace
 from cubeling.characters.behaviour.bml import (
     GESTURE_SYNCS,
     Behaviour,
-    CannotPerform,
+    CannotRealize,
     Scheduled,
     Timing,
     elastic,
 )
 from cubeling.characters.behaviour.intents import GestureIntent, Hand, ReachIntent
-from cubeling.characters.behaviour.performing.performed import (
-    Performed,
-    Performing,
+from cubeling.characters.behaviour.realization.frame import (
+    RealizationContext,
+    RealizedFrame,
     stroke_times_of,
     times_of,
 )
@@ -24,7 +24,7 @@ HANDS: dict[str, Hand] = {
     "RIGHT_HAND": "right",
     "BOTH_HANDS": "both",
 }
-"""BML's modes."""
+"""Hand of an intent by BML's attribute `mode`."""
 
 POINTING_SPANS_S = (0.6, 0.0, 0.1, 0.1, 0.7, 0.6)
 """Times between the sync points of pointing [s]; it lasts where the eye can follow it."""
@@ -38,7 +38,7 @@ class GestureKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times that the gesture has by itself."""
         gesture = _gesture(behaviour, who)
         if gesture.right or gesture.left:
@@ -54,13 +54,13 @@ class GestureKind:
         )
         return elastic(GESTURE_SYNCS, spans, holds=HOLDS)
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
-        """Add the gesture."""
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
+        """Add the gesture by the hand of its `mode`."""
         gesture = _gesture(scheduled.behaviour, who)
         hand = HANDS.get(scheduled.behaviour.get("mode").upper(), "right")
         times = stroke_times_of(scheduled)
         how = who.how(scheduled)
-        performed.gestures.append(GestureIntent(scheduled.key, gesture, times, hand, how))
+        frame.gestures.append(GestureIntent(scheduled.key, gesture, times, hand, how))
 
 
 class PointingKind:
@@ -68,28 +68,28 @@ class PointingKind:
 
     channel = ""
 
-    def timing(self, behaviour: Behaviour, who: Performing) -> Timing:
+    def timing(self, behaviour: Behaviour, who: RealizationContext) -> Timing:
         """Return the times of pointing."""
         who.require_arms(behaviour.get("mode"))
         who.surroundings.point(behaviour.get("target"))
         return elastic(GESTURE_SYNCS, POINTING_SPANS_S, holds=HOLDS)
 
-    def perform(self, scheduled: Scheduled, who: Performing, performed: Performed) -> None:
+    def realize(self, scheduled: Scheduled, who: RealizationContext, frame: RealizedFrame) -> None:
         """Add the reach to where the target is now."""
         behaviour = scheduled.behaviour
         hand = HANDS.get(behaviour.get("mode").upper(), "nearest")
         point = who.surroundings.point(behaviour.get("target"))
         times, how = times_of(scheduled), who.how(scheduled)
-        performed.reaches.append(ReachIntent(scheduled.key, point, times, "point", hand, how))
+        frame.reaches.append(ReachIntent(scheduled.key, point, times, "point", hand, how))
 
 
-def held(gesture: SymbolicGesture) -> SymbolicGesture:
+def hold(gesture: SymbolicGesture) -> SymbolicGesture:
     """Return a gesture that stays where its first key puts the hands."""
     return replace(gesture, right=gesture.right[:1], left=gesture.left[:1], repeats=1)
 
 
-def _gesture(behaviour: Behaviour, who: Performing) -> SymbolicGesture:
+def _gesture(behaviour: Behaviour, who: RealizationContext) -> SymbolicGesture:
     lexeme = behaviour.get("lexeme")
     if lexeme not in who.collection:
-        raise CannotPerform(f'no gesture is called "{lexeme}"; `cubeling gesture list` names all')
+        raise CannotRealize(f'no gesture is called "{lexeme}"; `cubeling gesture list` names all')
     return who.collection.get(lexeme)

@@ -1,4 +1,4 @@
-"""Performs BML behaviours with a character: their natural times, and its body frame by frame."""
+"""Plays BML behaviours with a character: their natural times, and its body frame by frame."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -7,22 +7,26 @@ from cubeling.characters.behaviour.bml import (
     BML,
     Behaviour,
     Block,
-    CannotPerform,
+    CannotRealize,
     Scheduled,
     Timing,
 )
-from cubeling.characters.behaviour.performing.body_kinds import (
+from cubeling.characters.behaviour.realization.body_kinds import (
     LocomotionKind,
     PostureKind,
     PostureShiftKind,
     WaitKind,
 )
-from cubeling.characters.behaviour.performing.face_kinds import FaceKind, FaceShiftKind
-from cubeling.characters.behaviour.performing.hand_kinds import GestureKind, PointingKind
-from cubeling.characters.behaviour.performing.head_kinds import GazeKind, GazeShiftKind, HeadKind
-from cubeling.characters.behaviour.performing.kinds import BehaviourKind
-from cubeling.characters.behaviour.performing.performed import Going, Performed, Performing
-from cubeling.characters.behaviour.performing.speech_kind import SpeechKind
+from cubeling.characters.behaviour.realization.face_kinds import FaceKind, FaceShiftKind
+from cubeling.characters.behaviour.realization.frame import (
+    Going,
+    RealizationContext,
+    RealizedFrame,
+)
+from cubeling.characters.behaviour.realization.hand_kinds import GestureKind, PointingKind
+from cubeling.characters.behaviour.realization.head_kinds import GazeKind, GazeShiftKind, HeadKind
+from cubeling.characters.behaviour.realization.kinds import BehaviourKind
+from cubeling.characters.behaviour.realization.speech_kind import SpeechKind
 
 KINDS: Mapping[str, BehaviourKind] = {
     "speech": SpeechKind(),
@@ -52,18 +56,18 @@ class _Shift:
     scheduled: Scheduled
 
 
-class CharacterPerformer:
-    """Performs behaviours with a character; a `Performer` for a realizer.
+class CharacterRealizer:
+    """Plays behaviours with a character; a `TimingEstimator` for a realizer.
 
     Parameters
     ----------
     who
         The character, what it knows and where it is.
     kinds
-        What it can perform, by name.
+        What it can do, by name.
     """
 
-    def __init__(self, who: Performing, kinds: Mapping[str, BehaviourKind] = KINDS) -> None:
+    def __init__(self, who: RealizationContext, kinds: Mapping[str, BehaviourKind] = KINDS) -> None:
         self.who = who
         """The character, what it knows and where it is."""
         self._kinds = kinds
@@ -76,21 +80,21 @@ class CharacterPerformer:
 
         Raises
         ------
-        CannotPerform
+        CannotRealize
             If this character cannot perform it.
         """
         kind = self._kind(behaviour)
         if kind is None:
-            raise CannotPerform(f"<{behaviour.kind}> is not known here")
+            raise CannotRealize(f"<{behaviour.kind}> is not known here")
         return kind.timing(behaviour, self.who)
 
-    def performed(self, active: Sequence[Scheduled], now: float) -> Performed:
+    def frame_of(self, active: Sequence[Scheduled], now: float) -> RealizedFrame:
         """Return what the character does at a time [s] for the behaviours that are active."""
-        shown = Performed(now)
+        shown = RealizedFrame(now)
         started = [each for each in active if each.start <= now]
         self._keep_shifts(started, now)
         for channel, kept in self._kept.items():
-            self._add(kept.kind, self._released(kept.scheduled, channel), shown)
+            self._add(kept.kind, self._release(kept.scheduled, channel), shown)
         for scheduled in started:
             kind = self._kind(scheduled.behaviour)
             if kind is not None:
@@ -103,11 +107,11 @@ class CharacterPerformer:
     def _kind(self, behaviour: Behaviour) -> BehaviourKind | None:
         return self._kinds.get(behaviour.kind) if behaviour.namespace == BML else None
 
-    def _add(self, kind: BehaviourKind, scheduled: Scheduled, shown: Performed) -> None:
+    def _add(self, kind: BehaviourKind, scheduled: Scheduled, shown: RealizedFrame) -> None:
         """Add what a behaviour does; one whose target has gone meanwhile does nothing."""
         try:
-            kind.perform(scheduled, self.who, shown)
-        except CannotPerform:
+            kind.realize(scheduled, self.who, shown)
+        except CannotRealize:
             return
 
     def _keep_shifts(self, started: Sequence[Scheduled], now: float) -> None:
@@ -122,7 +126,7 @@ class CharacterPerformer:
                 self._kept[shift.kind.channel] = shift
         self._shifting = running
 
-    def _released(self, scheduled: Scheduled, channel: str) -> Scheduled:
+    def _release(self, scheduled: Scheduled, channel: str) -> Scheduled:
         """Return a shift that goes as far as another one of its channel comes."""
         newer = [s.scheduled for s in self._shifting.values() if s.kind.channel == channel]
         if not newer:
@@ -130,7 +134,7 @@ class CharacterPerformer:
         times = {**scheduled.times, "relax": newer[-1].start, "gone": newer[-1].end}
         return replace(scheduled, times=times)
 
-    def _keep_going(self, shown: Performed) -> None:
+    def _keep_going(self, shown: RealizedFrame) -> None:
         """Let a character that has not quite arrived in time go on; one that is cut off stops."""
         if shown.going is None and self._going is not None and shown.now >= self._going.end:
             shown.going = self._going

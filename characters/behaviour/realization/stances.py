@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cubeling.characters.behaviour.intents import PostureIntent
-from cubeling.characters.behaviour.performing.planned_values import presence
+from cubeling.characters.behaviour.realization.planned_values import presence
 from cubeling.characters.body.axes import Degrees, body_axes, rotation_vectors
 from cubeling.characters.ik.legs import LegIK, find_legs, find_paws
 from cubeling.characters.skeleton import rotations
@@ -179,7 +179,7 @@ class StanceJoints:
         turned = Pose(pose.translations, local, pose.scales, pose.morphs)
         if self._legs is None or not (hips or trunk or values[: self._legs_follow].any()):
             return turned
-        return self._planted(pose, turned, values[:3] * self._leg_length)
+        return self._plant_feet(pose, turned, values[:3] * self._leg_length)
 
     def _turn(self, local: Array, hips: float, trunk: float) -> None:
         """Turn pelvis and trunk to the left, in local rotations, about the vertical [rad].
@@ -195,7 +195,7 @@ class StanceJoints:
                 up = rotate(conjugate(turns[joint]), (0.0, angle, 0.0))
                 local[joint] = multiply(local[joint].tolist(), from_rotation_vector(up))
 
-    def _planted(self, pose: Pose, turned: Pose, shift: Array) -> Pose:
+    def _plant_feet(self, pose: Pose, turned: Pose, shift: Array) -> Pose:
         """Return a turned pose with its pelvis shifted [m] and its feet as in the first pose."""
         legs = self._legs
         assert legs is not None
