@@ -166,7 +166,7 @@ PROFILES: Mapping[str, SpeechProfile] = {
     "lively": SpeechProfile("aggressive", gesture_emphasis=0.5, face_emphasis=0.5),
     "calm": SpeechProfile("neutral", gesture_emphasis=-0.5, face_emphasis=-0.3),
 }
-"""The bundled profiles."""
+"""The profiles that `--profile` takes by name: how a line is said with face, head and hands."""
 
 
 @lru_cache(maxsize=8)
