@@ -8,10 +8,12 @@ endif
 INSTALL := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 
 .DEFAULT_GOAL := demo
-.PHONY: demo test test-all test-rest campaign campaign-tenth check package bench bench-tracking bench-photographs recordings assets pictures cast clean
+.PHONY: demo setup test test-all test-rest campaign campaign-tenth check check-format check-lint links check-floors check-types docs package bench bench-tracking bench-photographs recordings assets pictures cast clean
 
 demo: .venv/ready  ## set everything up and play
 	$(BIN)/cubeling demo
+
+setup: .venv/ready-dev  ## install what those who change the program need; CONTRIBUTING.md goes on from here
 
 # The tests of a file run in one process, as they share fixtures that take long to make. Byte code is kept even where the
 # environment says otherwise, or each process that a test starts compiles the program again.
@@ -43,13 +45,27 @@ campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.behaviour --blocks 10000
 	$(BIN)/python -m tests.campaigns.drawing --minutes 1
 
-check: .venv/ready-dev  ## check formatting, lint, docstrings, the floors of the rooms, and types
+# pre-commit runs the four parts, each where it has something to check.
+check: check-format check-lint check-floors check-types  ## check formatting, lint, docstrings, the floors of the rooms, and types
+
+check-format: .venv/ready-dev
 	$(BIN)/ruff format --check .
+
+check-lint: .venv/ready-dev
 	$(BIN)/ruff check .
 	$(BIN)/python -m tools.docstring_check
+
+links: .venv/ready-dev
 	$(BIN)/python -m tools.package_links
+
+check-floors: links
 	cd build/packages && ../../$(BIN)/lint-imports --config ../../.importlinter --cache-dir ../../.import_linter_cache
+
+check-types: links
 	$(BIN)/mypy
+
+docs: .venv/ready-dev  ## make the site of the guides and of the public names in build/docs, and check its links
+	$(BIN)/python -m tools.site
 
 package: .venv/ready-dev  ## build what is published, and try it in a fresh environment, beside Robot Framework
 	$(BIN)/python -m tools.package_check

@@ -13,8 +13,8 @@ from rich.console import Console
 
 from cubeling.app.commands.session.progress import run_with_progress
 from cubeling.app.running.opening import open_session
-from cubeling.app.scenarios import SCENARIOS
 from cubeling.app.session import SessionOptions
+from cubeling.app.session.bundled import RECORDED
 from tools.session_copy import keep_inputs
 
 FOLDER = Path(__file__).parent.parent / "recordings"
@@ -46,5 +46,5 @@ def make(name: str, console: Console) -> None:
 
 
 if __name__ == "__main__":
-    for chosen in sys.argv[1:] or SCENARIOS:
+    for chosen in sys.argv[1:] or RECORDED:
         make(chosen, Console())

@@ -14,7 +14,6 @@ from rich.markup import escape
 from rich.table import Table
 
 from cubeling.app.errors import AppError
-from cubeling.app.scenarios import SCENARIOS
 from cubeling.app.ui.display import has_display, is_software_renderer
 
 if TYPE_CHECKING:
@@ -163,10 +162,10 @@ def _characters() -> Finding:
 
 
 def _recordings() -> Finding:
-    from cubeling.app.session.bundled import bundled
+    from cubeling.app.session.bundled import RECORDED, bundled
 
     try:
-        names = [bundled(name).name for name in SCENARIOS]
+        names = [bundled(name).name for name in RECORDED]
     except AppError as error:
         return Finding("recordings", "bad", str(error))
     return Finding("recordings", "good", ", ".join(names))

@@ -19,24 +19,23 @@ if TYPE_CHECKING:  # the command line asks for names and summaries, which need n
 ENTRY_POINT_GROUP = "cubeling.scenarios"
 """The group in which a package names its scenarios, one entry point each."""
 
-SCENARIOS: Registry[type[Scenario]] = Registry(
-    {
-        "follow": "cubeling.app.scenarios.follow:Follow",
-        "sketch": "cubeling.app.scenarios.sketch:Sketch",
-        "companion": "cubeling.app.scenarios.companion:Companion",
-        "reach": "cubeling.app.scenarios.reach:Reach",
-    }
-)
-"""The bundled scenarios by name; a new one is registered here, and in `SUMMARIES`."""
-
-SUMMARIES = {
-    "follow": "the character follows the cube; turn the cube to make it walk or run",
-    "sketch": "the cube draws a path of up to eight points, and the character walks it",
-    "companion": "Vleo kisses or shouts, and changes the robot's mood",
-    "reach": "the character reaches for the cube, and brings small things to it",
+BUNDLED = {
+    "follow:Follow": "the character follows the cube; turn the cube to make it walk or run",
+    "sketch:Sketch": "the cube draws a path of up to eight points, and the character walks it",
+    "companion:Companion": "Vleo kisses or shouts, and changes the robot's mood",
+    "reach:Reach": "the character reaches for the cube, and brings small things to it",
 }
-"""What the bundled scenarios are, for the help of the command line; each class takes it from here.
-One sentence each, without a full stop."""
+"""The bundled scenarios; a new one is registered here. Each is the module in `app.scenarios`, which
+gives the scenario its name, with its class; then comes what it is, for the help of the command
+line: one sentence without a full stop."""
+
+SCENARIOS: Registry[type[Scenario]] = Registry(
+    {place.partition(":")[0]: f"cubeling.app.scenarios.{place}" for place in BUNDLED}
+)
+"""The bundled scenarios by name."""
+
+SUMMARIES = {place.partition(":")[0]: summary for place, summary in BUNDLED.items()}
+"""What the bundled scenarios are; each class takes its own from here."""
 
 
 @cache

@@ -4,6 +4,9 @@ from pathlib import Path
 
 from cubeling.app.errors import AppError
 
+RECORDED = ("follow", "sketch", "companion", "reach")
+"""The scenarios with a session in `recordings/`, and with a script of the synthetic camera."""
+
 
 def bundled(name: str) -> Path:
     """Return the session of a scenario in `recordings/`."""

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import Protocol
 
+from cubeling.registry import Registry
 from cubeling.tracking.geometry.arrays import Array
-from cubeling.tracking.gestures.shaking import ShakeDetector
 
 
 class GestureDetector(Protocol):
@@ -24,5 +24,10 @@ class GestureDetector(Protocol):
         """
 
 
-DETECTORS: dict[str, Callable[[], GestureDetector]] = {"shaken": ShakeDetector}
-"""Makes the detector of each gesture, by the name that `CubeControls.gestures` gives it."""
+DETECTORS = Registry[Callable[[], GestureDetector]](
+    {
+        "shaken": "cubeling.tracking.gestures.shaking:ShakeDetector",
+    }
+)
+"""Makes the detector of each gesture, by the name that `CubeControls.gestures` gives it; a new one
+is registered here."""

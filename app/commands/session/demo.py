@@ -21,8 +21,8 @@ from cubeling.app.commands.session.play import (
 )
 from cubeling.app.commands.session.preference_options import GivenPreferences, with_preferences
 from cubeling.app.errors import AppError
-from cubeling.app.scenarios import SCENARIOS, check_scenario, scenario_cube
-from cubeling.app.session.bundled import bundled
+from cubeling.app.scenarios import check_scenario, scenario_cube
+from cubeling.app.session.bundled import RECORDED, bundled
 from cubeling.app.ui.display import has_display
 
 if TYPE_CHECKING:
@@ -139,9 +139,9 @@ def end_card(scenario: str) -> EndCard:
 def _of_recording(options: SessionOptions) -> SessionOptions:
     """Return the options with the bundled recording of the scenario as the source."""
     scenario = options.scenario
-    if scenario not in SCENARIOS:
+    if scenario not in RECORDED:
         raise AppError(
-            f"there is no recording of '{scenario}', which a package adds: take a camera, "
+            f"there is no recording of '{scenario}': take a camera, "
             f"or cubeling play {scenario} --source synthetic:companion (or follow, or sketch)"
         )
     return replace(options, source=str(bundled(scenario)))

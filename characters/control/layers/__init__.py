@@ -1,51 +1,51 @@
 """The pose layers, a file each, in the order in which they are applied."""
 
-from cubeling.characters.control.layers.behaviour import FaceShiftLayer, StanceLayer
-from cubeling.characters.control.layers.breath import BreathLayer
-from cubeling.characters.control.layers.face import FaceLayer
 from cubeling.characters.control.layers.foot_lock import FootLockLayer
-from cubeling.characters.control.layers.gaze import GazeLayer
-from cubeling.characters.control.layers.gestures import GestureLayer
 from cubeling.characters.control.layers.layer import FrameContext, LayerFactory, apply_layers
-from cubeling.characters.control.layers.posture import PostureLayer
-from cubeling.characters.control.layers.reach import ReachLayer
-from cubeling.characters.control.layers.sitting_up import SittingUpLayer
 from cubeling.characters.control.layers.speech import SpeechLayer
 from cubeling.characters.model.character import Character
 from cubeling.registry import Registry
 
+_LAYERS = "cubeling.characters.control.layers"
+
 FOOT_LAYERS: tuple[LayerFactory, ...] = (FootLockLayer,)
 """What a character needs besides its clips."""
 
-LIVELINESS_LAYERS: tuple[LayerFactory, ...] = (
-    SpeechLayer,
-    SittingUpLayer,
-    StanceLayer,
-    GestureLayer,
-    PostureLayer,
-    ReachLayer,
-    GazeLayer,
-    FaceShiftLayer,
-    FaceLayer,
-    BreathLayer,
+LIVELINESS = Registry[LayerFactory](
+    {
+        "speech": f"{_LAYERS}.speech:SpeechLayer",
+        "sitting_up": f"{_LAYERS}.sitting_up:SittingUpLayer",
+        "stance": f"{_LAYERS}.behaviour:StanceLayer",
+        "gestures": f"{_LAYERS}.gestures:GestureLayer",
+        "posture": f"{_LAYERS}.posture:PostureLayer",
+        "reach": f"{_LAYERS}.reach:ReachLayer",
+        "gaze": f"{_LAYERS}.gaze:GazeLayer",
+        "face_shift": f"{_LAYERS}.behaviour:FaceShiftLayer",
+        "face": f"{_LAYERS}.face:FaceLayer",
+        "breath": f"{_LAYERS}.breath:BreathLayer",
+    }
 )
-"""What makes it look alive: it speaks, gestures, reaches, looks, feels and breathes."""
+"""What makes it look alive: it speaks, gestures, reaches, looks, feels and breathes. A new layer is
+registered here, at its place in the order."""
+
+LIVELINESS_LAYERS: tuple[LayerFactory, ...] = tuple(LIVELINESS.values())
+"""The same, to be made."""
 
 DEFAULT_LAYERS: tuple[LayerFactory, ...] = (*FOOT_LAYERS, *LIVELINESS_LAYERS)
 """The layers of every character."""
 
 BODY_LAYERS = Registry[LayerFactory](
     {
-        "dependent_joints": "cubeling.characters.control.layers.upper_body:DependentJointsLayer",
-        "self_collision": "cubeling.characters.control.layers.upper_body:SelfCollisionLayer",
+        "dependent_joints": f"{_LAYERS}.upper_body:DependentJointsLayer",
+        "self_collision": f"{_LAYERS}.upper_body:SelfCollisionLayer",
     }
 )
 """What the file beside a character may ask for, by name."""
 
 FOLLOWING_LAYERS = Registry[LayerFactory](
     {
-        "constraints": "cubeling.characters.control.layers.constraints:ConstraintLayer",
-        "springs": "cubeling.characters.control.layers.springs:SpringLayer",
+        "constraints": f"{_LAYERS}.constraints:ConstraintLayer",
+        "springs": f"{_LAYERS}.springs:SpringLayer",
     }
 )
 """What moves after the body, for characters that have it, by the attribute that says so."""

@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from cubeling.app.scenarios import SCENARIOS
 from cubeling.app.session import messages
+from cubeling.app.session.bundled import RECORDED
 from cubeling.app.session.encoding import decode
 from cubeling.tracking import CubeControls, CubeState
 from cubeling.tracking.synthetic import open_synthetic
 from tests.conftest import FIRST_S
 from tests.examples import some
 
-PARTS = [("companion", FIRST_S), *((name, None) for name in SCENARIOS)]
+PARTS = [("companion", FIRST_S), *((name, None) for name in RECORDED)]
 
 
 @pytest.fixture(scope="module", params=some([[part] for part in PARTS]), ids=str)

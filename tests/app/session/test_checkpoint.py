@@ -9,8 +9,7 @@ import pytest
 
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.running.opening import intrinsics_for
-from cubeling.app.scenarios import SCENARIOS
-from cubeling.app.session.bundled import bundled
+from cubeling.app.session.bundled import RECORDED, bundled
 from cubeling.app.session.encoding import encode
 from cubeling.characters.rendering import create_context
 from cubeling.tracking import StoredFrames, open_source
@@ -26,7 +25,7 @@ def messages(playground, frames):
     ]
 
 
-@pytest.mark.parametrize("name", SCENARIOS)
+@pytest.mark.parametrize("name", RECORDED)
 def test_what_follows_a_checkpoint_is_the_same_every_time(name):
     with open_source(str(bundled(name))) as source:
         assert isinstance(source, StoredFrames)

@@ -12,13 +12,12 @@ from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.running.opening import intrinsics_for, open_session
 from cubeling.app.running.runner import run
-from cubeling.app.scenarios import SCENARIOS
 from cubeling.app.session import (
     SessionOptions,
     messages,
     session_info,
 )
-from cubeling.app.session.bundled import bundled
+from cubeling.app.session.bundled import RECORDED, bundled
 from cubeling.app.session.encoding import APPEARANCE_TOPIC, MESSAGE_TYPES, decode, encode
 from cubeling.app.session.options import START_STAGES
 from cubeling.app.ui.screen import NullScreen
@@ -33,7 +32,7 @@ FRAMES = 120
 
 
 @pytest.mark.slow(reason="seconds of a recording are computed twice")
-@pytest.mark.parametrize("name", some(sorted(SCENARIOS)))
+@pytest.mark.parametrize("name", some(sorted(RECORDED)))
 def test_a_recording_replayed_twice_gives_identical_channels(computed_session, name):
     path = computed_session(name, FIRST_S)
     with open_source(str(bundled(name))) as source:
@@ -155,7 +154,7 @@ def assert_close(topic, time, one, other):
             assert a == b, f"{topic} {field} at {time}"
 
 
-@pytest.mark.parametrize("name", SCENARIOS)
+@pytest.mark.parametrize("name", RECORDED)
 def test_bundled_recordings_are_small_and_hold_what_came_in(name):
     info = session_info(bundled(name))
     assert info.options.scenario == name
@@ -176,3 +175,7 @@ def test_a_replay_takes_the_character_that_was_recorded(cubeling, short_session,
     assert session_info(tmp_path / "human.mcap").options.character == "human"
     code, _, err = cubeling("replay", "human.mcap", "--check")
     assert (code, err) == (0, "")
+
+
+def test_every_bundled_recording_is_listed():
+    assert sorted(RECORDED) == sorted(file.stem for file in bundled("reach").parent.glob("*.mcap"))

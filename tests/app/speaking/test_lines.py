@@ -1,18 +1,20 @@
 """The lines of scenarios: bundled ones and files of the user."""
 
-from importlib import resources
 from pathlib import Path
 
 import pytest
 
+from cubeling import app
 from cubeling.app.errors import AppError
 from cubeling.app.scenarios import SCENARIOS
 from cubeling.app.speaking.lines import bundled_lines, read_lines
 from cubeling.characters.speech.tagged_text import TaggedText
 from cubeling.toml_file import read
 
+LINES = Path(app.__file__).parent / "scenarios" / "lines"
 
-@pytest.mark.parametrize("scenario", SCENARIOS)
+
+@pytest.mark.parametrize("scenario", [file.stem for file in LINES.glob("*.toml")])
 def test_bundled_lines_say_the_same_moments_in_both_languages(scenario):
     english, spanish = (bundled_lines(scenario, language) for language in ("en", "es"))
     assert english is not None
@@ -59,7 +61,6 @@ def test_a_single_line_need_not_be_a_list(tmp_path):
 
 
 def test_bundled_lines_are_in_the_package():
-    folder = resources.files("cubeling.app") / "scenarios" / "lines"
-    for file in folder.iterdir():
-        read(Path(str(file)))
-        assert file.name.removesuffix(".toml") in SCENARIOS
+    for file in LINES.iterdir():
+        read(file)
+        assert file.stem in SCENARIOS

@@ -262,7 +262,7 @@ def test_a_shake_is_recognised_once_a_second(hand: Hand, axis: int, amplitude: f
 
 
 class RaiseDetector:
-    """Recognises a cube that begins to rise in the picture: the example of the room's README."""
+    """Recognises a cube that begins to rise in the picture: as CONTRIBUTING.md has it."""
 
     def __init__(self) -> None:
         self._rising = False
