@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from cubeling.affect import Emotion
 from cubeling.app.behaving.voice import LineSource
-from cubeling.app.behaving.ways import SPEEDS, Ways
+from cubeling.app.behaving.walking_times import SPEEDS, WalkingTimes
 from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.characters import (
     Animator,
@@ -112,7 +112,7 @@ class BehaviourPlayer:
         """What it feels throughout."""
         self._lines = lines
         self._animator = Animator(character, place=RootDelta(), seed=options.seed)
-        self._ways = Ways(character)
+        self._ways = WalkingTimes(character)
         self._refused: list[str] = []
         self._recent: deque[SpokenLine] = deque(maxlen=MAX_RECENT)
         self._eye_height = _eye_height(character)

@@ -45,7 +45,7 @@ LEAD_S = 0.5
 """Time that the character stands before the gesture [s]."""
 
 PAUSE_S = 0.6
-"""Time that it stands between two performances [s]."""
+"""Time that it stands between two plays [s]."""
 
 STEP_S, LONG_STEP_S = 1 / 30, 0.2
 """Steps of the animator up to a time that is shown [s]: the last ones, and those before."""
@@ -64,7 +64,7 @@ ELEVATION_RAD = 0.12
 
 
 @dataclass(frozen=True)
-class Performance:
+class PreviewedGesture:
     """What the preview performs; one that differs starts afresh."""
 
     gesture: SymbolicGesture
@@ -76,13 +76,15 @@ class Performance:
     """A bundled name, or a file."""
 
     @staticmethod
-    def of(document: GestureDocument, character: str) -> "Performance":
+    def of(document: GestureDocument, character: str) -> "PreviewedGesture":
         """Return what a document asks for; its words do not change how it is performed."""
-        return Performance(replace(document.gesture, name="", summary=""), document.hand, character)
+        return PreviewedGesture(
+            replace(document.gesture, name="", summary=""), document.hand, character
+        )
 
     @property
     def cycle(self) -> float:
-        """Time from one performance to the next [s]."""
+        """Time from one play to the next [s]."""
         return duration(self.gesture) + PAUSE_S
 
     def command(self, time: float) -> CharacterCommand:
@@ -116,7 +118,7 @@ class Preview:
     ) -> None:
         self._context, self._load = context, load or Character.load
         self._characters: dict[str, Character] = {}
-        self._performance: Performance | None = None
+        self._previewed: PreviewedGesture | None = None
         self._animator: Animator | None = None
         self._time = 0.0
         self._posed: PosedCharacter | None = None
@@ -131,43 +133,43 @@ class Preview:
             self._characters[name] = self._load(name)
         return self._characters[name]
 
-    def pose(self, performance: Performance, time: float) -> PosedCharacter:
+    def pose(self, previewed: PreviewedGesture, time: float) -> PosedCharacter:
         """Return the character at a time from the start of the gesture [s].
 
-        Times may go on over many performances. A short step ahead is one update; other times, and
-        another performance, are played from the start.
+        Times may go on over many plays. A short step ahead is one update; other times, and
+        another gesture, are played from the start.
         """
         ahead = time - self._time
-        if performance != self._performance or not -1e-9 <= ahead <= LONG_STEP_S:
-            self._performance = performance
-            self._animator = self._new_animator(performance.character)
-            self._play(performance, -LEAD_S, time)
+        if previewed != self._previewed or not -1e-9 <= ahead <= LONG_STEP_S:
+            self._previewed = previewed
+            self._animator = self._new_animator(previewed.character)
+            self._play(previewed, -LEAD_S, time)
         elif ahead > 1e-9 or self._posed is None:
-            self._update(performance, time)
+            self._update(previewed, time)
         assert self._posed is not None, "it was updated"
         return self._posed
 
-    def draw(self, performance: Performance, time: float, size: tuple[int, int]) -> Picture:
+    def draw(self, previewed: PreviewedGesture, time: float, size: tuple[int, int]) -> Picture:
         """Return a picture of the character at a time, (height, width, 3) BGR."""
-        posed = self.pose(performance, time)
+        posed = self.pose(previewed, time)
         if self._stage is None or self._stage.size != size:
             assert self._context is not None, "it was made to draw"
             self.release()
             self._stage = Stage(self._context, size)
-        camera = self.camera(performance.character, size)
+        camera = self.camera(previewed.character, size)
         paper = np.full((size[1], size[0], 3), BACKDROP_BGR, np.uint8)
         view = CameraView(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
-        character = self.character(performance.character)
+        character = self.character(previewed.character)
         return self._stage.draw(view, [SceneCharacter(character, posed)])
 
     def shown_space(
-        self, performance: Performance, size: tuple[int, int], left: bool
+        self, previewed: PreviewedGesture, size: tuple[int, int], left: bool
     ) -> ShownSpace:
         """Return the gesture space of a hand in the pictures of `draw`."""
-        name = performance.character
+        name = previewed.character
         assert self._posed is not None, "it was drawn"
         space = self._performer(name).space
-        space = replace(space, spatial=performance.gesture.expressivity.spatial)
+        space = replace(space, spatial=previewed.gesture.expressivity.spatial)
         placed = self._posed.table_from_character
         return ShownSpace(space, placed, self.camera(name, size), left)
 
@@ -205,17 +207,17 @@ class Preview:
         layers: list[LayerFactory] = [*others, lambda _character, _seed: known]
         return Animator(character, layers=layers, controller=InPlaceController)
 
-    def _play(self, performance: Performance, start: float, end: float) -> None:
+    def _play(self, previewed: PreviewedGesture, start: float, end: float) -> None:
         """Play from the start of an animator up to a time."""
-        start = max(start, end - 2 * performance.cycle)
+        start = max(start, end - 2 * previewed.cycle)
         now = start
-        self._update(performance, start)
+        self._update(previewed, start)
         while now < end - 1e-9:
             step = LONG_STEP_S if now + LONG_STEP_S < end - EXACT_S else STEP_S
             now = min(now + step, end)
-            self._update(performance, now)
+            self._update(previewed, now)
 
-    def _update(self, performance: Performance, time: float) -> None:
-        assert self._animator is not None, "a performance has an animator"
+    def _update(self, previewed: PreviewedGesture, time: float) -> None:
+        assert self._animator is not None, "a previewed gesture has an animator"
         self._time = time
-        self._posed = self._animator.update(performance.command(time))
+        self._posed = self._animator.update(previewed.command(time))

@@ -32,7 +32,7 @@ from cubeling.app.gesture_editor.editing.state import (
     unless_unsaved,
 )
 from cubeling.app.gesture_editor.editing.store import GestureStore
-from cubeling.app.gesture_editor.preview import Performance, Picture, Preview
+from cubeling.app.gesture_editor.preview import Picture, Preview, PreviewedGesture
 from cubeling.app.gesture_editor.shown_space import ShownSpace
 from cubeling.characters import Character, CharacterError
 from cubeling.characters.behaviour import SymbolicGesture
@@ -78,7 +78,7 @@ class EditorSession:
         self.closed = False
         """Whether the user has ended it."""
         self._played = 0.0
-        self._performance: Performance | None = None
+        self._previewed: PreviewedGesture | None = None
         self._still: tuple[object, Picture] | None = None
         self._kept: SymbolicGesture | None = None
         self._since_kept = 0.0
@@ -100,12 +100,12 @@ class EditorSession:
     def advance(self, elapsed: float) -> None:
         """Let time pass [s]: the preview plays, and changes are kept."""
         state = self.state
-        performance = Performance.of(state.document, state.character)
-        if performance != self._performance or not state.playing:
-            self._performance, self._played = performance, state.time
+        previewed = PreviewedGesture.of(state.document, state.character)
+        if previewed != self._previewed or not state.playing:
+            self._previewed, self._played = previewed, state.time
         if state.playing and not state.card:
             self._played += elapsed
-            time = self._played % performance.cycle if moves(performance.gesture) else 0.0
+            time = self._played % previewed.cycle if moves(previewed.gesture) else 0.0
             self.state = replace(state, time=time)
         self._since_kept += elapsed
         if self._since_kept >= KEEP_INTERVAL_S:
@@ -125,9 +125,9 @@ class EditorSession:
 
     def picture(self, size: tuple[int, int]) -> Picture:
         """Return the character, (height, width, 3) BGR; the same array while nothing changes."""
-        shown = self._shown_performance, self._played, size
+        shown = self._shown_gesture, self._played, size
         if self._still is None or self._still[0] != shown:
-            self._still = shown, self._preview.draw(self._shown_performance, self._played, size)
+            self._still = shown, self._preview.draw(self._shown_gesture, self._played, size)
         return self._still[1]
 
     @property
@@ -138,11 +138,11 @@ class EditorSession:
             return None
         left = document.row == "left" or (document.gesture.one_handed and document.hand == "left")
         size = self._still[1].shape[1], self._still[1].shape[0]
-        return self._preview.shown_space(self._shown_performance, size, left)
+        return self._preview.shown_space(self._shown_gesture, size, left)
 
     @property
-    def _shown_performance(self) -> Performance:
-        return self._performance or Performance.of(self.state.document, self.state.character)
+    def _shown_gesture(self) -> PreviewedGesture:
+        return self._previewed or PreviewedGesture.of(self.state.document, self.state.character)
 
     def close(self) -> None:
         """Release what draws; changes that are not saved and not discarded are kept."""

@@ -5,7 +5,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from cubeling.app.gesture_editor.editing.timing import phase_at, phase_spans, time_of
-from cubeling.app.gesture_editor.preview import Performance, Preview
+from cubeling.app.gesture_editor.preview import Preview, PreviewedGesture
 from cubeling.app.ui.contact_sheets import frame_sheet, save
 from cubeling.characters.behaviour import SymbolicGesture
 from cubeling.characters.rendering import create_context
@@ -31,9 +31,9 @@ def draw_sheet(path: Path, gesture: SymbolicGesture, characters: Sequence[str]) 
         closing.callback(preview.release)
         cells = []
         for name in characters:
-            performance = Performance(gesture, "right", name)
+            previewed = PreviewedGesture(gesture, "right", name)
             for time in _moments(gesture):
-                picture = preview.draw(performance, time, CELL_PX)
+                picture = preview.draw(previewed, time, CELL_PX)
                 cells.append((f"{name}, {phase_at(gesture, time)} {time:.2f} s", picture))
         save(frame_sheet(gesture.name, cells), path)
 

@@ -15,6 +15,8 @@ from cubeling.app.pipeline.choices import REALISM_CHOICES
 from cubeling.app.pipeline.cube_window import CubeWindow
 from cubeling.app.pipeline.frame_times import Lap
 from cubeling.app.pipeline.other_cube import OtherCube, advice
+from cubeling.app.pipeline.picture_regions import picture_regions
+from cubeling.app.pipeline.props import BodyParts, PosedBody
 from cubeling.app.pipeline.registry import make_scenario
 from cubeling.app.pipeline.scenario import (
     AdjustableScenario,
@@ -28,8 +30,6 @@ from cubeling.app.pipeline.situation import Situation, table_from_cube
 from cubeling.app.pipeline.speaking import Speaking
 from cubeling.app.pipeline.step import ReplayInputs, Step
 from cubeling.app.pipeline.step_renderer import StepRenderer
-from cubeling.app.pipeline.subjects import subjects
-from cubeling.app.pipeline.things import BodyParts, PosedBody
 from cubeling.characters import (
     Animator,
     Character,
@@ -305,7 +305,9 @@ class Playground:
             outcome,
             posed,
             picture=None,
-            subjects=subjects(state, controls, self.cube, self.character, posed, interior, matrix),
+            subjects=picture_regions(
+                state, controls, self.cube, self.character, posed, interior, matrix
+            ),
             scenario=self.scenario.name,
             line=self._speaking.line if command.speech is not None else None,
             interior=interior,

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.app.pipeline.cube_window import Interior
+from cubeling.app.pipeline.props import PosedBody
 from cubeling.app.pipeline.resident import MIN_SIZE
 from cubeling.app.pipeline.scenario import Outcome
 from cubeling.app.pipeline.step import Step
-from cubeling.app.pipeline.things import PosedBody
 from cubeling.characters import PosedCharacter
 from cubeling.characters.rendering import FULL, Box, CameraView, Focus, Quality, SceneCharacter
 from cubeling.tracking import CubeModel, CubeState, Frame, Intrinsics

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from cubeling.app.pipeline.things import GRIP, PosedBody, Side
+from cubeling.app.pipeline.props import GRIP, PosedBody, Side
 from cubeling.app.scenarios.reach_intents import Ongoing, bundled_gesture, gesture_times
 from cubeling.app.scenarios.reach_places import Point, in_front, look_about
 from cubeling.characters.behaviour import (

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.pipeline.step import Step
+from cubeling.app.speaking.line_chooser import LineChooser, LineRequest
 from cubeling.app.speaking.lines import ScenarioLines
-from cubeling.app.speaking.moments import LineRequest, Moments
 from cubeling.app.speaking.recorded import SILENT
 from cubeling.characters import CharacterError
 from cubeling.characters.motion import GestureLibrary
@@ -66,7 +66,7 @@ class LiveSpeaker:
         self.profile, self.languages, self.language = profile, languages, languages[0]
         self._voice, self._lines_of, self._waits = voice, lines_of, waits
         self._played = "", ""
-        self._moments: Moments | None = None
+        self._moments: LineChooser | None = None
         self._requests: queue.Queue[LineRequest | None] = queue.Queue()
         self._said: queue.Queue[SpokenLine | None] = queue.Queue()
         self._asked = False
@@ -94,7 +94,7 @@ class LiveSpeaker:
         if played != self._played:
             self._played = played
             lines = None if self.language == SILENT else self._lines_of(*played)
-            self._moments = None if lines is None else Moments(lines)
+            self._moments = None if lines is None else LineChooser(lines)
         request = None if self._moments is None else self._moments.update(step)
         if request is not None and not self.problem:
             self._asked = True

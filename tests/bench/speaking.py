@@ -14,10 +14,10 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from rich.console import Console
 
+from cubeling.app.speaking.line_chooser import LineRequest
 from cubeling.app.speaking.lines import bundled_lines
 from cubeling.app.speaking.live import LiveRealizer
 from cubeling.app.speaking.microphone import BLOCK, MICROPHONE_HZ
-from cubeling.app.speaking.moments import LineRequest
 from cubeling.app.speaking.performance import Direction, performed, write_video
 from cubeling.app.speaking.speaker import spoken
 from cubeling.characters import Character

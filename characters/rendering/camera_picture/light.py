@@ -81,7 +81,7 @@ class Light:
         """Light that a white sheet on the table reflects, (3,)."""
         return np.asarray(self.key * self.to_light[1] + self.sky)
 
-    def mixed(self, other: "Light", share: float) -> "Light":
+    def mix(self, other: "Light", share: float) -> "Light":
         """Return this light with a share of another one."""
         if share <= 0.0:
             return self
@@ -178,7 +178,7 @@ class LightEstimator:
         if self._measured is None:
             return light
         self._share += self.SMOOTHING_SHARE * (target - self._share)
-        return light.mixed(replace(self._measured, ground=light.ground), self._share)
+        return light.mix(replace(self._measured, ground=light.ground), self._share)
 
     def _look(self, picture: NDArray[np.uint8], paper: Array | None) -> None:
         """Estimate the light in a picture, in which white paper has a colour if some was found."""

@@ -55,7 +55,7 @@ class Undistorter:
             self._worker = ThreadPoolExecutor(1, "undistortion")
         view = CameraView(image, matrix, distortion, None)
         self.matrix_of(view)
-        self._ahead = view, self._worker.submit(self._undistorted, view, self._maps)
+        self._ahead = view, self._worker.submit(self._undistort, view, self._maps)
 
     def _finish(self) -> None:
         """Wait for the other thread: the buffers are in use until then."""
@@ -80,7 +80,7 @@ class Undistorter:
         """
         if view.image is None:
             return np.asarray(view.matrix, float)
-        image = _checked(view.image)
+        image = _check(view.image)
         if not is_pinhole(view.matrix):
             return np.eye(3)
         camera_key = _camera_key(view)
@@ -108,15 +108,15 @@ class Undistorter:
         if ahead is not None and _same_picture(ahead[0], view):
             return ahead[1].result()
         self.matrix_of(view)
-        return self._undistorted(view, self._maps)
+        return self._undistort(view, self._maps)
 
-    def _undistorted(self, view: CameraView, maps: Maps | None) -> Image:
+    def _undistort(self, view: CameraView, maps: Maps | None) -> Image:
         """Return the same, of a view that has an image, by the maps of its camera."""
         image = view.image
         assert image is not None
         if not is_pinhole(view.matrix):
-            return self._fitted(image, (image.shape[1], image.shape[0]))
-        return image.copy() if maps is None else self._remapped(image, *maps)
+            return self._fit(image, (image.shape[1], image.shape[0]))
+        return image.copy() if maps is None else self._remap(image, *maps)
 
     def cover_in_picture(self, hand: HandInFront) -> PictureCover | None:
         """Return the hand in the last view's frame as it is in the picture, or None outside of it.
@@ -139,7 +139,7 @@ class Undistorter:
         high = np.ceil(points.max((0, 1))).astype(int) + 3
         return Rectangle(int(low[0]), int(low[1]), *(high - low).tolist())
 
-    def _remapped(
+    def _remap(
         self, image: Image, columns: NDArray[np.float32], rows: NDArray[np.float32]
     ) -> Image:
         """Return a picture whose pixels come from the given columns and rows of the frame."""
@@ -173,7 +173,7 @@ class Undistorter:
         )
         return fitted, (np.asarray(columns, np.float32), np.asarray(rows, np.float32))
 
-    def _fitted(self, image: Image, frame_size: tuple[int, int]) -> Image:
+    def _fit(self, image: Image, frame_size: tuple[int, int]) -> Image:
         """Scale a frame of an unknown camera to the picture."""
         if frame_size == self._size:
             return image.copy()
@@ -209,7 +209,7 @@ def _is_frame(image: Image) -> bool:
     return len(shape) == 3 and shape[2] == 3 and image.dtype == np.uint8 and 0 not in shape
 
 
-def _checked(image: Image) -> Image:
+def _check(image: Image) -> Image:
     if not _is_frame(image):
         raise CharacterError(
             f"cannot draw on an image of shape {image.shape} and type {image.dtype}: "

@@ -135,10 +135,10 @@ class SplitComparison:
         library, candidates = self.whole.library, self.candidates[part.name]
         distance = part_distance(library, part)
 
-        def joined(threshold: float) -> int:
+        def count_joined(threshold: float) -> int:
             return len(build_graph(library, distance, candidates, threshold).joined_clips)
 
-        return critical_threshold(joined, LOWEST_THRESHOLD, most)
+        return critical_threshold(count_joined, LOWEST_THRESHOLD, most)
 
     def answers(
         self,

@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 
 from cubeling.app.commands import gesture
 from cubeling.app.errors import AppError
-from cubeling.app.gesture_editor.preview import Performance, Preview
+from cubeling.app.gesture_editor.preview import Preview, PreviewedGesture
 from cubeling.characters import Character, Clip, Pose
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
 from cubeling.characters.behaviour.gestures.files import load_gesture, save_gesture
@@ -61,7 +61,7 @@ def recording(tmp_path_factory):
     """The robot claps: a clip made by the layer that performs gestures."""
     robot = Character.load("robot")
     preview = Preview(None)
-    performance = Performance(GestureCollection.load_bundled().get("CLAP"), "right", "robot")
+    performance = PreviewedGesture(GestureCollection.load_bundled().get("CLAP"), "right", "robot")
     times = np.arange(0.0, performance.cycle, 1 / 30)
     poses = [preview.pose(performance, float(time)).pose for time in times]
     path = tmp_path_factory.mktemp("recordings") / "claps.glb"

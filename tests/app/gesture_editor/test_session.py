@@ -6,7 +6,7 @@ import pytest
 from cubeling.app.gesture_editor.editing.actions import ACTIONS, drop_file, read_recording, save
 from cubeling.app.gesture_editor.editing.edits import change_key, change_place
 from cubeling.app.gesture_editor.editing.state import EditorState, Open, Save, asked, edited
-from cubeling.app.gesture_editor.preview import Performance, Preview
+from cubeling.app.gesture_editor.preview import Preview, PreviewedGesture
 from cubeling.app.gesture_editor.session import KEEP_INTERVAL_S, EditorSession
 from cubeling.characters import Character, Clip, Pose
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
@@ -23,10 +23,10 @@ def make_fist(state: EditorState) -> EditorState:
     return edited(state, change_key(state.document, shape="fist"))
 
 
-def hand_height(preview: Preview, performance: Performance, time: float) -> float:
+def hand_height(preview: Preview, previewed: PreviewedGesture, time: float) -> float:
     """Return the height of the right hand over the table [m]."""
-    posed = preview.pose(performance, time)
-    character = preview.character(performance.character)
+    posed = preview.pose(previewed, time)
+    character = preview.character(previewed.character)
     joint = character.anatomy.joint("rightHand")
     if joint is None:
         joint = character.anatomy.joint("rightFrontFoot")
@@ -68,17 +68,17 @@ def test_the_preview_shows_what_is_edited(editing):
         hand.click(f"key:right:{len(session.state.document.gesture.right) - 1}")
         hand.put_hand("XP", sector)
         session.advance(0.0)
-        performance = Performance.of(session.state.document, "human")
-        heights.append(hand_height(preview, performance, session.state.time))
+        previewed = PreviewedGesture.of(session.state.document, "human")
+        heights.append(hand_height(preview, previewed, session.state.time))
     assert heights[1] > heights[0] + 0.02
 
 
 def test_a_time_shows_the_same_pose_however_it_was_reached(context):
     preview = Preview(context)
-    performance = Performance(GestureCollection.load_bundled().get("WAVE"), "right", "human")
-    first = preview.pose(performance, 0.9).pose.rotations
-    preview.pose(performance, 0.2)
-    np.testing.assert_allclose(preview.pose(performance, 0.9).pose.rotations, first, atol=1e-9)
+    previewed = PreviewedGesture(GestureCollection.load_bundled().get("WAVE"), "right", "human")
+    first = preview.pose(previewed, 0.9).pose.rotations
+    preview.pose(previewed, 0.2)
+    np.testing.assert_allclose(preview.pose(previewed, 0.9).pose.rotations, first, atol=1e-9)
 
 
 def test_the_picture_changes_while_it_plays_and_rests_in_a_pause(opened):
@@ -197,9 +197,9 @@ def test_an_import_that_fails_changes_nothing(editing):
 
 def test_a_recording_is_imported_and_waits_for_a_name(opened, context, tmp_path):
     preview, human = Preview(context), Character.load("human")
-    performance = Performance(GestureCollection.load_bundled().get("CHEER"), "right", "human")
-    times = np.arange(0.0, performance.cycle, 1 / 30)
-    poses = Pose.of_frames([preview.pose(performance, float(time)).pose for time in times])
+    previewed = PreviewedGesture(GestureCollection.load_bundled().get("CHEER"), "right", "human")
+    times = np.arange(0.0, previewed.cycle, 1 / 30)
+    poses = Pose.of_frames([preview.pose(previewed, float(time)).pose for time in times])
     clip = Clip("cheer", 30.0, poses, loop=False)
     Character("cheers", human.skeleton, {"cheer": clip}, human.meshes, morphs=human.morphs).save(
         tmp_path / "cheers.glb"

@@ -35,7 +35,7 @@ class LineRequest:
     """How it is said."""
 
 
-class Moments:
+class LineChooser:
     """Finds what the character says, in the order of time."""
 
     def __init__(self, lines: ScenarioLines) -> None:

@@ -17,7 +17,7 @@ MIN_DEPTH_M = 0.05
 Array = NDArray[np.float64]
 
 
-def subjects(
+def picture_regions(
     state: CubeState,
     controls: CubeControls,
     cube: CubeModel,

@@ -8,8 +8,8 @@ import pytest
 from cubeling.affect import Emotion
 from cubeling.app.pipeline.scenario import EmotionTarget, Outcome
 from cubeling.app.pipeline.step import Step
+from cubeling.app.speaking.line_chooser import AGAIN_S, LineChooser
 from cubeling.app.speaking.lines import ScenarioLines
-from cubeling.app.speaking.moments import AGAIN_S, Moments
 from cubeling.characters import ActionIntent, CharacterCommand, Pose, PosedCharacter
 from cubeling.characters.control.command import SpeechIntent
 from cubeling.characters.speech.speech import Utterance
@@ -24,7 +24,7 @@ def play(hand):
     """Return a function that plays (seconds, icon, changes) and returns what is said, and when."""
 
     def steps(*parts):
-        moments, said, time = Moments(LINES), [], 0.0
+        moments, said, time = LineChooser(LINES), [], 0.0
         for seconds, icon, changes in parts:
             for number in range(round(seconds * 30)):
                 controls = hand.frame()

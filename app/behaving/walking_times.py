@@ -20,7 +20,7 @@ TURNING_S_PER_RAD = 0.35
 """Time of a turn at the start [s/rad]."""
 
 
-class Ways:
+class WalkingTimes:
     """Measures once how fast a character walks and runs, by letting it go a straight way."""
 
     def __init__(self, character: Character) -> None:
