@@ -30,7 +30,8 @@ def damp(values: Array, limits: Array, threshold: float = THRESHOLD, scale: floa
     """Return values that stay within limits ≥ 0 (eq. 4.6); negative ones are unchanged.
 
     Printed, u and w jump at the threshold and end at λ · limit; here u falls from 1 to λ and w
-    rises from 0 to 1.
+    rises from 0 to 1. It never decreases for thresholds up to 0.9; for later ones, a λ below 0.89
+    turns back before the limit.
 
     >>> damp(np.array([0.6, 0.75, 0.9, 2.0]), np.ones(4)).round(6).tolist()
     [0.6, 0.762059, 0.958125, 1.0]
