@@ -16,7 +16,7 @@ from cubeling.tracking.cube.edges import EdgeModel
 from cubeling.tracking.cube.model import CubeModel, Face
 from cubeling.tracking.geometry.arrays import Array, Floats
 from cubeling.tracking.geometry.intrinsics import Intrinsics
-from cubeling.tracking.synthetic import exposure, paper_cube, source
+from cubeling.tracking.synthetic import desk, exposure, paper_cube, source
 from cubeling.tracking.synthetic.camera_rays import CameraRays
 from tests.bench import hand_scenes
 
@@ -30,7 +30,7 @@ CUBES_AT_MOST = 64
 """Number of cubes whose edges and paper are kept."""
 
 _still_parts, _face_textures = exposure.still_parts, paper_cube.face_textures
-_desk_texture, _white_points, _edges_of = exposure.desk_texture, patches.white_points, EdgeModel.of
+_desk_texture, _white_points, _edges_of = desk.desk_texture, patches.white_points, EdgeModel.of
 _CameraKey = tuple[tuple[int, int], bytes, bytes, bytes]
 
 
