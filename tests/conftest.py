@@ -25,6 +25,10 @@ for name in ("FORCE_COLOR", "GITHUB_ACTIONS", "PY_COLORS"):
 # threads wait for each other take twice as long for the frames of a session.
 os.environ.setdefault("OPENCV_FOR_THREADS_NUM", "1")
 
+# Mesa reads it when it draws without a graphics card: in the thread of the test, for the same
+# reason. Other threads for each of the small pictures take a tenth longer.
+os.environ.setdefault("LP_NUM_THREADS", "0")
+
 # The C library of Linux reads them when a process starts, so they are for the workers of xdist. It
 # keeps the memory of pictures instead of returning it and asking for it again a frame later.
 os.environ.setdefault("MALLOC_MMAP_THRESHOLD_", str(2**25))

@@ -12,6 +12,7 @@ from cubeling.app.exporting.writing import DICTIONARY_FILE
 from cubeling.app.session import messages
 from cubeling.app.session.encoding import MESSAGE_TYPES, decode
 from cubeling.characters.skeleton import rotations
+from tests.app.conftest import SHORT_FRAMES
 from tools.export_dictionary import DOCUMENT, updated
 
 
@@ -32,7 +33,7 @@ def exported(cubeling, short_session):
     labels = ["--participant", "P1", "--participant", "P 2", "--condition", "happy, loud"]
     code, out, err = cubeling("export", short_session, "second.mcap", "-o", "out", *labels)
     assert (code, err) == (0, "")
-    assert "emotions        120 rows" in out
+    assert f"emotions        {2 * SHORT_FRAMES:3} rows" in out
     return {
         topic: [decode(kind, data) for _, _, data in messages(short_session, topic)]
         for topic, kind in MESSAGE_TYPES.items()
@@ -43,23 +44,23 @@ def exported(cubeling, short_session):
 def test_every_message_is_a_row_with_its_session_and_labels(exported):
     for name, topic in (("poses", "/cube/state"), ("emotions", "/robot/emotion")):
         for rows in (table(name), lines(name)):
-            assert len(rows) == 2 * len(exported[topic]) == 120
-            assert [float(row["time_s"]) for row in rows[:60]] == [
+            assert len(rows) == 2 * len(exported[topic]) == 2 * SHORT_FRAMES
+            assert [float(row["time_s"]) for row in rows[:SHORT_FRAMES]] == [
                 message.timestamp for message in exported[topic]
             ]
             for row, session, participant in (
                 (rows[0], "short", "P1"),
-                (rows[60], "second", "P 2"),
+                (rows[SHORT_FRAMES], "second", "P 2"),
             ):
                 assert row["session"] == session
                 assert row["participant"] == participant
                 assert row["condition"] == "happy, loud"
-    assert [row["frames"] for row in table("sessions")] == ["60", "60"]
+    assert [row["frames"] for row in table("sessions")] == [str(SHORT_FRAMES)] * 2
     assert [row["event"] for row in table("events")] == []
 
 
 def test_the_values_are_those_of_the_messages(exported):
-    for row, state in zip(table("poses")[:60], exported["/cube/state"], strict=True):
+    for row, state in zip(table("poses")[:SHORT_FRAMES], exported["/cube/state"], strict=True):
         place = [float(row[f"{axis}_m"]) for axis in "xyz"]
         turn = [float(row[f"q{axis}"]) for axis in "xyzw"]
         np.testing.assert_array_equal(place, state.camera_from_cube[:3, 3])

@@ -18,6 +18,7 @@ from cubeling.app.session.encoding import MESSAGE_TYPES
 from cubeling.app.ui.screen import NullScreen
 from cubeling.app.ui.video_file import VideoFile
 from cubeling.tracking.sources.base import StoredFrames
+from tests.app.conftest import SHORT_FRAMES
 from tests.examples import some
 
 
@@ -120,10 +121,10 @@ def test_progress_outside_a_terminal_is_plain_lines_on_standard_error(
     code, out, err = cubeling("replay", short_session, "--no-pictures", "--record", "out.mcap")
     assert code == 0
     lines = err.splitlines()
-    assert len(lines) == 60
+    assert len(lines) == SHORT_FRAMES
     for line in lines[1:]:
         assert re.fullmatch(r"replaying short.mcap: \d+ %, frame \d+, about \d+ s left", line)
-    assert lines[-1].startswith("replaying short.mcap: 100 %, frame 60")
+    assert lines[-1].startswith(f"replaying short.mcap: 100 %, frame {SHORT_FRAMES}")
     assert "%, " not in out
     code, _, err = cubeling("replay", short_session, "--check")
     assert code == 0
@@ -158,7 +159,8 @@ def test_a_recording_says_what_was_kept_and_how_to_play_it(cubeling, short_sessi
     size = Path("of [bold]today.mcap").stat().st_size / 1e6
     last = out.splitlines()[-1]
     assert last == (
-        f"Recorded to of [bold]today.mcap: 2.0 s, 60 frames, {size:.1f} MB. "
+        f"Recorded to of [bold]today.mcap: {SHORT_FRAMES / 30:.1f} s, {SHORT_FRAMES} frames, "
+        f"{size:.1f} MB. "
         "Play it again: cubeling replay 'of [bold]today.mcap'"
     )
 

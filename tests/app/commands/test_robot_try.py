@@ -1,13 +1,32 @@
 """`cubeling robot try`: what a robot makes of each mood, in a line each."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
+from cubeling import robot
+from cubeling.app.commands.robot import trial
 from cubeling.robot.protocol import messages as m
 from cubeling.robot.simulators import SIMULATORS
 from cubeling.robot.simulators.cubeling.dinosaur import CATALOGUE
 from cubeling.robot.simulators.cubeling.simulator import Simulator
+
+
+@pytest.fixture
+def virtual_time(monkeypatch):
+    """Let simulated robots live in virtual time, which passes only while the command waits."""
+
+    def connect(url, settings=None):
+        stepped = robot.SteppedRobot(url, settings=settings)
+        clock = SimpleNamespace(monotonic=lambda: stepped.now, sleep=stepped.advance)
+        monkeypatch.setattr(trial, "time", clock)
+        return stepped
+
+    monkeypatch.setattr(robot, "connect", connect)
+
+
+in_virtual_time = pytest.mark.usefixtures("virtual_time")
 
 
 @pytest.fixture
@@ -38,6 +57,7 @@ def test_every_mood_is_tried_and_what_came_of_it_told(cubeling):
     assert all("acknowledged 0." in line and "shown 0." in line for line in lines[1:])
 
 
+@in_virtual_time
 def test_a_robot_that_does_not_say_what_it_shows_is_not_believed_to_show_it(cubeling):
     code, out, _ = cubeling("robot", "try", "sim:pleo", "--mood", "happy", "--seconds", "1")
     assert code == 0
@@ -45,6 +65,7 @@ def test_a_robot_that_does_not_say_what_it_shows_is_not_believed_to_show_it(cube
     assert "it does not say what it shows" in out
 
 
+@in_virtual_time
 def test_a_mood_that_the_robot_does_not_have_is_refused_and_the_others_named(cubeling):
     code, _, err = cubeling("robot", "try", "sim:cubeling", "--mood", "furious")
     assert code == 2
@@ -58,6 +79,7 @@ def test_a_time_that_is_none_is_refused(cubeling):
         assert "0.1 to 3600 seconds" in err
 
 
+@in_virtual_time
 def test_what_the_robot_complains_of_is_told_in_its_own_words(cubeling, tmp_path):
     (tmp_path / "mine.toml").write_text('[moods.neutral]\nmotion = "[red]x"\nlength_s = 9\n')
     args = ("--settings", str(tmp_path / "mine.toml"), "--mood", "neutral", "--seconds", "1.5")
@@ -67,6 +89,7 @@ def test_what_the_robot_complains_of_is_told_in_its_own_words(cubeling, tmp_path
     assert "it complains: Error: file not found: [red]x" in out
 
 
+@in_virtual_time
 def test_a_robot_without_moods_is_tried_with_all_that_it_has(cubeling, simulate):
     simulate(moods=(), motions=("nod", "bow"), sounds=("chirp",))
     code, out, err = cubeling("robot", "try", "sim", "--seconds", "0.2")
@@ -82,6 +105,7 @@ def test_a_robot_without_moods_is_tried_with_all_that_it_has(cubeling, simulate)
     ]
 
 
+@in_virtual_time
 def test_a_mood_of_a_robot_without_moods_is_refused(cubeling, simulate):
     simulate(moods=())
     code, _, err = cubeling("robot", "try", "sim", "--mood", "happy")
@@ -89,6 +113,7 @@ def test_a_mood_of_a_robot_without_moods_is_refused(cubeling, simulate):
     assert "Dino has no mood 'happy': it has none" in err
 
 
+@in_virtual_time
 def test_the_names_of_a_robot_are_neither_markup_nor_control_codes(cubeling, simulate):
     simulate(name="[red]R\x1b[2J", moods=("[/]m\x1b[1m",), motions=("[x",))
     code, out, _ = cubeling("robot", "try", "sim", "--seconds", "0.2")
@@ -101,15 +126,17 @@ def test_the_names_of_a_robot_are_neither_markup_nor_control_codes(cubeling, sim
     assert r"[red]R\x1b[2J has no mood 'glad'" in err
 
 
+@in_virtual_time
 def test_a_joint_is_turned_to_its_angle(cubeling):
     joints = ("--joint", "neck up=-5 deg", "--joint", "torso=0.1rad")
-    code, out, _ = cubeling("robot", "try", "sim", *joints, "--seconds", "0.8")
+    code, out, _ = cubeling("robot", "try", "sim", *joints, "--seconds", "1.2")
     assert code == 0
     neck, torso = without_log(out)[1:]
     assert neck.startswith("neck up=-5 deg reached ")
     assert torso.startswith("torso=0.1rad reached ")
 
 
+@in_virtual_time
 @pytest.mark.parametrize(
     ("port", "joint", "told"),
     [
@@ -136,6 +163,7 @@ class Exhausted(Simulator):
         self.link.log.write(m.SEVERITY_ERROR, "[red]charge\x1b[2J me", 0)
 
 
+@in_virtual_time
 def test_why_a_robot_refuses_and_what_it_logs_is_shown_as_it_is(cubeling, monkeypatch):
     monkeypatch.setitem(SIMULATORS, "cubeling", Exhausted)
     code, out, _ = cubeling("robot", "try", "sim", "--joint", "torso=5deg", "--seconds", "0.5")

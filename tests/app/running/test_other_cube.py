@@ -27,7 +27,7 @@ ADVICE = "This is the companion cube: press 3 to play companion"
 
 @pytest.fixture(scope="module")
 def pictures(short_session):
-    """Two seconds of the companion cube."""
+    """The companion cube, for a second and more."""
     with open_source(str(short_session)) as source:
         return list(source)
 
@@ -41,7 +41,7 @@ def guessed(picture):
     return Intrinsics.guess((width, height))
 
 
-@pytest.mark.slow(reason="two seconds are searched for every cube")
+@pytest.mark.slow(reason="every frame is searched for every cube")
 def test_the_wrong_cube_is_named_within_a_second_or_two(pictures):
     seen = hints(Playground("follow", guessed(pictures[0])), pictures)
     first = seen.index(ADVICE)
@@ -124,11 +124,11 @@ def test_the_present_scenario_goes_on_with_another_cube_in_view(short_session, t
         cubes=(write_other_ids(tmp_path, text), str(mine)),
         robot="none",
     )
-    screen = Presses("companion", at=50)
+    screen = Presses("companion", at=35)
     with open_session(replace(options, pictures=False), screen=screen) as session:
         run(session)
         assert session.playground.cube.name == "museum"
-    assert not any(step.state.visible for step in screen.steps[:50])
+    assert not any(step.state.visible for step in screen.steps[:35])
     assert screen.steps[-1].state.visible
 
 

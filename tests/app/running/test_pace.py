@@ -12,6 +12,7 @@ from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionOptions
 from cubeling.app.ui.screen import NullScreen
+from tests.app.conftest import SHORT_FRAMES
 
 STARTED_OVER = frozenset({round(1 / 30, 9), round(4 / 30, 9)})
 
@@ -101,9 +102,9 @@ def play_slowly(short_session):
 
 def test_in_a_window_late_frames_are_left_out(play_slowly):
     steps, summary = play_slowly()
-    assert summary.frames == len(steps) == pytest.approx(20, abs=3)
-    assert summary.left_out == 60 - len(steps)
-    assert steps[-1].frame.timestamp > 1.8
+    assert summary.frames == len(steps) == pytest.approx(SHORT_FRAMES / 3, abs=2)
+    assert summary.left_out == SHORT_FRAMES - len(steps)
+    assert steps[-1].frame.timestamp > SHORT_FRAMES / 30 - 0.2
 
 
 @pytest.mark.parametrize(
@@ -115,12 +116,12 @@ def test_what_is_written_or_checked_has_every_frame(play_slowly, settings, tmp_p
         for key, value in settings.items()
     }
     steps, summary = play_slowly(**settings)
-    assert (len(steps), summary.left_out) == (60, 0)
+    assert (len(steps), summary.left_out) == (SHORT_FRAMES, 0)
 
 
 def test_a_replay_from_a_later_stage_keeps_messages_and_frames_together(play_slowly, short_session):
     steps, _ = play_slowly(stage="controls")
-    assert len(steps) < 30
+    assert len(steps) < SHORT_FRAMES / 2
     for step in steps:
         assert step.controls.timestamp == step.frame.timestamp
 

@@ -13,6 +13,7 @@ from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.session import SessionOptions, messages, session_info
 from cubeling.robot import SimulatedPort
 from cubeling.tracking import TrackingError, open_source
+from tests.app.conftest import SHORT_FRAMES
 
 
 class FailingSource:
@@ -70,7 +71,8 @@ class VirtualTime:
 
 
 @pytest.mark.parametrize(
-    ("robot", "fast", "seconds"), [("real", False, 2.0), ("real", True, 0.0), ("sim", False, 0.0)]
+    ("robot", "fast", "seconds"),
+    [("real", False, SHORT_FRAMES / 30), ("real", True, 0.0), ("sim", False, 0.0)],
 )
 def test_a_real_robot_gets_a_recording_in_real_time(
     cubeling, short_session, monkeypatch, robot, fast, seconds

@@ -18,13 +18,17 @@ from cubeling.app.ui.playback.requests import MarkMoment, Pause, Record, Seek, S
 from cubeling.robot.protocol.timing import FAILSAFE_AFTER as FAILSAFE_S
 from cubeling.tracking import Health
 from tests.app import session_parts
+from tests.app.conftest import SHORT_FRAMES
 from tests.app.running.player import Player
 from tests.app.running.recorded_camera import RecordedCamera
+
+LAST = SHORT_FRAMES - 1
+"""Number of the last frame."""
 
 
 @pytest.fixture
 def play(short_session, tmp_path):
-    """Play the short session, of 60 frames, before a player; return the player.
+    """Play the short session before a player; return the player.
 
     The cube is not tracked again, which takes most of the time, unless the settings say so.
     """
@@ -55,23 +59,23 @@ def straight(short_session):
     with open_session(options, screen=player) as session:
         session.pace = None
         run(session)
-    assert player.indices == list(range(60))
+    assert player.indices == list(range(SHORT_FRAMES))
     return player.messages()
 
 
 @pytest.mark.slow(reason="a session is computed twice")
 def test_after_a_seek_everything_is_as_if_all_frames_had_been_shown(play, straight):
     player = play(
-        (42, SeekTo(1.1)),
-        (46, SeekTo(0.3)),
-        (50, Seek(1.2)),
-        (54, SeekTo(math.inf)),
+        (28, SeekTo(0.7)),
+        (32, SeekTo(0.3)),
+        (36, Seek(0.7)),
+        (38, SeekTo(math.inf)),
         stage="camera",
     )
     indices = player.indices
-    assert indices[:50] == [*range(42), *range(33, 37), *range(9, 13)]
-    assert indices[50] == 12 + 36
-    assert indices[-1] == 59
+    assert indices[:36] == [*range(28), *range(21, 25), *range(9, 13)]
+    assert indices[36] == 12 + 21
+    assert indices[-1] == LAST
     steps_played = (
         len(indices) - 5
     )  # of the five stretches, each begins with a frame that follows none
@@ -85,9 +89,9 @@ def test_a_pipeline_that_cannot_be_copied_is_run_again_from_the_start(play, stra
 
     monkeypatch.setattr(Playground, "checkpoint", refuse)
     monkeypatch.setattr(runner, "PREVIEW_INTERVAL_S", 0.0)
-    player = play((20, SeekTo(0.5)), (22, SeekTo(1.9)))
-    assert player.indices == [*range(20), 15, 16, 57, 58, 59]
-    assert player.previews == [*range(15), *range(17, 57)], "nothing is seen on the way"
+    player = play((20, SeekTo(0.5)), (22, SeekTo(1.2)))
+    assert player.indices == [*range(20), 15, 16, *range(36, SHORT_FRAMES)]
+    assert player.previews == [*range(15), *range(17, 36)], "nothing is seen on the way"
     assert player.messages() == {index: straight[index] for index in set(player.indices)}
 
 
@@ -105,10 +109,10 @@ def test_single_frames_are_shown_while_it_is_paused(play, straight):
 
 
 def test_at_the_end_it_waits_and_can_be_played_again(play):
-    player = play(("idle", Pause()), (63, SeekTo(math.inf)))
-    assert player.indices == [*range(60), 0, 1, 2, 59]
+    player = play(("idle", Pause()), (SHORT_FRAMES + 3, SeekTo(math.inf)))
+    assert player.indices == [*range(SHORT_FRAMES), 0, 1, 2, LAST]
     assert player.statuses[-1].ending is not None
-    assert player.statuses[-1].position.now == pytest.approx(59 / 30, abs=0.01)
+    assert player.statuses[-1].position.now == pytest.approx(LAST / 30, abs=0.01)
 
 
 def leave(player):
@@ -145,8 +149,8 @@ def test_after_a_seek_nothing_sounds_of_what_was_skipped(play):
 
 
 def test_nobody_seeks_out_of_the_part_that_is_played(play):
-    player = play((2, Seek(-5.0)), (4, Seek(5.0)), start_s=1.0, end_s=1.5)
-    assert player.indices == [30, 31, 30, 31, 45]
+    player = play((2, Seek(-5.0)), (4, Seek(5.0)), start_s=0.6, end_s=1.1)
+    assert player.indices == [18, 19, 18, 19, 33]
 
 
 @pytest.mark.parametrize(

@@ -19,11 +19,12 @@ from cubeling.app.session.encoding import INPUTS_TOPIC
 from cubeling.app.speaking.recorded import RecordedSpeaker
 from cubeling.app.ui.screen import NullScreen
 from tests.app import session_parts
+from tests.app.conftest import SHORT_FRAMES
 from tools.session_copy import INPUT_TOPICS, copy_session, keep_inputs
 
 SPOKEN = Path(tests.sessions.__path__[0]) / "spoken.mcap"
 
-START_OVER, OPENED, CLOSED, MARK, HIDDEN, SHOWN = 20, 10, 40, 30, 3, 25
+START_OVER, OPENED, CLOSED, MARK, HIDDEN, SHOWN = 20, 10, 35, 30, 3, 25
 """The frames in which something comes in; one line is said before the character appears."""
 
 
@@ -65,7 +66,7 @@ def test_a_session_with_inputs_of_every_kind_replays_bit_for_bit(full):
     assert list(session_parts.lines(full)) == [times[HIDDEN], times[SHOWN]]
     result = session_parts.check(full, session_info(full).options)
     assert result.identical
-    assert set(result.counts.values()) == {60}
+    assert set(result.counts.values()) == {SHORT_FRAMES}
 
 
 @pytest.mark.slow(reason="a session is computed again")

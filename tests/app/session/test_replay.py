@@ -114,9 +114,9 @@ def test_a_player_who_starts_over_does_so_in_the_replay(tmp_path, short_session)
 
 
 @pytest.mark.slow(reason="a session is played and replayed")
-def test_a_player_who_looks_into_the_cube_does_so_in_the_replay(tmp_path, short_session):
+def test_a_player_who_looks_into_the_cube_does_so_in_the_replay(tmp_path, lifting_session):
     class Looks(NullScreen):
-        """Presses I after 10 and after 40 frames, and keeps what was seen."""
+        """Presses I after 10 and after 30 frames, and keeps what was seen."""
 
         def __init__(self, *presses):
             self.presses, self.openings = presses, []
@@ -128,9 +128,9 @@ def test_a_player_who_looks_into_the_cube_does_so_in_the_replay(tmp_path, short_
 
     path = tmp_path / "inside.mcap"
     options = SessionOptions(
-        scenario="companion", source=str(short_session), robot="none", record=path, pictures=False
+        scenario="companion", source=str(lifting_session), robot="none", record=path, pictures=False
     )
-    player, nobody = Looks(10, 40), Looks()
+    player, nobody = Looks(10, 30), Looks()
     with open_session(options, screen=player) as session:
         run(session)
     assert max(player.openings) == 1.0

@@ -4,7 +4,6 @@ import math
 
 import pytest
 from hypothesis import given, strategies as st
-from scipy.stats import wilcoxon
 
 from cubeling.app.study.cmos import ANSWER_SCORES, PUBLISHED_THREE_LEVEL, Votes, ranking
 
@@ -67,8 +66,11 @@ def test_swapping_the_videos_turns_the_score_round(own):
     assert low <= own.mean <= high
 
 
+@pytest.mark.slow(reason="scipy.stats is imported, here only, as that takes a second")
 @given(votes)
 def test_the_signed_rank_test_is_that_of_scipy(own):
+    from scipy.stats import wilcoxon
+
     scores = [
         score
         for score, count in zip(

@@ -20,6 +20,7 @@ from cubeling.app.ui.output_file import ENDING_RATE, ENDING_S, MAX_FRAMES, Frame
 from cubeling.app.ui.output_formats import VIDEO_FORMATS
 from cubeling.app.ui.video_file import VideoFile
 from cubeling.tracking import LensEstimate
+from tests.app.conftest import SHORT_FRAMES
 
 ROBOT = RobotView("ready", 0.4, "happy")
 
@@ -172,7 +173,7 @@ def printed(summary):
     return capture.get()
 
 
-@pytest.mark.slow(reason="two seconds are drawn and written as a video")
+@pytest.mark.slow(reason="forty frames are drawn and written as a video")
 def test_the_demo_without_a_display_renders_a_video_and_says_what_happened(
     cubeling, short_session, monkeypatch
 ):
@@ -185,9 +186,9 @@ def test_the_demo_without_a_display_renders_a_video_and_says_what_happened(
     assert [path.name for path in Path().iterdir()] == ["demo.mp4"]
     with av.open("demo.mp4") as file:
         pictures = list(file.decode(video=0))
-    assert len(pictures) == 60 + ENDING_S * ENDING_RATE
-    assert pictures[-1].time == pytest.approx(59 / 30 + ENDING_S, abs=0.01)
-    before, last = (pictures[index].to_ndarray(format="gray") for index in (59, -1))
+    assert len(pictures) == SHORT_FRAMES + ENDING_S * ENDING_RATE
+    assert pictures[-1].time == pytest.approx((SHORT_FRAMES - 1) / 30 + ENDING_S, abs=0.01)
+    before, last = (pictures[index].to_ndarray(format="gray") for index in (SHORT_FRAMES - 1, -1))
     middle = np.s_[125:250, 210:430]
     assert last[middle].mean() > before[middle].mean() + 50, "no card lies over the last picture"
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from cubeling.app.preferences import Preferences, PreferenceStore
+from tests.app.conftest import SHORT_FRAMES
 from tests.virtual_screen import VirtualScreen
 
 SCRIPT = Path(__file__).with_name("window_script.py")
@@ -52,7 +53,7 @@ def test_a_replay_opens_the_window_and_waits_for_the_user_at_the_end(
     done = on_screen(REPLAY_SCRIPT, "replay", short_session)
     assert done.returncode == 0, done.stderr
     counted = re.findall(r"(?:played|left out) +(\d+) frames?\b", done.stdout)
-    assert sum(map(int, counted)) == 60
+    assert sum(map(int, counted)) == SHORT_FRAMES
     assert "waited 5 times" in done.stderr
     kept = PreferenceStore(next(tmp_path.rglob("preferences.toml"))).now
     assert kept == Preferences(panels_shown=True, mirror=True)
