@@ -6,7 +6,7 @@
 from itertools import groupby
 from pathlib import Path
 
-from cubeling.app.exporting import dictionary_rows
+from cubeling.app.workshop.exporting import dictionary_rows
 from tools.marked_parts import replace_part
 
 DOCUMENT = Path(__file__).parents[1] / "docs" / "exporting.md"

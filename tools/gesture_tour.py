@@ -9,13 +9,13 @@ import numpy as np
 from imgui_bundle import imgui
 from numpy.typing import NDArray
 
-from cubeling.app.gesture_editor.editing.timing import phase_spans, time_line_span, time_of
-from cubeling.app.gesture_editor.panels.ui import DESK, Rect
-from cubeling.app.gesture_editor.panels.view import EditorView, chord_of
-from cubeling.app.gesture_editor.session import EditorSession
-from cubeling.app.gesture_editor.window import SIZE
 from cubeling.app.ui.contact_sheets import save
 from cubeling.app.ui.panels.drawing.style import rgba
+from cubeling.app.workshop.gesture_editor.editing.timing import phase_spans, time_line_span, time_of
+from cubeling.app.workshop.gesture_editor.panels.ui import DESK, Rect
+from cubeling.app.workshop.gesture_editor.panels.view import EditorView, chord_of
+from cubeling.app.workshop.gesture_editor.session import EditorSession
+from cubeling.app.workshop.gesture_editor.window import SIZE
 from cubeling.characters.rendering import create_context
 
 MOUSE_STEPS = 4

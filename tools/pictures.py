@@ -18,7 +18,6 @@ from cubeling.app.behaving.opening import open_lines
 from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
 from cubeling.app.behaving.recording import perform
 from cubeling.app.commands.mood import plot
-from cubeling.app.latency.pattern import draw_pattern
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.preferences import PreferenceStore
@@ -37,6 +36,7 @@ from cubeling.app.ui.panels import PANELS
 from cubeling.app.ui.playback.layer import PlaybackLayer
 from cubeling.app.ui.playback.status import PlaybackMark, Position, SessionStatus
 from cubeling.app.ui.window import Window
+from cubeling.app.workshop.latency.pattern import draw_pattern
 from cubeling.characters import Character
 from cubeling.characters.rendering import create_context
 from cubeling.characters.rendering.portrait import PortraitRenderer

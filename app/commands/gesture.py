@@ -18,7 +18,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.ui.display import has_display
 
 if TYPE_CHECKING:
-    from cubeling.app.gesture_editor.editing.store import GestureStore
+    from cubeling.app.workshop.gesture_editor.editing.store import GestureStore
     from cubeling.characters.behaviour import BodyKey, HandKey, SymbolicGesture
 
 SHEET_SUFFIXES = (".png", ".jpg")
@@ -61,7 +61,7 @@ def edit(
     """
     if not has_display():
         raise AppError("the editor needs a window: run it where there is a display")
-    from cubeling.app.gesture_editor.window import edit as edit_in_window
+    from cubeling.app.workshop.gesture_editor.window import edit as edit_in_window
 
     edit_in_window(folder, character, name)
 
@@ -72,8 +72,8 @@ def list_gestures(folder: FolderOption = GESTURE_FOLDER) -> None:
 
     Example: [cyan]cubeling gesture list[/]
     """
-    from cubeling.app.gesture_editor.editing.store import GestureStore
-    from cubeling.app.gesture_editor.editing.timing import duration
+    from cubeling.app.workshop.gesture_editor.editing.store import GestureStore
+    from cubeling.app.workshop.gesture_editor.editing.timing import duration
 
     store = GestureStore(folder)
     rows = Table(box=SIMPLE_HEAD)
@@ -106,13 +106,13 @@ def show(
     """
     if output is not None:
         chosen_output(output, "", "picture", SHEET_SUFFIXES, overwrite)
-    from cubeling.app.gesture_editor.editing.store import GestureStore
+    from cubeling.app.workshop.gesture_editor.editing.store import GestureStore
     from cubeling.characters import Character
 
     gesture = GestureStore(folder).load(name)
     describe(Console(), gesture)
     if output is not None:
-        from cubeling.app.gesture_editor.sheet import draw_sheet
+        from cubeling.app.workshop.gesture_editor.sheet import draw_sheet
 
         draw_sheet(output, gesture, character or list(Character.bundled_names()))
         print_written(str(output))
@@ -143,9 +143,9 @@ def import_gesture(
 
     Example: [cyan]cubeling gesture import greeting.bvh --from 1.2 --to 2.4 -o GREET[/]
     """
-    from cubeling.app.gesture_editor.editing.edits import gesture_name
-    from cubeling.app.gesture_editor.editing.importing import imported
-    from cubeling.app.gesture_editor.editing.store import GestureStore
+    from cubeling.app.workshop.gesture_editor.editing.edits import gesture_name
+    from cubeling.app.workshop.gesture_editor.editing.importing import imported
+    from cubeling.app.workshop.gesture_editor.editing.store import GestureStore
     from cubeling.characters.behaviour import GESTURE_SUFFIX, save_gesture
 
     file = output is not None and output.endswith(GESTURE_SUFFIX)
@@ -172,7 +172,7 @@ def _saved(store: GestureStore, gesture: SymbolicGesture, overwrite: bool) -> st
 
 def describe(console: Console, gesture: SymbolicGesture) -> None:
     """Print the phases and the keys of a gesture."""
-    from cubeling.app.gesture_editor.editing.timing import phase_spans
+    from cubeling.app.workshop.gesture_editor.editing.timing import phase_spans
 
     console.print(f"[bold]{escape(gesture.name)}[/]  {escape(gesture.summary)}", highlight=False)
     spans = phase_spans(gesture).items()
@@ -187,7 +187,7 @@ def describe(console: Console, gesture: SymbolicGesture) -> None:
 
 def hands(gesture: SymbolicGesture) -> str:
     """Return who performs a gesture, such as "right hand" or "trunk and head"."""
-    from cubeling.app.gesture_editor.editing.edits import performers
+    from cubeling.app.workshop.gesture_editor.editing.edits import performers
 
     if not (gesture.right or gesture.left):
         return "trunk and head"

@@ -114,7 +114,7 @@ def show(
     if output is None:
         return
     with needs_matplotlib():
-        from cubeling.app.idle_plot import save_plot
+        from cubeling.app.workshop.idle_plot import save_plot
     database = IdleDatabase.of(recordings, PostureVectors.of(skeleton, anatomy)).suiting(emotion)
     save_plot(output, database, f"How {person.stem} stands")
     console.print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)

@@ -12,14 +12,14 @@ from rich.console import Console
 
 from cubeling.app.commands.session.play import DEFAULT_CAMERA
 from cubeling.app.errors import AppError
-from cubeling.app.latency import MIN_FLIPS
 from cubeling.app.output_path import check_output
 from cubeling.app.scenarios import check_scenario
 from cubeling.app.ui.display import has_display
+from cubeling.app.workshop.latency import MIN_FLIPS
 
 if TYPE_CHECKING:
-    from cubeling.app.latency.program import ProgramTimes
-    from cubeling.app.latency.session import LatencySession
+    from cubeling.app.workshop.latency.program import ProgramTimes
+    from cubeling.app.workshop.latency.session import LatencySession
 
 Source = Annotated[
     str, typer.Option("--source", "-s", help="A live camera: camera:0, http://PHONE:8080/video.")
@@ -63,10 +63,10 @@ def latency(
     if not has_display():
         raise AppError("the latency is that of a screen, and there is no display here")
     console = Console(highlight=False)
-    from cubeling.app.latency.program import program_times
-    from cubeling.app.latency.result import latency_result
-    from cubeling.app.latency.session import LatencySession
     from cubeling.app.session import SessionOptions
+    from cubeling.app.workshop.latency.program import program_times
+    from cubeling.app.workshop.latency.result import latency_result
+    from cubeling.app.workshop.latency.session import LatencySession
     from cubeling.tracking import LiveFrames, open_source
 
     with ExitStack() as closing:
@@ -97,7 +97,7 @@ def _flip(session: LatencySession) -> tuple[str, bool, bool]:
     tuple
         What draws, whether the user ended early, and whether by Ctrl-C.
     """
-    from cubeling.app.latency.window import PatternWindow  # needs a display's libraries
+    from cubeling.app.workshop.latency.window import PatternWindow  # needs a display's libraries
 
     interrupted = False
     with PatternWindow() as window:

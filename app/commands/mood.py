@@ -61,8 +61,8 @@ def plot(
         count = f"{len(personalities)} personalities are too many for one plot"
         raise AppError(f"{count}: name at most {MAX_PERSONALITIES}")
     with needs_matplotlib():
-        from cubeling.app.moods.plot import save_plot
-    from cubeling.app.moods import read_history, read_robot_traces, replay_with
+        from cubeling.app.workshop.moods.plot import save_plot
+    from cubeling.app.workshop.moods import read_history, read_robot_traces, replay_with
 
     with complete_session(session, salvage=salvage) as complete:
         history = read_history(complete, salvage=salvage)
@@ -95,7 +95,12 @@ def table(
     """
     output = chosen_output(output, f"{session.stem}-mood.csv", "table", (".csv",), overwrite)
     other = None if personality is None else Personality.load(personality)
-    from cubeling.app.moods import read_history, read_robot_traces, replay_with, write_table
+    from cubeling.app.workshop.moods import (
+        read_history,
+        read_robot_traces,
+        replay_with,
+        write_table,
+    )
 
     with complete_session(session, salvage=salvage) as complete:
         history = read_history(complete, salvage=salvage)

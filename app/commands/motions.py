@@ -71,7 +71,7 @@ def build(
     if threshold is not None and not threshold > 0:
         raise AppError(f"a threshold of {threshold:g} joins nothing: give a positive one")
     target = chosen_output(output, "my.graph", "motion graph", (".graph",), overwrite)
-    from cubeling.app.motion_graphs.recordings import clip_names, gather
+    from cubeling.app.workshop.motion_graphs.recordings import clip_names, gather
     from cubeling.characters import Character
     from cubeling.characters.model import with_root_joint
     from cubeling.characters.motion import (
@@ -136,7 +136,7 @@ def show(
     if output is None:
         return
     with needs_matplotlib():
-        from cubeling.app.motion_graphs.plot import save_plot
+        from cubeling.app.workshop.motion_graphs.plot import save_plot
     save_plot(output, stored, graph.name)
     console.print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
 
@@ -171,9 +171,9 @@ def tables(
     """
     target = chosen_output(output, "tables.html", "page", (".html",), overwrite)
     with needs_matplotlib():
-        from cubeling.app.motion_graphs.page import write_page
-    from cubeling.app.motion_graphs.recordings import clip_names, gather
-    from cubeling.app.motion_graphs.tables import make_tables
+        from cubeling.app.workshop.motion_graphs.page import write_page
+    from cubeling.app.workshop.motion_graphs.recordings import clip_names, gather
+    from cubeling.app.workshop.motion_graphs.tables import make_tables
     from cubeling.characters import Character
     from cubeling.characters.model import with_root_joint
     from cubeling.characters.motion import DEFAULT_RATE_HZ, MotionLibrary

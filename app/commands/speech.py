@@ -88,7 +88,7 @@ def show(
     if output is None:
         return
     with needs_matplotlib():
-        from cubeling.app.speech_plot import GestureMark, save_plot
+        from cubeling.app.workshop.speech_plot import GestureMark, save_plot
     marks = [
         GestureMark(each.node.phrase.hand, each.start, each.apex, each.end, tuple(each.phases))
         for each in planned_gestures(character, accents, speech.duration)

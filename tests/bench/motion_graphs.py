@@ -24,8 +24,8 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from cubeling.app.motion_graphs.recordings import fitted
-from cubeling.app.motion_graphs.tables import SPLIT_PROFILES
+from cubeling.app.workshop.motion_graphs.recordings import fitted
+from cubeling.app.workshop.motion_graphs.tables import SPLIT_PROFILES
 from cubeling.characters import Character
 from cubeling.characters.retargeting import load_recording
 from cubeling.characters.synthesis.distances import thesis_distance

@@ -39,8 +39,8 @@ def export(
     Example: [cyan]cubeling export recordings/follow.mcap recordings/sketch.mcap -o study
     --participant P1 --participant P2[/]
     """
-    from cubeling.app.exporting import ExportedSession, export as write_tables
-    from cubeling.app.exporting.writing import EXPORT_FILES
+    from cubeling.app.workshop.exporting import ExportedSession, export as write_tables
+    from cubeling.app.workshop.exporting.writing import EXPORT_FILES
 
     check_output_folder(output, EXPORT_FILES, "tables", overwrite=overwrite)
     people = labels(participant, len(sessions), "--participant")

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cubeling.app.exporting import CONTEXT_COLUMNS, EXPORT_TABLES, dictionary_rows, writing
-from cubeling.app.exporting.writing import DICTIONARY_FILE
 from cubeling.app.session import messages
 from cubeling.app.session.encoding import MESSAGE_TYPES, decode
+from cubeling.app.workshop.exporting import CONTEXT_COLUMNS, EXPORT_TABLES, dictionary_rows, writing
+from cubeling.app.workshop.exporting.writing import DICTIONARY_FILE
 from cubeling.characters.skeleton import rotations
 from tests.app.conftest import SHORT_FRAMES
 from tools.export_dictionary import DOCUMENT, updated

@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 
 from cubeling.app.commands import gesture
 from cubeling.app.errors import AppError
-from cubeling.app.gesture_editor.preview import Preview, PreviewedGesture
+from cubeling.app.workshop.gesture_editor.preview import Preview, PreviewedGesture
 from cubeling.characters import Character, Clip, Pose
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
 from cubeling.characters.behaviour.gestures.files import load_gesture, save_gesture

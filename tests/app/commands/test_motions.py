@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cubeling.app.motion_graphs.page import write_page
-from cubeling.app.motion_graphs.tables import TABLE_3_2, TABLE_3_3, Tables
+from cubeling.app.workshop.motion_graphs.page import write_page
+from cubeling.app.workshop.motion_graphs.tables import TABLE_3_2, TABLE_3_3, Tables
 from cubeling.characters.synthesis.graphs.storage import load_graph
 
 

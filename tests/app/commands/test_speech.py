@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from cubeling.app.commands.speech import app
 from cubeling.app.errors import AppError
-from cubeling.app.speech_plot import GestureMark, draw, save_plot
+from cubeling.app.workshop.speech_plot import GestureMark, draw, save_plot
 from cubeling.characters import CharacterError
 from cubeling.characters.speech.speech import Phone, Speech, Word
 from cubeling.characters.speech.textgrid import read_textgrid, textgrid_of, write_textgrid

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from cubeling.app.errors import AppError
-from cubeling.app.moods.robot_traces import read_robot_traces
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.running import runner
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionOptions, messages, session_info
 from cubeling.app.ui.playback.requests import MarkMoment, Pause, Record, Seek, SeekTo, StepFrames
+from cubeling.app.workshop.moods.robot_traces import read_robot_traces
 from cubeling.robot.protocol.timing import FAILSAFE_AFTER as FAILSAFE_S
 from cubeling.tracking import Health
 from tests.app import session_parts

@@ -1,0 +1,1 @@
+"""What is made of sessions and for them, apart from play: tables, plots, editor, studies."""

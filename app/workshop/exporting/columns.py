@@ -1,0 +1,203 @@
+"""What is exported: the tables, their columns, and what each column means.
+
+This is the one place that names them: files, data dictionary and docs/exporting.md are made of it.
+"""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cubeling.app.workshop.exporting.column import Column, Table, field, vector
+from cubeling.characters import CharacterCommand, PosedCharacter
+from cubeling.characters.motion import rotations
+from cubeling.tracking import CubeState
+
+
+def _cube_place(state: CubeState) -> NDArray[np.float64] | None:
+    return None if state.camera_from_cube is None else state.camera_from_cube[:3, 3]
+
+
+def _cube_rotation(state: CubeState) -> NDArray[np.float64] | None:
+    if state.camera_from_cube is None:
+        return None
+    return rotations.from_matrix(state.camera_from_cube[:3, :3])
+
+
+def _target(command: CharacterCommand) -> NDArray[np.float64] | None:
+    return None if command.locomotion is None else command.locomotion.target
+
+
+def _yaw(posed: PosedCharacter) -> float:
+    place = posed.table_from_character
+    return math.atan2(place[0, 2], place[2, 2])
+
+
+CAMERA_AXES = ("to the right", "down", "forward")
+"""Axes of the camera frame, as in OpenCV."""
+
+CONTEXT_COLUMNS = (
+    Column("session", "", "Name of the session's file, without its suffix", lambda row: row[0]),
+    Column("participant", "", "Label given with --participant", lambda row: row[1]),
+    Column("condition", "", "Label given with --condition", lambda row: row[2]),
+    Column("time_s", "s", "Time of the frame by the camera's clock", lambda row: row[3]),
+)
+"""The first columns of every table but `sessions`."""
+
+SESSION_CONTEXT_COLUMNS = CONTEXT_COLUMNS[:-1]
+"""The first columns of the table `sessions`, which has no time."""
+
+SESSION_COLUMNS = (
+    field("scenario", "", "Name of the scenario", "options.scenario"),
+    field("cube", "", "The cube; empty for the scenario's own", "options.cube"),
+    field("character", "", "The character; empty for the scenario's own", "options.character"),
+    field(
+        "personality", "", "The personality; empty for the scenario's own", "options.personality"
+    ),
+    field("frames", "", "Camera frames"),
+    field("duration_s", "s", "From the first to the last camera frame", "duration"),
+    field(
+        "clock_zero_utc",
+        "",
+        "Date and time at which time_s was 0, in UTC by ISO 8601; empty if the camera was not live",
+        "clock_zero",
+    ),
+)
+"""The columns of the table `sessions`, which has a row for each session."""
+
+EXPORT_TABLES = (
+    Table(
+        "poses",
+        "/cube/state",
+        (
+            field("visible", "", "1 if the cube was found and its pose is trusted"),
+            field("verdict", "", "trusted, unseen, or why the pose was refused"),
+            *vector(
+                ("x_m", "y_m", "z_m"),
+                "m",
+                [f"Centre of the cube in the camera frame, {axis}" for axis in CAMERA_AXES],
+                _cube_place,
+            ),
+            *vector(
+                ("qx", "qy", "qz", "qw"),
+                "",
+                [f"Unit quaternion from the cube to the camera frame, {part}" for part in "xyzw"],
+                _cube_rotation,
+            ),
+            *vector(
+                ("vx_m_s", "vy_m_s", "vz_m_s"),
+                "m/s",
+                [f"Velocity of the cube's centre, {axis}" for axis in CAMERA_AXES],
+                lambda state: state.velocity[:3],
+            ),
+            *vector(
+                ("wx_rad_s", "wy_rad_s", "wz_rad_s"),
+                "rad/s",
+                [f"Angular velocity about the axis {axis}" for axis in CAMERA_AXES],
+                lambda state: state.velocity[3:],
+            ),
+            field("reprojection_error_px", "px", "Root mean square residual of the pose",
+                   "reprojection_error"),
+            field("measured_on", "", "markers, image or predicted", "source"),
+            field("faces", "", "Faces whose markers were used", nested=True),
+        ),
+    ),
+    Table(
+        "controls",
+        "/cube/controls",
+        (
+            field("visible", "", "1 if the cube is seen; else the last values are repeated"),
+            field("top_face", "", "Name of the face that points up"),
+            field("heading_rad", "rad", "Direction of the forward side, clockwise from above; "
+                   "0 towards the camera", "heading"),
+            field("camera_angle_rad", "rad", "Angle between the forward side and the camera",
+                   "camera_angle"),
+            field("turns", "turns", "Turns since the cube was placed, clockwise from above"),
+            field("resting", "", "1 if the cube rests on the table"),
+            field("placed", "", "1 in the frame in which the cube comes to rest"),
+            field("lifted", "", "1 if the cube is off the table or tipped"),
+            *vector(
+                ("x_m", "z_m"),
+                "m",
+                ("Centre of the cube on the table, to the right",
+                 "Centre of the cube on the table, towards the camera"),
+                lambda controls: controls.position,
+            ),
+            field("placements", "", "How often the cube has been placed so far"),
+            field("shaken", "", "1 in the frame in which a shake is recognised"),
+            field("gestures", "", "Gestures recognised in this frame", nested=True),
+        ),
+    ),
+    Table(
+        "commands",
+        "/character/command",
+        (
+            field("visible", "", "1 if the character is drawn"),
+            field("activity", "", "The action, or move or idle"),
+            field("weight", "", "Intensity of the action, −1 to 1"),
+            field("speed", "", "AvatAR's Speed that is asked for, 0 to 5"),
+            Column("said", "", "What the character says in this frame; empty for nothing",
+                   lambda command: command.speech.utterance.text if command.speaks else None),
+            *vector(
+                ("target_x_m", "target_z_m"),
+                "m",
+                ("Where to go on the table, to the right",
+                 "Where to go on the table, towards the camera"),
+                _target,
+            ),
+        ),
+    ),
+    Table(
+        "characters",
+        "/character/pose",
+        (
+            field("visible", "", "1 if the character is drawn"),
+            field("state", "", "idle, walk, run, or the action"),
+            field("speed", "", "AvatAR's Speed that is used, 0 to 5"),
+            field("weight", "", "Intensity in use, −1 to 1"),
+            *vector(
+                ("x_m", "z_m"),
+                "m",
+                ("Where the character stands on the table, to the right",
+                 "Where it stands on the table, towards the camera"),
+                lambda posed: posed.table_from_character[[0, 2], 3],
+            ),
+            Column("yaw_rad", "rad", "Its heading about the upward axis; 0 towards the camera",
+                   _yaw),
+            field("joint_translations", "m", "Of each joint in its parent, [x, y, z]",
+                   "pose.translations", nested=True),
+            field("joint_rotations", "", "Of each joint in its parent, quaternion [x, y, z, w]",
+                   "pose.rotations", nested=True),
+            field("morphs", "", "Weights of the morph targets; empty for none", "pose.morphs",
+                   nested=True),
+        ),
+    ),
+    Table(
+        "emotions",
+        "/robot/emotion",
+        (
+            field("valence", "", "From unpleasant, −1, to pleasant, 1", "emotion.valence"),
+            field("arousal", "", "From calm, −1, to excited, 1", "emotion.arousal"),
+            field("label", "", "The word for the emotion", "emotion.label"),
+        ),
+    ),
+    Table(
+        "events",
+        "/events",
+        (Column("event", "", "placed FACE, shaken, start over, cube opened or closed, camera lost, "
+                "camera back", lambda event: event.get("event")),),
+    ),
+)  # fmt: skip
+"""The tables besides `sessions`."""
+
+
+def dictionary_rows() -> Iterator[tuple[str, str, str, str, str]]:
+    """Yield (table, column, unit, files, meaning) for every column of every table."""
+    for name, columns in (
+        ("sessions", SESSION_CONTEXT_COLUMNS + SESSION_COLUMNS),
+        *((table.name, CONTEXT_COLUMNS + table.columns) for table in EXPORT_TABLES),
+    ):
+        for column in columns:
+            files = "jsonl" if column.nested else "csv, jsonl"
+            yield name, column.name, column.unit, files, column.meaning

@@ -1,0 +1,90 @@
+"""Comparison mean opinion scores, with the figures of the thesis (section 4.4.6)."""
+
+import math
+
+import pytest
+from hypothesis import given, strategies as st
+
+from cubeling.app.workshop.study.cmos import ANSWER_SCORES, PUBLISHED_THREE_LEVEL, Votes, ranking
+
+# 124 answers each. The thesis prints percentages, means and medians; these counts have them.
+THESIS = {
+    ("intensity", "random"): Votes(16, 65, 33, 9, 1),
+    ("intensity", "time"): Votes(21, 63, 16, 21, 3),
+    ("time", "random"): Votes(8, 46, 41, 24, 5),
+    ("intensity", "original"): Votes(3, 17, 30, 44, 30),
+    ("time", "original"): Votes(1, 6, 14, 50, 53),
+    ("random", "original"): Votes(1, 5, 13, 53, 52),
+}
+counts = st.integers(0, 40)
+votes = st.builds(Votes, counts, counts, st.integers(1, 40), counts, counts)
+
+
+@pytest.mark.parametrize(
+    ("pair", "better", "worse", "mean", "median"),
+    [
+        (("intensity", "random"), 65.3, 8.1, 0.69, 1),
+        (("intensity", "time"), 67.7, 19.4, 0.63, 1),
+        (("time", "random"), 43.5, 23.4, 0.23, 0),
+        (("intensity", "original"), None, 100 - 40.3, -0.65, -1),
+        (("time", "original"), None, 100 - 16.9, -1.19, -1),
+        (("random", "original"), None, 100 - 15.3, -1.21, -1),
+    ],
+)
+def test_counts_give_the_printed_figures(pair, better, worse, mean, median):
+    own = THESIS[pair]
+    assert own.total == 124
+    assert better is None or round(100 * own.better_share, 1) == better
+    assert round(100 * own.worse_share, 1) == pytest.approx(worse)
+    assert round(own.mean, 2) == mean
+    assert own.median == median
+
+
+def test_three_levels_give_the_figure_that_is_set_beside_others():
+    own = THESIS["intensity", "original"]
+    assert round(own.three_level, 2) == PUBLISHED_THREE_LEVEL["Fernández-Baena 2015"]
+    assert round(1 - own.worse_share, 3) == 0.403
+
+
+def test_the_order_is_original_intensity_time_random():
+    assert [name for name, _ in ranking(THESIS)] == ["original", "intensity", "time", "random"]
+
+
+def test_the_printed_significance_holds():
+    # The thesis has p < 0.01 for one pair and p < 0.001 for the others, by t-tests.
+    for pair, own in THESIS.items():
+        low, high = own.interval(0.99 if pair == ("time", "random") else 0.999)
+        assert low > 0 or high < 0
+
+
+@given(votes)
+def test_swapping_the_videos_turns_the_score_round(own):
+    other = Votes(own.much_worse, own.worse, own.same, own.better, own.much_better)
+    assert other.mean == pytest.approx(-own.mean)
+    assert other.wilcoxon_p() == pytest.approx(own.wilcoxon_p())
+    low, high = own.interval()
+    assert low <= own.mean <= high
+
+
+@pytest.mark.slow(reason="scipy.stats is imported, here only, as that takes a second")
+@given(votes)
+def test_the_signed_rank_test_is_that_of_scipy(own):
+    from scipy.stats import wilcoxon
+
+    scores = [
+        score
+        for score, count in zip(
+            ANSWER_SCORES,
+            (own.much_better, own.better, own.same, own.worse, own.much_worse),
+            strict=True,
+        )
+        for _ in range(count)
+    ]
+    if any(scores):
+        theirs = wilcoxon(scores, method="approx").pvalue
+        assert math.isclose(own.wilcoxon_p(), theirs, rel_tol=1e-6)
+
+
+def test_no_votes_are_refused():
+    with pytest.raises(ValueError, match="at least one"):
+        Votes(0, 0, 0, 0, 0)
