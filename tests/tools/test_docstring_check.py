@@ -36,6 +36,7 @@ def test_private_names_may_be_brief() -> None:
     assert names_in('class _Box:\n    side: float\n    """Its side."""') == []
 
 
+@pytest.mark.full  # `make check` does it for every change
 def test_the_rooms_pass() -> None:
     paths = [path for room in ROOMS for path in (ROOT / room).rglob("*.py")]
     assert [s for path in paths for s in short_docstrings(path.read_text(), path)] == []

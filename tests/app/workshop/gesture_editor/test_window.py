@@ -10,7 +10,7 @@ import pytest
 from tests.virtual_screen import VirtualScreen
 
 SCRIPT = Path(__file__).with_name("window_script.py")
-ROOT = SCRIPT.parents[3]
+ROOT = SCRIPT.parents[4]
 
 
 @pytest.mark.slow(reason="a window is opened")
