@@ -31,7 +31,6 @@ from cubeling.app.ui.calibration.session import Advice, CalibrationSession, Pict
 from cubeling.app.ui.cards.layout import CardLayout
 from cubeling.app.ui.cards.overlay import overlay, virtual_robot_side
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
-from cubeling.app.ui.gesture_sheets import draw_library, draw_settings
 from cubeling.app.ui.panels import PANELS
 from cubeling.app.ui.playback.layer import PlaybackLayer
 from cubeling.app.ui.playback.status import PlaybackMark, Position, SessionStatus
@@ -43,6 +42,7 @@ from cubeling.characters.rendering.portrait import PortraitRenderer
 from cubeling.tracking import CubeModel, open_source, write_sheet
 from cubeling.tracking.calibration import CubeFinder
 from cubeling.tracking.synthetic import open_synthetic
+from tools.gesture_sheets import draw_library, draw_settings
 from tools.gesture_tour import draw_tour
 from tools.offscreen import no_display_needed
 
