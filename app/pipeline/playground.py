@@ -27,7 +27,7 @@ from cubeling.app.pipeline.scenario import (
 )
 from cubeling.app.pipeline.scenario_errors import checked, scenario_errors
 from cubeling.app.pipeline.situation import Situation, table_from_cube
-from cubeling.app.pipeline.speaking import Speaking
+from cubeling.app.pipeline.spoken_line import Speaking
 from cubeling.app.pipeline.step import ReplayInputs, Step
 from cubeling.app.pipeline.step_renderer import StepRenderer
 from cubeling.characters import (
@@ -367,7 +367,7 @@ class Playground:
             command,
             gaze=self._attention.update(state, controls, command),
             emotion=decision.emotion.emotion,
-            speech=self._speaking.update(inputs, command),
+            speech=self._speaking.update(inputs.line, command, silence=inputs.clear),
         )
 
     def _hint(self, decision: Outcome) -> str:

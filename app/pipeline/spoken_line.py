@@ -1,8 +1,12 @@
-"""A line that the character says: what enters the pipeline from a voice, a file or a recording."""
+"""A line that the character says: it enters the pipeline from a voice, a file or a recording."""
 
 from dataclasses import dataclass
 
+from cubeling.characters import CharacterCommand, SpeechIntent
 from cubeling.characters.speech import DEFAULT_PROFILE, Samples, SpeechProfile, Utterance
+
+SUBTITLE_S = 1.2
+"""A line stays in the command for so long after its end [s], for those who read it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,3 +24,27 @@ class SpokenLine:
 
     profile: SpeechProfile = DEFAULT_PROFILE
     """How it is said with the body."""
+
+
+class Speaking:
+    """The line that the character says; a new one takes the place of an old one."""
+
+    def __init__(self) -> None:
+        self.line: SpokenLine | None = None
+        """What it says; None for nothing."""
+        self._speech: SpeechIntent | None = None
+
+    def update(
+        self, new: SpokenLine | None, command: CharacterCommand, *, silence: bool
+    ) -> SpeechIntent | None:
+        """Return what a frame's command says, with a new line or with silence from now on.
+
+        A character that is hidden falls silent, too.
+        """
+        now = command.timestamp
+        if new is not None:
+            self.line, self._speech = new, SpeechIntent(new.utterance, now, new.profile)
+        over = self._speech is not None and now > self._speech.end + SUBTITLE_S
+        if over or silence or not command.visible:
+            self.line = self._speech = None
+        return self._speech
