@@ -63,7 +63,7 @@ class Direction:
     """Of blinks, sway and the choice between gestures."""
 
 
-def performed(character: Character, line: SpokenLine, direction: Direction, rate: float) -> Clip:
+def speech_clip(character: Character, line: SpokenLine, direction: Direction, rate: float) -> Clip:
     """Return the motion of a character that says a line, `LEAD_S` after its start.
 
     `rate` is the number of frames a second.
@@ -134,7 +134,7 @@ def write_video(
     AppError
         The file cannot be written.
     """
-    seen = framed(character, clip.poses[0], view)
+    seen = focus_of(character, clip.poses[0], view)
     speech = SpeechIntent(line.utterance, LEAD_S)
 
     def subtitle_over(picture: NDArray[np.uint8], now: float) -> None:
@@ -155,7 +155,7 @@ def write_video(
     )
 
 
-def framed(character: Character, pose: Pose, view: View) -> Focus:
+def focus_of(character: Character, pose: Pose, view: View) -> Focus:
     """Return what is seen of a character: a centre (3,) and a radius in its frame [m]."""
     joints = joints_below(character, "head") if view == "face" else None
     points = CharacterExtent(character).points(pose, joints)

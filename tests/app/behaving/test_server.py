@@ -105,7 +105,7 @@ class Limited(NoOutput):
         self.times = []
 
     def show(self, player, frame):
-        self.times.append(frame.performed.now)
+        self.times.append(frame.realized.now)
         self.closed = any(
             getattr(each, "sync", "") == "end"
             and each.block == "b"
