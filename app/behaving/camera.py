@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cubeling.app.speaking.performance import focus_of
+from cubeling.app.speaking.speech_video import focus_of
 from cubeling.app.speaking.view import View
 from cubeling.app.ui.clip_video import Focus
 from cubeling.characters import Character, Pose

@@ -18,7 +18,7 @@ from cubeling.app.sound.loudspeaker import Loudspeaker
 from cubeling.app.sound.mixer import Mixer
 from cubeling.app.sound.session_sound import SPEECH_GAIN, at_sample_rate
 from cubeling.app.sound.synthesis import SAMPLE_RATE
-from cubeling.app.speaking.performance import AZIMUTH_RAD, ELEVATION_RAD
+from cubeling.app.speaking.speech_video import AZIMUTH_RAD, ELEVATION_RAD
 from cubeling.app.speaking.view import View
 from cubeling.characters import Character
 from cubeling.characters.behaviour import feedback_xml
@@ -27,7 +27,7 @@ from cubeling.characters.speech import blood_of
 
 
 class Output(Protocol):
-    """What shows and sounds of a performance."""
+    """Shows the frames of a player and lets them sound."""
 
     @property
     def closed(self) -> bool:

@@ -1,4 +1,4 @@
-"""Opening what a performance of blocks needs: documents and a voice."""
+"""Opening what playing blocks needs: documents and a voice."""
 
 from collections.abc import Callable
 from pathlib import Path

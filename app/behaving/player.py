@@ -79,7 +79,7 @@ class BehaviourOptions:
 
 @dataclass(frozen=True, eq=False)
 class BehaviourFrame:
-    """A frame of a performance."""
+    """What a player shows and reports for one frame."""
 
     posed: PosedCharacter
     """The character with its pose and its place on the table."""

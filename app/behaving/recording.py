@@ -1,4 +1,4 @@
-"""A performance of blocks for a file: its frames, its sound, its feedback, and a video of it."""
+"""Blocks played for a file: its frames, its sound, its feedback, and a video of it."""
 
 import math
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.sound import SAMPLE_RATE
 from cubeling.app.sound.mixer import FADE_OUT, limit
 from cubeling.app.sound.session_sound import SPEECH_GAIN, at_sample_rate
-from cubeling.app.speaking.performance import (
+from cubeling.app.speaking.speech_video import (
     AZIMUTH_RAD,
     ELEVATION_RAD,
     put_subtitle,
@@ -33,7 +33,7 @@ TAIL_S = 1.2
 """Time after the last behaviour [s]: the body comes to rest."""
 
 LONGEST_S = 600.0
-"""A performance is cut off there [s]."""
+"""A recording is cut off there [s]."""
 
 
 @dataclass(eq=False)
@@ -84,7 +84,7 @@ def record_behaviour(
     together: bool = False,
     name: str = "behaviour",
 ) -> BehaviourRecording:
-    """Let a character perform documents, each when those before it are over.
+    """Let a character play documents, each when those before it are over.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def write_video(
     subtitles: bool,
     blood: float = 0.0,
 ) -> None:
-    """Write a performance as a video with sound.
+    """Write a recording as a video with sound.
 
     `blood` is that in the skin of the face, as in `SceneCharacter`.
 

@@ -82,7 +82,7 @@ def speak(
     from cubeling.app.sound import write_wave
     from cubeling.app.sound.session_sound import at_sample_rate
     from cubeling.app.speaking.live import speak_live
-    from cubeling.app.speaking.performance import Direction, speech_clip, write_video
+    from cubeling.app.speaking.speech_video import Direction, speech_clip, write_video
     from cubeling.characters import Character
     from cubeling.characters.model import gestures_for, read_text, save_bvh, with_root_joint
     from cubeling.characters.speech import TaggedText, blood_of, utterance_of

@@ -7,7 +7,7 @@ from cubeling.affect import Emotion
 from cubeling.app.errors import AppError
 from cubeling.app.sound import NoSoundError
 from cubeling.app.speaking.microphone import MICROPHONE_HZ, SILENT_S, Microphone
-from cubeling.app.speaking.performance import (
+from cubeling.app.speaking.speech_video import (
     AZIMUTH_RAD,
     ELEVATION_RAD,
     VIEWER,

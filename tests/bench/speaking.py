@@ -18,8 +18,8 @@ from cubeling.app.speaking.line_chooser import LineRequest
 from cubeling.app.speaking.lines import bundled_lines
 from cubeling.app.speaking.live import LiveRealizer
 from cubeling.app.speaking.microphone import BLOCK, MICROPHONE_HZ
-from cubeling.app.speaking.performance import Direction, speech_clip, write_video
 from cubeling.app.speaking.speaker import line_of
+from cubeling.app.speaking.speech_video import Direction, speech_clip, write_video
 from cubeling.characters import Character
 from cubeling.characters.control.speech_profile import DEFAULT_PROFILE
 from cubeling.characters.face.visemes.mouth_morphs import MouthMorphs

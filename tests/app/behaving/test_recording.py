@@ -10,7 +10,7 @@ from cubeling.app.sound import SAMPLE_RATE
 from cubeling.characters.behaviour.bml import BlockProgress, BmlWarning, SyncPointProgress
 from cubeling.characters.control.controllers import default_height
 from cubeling.characters.skeleton import rotations
-from tests.app.behaving.performances import HUMAN, LateSource, block, player
+from tests.app.behaving.players import HUMAN, LateSource, block, player
 
 RATE = 25.0
 

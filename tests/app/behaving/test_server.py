@@ -9,7 +9,7 @@ import pytest
 from cubeling.app.behaving.live import NoOutput, play_live
 from cubeling.app.behaving.server import MAX_UNSENT, BlockServer
 from cubeling.app.errors import AppError
-from tests.app.behaving.performances import block, player
+from tests.app.behaving.players import block, player
 
 WAIT_S = 20.0
 

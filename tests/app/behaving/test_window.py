@@ -10,7 +10,7 @@ from cubeling.app.sound.bank import SoundBank
 from cubeling.app.sound.mixer import Mixer
 from cubeling.characters.rendering import create_context
 from cubeling.characters.rendering.portrait import PortraitRenderer
-from tests.app.behaving.performances import HUMAN, block, player
+from tests.app.behaving.players import HUMAN, block, player
 
 SIZE = (160, 120)
 
