@@ -86,7 +86,7 @@ class ComputedSession(Protocol):
 def computed_session(tmp_path_factory: pytest.TempPathFactory) -> ComputedSession:
     """Return a bundled recording with every channel; the first process that asks computes it."""
     from cubeling.app.running.computing import compute_channels
-    from cubeling.app.session.bundled import bundled
+    from cubeling.app.session.bundled import bundled_session
     from tools.session_copy import copy_session
 
     folder = tmp_path_factory.getbasetemp()
@@ -104,7 +104,7 @@ def computed_session(tmp_path_factory: pytest.TempPathFactory) -> ComputedSessio
                 assert time.monotonic() < end, f"another process did not compute {part}"
                 time.sleep(0.1)
             return path
-        source, partial = bundled(name), folder / f"{part}-partial.mcap"
+        source, partial = bundled_session(name), folder / f"{part}-partial.mcap"
         if seconds is not None:
             recording, source = source, folder / f"{part}-source.mcap"
             copy_session(recording, source, lambda _, time, data: data if time < seconds else None)

@@ -16,7 +16,7 @@ from rich.console import Console
 from cubeling.affect import Emotion
 from cubeling.affect.regions import SECTOR_WORDS
 from cubeling.affect.words import WORD_PLACES, closest_word
-from cubeling.app.ui.contact_sheets import ContactSheets, Image, save, stacked
+from cubeling.app.ui.contact_sheets import ContactSheets, Image, save, stack
 from cubeling.characters import (
     ActionIntent,
     Animator,
@@ -93,7 +93,7 @@ def draw_moods(sheets: ContactSheets, cast: Iterable[Character]) -> Image:
     rows = [
         sheets.moods(who, {label: _mood_pose(who, label) for label in SHEET_MOODS}) for who in cast
     ]
-    return stacked(*rows)
+    return stack(*rows)
 
 
 def _mood_pose(character: Character, label: str) -> Pose:
@@ -127,7 +127,7 @@ def draw_standing(sheets: ContactSheets, cast: Iterable[Character]) -> Image:
     for character in cast:
         poses = {word: _standing_pose(character, word) for word in STANDING_MOODS}
         rows.append(sheets.postures(character, poses))
-    return stacked(*rows)
+    return stack(*rows)
 
 
 def _standing_pose(character: Character, word: str) -> Pose:

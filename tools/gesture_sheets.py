@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.app.ui.canvas import Canvas
-from cubeling.app.ui.contact_sheets import frame_sheet, save, stacked
+from cubeling.app.ui.contact_sheets import frame_sheet, save, stack
 from cubeling.app.ui.palette import INK
 from cubeling.characters import Character
 from cubeling.characters.behaviour import (
@@ -59,8 +59,8 @@ def draw_settings(path: Path, gesture: str = "BEAT_BOTH", character: str = "huma
         columns = []
         for name, style in SETTINGS.items():
             motion = performer.plan(symbolic, "right", style)
-            column = stacked(*_pictures(renderer, performer, motion, MOMENTS))
-            columns.append(stacked(column, _caption(name, column.shape[1])))
+            column = stack(*_pictures(renderer, performer, motion, MOMENTS))
+            columns.append(stack(column, _caption(name, column.shape[1])))
     save(side_by_side(columns, len(columns)), path)
 
 

@@ -16,7 +16,7 @@ from rich.console import Console
 
 from cubeling.app.behaving.opening import open_lines
 from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
-from cubeling.app.behaving.recording import perform
+from cubeling.app.behaving.recording import record_behaviour
 from cubeling.app.commands.mood import plot
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import RobotView, Step
@@ -24,7 +24,7 @@ from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.opening import intrinsics_for, open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionFile, SessionOptions
-from cubeling.app.session.bundled import bundled
+from cubeling.app.session.bundled import bundled_session
 from cubeling.app.ui.calibration.coach import ANIMATION_PERIOD_S, CoachView
 from cubeling.app.ui.calibration.coach_lines import write_coverage
 from cubeling.app.ui.calibration.session import Advice, CalibrationSession, Picture
@@ -61,7 +61,7 @@ def draw(scenario: str, moments: dict[str, float]) -> None:
     """Play one recording, and save some of its pictures."""
     waiting = sorted((time, name) for name, time in moments.items())
     with ExitStack() as closing:
-        source = closing.enter_context(open_source(str(bundled(scenario))))
+        source = closing.enter_context(open_source(str(bundled_session(scenario))))
         context = create_context()
         closing.callback(context.release)
         intrinsics = intrinsics_for(source.intrinsics, source.size)
@@ -91,7 +91,7 @@ def draw(scenario: str, moments: dict[str, float]) -> None:
 def in_window(picture: Picture, scenario: str, now: float, length: float) -> Picture:
     """Return a picture of a replay as the window shows it, paused."""
     layer = PlaybackLayer((scenario,), Path(), {})
-    with SessionFile(bundled(scenario)) as session:
+    with SessionFile(bundled_session(scenario)) as session:
         marks = tuple(PlaybackMark(time, event) for time, event in session.events)
     position = Position(now, length, 0.0, length, marks=marks)
     layer.report(SessionStatus(scenario, paused=True, position=position))
@@ -116,7 +116,7 @@ PANELS_TIME_S = 14.0
 def draw_panels() -> None:
     """Draw the window with its panels; that of sound would cover the character."""
     given = {"panels": tuple(name for name in PANELS if name != "sound"), "panels_shown": True}
-    options = SessionOptions(scenario="companion", source=str(bundled("companion")))
+    options = SessionOptions(scenario="companion", source=str(bundled_session("companion")))
     preferences = PreferenceStore(None, given)
     with no_display_needed(), open_session(options, preferences=preferences) as session:
         assert isinstance(session.screen, Window)
@@ -189,12 +189,12 @@ UNPLUGGED_ROBOT = "sim:cubeling?unplug=12s/1s&seed=3"
 def draw_moods() -> None:
     """Plot a session with three personalities, and one whose robot was unplugged."""
     compared = FOLDER / "mood-personalities.svg"
-    plot(bundled("companion"), compared, True, ["thesis", "shy", "grumpy"])
+    plot(bundled_session("companion"), compared, True, ["thesis", "shy", "grumpy"])
     with tempfile.TemporaryDirectory() as folder:
         session = Path(folder) / "today.mcap"
         options = SessionOptions(
             scenario="companion",
-            source=str(bundled("companion")),
+            source=str(bundled_session("companion")),
             personality="lively",
             robot=UNPLUGGED_ROBOT,
             record=session,
@@ -226,7 +226,9 @@ def draw_behaviour() -> None:
             body = Character.load(name)
             lines = open_lines(None, "en")
             closing.callback(lines.close)
-            clip = perform(BehaviourPlayer(body, lines, BehaviourOptions()), [block], 25.0).clip
+            clip = record_behaviour(
+                BehaviourPlayer(body, lines, BehaviourOptions()), [block], 25.0
+            ).clip
             focus = np.array([0.0, 0.5 * body.height, 0.0]), 0.62 * body.height
             poses = [clip.poses[round(time * clip.rate)] for time in BEHAVIOUR_TIMES_S]
             shown = [renderer.portrait(body, pose, azimuth=0.3, focus=focus) for pose in poses]

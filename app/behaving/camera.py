@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cubeling.app.speaking.performance import framed
+from cubeling.app.speaking.speech_video import focus_of
 from cubeling.app.speaking.view import View
 from cubeling.app.ui.clip_video import Focus
 from cubeling.characters import Character, Pose
@@ -24,7 +24,7 @@ class FollowingCamera:
         """Return what is seen of a pose with its root where it stands, at a time [s]."""
         place = pose.translations[0]
         if self._last is None:
-            middle, self._radius = framed(self._character, pose, self._view)
+            middle, self._radius = focus_of(self._character, pose, self._view)
             self._centre, self._followed, self._last = middle - place, place, now
         kept = np.exp(-(now - self._last) / FOLLOW_LAG_S)
         self._followed, self._last = place + (self._followed - place) * kept, now

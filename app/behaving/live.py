@@ -18,7 +18,7 @@ from cubeling.app.sound.loudspeaker import Loudspeaker
 from cubeling.app.sound.mixer import Mixer
 from cubeling.app.sound.session_sound import SPEECH_GAIN, at_sample_rate
 from cubeling.app.sound.synthesis import SAMPLE_RATE
-from cubeling.app.speaking.performance import AZIMUTH_RAD, ELEVATION_RAD
+from cubeling.app.speaking.speech_video import AZIMUTH_RAD, ELEVATION_RAD
 from cubeling.app.speaking.view import View
 from cubeling.characters import Character
 from cubeling.characters.behaviour import feedback_xml
@@ -27,7 +27,7 @@ from cubeling.characters.speech import blood_of
 
 
 class Output(Protocol):
-    """What shows and sounds of a performance."""
+    """Shows the frames of a player and lets them sound."""
 
     @property
     def closed(self) -> bool:
@@ -66,11 +66,11 @@ class PictureScreen(Protocol):
 
 
 class WindowOutput:
-    """Shows the character in a window and lets its voice sound; see `opened`."""
+    """Shows the character in a window and lets its voice sound; see `open`."""
 
     @staticmethod
     @contextmanager
-    def opened(character: Character, size: tuple[int, int], view: View) -> "Iterator[WindowOutput]":
+    def open(character: Character, size: tuple[int, int], view: View) -> "Iterator[WindowOutput]":
         """Open the window and the loudspeaker, and close them afterwards.
 
         Raises
@@ -111,7 +111,7 @@ class WindowOutput:
     def show(self, player: BehaviourPlayer, frame: BehaviourFrame) -> None:
         """Draw a frame, and let what begins with it sound."""
         self._voice.update(player, frame)
-        pose, now = placed_pose(frame.posed), frame.performed.now
+        pose, now = placed_pose(frame.posed), frame.realized.now
         picture = self._renderer.portrait(
             self._character,
             pose,
@@ -133,7 +133,7 @@ class VoiceOutput:
 
     def update(self, player: BehaviourPlayer, frame: BehaviourFrame) -> None:
         """Begin or end what is said."""
-        sayings = frame.performed.sayings
+        sayings = frame.realized.sayings
         key = sayings[-1].key if sayings else ""
         if key == self._key:
             return
@@ -142,7 +142,7 @@ class VoiceOutput:
         if line is None:
             self._mixer.say(np.zeros(0))
             return
-        late = max(round((frame.performed.now - sayings[-1].start) * SAMPLE_RATE), 0)
+        late = max(round((frame.realized.now - sayings[-1].start) * SAMPLE_RATE), 0)
         self._mixer.say(SPEECH_GAIN * at_sample_rate(line)[late:])
 
 
@@ -176,9 +176,9 @@ def play_live(
         due = begin + frames / rate
         while (left := due - clock()) > 0.0:
             for document in server.documents(left):
-                player.perform(document)
+                player.play_block(document)
         for document in server.documents():
-            player.perform(document)
+            player.play_block(document)
         now = clock() - begin
         frames = max(frames, math.floor(now * rate)) + 1
         frame = player.update(now)

@@ -1,4 +1,4 @@
-"""Opening what a performance of blocks needs: documents and a voice."""
+"""Opening what playing blocks needs: documents and a voice."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -9,7 +9,7 @@ from cubeling.app.behaving.voice import (
     PatientSource,
     SayText,
     SilentSource,
-    saying_with,
+    say_with,
 )
 from cubeling.app.speaking.voices import open_voice
 from cubeling.characters import CharacterError
@@ -38,7 +38,7 @@ def open_lines(command: str | None, language: str, kind: MakeSource = PatientSou
         if command is not None:
             raise
         return SilentSource(str(error))
-    return kind(saying_with(voice), language, voice.close)
+    return kind(say_with(voice), language, voice.close)
 
 
 def read_document(path: Path) -> str:

@@ -79,12 +79,12 @@ class BehaviourOptions:
 
 @dataclass(frozen=True, eq=False)
 class BehaviourFrame:
-    """A frame of a performance."""
+    """What a player shows and reports for one frame."""
 
     posed: PosedCharacter
     """The character with its pose and its place on the table."""
 
-    performed: RealizedFrame
+    realized: RealizedFrame
     """What it does in this frame for the active behaviours."""
 
     feedback: tuple[Feedback, ...]
@@ -128,11 +128,11 @@ class BehaviourPlayer:
         )
         """The character, what it knows and where it is."""
         self._place = RootDelta()
-        self._performer = CharacterRealizer(self.who)
-        self.realizer = Realizer(self._performer)
-        """What keeps the time of the blocks; `perform` gives it one."""
+        self._character_realizer = CharacterRealizer(self.who)
+        self.realizer = Realizer(self._character_realizer)
+        """What keeps the time of the blocks; `play_block` gives it one."""
 
-    def perform(self, document: str | bytes) -> None:
+    def play_block(self, document: str | bytes) -> None:
         """Accept a document of BML or FML; it counts from the next update on."""
         try:
             self.realizer.accept(block_of(document))
@@ -145,10 +145,10 @@ class BehaviourPlayer:
         feedback = (*refused, *self.realizer.update(now))
         self._refused = []
         retime_speeches(self.realizer, self.who, now)
-        performed = self._performer.frame_of(self.realizer.active(now), now)
-        posed = self._animator.update(command_of(performed, self.emotion, self.who))
+        realized = self._character_realizer.frame_of(self.realizer.active(now), now)
+        posed = self._animator.update(command_of(realized, self.emotion, self.who))
         self._tell_place(posed)
-        return BehaviourFrame(posed, performed, feedback)
+        return BehaviourFrame(posed, realized, feedback)
 
     def prepare(self) -> None:
         """Measure what would make a frame late."""
@@ -199,25 +199,25 @@ def block_of(document: str | bytes) -> Block:
 
 
 def command_of(
-    performed: RealizedFrame, emotion: Emotion | None, who: RealizationContext
+    realized: RealizedFrame, emotion: Emotion | None, who: RealizationContext
 ) -> CharacterCommand:
     """Return the command for what a character does in a frame; it looks at the viewer else."""
     viewer = who.surroundings.places.get("viewer")
-    facing = viewer if performed.facing is None else performed.facing
+    facing = viewer if realized.facing is None else realized.facing
     speed, target = 0.0, None
-    if performed.going is not None:
-        speed, target = SPEEDS[performed.going.manner], performed.going.target
+    if realized.going is not None:
+        speed, target = SPEEDS[realized.going.manner], realized.going.target
     speech = None
-    if performed.sayings:
-        said = performed.sayings[-1]
+    if realized.sayings:
+        said = realized.sayings[-1]
         speech = SpeechIntent(said.utterance, said.start)
     return CharacterCommand(
-        performed.now,
+        realized.now,
         LocomotionIntent(speed, target, facing=None if facing is None else facing[[0, 2]]),
         gaze=viewer,
         emotion=emotion,
         speech=speech,
-        behaviour=performed.intent,
+        behaviour=realized.intent,
     )
 
 

@@ -1,4 +1,4 @@
-"""A performance of blocks for a file: its frames, its sound, its feedback, and a video of it."""
+"""Blocks played for a file: its frames, its sound, its feedback, and a video of it."""
 
 import math
 from collections.abc import Sequence
@@ -12,9 +12,9 @@ from cubeling.app.behaving.camera import FollowingCamera
 from cubeling.app.behaving.player import BehaviourFrame, BehaviourPlayer
 from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.sound import SAMPLE_RATE
-from cubeling.app.sound.mixer import FADE_OUT, limited
+from cubeling.app.sound.mixer import FADE_OUT, limit
 from cubeling.app.sound.session_sound import SPEECH_GAIN, at_sample_rate
-from cubeling.app.speaking.performance import (
+from cubeling.app.speaking.speech_video import (
     AZIMUTH_RAD,
     ELEVATION_RAD,
     put_subtitle,
@@ -33,7 +33,7 @@ TAIL_S = 1.2
 """Time after the last behaviour [s]: the body comes to rest."""
 
 LONGEST_S = 600.0
-"""A performance is cut off there [s]."""
+"""A recording is cut off there [s]."""
 
 
 @dataclass(eq=False)
@@ -73,10 +73,10 @@ class BehaviourRecording:
             begin = max(round(speech.start * SAMPLE_RATE), 0)
             part = samples[: max(len(mixed) - begin, 0)]
             mixed[begin : begin + len(part)] += part
-        return np.repeat(limited(mixed)[:, None], 2, axis=1).astype(np.float32)
+        return np.repeat(limit(mixed)[:, None], 2, axis=1).astype(np.float32)
 
 
-def perform(
+def record_behaviour(
     player: BehaviourPlayer,
     documents: Sequence[str],
     rate: float,
@@ -84,7 +84,7 @@ def perform(
     together: bool = False,
     name: str = "behaviour",
 ) -> BehaviourRecording:
-    """Let a character perform documents, each when those before it are over.
+    """Let a character play documents, each when those before it are over.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def perform(
         if waiting and (together or player.over(now)):
             count = len(waiting) if together else 1
             for document in waiting[:count]:
-                player.perform(document)
+                player.play_block(document)
             del waiting[:count]
         frame = player.update(now)
         frames.append(frame)
@@ -122,13 +122,13 @@ def perform(
 
 
 def _hear(player: BehaviourPlayer, frame: BehaviourFrame, speeches: dict[str, SpokenPart]) -> None:
-    for saying in frame.performed.sayings:
+    for saying in frame.realized.sayings:
         if saying.key in speeches:
-            speeches[saying.key].heard_until = frame.performed.now
+            speeches[saying.key].heard_until = frame.realized.now
             continue
         line = player.line_of(saying)
         if line is not None:
-            speeches[saying.key] = SpokenPart(line, saying.start, frame.performed.now)
+            speeches[saying.key] = SpokenPart(line, saying.start, frame.realized.now)
 
 
 def write_video(
@@ -141,7 +141,7 @@ def write_video(
     subtitles: bool,
     blood: float = 0.0,
 ) -> None:
-    """Write a performance as a video with sound.
+    """Write a recording as a video with sound.
 
     `blood` is that in the skin of the face, as in `SceneCharacter`.
 

@@ -16,7 +16,7 @@ SayText = Callable[[str, str], Speech]
 """Returns the speech of a text in a language; raises `CharacterError`."""
 
 
-def saying_with(voice: Voice) -> SayText:
+def say_with(voice: Voice) -> SayText:
     """Return what says texts with a voice, which the caller closes."""
     return lambda text, language: say(voice, text, language)
 
@@ -74,12 +74,12 @@ class PatientSource:
         """Return what is said; None if the voice has failed."""
         asked = text, language or self._language
         if asked not in self._lines:
-            self._lines[asked] = self._said(asked)
+            self._lines[asked] = self._say(asked)
         return self._lines[asked]
 
-    def _said(self, asked: tuple[str, str]) -> SpokenLine | None:
+    def _say(self, asked: tuple[str, str]) -> SpokenLine | None:
         try:
-            return spoken(self._speak, *asked)
+            return line_of(self._speak, *asked)
         except CharacterError as error:
             self.problem = str(error)
             return None
@@ -121,7 +121,7 @@ class ThreadedSource:
     def _run(self) -> None:
         while (asked := self._asked.get()) is not None:
             try:
-                line = spoken(self._speak, *asked)
+                line = line_of(self._speak, *asked)
             except CharacterError as error:
                 self.problem = str(error)
                 continue
@@ -129,7 +129,7 @@ class ThreadedSource:
                 self._lines[asked] = line
 
 
-def spoken(speak: SayText, text: str, language: str) -> SpokenLine:
+def line_of(speak: SayText, text: str, language: str) -> SpokenLine:
     """Return the line of a text, with its accents and without tags.
 
     Raises

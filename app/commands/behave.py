@@ -13,7 +13,7 @@ from rich.markup import escape
 from cubeling.app.commands.output import OverwriteOption, chosen_output
 from cubeling.app.commands.session.play import VoiceOption
 from cubeling.app.commands.session.preference_options import emotion_of, size_of
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.output_path import check_output
 from cubeling.app.speaking.view import View
@@ -103,7 +103,7 @@ def behave(
     """
     from cubeling.app.behaving.opening import open_lines, read_document
     from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
-    from cubeling.app.behaving.recording import perform
+    from cubeling.app.behaving.recording import record_behaviour
     from cubeling.characters import Character
     from cubeling.characters.behaviour import GestureExpressivity
     from cubeling.characters.model import with_root_joint
@@ -127,7 +127,7 @@ def behave(
     try:
         with console.status("performing"):
             player = BehaviourPlayer(body, lines, options)
-            done = perform(player, documents, rate, together=together, name=path.stem)
+            done = record_behaviour(player, documents, rate, together=together, name=path.stem)
             _write(path, body, done, pixels, view, subtitles, blood_of(player.emotion))
     finally:
         lines.close()
@@ -162,10 +162,10 @@ def _serve(
         closing.callback(lines.close)
         player = BehaviourPlayer(body, lines, options)
         for document in first:
-            player.perform(document)
+            player.play_block(document)
         output: Output = NoOutput()
         if shown is not None:
-            output = closing.enter_context(WindowOutput.opened(body, *shown))
+            output = closing.enter_context(WindowOutput.open(body, *shown))
         console = Console(highlight=False)
         if lines.problem:
             console.print(f"[yellow]nothing is said:[/] {escape(lines.problem)}", soft_wrap=True)
@@ -221,7 +221,7 @@ def _report(console: Console, path: Path, done: BehaviourRecording, problem: str
     blocks = sum(isinstance(e, BlockProgress) and e.sync == "end" for e in done.feedback)
     console.print(
         f"[bold]{escape(str(path))}[/] is written: {done.clip.duration:.1f} s, "
-        f"{counted(blocks, 'block')}",
+        f"{quantity(blocks, 'block')}",
         soft_wrap=True,
     )
 

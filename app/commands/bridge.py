@@ -81,8 +81,8 @@ def bridge(
 
     Example: [cyan]cubeling bridge --play ann=recordings/companion.mcap --robot rex=sim[/]
     """
-    robots = named(robot or (), "--robot", "rex=sim")
-    files = named(play or (), "--play", "ann=a.mcap")
+    robots = values_by_name(robot or (), "--robot", "rex=sim")
+    files = values_by_name(play or (), "--play", "ann=a.mcap")
     sessions = {name: Path(path) for name, path in files.items()}
     if mqtt is None and not (robots and sessions):
         raise AppError(
@@ -185,7 +185,7 @@ class EventPrinter:
             self._console.print(literal_text(text), highlight=False, soft_wrap=True)
 
 
-def named(given: Iterable[str], option: str, example: str) -> dict[str, str]:
+def values_by_name(given: Iterable[str], option: str, example: str) -> dict[str, str]:
     """Return the values of NAME=VALUE options by name; AppError for another form or a repeat."""
     values: dict[str, str] = {}
     for text in given:

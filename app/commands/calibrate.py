@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from cubeling.app.commands.session.play import DEFAULT_CAMERA, CubeOption
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.output_path import check_output
 from cubeling.app.ui.display import has_display
@@ -109,7 +109,7 @@ def calibrate(
         write_coverage(coverage, session)
     if checked is not None and saved is not None:
         raise typer.Exit(_report_check(session, checked, saved, frames.size, console))
-    found = session.calibrated()
+    found = session.calibrate()
     found.intrinsics.save(output)
     console.print(calibration_line(output, found))
     if isinstance(session.finder, CubeFinder):
@@ -177,10 +177,10 @@ def _report_check(
         f"[bold {color}]{word}[/]  {escape(str(path))}: focal length "
         f"{100 * verdict.focal_change:+.2f} % (± {200 * verdict.focal_spread:.2f} %), middle "
         f"{x:+.1f} {y:+.1f} px, edges off by {verdict.residual:.3f} px "
-        f"(at best {verdict.best_residual:.3f} px), from {counted(verdict.views, 'view')}"
+        f"(at best {verdict.best_residual:.3f} px), from {quantity(verdict.views, 'view')}"
     )
     if verdict.degraded:
-        console.print(f"Calibrate again: [cyan]cubeling calibrate -o {_quoted(path)}[/]")
+        console.print(f"Calibrate again: [cyan]cubeling calibrate -o {_quote(path)}[/]")
     return int(verdict.degraded)
 
 
@@ -208,13 +208,13 @@ def _report_cube(
             f"The cube's sides are off by up to {worst * 1e3:.1f} mm; "
             "--save-cube my-cube.toml keeps that"
         )
-    option = "" if path is None else f" --cube {_quoted(path)}"
+    option = "" if path is None else f" --cube {_quote(path)}"
     scenario = scenario_for(cube) or "SCENARIO"
-    command = f"cubeling play {scenario} --intrinsics {_quoted(camera)}{option}"
+    command = f"cubeling play {scenario} --intrinsics {_quote(camera)}{option}"
     console.print(f"Play with it: [cyan]{command}[/]")
 
 
-def _quoted(path: Path) -> str:
+def _quote(path: Path) -> str:
     """Return a path for a command line, as markup."""
     return escape(shlex.quote(str(path)))
 

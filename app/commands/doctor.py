@@ -162,10 +162,10 @@ def _characters() -> Finding:
 
 
 def _recordings() -> Finding:
-    from cubeling.app.session.bundled import RECORDED, bundled
+    from cubeling.app.session.bundled import RECORDED, bundled_session
 
     try:
-        names = [bundled(name).name for name in RECORDED]
+        names = [bundled_session(name).name for name in RECORDED]
     except AppError as error:
         return Finding("recordings", "bad", str(error))
     return Finding("recordings", "good", ", ".join(names))

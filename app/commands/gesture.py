@@ -144,25 +144,25 @@ def import_gesture(
     Example: [cyan]cubeling gesture import greeting.bvh --from 1.2 --to 2.4 -o GREET[/]
     """
     from cubeling.app.workshop.gesture_editor.editing.edits import gesture_name
-    from cubeling.app.workshop.gesture_editor.editing.importing import imported
+    from cubeling.app.workshop.gesture_editor.editing.importing import import_gesture
     from cubeling.app.workshop.gesture_editor.editing.store import GestureStore
     from cubeling.characters.behaviour import GESTURE_SUFFIX, save_gesture
 
     file = output is not None and output.endswith(GESTURE_SUFFIX)
     if file:
         chosen_output(Path(str(output)), "", "gesture", (GESTURE_SUFFIX,), overwrite)
-    gesture = imported(recording, start, end)
+    gesture = import_gesture(recording, start, end)
     if output is not None:
         gesture = replace(gesture, name=gesture_name(Path(output).stem if file else output))
     if file:
         save_gesture(gesture, Path(str(output)))
     else:
-        output = _saved(GestureStore(folder), gesture, overwrite)
+        output = _save(GestureStore(folder), gesture, overwrite)
     describe(Console(), gesture)
     print_written(str(output))
 
 
-def _saved(store: GestureStore, gesture: SymbolicGesture, overwrite: bool) -> str:
+def _save(store: GestureStore, gesture: SymbolicGesture, overwrite: bool) -> str:
     """Save a gesture to the library, unless there is one of its name; return where."""
     if store.has(gesture.name) and not overwrite:
         remedy = "choose another name with -o, or add --overwrite"
@@ -187,11 +187,11 @@ def describe(console: Console, gesture: SymbolicGesture) -> None:
 
 def hands(gesture: SymbolicGesture) -> str:
     """Return who performs a gesture, such as "right hand" or "trunk and head"."""
-    from cubeling.app.workshop.gesture_editor.editing.edits import performers
+    from cubeling.app.workshop.gesture_editor.editing.edits import hands_of
 
     if not (gesture.right or gesture.left):
         return "trunk and head"
-    who = performers(gesture)
+    who = hands_of(gesture)
     return "both hands" if who == "both" else f"{who} hand"
 
 

@@ -16,7 +16,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from cubeling.app.commands.output import OverwriteOption, chosen_output
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 
 if TYPE_CHECKING:
     from cubeling.characters import Character
@@ -129,7 +129,7 @@ def describe(console: Console, library: GestureLibrary) -> None:
     console.print(rows)
     graph = GestureGraph.of(library)
     console.print(
-        f"Threshold {graph.threshold:g}: {counted(len(graph.nodes) + 1, 'node')} with strokes "
+        f"Threshold {graph.threshold:g}: {quantity(len(graph.nodes) + 1, 'node')} with strokes "
         f"alone and rest, {graph.branching:.1f} branches each",
         highlight=False,
     )

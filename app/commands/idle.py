@@ -20,7 +20,7 @@ from cubeling.app.commands.output import (
     chosen_output,
     needs_matplotlib,
 )
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.characters.motion import Alignment
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def learn(
     Example: [cyan]cubeling idle learn anna.bvh -o anna.idle[/]
     """
     target = chosen_output(output, "my.idle", "idle motion", (".idle",), overwrite)
-    felt = [_felt(each) for each in recordings]
+    felt = [_split_emotion(each) for each in recordings]
     from cubeling.characters import Character, read_motions
     from cubeling.characters.model import with_root_joint
     from cubeling.characters.motion import read_standing, save_person
@@ -129,7 +129,7 @@ def _file(person: Path) -> Path:
     return Path(str(resources.files("cubeling.characters") / "assets" / f"{person}.idle"))
 
 
-def _felt(recording: str) -> tuple[str, Region | None]:
+def _split_emotion(recording: str) -> tuple[str, Region | None]:
     """Return the file of a recording, and the emotions that it shows."""
     word, equals, name = recording.partition("=")
     return (name, region_of(word)) if equals and word.isalpha() else (recording, None)
@@ -145,7 +145,7 @@ def describe(console: Console, person: Person) -> None:
     spread = database.space.variances
     explained = spread[:COMPONENTS].sum() / max(spread.sum(), 1e-12)
     console.print(
-        f"Recorded for {length:.1f} s, with {counted(len(database.shifts), 'balance shift')}; "
+        f"Recorded for {length:.1f} s, with {quantity(len(database.shifts), 'balance shift')}; "
         f"{COMPONENTS} components hold {explained:.1%} of the postures",
         highlight=False,
     )

@@ -15,7 +15,7 @@ from cubeling.app.commands.output import (
     needs_matplotlib,
 )
 from cubeling.app.commands.session.complete import complete_session
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 
 app = typer.Typer(
@@ -108,7 +108,7 @@ def table(
     track = history.recorded if other is None else replay_with(history, other)
     rows = write_table(output, history, track, traces)
     Console().print(
-        f"[bold]{escape(str(output))}[/] has {counted(rows, 'row')}",
+        f"[bold]{escape(str(output))}[/] has {quantity(rows, 'row')}",
         soft_wrap=True,
         highlight=False,
     )

@@ -19,7 +19,7 @@ from cubeling.app.commands.output import (
     chosen_output,
     needs_matplotlib,
 )
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.characters.motion import DEFAULT_PROFILE
 
@@ -199,7 +199,7 @@ def describe(console: Console, stored: StoredGraph) -> None:
     library = stored.library
     whole, parts = standard_graph(stored), part_graphs(stored)
     console.print(
-        f"{counted(len(library.names), 'clip')}, {counted(len(library), 'frame')} at "
+        f"{quantity(len(library.names), 'clip')}, {quantity(len(library), 'frame')} at "
         f"{library.rate:g} Hz ({len(library) / library.rate:.1f} s), compared by {stored.distance}",
         highlight=False,
     )

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from cubeling.app.commands.output import OverwriteOption, chosen_output
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.ui.output_formats import VIDEO_FORMATS
 
@@ -75,7 +75,8 @@ def schedule(
     clip = bake(found, rate, length, file.stem)
     _writer(target)(clip, body, target)
     Console(highlight=False).print(
-        f"[bold]{escape(str(target))}[/] is written: {counted(len(clip), 'frame')}, {length:.2f} s",
+        f"[bold]{escape(str(target))}[/] is written: {quantity(len(clip), 'frame')}, "
+        f"{length:.2f} s",
         soft_wrap=True,
     )
 

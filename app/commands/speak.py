@@ -15,7 +15,7 @@ from cubeling.app.commands.output import OverwriteOption, chosen_output
 from cubeling.app.commands.session.play import VoiceOption
 from cubeling.app.commands.session.preference_options import emotion_of, size_of
 from cubeling.app.commands.speech_options import ProfileOption, SettingsOption, profile_of
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.output_path import check_output
 from cubeling.app.speaking.view import View
@@ -82,7 +82,7 @@ def speak(
     from cubeling.app.sound import write_wave
     from cubeling.app.sound.session_sound import at_sample_rate
     from cubeling.app.speaking.live import speak_live
-    from cubeling.app.speaking.performance import Direction, performed, write_video
+    from cubeling.app.speaking.speech_video import Direction, speech_clip, write_video
     from cubeling.characters import Character
     from cubeling.characters.model import gestures_for, read_text, save_bvh, with_root_joint
     from cubeling.characters.speech import TaggedText, blood_of, utterance_of
@@ -109,16 +109,16 @@ def speak(
     console = Console(highlight=False)
     with console.status("speaking"):
         if audio is None:
-            speech = _spoken(tagged.text, lang, feels, voice)
+            speech = _speech_of(tagged.text, lang, feels, voice)
         else:
-            speech = _heard(audio, tagged, lang, voice)
+            speech = _read_recording(audio, tagged, lang, voice)
         utterance = utterance_of(speech, tagged, how.accents)
         line = SpokenLine(utterance, speech.samples, speech.rate, how)
         if target.suffix.lower() == ".wav":
             write_wave(target, at_sample_rate(line))
         else:
             direction = Direction(feels, seed)
-            clip = performed(body, line, direction, rate)
+            clip = speech_clip(body, line, direction, rate)
             if target.suffix.lower() == ".bvh":
                 save_bvh(clip, body.skeleton, body.anatomy, target)
             else:
@@ -134,12 +134,12 @@ def speak(
                 )
     console.print(
         f"[bold]{escape(str(target))}[/] is written: {speech.duration:.1f} s of speech, "
-        f"{counted(len(utterance.words), 'word')}, {counted(len(utterance.accents), 'accent')}",
+        f"{quantity(len(utterance.words), 'word')}, {quantity(len(utterance.accents), 'accent')}",
         soft_wrap=True,
     )
 
 
-def _spoken(text: str, language: str, emotion: Emotion | None, command: str | None) -> Speech:
+def _speech_of(text: str, language: str, emotion: Emotion | None, command: str | None) -> Speech:
     """Return a text as the voice speaks it."""
     from cubeling.app.speaking.voices import open_voice
     from cubeling.characters.speech import manner_of, say
@@ -148,7 +148,7 @@ def _spoken(text: str, language: str, emotion: Emotion | None, command: str | No
         return say(voice, text, language, manner_of(emotion))
 
 
-def _heard(audio: Path, tagged: TaggedText, language: str, command: str | None) -> Speech:
+def _read_recording(audio: Path, tagged: TaggedText, language: str, command: str | None) -> Speech:
     """Return a recording, with the times of its words where the text is known."""
     from cubeling.app.speaking.voices import open_voice
     from cubeling.characters.speech import align, phones_from_sound, read_speech

@@ -19,7 +19,7 @@ from cubeling.app.commands.output import (
     chosen_output,
     needs_matplotlib,
 )
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.characters.speech import DEFAULT_PROFILE
 
@@ -82,7 +82,7 @@ def show(
     if textgrid is not None:
         speech = with_textgrid(speech, read_textgrid(textgrid))
     elif text is not None:
-        speech = aligned(speech, text, lang, console)
+        speech = align_speech(speech, text, lang, console)
     settings = AccentSettings(threshold)
     accents = describe(console, speech, settings)
     if output is None:
@@ -131,11 +131,11 @@ def align(
     said = said_text(text)
     from cubeling.characters.speech import read_speech, textgrid_of, write_textgrid
 
-    speech = aligned(read_speech(file), said, lang, console, sphinx=sphinx)
+    speech = align_speech(read_speech(file), said, lang, console, sphinx=sphinx)
     write_textgrid(target, textgrid_of(speech))
     console.print(
-        f"[bold]{escape(str(target))}[/] is written: {counted(len(speech.words), 'word')}, "
-        f"{counted(sum(bool(phone.symbol) for phone in speech.phones), 'phone')}",
+        f"[bold]{escape(str(target))}[/] is written: {quantity(len(speech.words), 'word')}, "
+        f"{quantity(sum(bool(phone.symbol) for phone in speech.phones), 'phone')}",
         soft_wrap=True,
         highlight=False,
     )
@@ -154,7 +154,7 @@ def said_text(text: str) -> str:
         raise AppError(f"cannot read the text: {error}") from error
 
 
-def aligned(
+def align_speech(
     speech: Speech, text: str, language: str, console: Console, *, sphinx: bool = False
 ) -> Speech:
     """Return a recording with the times of its words and phones."""

@@ -93,18 +93,18 @@ def advice(cube: CubeModel, playing: str, own_cube: str, fixed: bool) -> str:
     >>> advice(companion, "companion", "museum", True)
     'This is the companion cube: show me the museum cube'
     """
-    this = f"This is the {_called(cube.name)}"
+    this = f"This is the {_title(cube.name)}"
     scenario = scenario_for(cube, playing)
     if not scenario:
         return this
     if fixed:
         played = scenario == playing
-        return f"{this}: {f'show me the {_called(own_cube)}' if played else f'it plays {scenario}'}"
+        return f"{this}: {f'show me the {_title(own_cube)}' if played else f'it plays {scenario}'}"
     key = list(SCENARIOS).index(scenario) + 1
     return f"{this}: press {key} to play {scenario}{' with it' if scenario == playing else ''}"
 
 
-def _called(name: str) -> str:
+def _title(name: str) -> str:
     return name if name.lower().endswith("cube") else f"{name} cube"
 
 

@@ -25,7 +25,7 @@ from cubeling.app.pipeline.scenario import (
     Scenario,
     ScenarioSettings,
 )
-from cubeling.app.pipeline.scenario_errors import checked, scenario_errors
+from cubeling.app.pipeline.scenario_errors import check_outcome, scenario_errors
 from cubeling.app.pipeline.situation import Situation, table_from_cube
 from cubeling.app.pipeline.spoken_line import Speaking
 from cubeling.app.pipeline.step import ReplayInputs, Step
@@ -291,7 +291,7 @@ class Playground:
             command = replay.command
         self.other_cube = self._other_cube.update(frame, state)
         self._lap("scenario")
-        posed = replay.posed_for(self.character) or self.animate(command)
+        posed = replay.pose_for(self.character) or self.animate(command)
         self._posed, self._body = posed, PosedBody(self.character, self._parts, posed)
         self._complexion.update(command.timestamp, command.emotion)
         interior = self._window.update(state, controls, command, inputs.inside)
@@ -353,7 +353,7 @@ class Playground:
         )
         scenario = type(self.scenario)
         with scenario_errors(scenario):
-            return checked(self.scenario.update(controls, situation, inputs), scenario)
+            return check_outcome(self.scenario.update(controls, situation, inputs), scenario)
 
     def command(
         self, state: CubeState, controls: CubeControls, decision: Outcome, inputs: Inputs
@@ -385,7 +385,7 @@ class Playground:
         body = PosedBody(self.character, self._parts, step.posed)
         return self._renderer.draw(step, body, self._complexion.blood)
 
-    def drawn(self, step: Step) -> Step:
+    def with_picture(self, step: Step) -> Step:
         """Return a step with its picture, which `step` left out."""
         appearance = step.appearance or self.see(step.frame, step.state, step.controls)
         step = replace(step, appearance=appearance)

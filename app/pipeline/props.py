@@ -147,7 +147,7 @@ class PosedBody:
         points = [self._hand_points(side) for side in self.parts.hands]
         return min(float(np.linalg.norm(each - target, axis=1).min()) for each in points)
 
-    def placed(self, thing: Thing) -> SceneCharacter:
+    def place_thing(self, thing: Thing) -> SceneCharacter:
         """Return a thing as it is to be drawn: in the hand that carries it, or where it stands."""
         table_from_toy = np.eye(4)
         palm = None if thing.hand is None else self.palm(thing.hand)

@@ -68,13 +68,13 @@ def find_scenario(name: str) -> type[Scenario]:
     Raises AppError if there is none of that name, if two packages add one, or if the package that
     adds it is broken.
     """
-    point = _added(name)
+    point = _entry_point(name)
     return SCENARIOS[name] if point is None else _load(point)
 
 
 def check_scenario(name: str) -> None:
     """Raise AppError if there is no scenario of a name, or if two packages add one; load none."""
-    _added(name)
+    _entry_point(name)
 
 
 def scenario_summary(name: str) -> str:
@@ -82,10 +82,10 @@ def scenario_summary(name: str) -> str:
 
     Raises AppError as `find_scenario` does.
     """
-    return SUMMARIES[name] if _added(name) is None else find_scenario(name).summary
+    return SUMMARIES[name] if _entry_point(name) is None else find_scenario(name).summary
 
 
-def _added(name: str) -> EntryPoint | None:
+def _entry_point(name: str) -> EntryPoint | None:
     """Return where another package has a scenario; None for a bundled one."""
     points = sorted((each for each in added_scenarios() if each.name == name), key=_package)
     packages = [*(["cubeling"] if name in SCENARIOS else []), *map(_package, points)]

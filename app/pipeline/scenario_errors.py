@@ -29,7 +29,7 @@ def scenario_errors(scenario: type[Scenario]) -> Iterator[None]:
         ) from error
 
 
-def checked(outcome: object, scenario: type[Scenario]) -> Outcome:
+def check_outcome(outcome: object, scenario: type[Scenario]) -> Outcome:
     """Return what a scenario decided; raise AppError if it is no `Outcome`."""
     if not isinstance(outcome, Outcome):
         raise AppError(

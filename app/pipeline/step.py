@@ -97,7 +97,7 @@ class ReplayInputs:
     posed: PosedCharacter | None = None
     """The character; None to animate it."""
 
-    def posed_for(self, character: Character) -> PosedCharacter | None:
+    def pose_for(self, character: Character) -> PosedCharacter | None:
         """Return the recorded pose for today's character, which may have got more morphs."""
         posed, count = self.posed, len(character.morphs)
         morphs = None if posed is None else posed.pose.morphs

@@ -156,8 +156,8 @@ class StepRenderer:
             return SceneCharacter(body.character, posed, "wrinkles" in self._realism, shown)
 
         if interior is None:
-            return [with_skin(body.posed), *(body.placed(thing) for thing in outcome.things)]
-        characters = [body.placed(thing) for thing in outcome.things if thing.hand is None]
+            return [with_skin(body.posed), *(body.place_thing(thing) for thing in outcome.things)]
+        characters = [body.place_thing(thing) for thing in outcome.things if thing.hand is None]
         if interior.left_on_table > MIN_SIZE:
             shrunk = np.diag([*[interior.left_on_table] * 3, 1.0])
             placed = body.posed.table_from_character @ shrunk

@@ -65,12 +65,16 @@ class FrameLoop:
         """Show the last frame that was skipped, on the way to the one that is sought."""
         if self._hidden is not None:
             session = self._session
-            session.screen.preview(session.playground.drawn(self._hidden), session.robot.view())
+            session.screen.preview(
+                session.playground.with_picture(self._hidden), session.robot.view()
+            )
 
     def show_skipped(self) -> None:
         """Show the last frame that was skipped, if none was shown after it."""
         if self._hidden is not None:
-            self._show(self._session.playground.drawn(self._hidden), Inputs(), time.perf_counter())
+            self._show(
+                self._session.playground.with_picture(self._hidden), Inputs(), time.perf_counter()
+            )
 
     def leave_out(self, frame: Frame) -> None:
         """Process nothing; what the player asked or a character says here, happens in the next."""

@@ -13,7 +13,7 @@ from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import Progress
 from cubeling.app.session import SessionFile, SessionOptions
-from cubeling.app.session.encoding import APPEARANCE_TOPIC, CHANNEL_TYPES, encode, upgraded
+from cubeling.app.session.encoding import APPEARANCE_TOPIC, CHANNEL_TYPES, encode, upgrade
 
 
 @dataclass
@@ -60,7 +60,7 @@ def check_session(
         output=None,
     )
     recorded = (
-        (topic, time, upgraded(topic, data))
+        (topic, time, upgrade(topic, data))
         for topic, time, data in session.messages(*CHANNEL_TYPES)
     )
     with open_session(options, replayed=session) as opened:

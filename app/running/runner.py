@@ -143,7 +143,7 @@ class _Runner:
             if session.recording is not None:  # which begins with the first frame that is shown
                 loop.leave_out(frame)
                 return
-            with uninterrupted():
+            with defer_interrupts():
                 step = loop.skip(frame)
             self._preview()
         elif session.pace is not None and not self._wait_for(frame, session.pace):
@@ -153,7 +153,7 @@ class _Runner:
         else:
             by_player = loop.asked_by_player
             session.wire.align(frame.timestamp - session.robot.clock())
-            with uninterrupted():
+            with defer_interrupts():
                 step = loop.step(frame)
             self._shown_at = time.monotonic()
         self._transport.save_state(by_player)
@@ -208,7 +208,7 @@ SIGNALS = [
 
 
 @contextmanager
-def uninterrupted() -> Iterator[None]:
+def defer_interrupts() -> Iterator[None]:
     """Let Ctrl-C and a termination signal wait for the end of the block.
 
     A frame that is half encoded or half recorded would spoil the file. Signals reach only the main

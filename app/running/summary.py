@@ -9,7 +9,7 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.ui.literal_text import literal_text
 from cubeling.robot import LogLine, RobotError
@@ -132,9 +132,9 @@ class Summary:
         table.add_column()
         duration = self.duration
         median, slow = self.frame_ms()
-        table.add_row("played", f"{counted(self.frames, 'frame')}, {duration:.1f} s")
+        table.add_row("played", f"{quantity(self.frames, 'frame')}, {duration:.1f} s")
         if self.left_out:
-            left_out = counted(self.left_out, "frame")
+            left_out = quantity(self.left_out, "frame")
             table.add_row("left out", f"{left_out}, to keep up with the recording")
         if len(self.scenarios) > 1:
             table.add_row("scenarios", _timeline(self.scenarios, duration))

@@ -47,7 +47,7 @@ class Gift:
         """The hand that has it."""
         self._move = _Move(home, -math.inf, 1.0)
 
-    def taken(self, hand: Side, palm: Point, now: float) -> None:
+    def take(self, hand: Side, palm: Point, now: float) -> None:
         """Let a hand have it from now on."""
         start = self._now_at(now) + GRIP - palm
         self.hand, self.place = hand, np.zeros(3)

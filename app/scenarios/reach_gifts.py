@@ -163,7 +163,7 @@ class Gifts:
         assert gift is not None
         if palm is None or not self._at_hand(palm, gift.place + GRIP, now):
             return ()
-        gift.taken(self.hand, palm, now)
+        gift.take(self.hand, palm, now)
         self._begin("carry", now)
         return ("taken",)
 

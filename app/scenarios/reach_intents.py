@@ -41,7 +41,7 @@ class Ongoing(Generic[Intent]):
         current, key = self._current, "" if wanted is None else wanted.key
         if key != self._key:
             if current is not None:
-                self._leaving.append(_with(current, times=left(current.times, now)))
+                self._leaving.append(_with(current, times=leave(current.times, now)))
             self._key, self._begun = key, self._begun + 1
             self._current = wanted and _with(wanted, key=f"{key} {self._begun}")
         elif wanted is not None and current is not None:
@@ -59,10 +59,10 @@ def _lasts(times: Times, now: float) -> bool:
     return times.end is None or now < times.end
 
 
-def left(times: Times, now: float) -> Times:
+def leave(times: Times, now: float) -> Times:
     """Return times that end within `LEAVE_S` from now on [s].
 
-    >>> left(Times(0.0, 1.0), 2.0)
+    >>> leave(Times(0.0, 1.0), 2.0)
     Times(start=0.0, ready=1.0, relax=2.0, end=2.5)
     """
     relax = now if times.relax is None else min(times.relax, now)

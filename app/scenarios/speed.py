@@ -26,13 +26,13 @@ MIN_STOPPING_SPEED = 0.05
 """A Speed below this becomes 0 when the cube is at idle."""
 
 
-def corrected(angle: float) -> float:
+def corrected_speed(angle: float) -> float:
     """Return a Speed that is continuous except for the step at 45°, and runs only on the run face.
 
     The printed map starts to run at 65° and leaves the declared range beyond 155°. This one
     keeps the declared limits: walking is from 0.5 to 3, and 5 is the maximum.
 
-    >>> [round(corrected(math.radians(d)), 2) for d in (0, 45, 90, 135, 180)]
+    >>> [round(corrected_speed(math.radians(d)), 2) for d in (0, 45, 90, 135, 180)]
     [0.0, 0.0, 1.75, 3.0, 5.0]
     """
     if angle <= IDLE_MAX_ANGLE:
@@ -51,7 +51,7 @@ def legacy(angle: float) -> float:
     return 0.0 if angle <= IDLE_MAX_ANGLE else 1.55 + 4.0 * angle / math.pi
 
 
-SPEED_MAPS: dict[str, SpeedMap] = {"corrected": corrected, "legacy": legacy}
+SPEED_MAPS: dict[str, SpeedMap] = {"corrected": corrected_speed, "legacy": legacy}
 """The maps by name."""
 
 

@@ -8,7 +8,7 @@ RECORDED = ("follow", "sketch", "companion", "reach")
 """The scenarios with a session in `recordings/`, and with a script of the synthetic camera."""
 
 
-def bundled(name: str) -> Path:
+def bundled_session(name: str) -> Path:
     """Return the session of a scenario in `recordings/`."""
     from cubeling import recordings
 

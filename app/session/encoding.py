@@ -23,7 +23,7 @@ SESSION_RECORD, FORMAT_KEY = "cubeling", "format"
 """Name of a session's metadata, and the key of the version of its format."""
 
 SESSION_FORMAT = 1
-"""The version of the format that is written: all that changed it stands in `_upgraded`."""
+"""The version of the format that is written: all that changed it stands in `_upgrade_content`."""
 
 CLOCK_RECORD, CLOCK_ZERO = "cubeling clock", "zero_utc"
 """Name of a live session's metadata, and their key: when its timestamps were 0, by ISO 8601."""
@@ -71,7 +71,7 @@ def encode(message: object) -> bytes:
 def decode(kind: type[T], document: bytes) -> T:
     """Return the dataclass that `encode` wrote; ValueError if it is no JSON or not of that type."""
     try:
-        value = _typed(kind, _upgraded(kind, json.loads(document)))
+        value = _value_of(kind, _upgrade_content(kind, json.loads(document)))
     except (KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"not a {kind.__name__}: {error}") from error
     return typing.cast(T, value)
@@ -87,7 +87,7 @@ def decode_sound(data: bytes) -> Samples:
     return np.frombuffer(data, "<i2").astype(np.float32) / np.float32(_FULL_SCALE)
 
 
-def upgraded(topic: str, document: bytes) -> bytes:
+def upgrade(topic: str, document: bytes) -> bytes:
     """Return a channel's document as this version writes it, whichever version wrote it.
 
     A document that no version wrote is returned as it is.
@@ -95,9 +95,9 @@ def upgraded(topic: str, document: bytes) -> bytes:
     kind = CHANNEL_TYPES[topic]
     try:
         content = json.loads(document)
-        newer = _upgraded(kind, content)
+        newer = _upgrade_content(kind, content)
         same = newer is content and kind is not PosedCharacter  # whose rounding got coarser
-        return document if same else encode(_typed(kind, newer))
+        return document if same else encode(_value_of(kind, newer))
     except (ValueError, KeyError, TypeError, AttributeError):
         return document
 
@@ -107,7 +107,7 @@ def schema(kind: type[Any]) -> bytes:
     return json.dumps({"title": kind.__name__, **_schema(kind)}, separators=(",", ":")).encode()
 
 
-def _upgraded(kind: type[Any], content: Any) -> Any:
+def _upgrade_content(kind: type[Any], content: Any) -> Any:
     """Return the content of a document in today's fields.
 
     Before `affect.Emotion` held its word, an emotion had a label next to it, and the intents of a
@@ -122,13 +122,13 @@ def _upgraded(kind: type[Any], content: Any) -> Any:
         emotion = {**content["emotion"], "word": content["label"]}
         return {"emotion": emotion, "timestamp": content["timestamp"]}
     if kind is CharacterCommand and isinstance(content.get("action"), str):
-        return _upgraded_command(content)
+        return _upgrade_command(content)
     if kind is CharacterCommand and "behaviour" not in content:  # before hands reached
         return {"speech": None, **content, "behaviour": None}
     return content
 
 
-def _upgraded_command(old: dict[str, Any]) -> dict[str, Any]:
+def _upgrade_command(old: dict[str, Any]) -> dict[str, Any]:
     """Return a command with intents from one whose intents are single fields."""
     going = {"speed": "speed", "target": "target", "stop": "stop", "look_at": "facing"}
     command: dict[str, Any] = {
@@ -179,19 +179,21 @@ def _single(array: NDArray[Any] | None) -> object:
     return np.array([float(str(number)) for number in single.flat]).reshape(array.shape).tolist()
 
 
-def _typed(kind: Any, value: Any) -> Any:
+def _value_of(kind: Any, value: Any) -> Any:
     if dataclasses.is_dataclass(kind):
         hints = typing.get_type_hints(kind)
         names = [field.name for field in dataclasses.fields(kind) if field.name in value]
-        return typing.cast(Any, kind)(**{name: _typed(hints[name], value[name]) for name in names})
+        return typing.cast(Any, kind)(
+            **{name: _value_of(hints[name], value[name]) for name in names}
+        )
     origin = typing.get_origin(kind)
     if origin in (typing.Union, types.UnionType):
         choices = [choice for choice in typing.get_args(kind) if choice is not type(None)]
-        return None if value is None else _typed(choices[0], value)
+        return None if value is None else _value_of(choices[0], value)
     if origin is np.ndarray:
         return np.array(value, float) if isinstance(value, list) else _image(value)
     if origin is tuple:
-        return tuple(_typed(typing.get_args(kind)[0], item) for item in value)
+        return tuple(_value_of(typing.get_args(kind)[0], item) for item in value)
     if kind is float:
         return float("nan") if value is None else float(value)
     return value

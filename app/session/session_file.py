@@ -17,7 +17,7 @@ from mcap.records import Chunk, DataEnd, Metadata
 from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.pipeline.step import ReplayInputs
@@ -292,7 +292,7 @@ class SessionFile:
                 f"the session '{self.path}' was cut off before its first frame was whole"
             )
         raise AppError(
-            f"the session '{self.path}' was cut off: {counted(frames, 'frame')} ({seconds:.1f} s) "
+            f"the session '{self.path}' was cut off: {quantity(frames, 'frame')} ({seconds:.1f} s) "
             "can be played with --salvage"
         )
 

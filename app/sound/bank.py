@@ -11,7 +11,7 @@ import numpy as np
 
 from cubeling.app.errors import AppError
 from cubeling.app.sound.sounds import SOUNDS
-from cubeling.app.sound.synthesis import SAMPLE_RATE, Array, levelled
+from cubeling.app.sound.synthesis import SAMPLE_RATE, Array, with_level
 
 VARIANT_COUNT = 4
 """Variants of each synthesised sound, which differ a little, so that repetition does not tire."""
@@ -61,7 +61,7 @@ class SoundBank:
     def variants(self, name: str) -> list[Array]:
         """Return the variants of a sound; none for an unknown name."""
         if name not in self._variants:
-            self._variants[name] = synthesised(name) if name in SOUNDS else []
+            self._variants[name] = synthesise(name) if name in SOUNDS else []
         return self._variants[name]
 
     def prepare(self) -> None:
@@ -70,12 +70,12 @@ class SoundBank:
             self.variants(name)
 
 
-def synthesised(name: str) -> list[Array]:
+def synthesise(name: str) -> list[Array]:
     """Return the variants of one of `SOUNDS`: always the same."""
     sound = SOUNDS[name]
     seed = zlib.crc32(name.encode())
     return [
-        levelled(sound.make(np.random.default_rng([seed, variant])), sound.level)
+        with_level(sound.make(np.random.default_rng([seed, variant])), sound.level)
         for variant in range(VARIANT_COUNT)
     ]
 

@@ -93,9 +93,9 @@ class SoundCues:
                 actions = []  # the character has one mouth
             heard = [*actions, *self._feet.update(step.posed)]
             cues += [replace(cue, pan=pan) for cue in heard]
-        return [self._numbered(cue) for cue in cues]
+        return [self._with_variant(cue) for cue in cues]
 
-    def _numbered(self, cue: Cue) -> Cue:
+    def _with_variant(self, cue: Cue) -> Cue:
         """Return a cue with the number of its variant."""
         self._counts[cue.name] += 1
         return replace(cue, variant=self._counts[cue.name] - 1)
@@ -116,12 +116,12 @@ class _FootCues:
         stomps = posed.state not in NO_ACTIONS and speed > STOMP_SPEED
         cues: list[Cue] = []
         if len(falls) > 1 or landed or stomps:
-            cues.append(Cue("land", _clipped(0.2 + 0.2 * speed), rate=self._rate))
+            cues.append(Cue("land", _clip_gain(0.2 + 0.2 * speed), rate=self._rate))
         else:
             name = "running_step" if posed.state == "run" else "step"
             for fall in falls:
                 rate = self._rate * (1.03 if fall.foot % 2 else 0.97)
-                cues.append(Cue(name, _clipped(0.25 + 0.22 * fall.speed), rate=rate))
+                cues.append(Cue(name, _clip_gain(0.25 + 0.22 * fall.speed), rate=rate))
         leaps = self._footfalls.clearance > LEAP_CLEARANCE and posed.state not in GAIT_STATES
         if leaps and not self._leaping:
             cues.append(Cue("hop"))
@@ -152,7 +152,7 @@ class _ActionCues:
             weight = float(posed.pose.morphs[int(morph)])
             sounds = self._waiting and weight > least
             self._waiting = not sounds and (self._waiting or weight < most)
-        return [Cue(posed.state, _clipped(0.8 + 0.2 * posed.weight))] if sounds else []
+        return [Cue(posed.state, _clip_gain(0.8 + 0.2 * posed.weight))] if sounds else []
 
 
 class _MoodCues:
@@ -182,5 +182,5 @@ def pan_of(step: Step) -> float:
     return float(np.clip(math.atan2(x, z) / EDGE_RAD, -1.0, 1.0))
 
 
-def _clipped(gain: float) -> float:
+def _clip_gain(gain: float) -> float:
     return min(max(gain, 0.0), 1.0)

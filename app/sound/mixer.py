@@ -74,7 +74,7 @@ class Mixer:
             part, sound.samples = sound.samples[:count], sound.samples[count:]
             block[: len(part)] += part[:, None] * sound.gains
         self._playing = deque((s for s in self._playing if len(s.samples)), MAX_SOUNDS)
-        return (self.volume * limited(block)).astype(np.float32)
+        return (self.volume * limit(block)).astype(np.float32)
 
     def _begin(self, cue: Cue) -> None:
         variants = self.bank.variants(cue.name)
@@ -104,10 +104,10 @@ def _gains(pan: float) -> Array:
     return np.array([np.cos(angle), np.sin(angle)])
 
 
-def limited(block: Array) -> Array:
+def limit(block: Array) -> Array:
     """Return samples bent so that none is beyond `CEILING`; quiet ones are unchanged.
 
-    >>> limited(np.array([-0.5, 0.6, 3.0])).round(3).tolist()
+    >>> limit(np.array([-0.5, 0.6, 3.0])).round(3).tolist()
     [-0.5, 0.6, 0.95]
     """
     loud = np.maximum(np.abs(block) - KNEE, 0.0)

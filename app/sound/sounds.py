@@ -14,7 +14,7 @@ from cubeling.app.sound.synthesis import (
     hit,
     noise,
     phase,
-    struck,
+    strike,
     times,
     voice,
     wobble,
@@ -104,7 +104,7 @@ def _step(random: np.random.Generator) -> Array:
     roll = _near(random, 0.055, 0.25)
     wood = [(165 * low, 0.024, 1.0), (392 * low, 0.016, 0.5), (905 * low, 0.007, 0.22)]
     skin = noise(random, len(time), 1900, 0.8) * (hit(time, 0.006) + 0.5 * hit(time, 0.010, roll))
-    return struck(time, wood) + 0.35 * struck(time, wood, roll) + 0.15 * skin
+    return strike(time, wood) + 0.35 * strike(time, wood, roll) + 0.15 * skin
 
 
 def _running_step(random: np.random.Generator) -> Array:
@@ -113,7 +113,7 @@ def _running_step(random: np.random.Generator) -> Array:
     wood = [(190 * low, 0.020, 1.0), (455 * low, 0.013, 0.65), (1080 * low, 0.006, 0.35)]
     scuff = noise(random, len(time), 2600, 0.7)
     scuff *= curve([(0.0, 0), (0.004, 1), (0.02, 0.4), (0.06, 0)], time)
-    return struck(time, wood) + 0.16 * scuff
+    return strike(time, wood) + 0.16 * scuff
 
 
 def _land(random: np.random.Generator) -> Array:
@@ -121,7 +121,7 @@ def _land(random: np.random.Generator) -> Array:
     time, low = times(0.26), _near(random, 1.0, 0.06)
     top = [(96 * low, 0.055, 1.0), (203 * low, 0.035, 0.6), (410 * low, 0.018, 0.3)]
     dust = noise(random, len(time), 900, 1.0)
-    return struck(time, top) + 0.2 * dust * hit(time, 0.02)
+    return strike(time, top) + 0.2 * dust * hit(time, 0.02)
 
 
 def _hop(random: np.random.Generator) -> Array:
@@ -142,7 +142,7 @@ def _boop(time: Array, high: float, start: float = 0.0) -> Array:
     return (np.sin(angle) + 0.25 * np.sin(2.0 * angle)) * hit(time, 0.045, start) * fade
 
 
-def _placed(random: np.random.Generator) -> Array:
+def _put_down(random: np.random.Generator) -> Array:
     """Say "boop"."""
     return _boop(times(0.20), _near(random, 525, 0.03))
 
@@ -238,7 +238,7 @@ SOUNDS: dict[str, Sound] = {
     "kiss": Sound(_kiss, -14.0, "the character kisses"),
     "shout": Sound(_shout, -14.0, "the character shouts"),
     "cheer": Sound(_cheer, -15.0, "the character cheers"),
-    "placed": Sound(_placed, -20.0, "the cube is put down"),
+    "placed": Sound(_put_down, -20.0, "the cube is put down"),
     "start_over": Sound(_start_over, -19.0, "the player starts over"),
     "pencil": Sound(_pencil, -26.0, "the path of a sketch grows or closes"),
     "neutral": Sound(_neutral, -19.0, "the robot becomes neutral"),

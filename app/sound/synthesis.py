@@ -87,7 +87,7 @@ def hit(time: Array, decay: float, start: float = 0.0) -> Array:
     return np.asarray((1.0 - np.exp(-since / 0.001)) * np.exp(-since / decay))
 
 
-def struck(time: Array, modes: Sequence[tuple[float, float, float]], start: float = 0.0) -> Array:
+def strike(time: Array, modes: Sequence[tuple[float, float, float]], start: float = 0.0) -> Array:
     """Return a struck body: modes of a frequency [Hz], a decay time constant [s], an amplitude."""
     since = np.maximum(time - start, 0.0)
     return np.asarray(
@@ -133,7 +133,7 @@ def loudness(sound: Array) -> float:
     return 10.0 * math.log10(max(loudest, 1e-12))
 
 
-def levelled(sound: Array, level: float) -> Array:
+def with_level(sound: Array, level: float) -> Array:
     """Return a sound of a loudness [dB of full scale], without offset, and with soft ends."""
     sound = sound - sound.mean()
     ends = np.minimum(np.arange(len(sound)), np.arange(len(sound))[::-1])

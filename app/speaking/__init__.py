@@ -1,1 +1,1 @@
-"""Speaking: what a character says while it plays, and performances of a text."""
+"""Speaking: what a character says while it plays, and videos of a text."""

@@ -30,13 +30,13 @@ def bundled_lines(scenario: str, language: str) -> ScenarioLines | None:
 
     Raises AppError if it has lines, but not in this language.
     """
-    file = _bundled(scenario)
+    file = _bundled_file(scenario)
     return read_lines(file, language) if file.is_file() else None
 
 
 def bundled_languages(scenario: str) -> tuple[str, ...]:
     """Return the languages of the lines of a bundled scenario; () if it has none."""
-    file = _bundled(scenario)
+    file = _bundled_file(scenario)
     return languages_in(file) if file.is_file() else ()
 
 
@@ -51,7 +51,7 @@ def read_lines(path: Path, language: str) -> ScenarioLines:
         found = ", ".join(voice) or "none"
         raise voice.wrong(language, f"there are no lines in '{language}'; has {found}")
     said = voice.table(language)
-    return ScenarioLines(language, {moment: _said(said, moment) for moment in said})
+    return ScenarioLines(language, {moment: _lines_of(said, moment) for moment in said})
 
 
 def languages_in(path: Path) -> tuple[str, ...]:
@@ -59,7 +59,7 @@ def languages_in(path: Path) -> tuple[str, ...]:
     return tuple(_voice(path))
 
 
-def _bundled(scenario: str) -> Path:
+def _bundled_file(scenario: str) -> Path:
     return Path(__file__).parents[1] / "scenarios" / "lines" / f"{scenario}.toml"
 
 
@@ -69,7 +69,7 @@ def _voice(path: Path) -> TomlTable:
     return TomlTable(content, str(path), error=AppError, most=MAX_LINES).table("voice")
 
 
-def _said(table: TomlTable, moment: str) -> tuple[str, ...]:
+def _lines_of(table: TomlTable, moment: str) -> tuple[str, ...]:
     one = table.value(moment)
     lines = (one,) if isinstance(one, str) else table.texts(moment)
     for line in lines:

@@ -7,11 +7,11 @@ from cubeling.affect import Emotion
 from cubeling.app.errors import AppError
 from cubeling.app.sound import NoSoundError
 from cubeling.app.speaking.microphone import MICROPHONE_HZ, SILENT_S, Microphone
-from cubeling.app.speaking.performance import (
+from cubeling.app.speaking.speech_video import (
     AZIMUTH_RAD,
     ELEVATION_RAD,
     VIEWER,
-    framed,
+    focus_of,
 )
 from cubeling.app.speaking.view import View
 from cubeling.characters import (
@@ -90,7 +90,7 @@ def speak_live(
     """
     from cubeling.app.ui.window.picture_window import PictureWindow  # needs a display's libraries
 
-    performer = LiveRealizer(character, MICROPHONE_HZ, emotion, profile)
+    realizer = LiveRealizer(character, MICROPHONE_HZ, emotion, profile)
     try:
         microphone = Microphone()
     except NoSoundError as error:
@@ -98,14 +98,14 @@ def speak_live(
     window = PictureWindow(size, "Cubeling: speak")
     renderer = PortraitRenderer(window.context, size)
     begin = last = clock()
-    focus = framed(character, performer.update(microphone.heard(), 0.0).pose, view)
+    focus = focus_of(character, realizer.update(microphone.read(), 0.0).pose, view)
     try:
         while not window.closed:
-            sound, now = microphone.heard(), clock()
+            sound, now = microphone.read(), clock()
             last = now if len(sound) else last
             if now - last > SILENT_S:
                 raise AppError("the microphone was lost")
-            pose = performer.update(sound, now - begin).pose
+            pose = realizer.update(sound, now - begin).pose
             window.show_picture(
                 renderer.portrait(
                     character,

@@ -44,7 +44,7 @@ class Microphone:
             line = str(error).partition("\n")[0]
             raise NoSoundError(f"no microphone can be opened: {line}") from error
 
-    def heard(self) -> Samples:
+    def read(self) -> Samples:
         """Return what was heard since the last call, (n,), at `MICROPHONE_HZ`."""
         blocks = [np.zeros(0, np.float32)]
         while True:

@@ -112,7 +112,7 @@ class LiveSpeaker:
         while (request := self._requests.get()) is not None:
             self._prepare(gestures)
             try:
-                self._said.put(spoken(self._voice, request, self.profile))
+                self._said.put(line_of(self._voice, request, self.profile))
                 failures = 0
             except CharacterError as error:
                 self._said.put(None)
@@ -126,7 +126,7 @@ class LiveSpeaker:
             self.profile.planner(gestures)
 
 
-def spoken(voice: Voice, request: LineRequest, profile: SpeechProfile) -> SpokenLine:
+def line_of(voice: Voice, request: LineRequest, profile: SpeechProfile) -> SpokenLine:
     """Return a line as a voice says it.
 
     Raises

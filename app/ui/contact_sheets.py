@@ -10,7 +10,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.output_path import whole_file
 from cubeling.app.ui.canvas import Canvas, text_width
@@ -44,15 +44,15 @@ class ContactSheets:
     def turntable(self, character: Character) -> Image:
         """Return a character from all sides, in its idle pose."""
         picture = self._large.turntable(character, standing_pose(character), TURNTABLE_COLUMNS)
-        return _sheet(character.name, "from the front, to its left", [trimmed(picture)])
+        return _sheet(character.name, "from the front, to its left", [trim(picture)])
 
     def clips(self, character: Character, clips: Sequence[Clip]) -> Image:
         """Return frames of clips, one row for each clip."""
         rows = []
         for clip in clips:
-            strip = trimmed(self._small.strip(character, clip, CLIP_COLUMNS))
+            strip = trim(self._small.strip(character, clip, CLIP_COLUMNS))
             loops = "loop" if clip.loop else "once"
-            rows.append(_labelled(strip, clip.name, f"{clip.duration:.2f} s, {loops}"))
+            rows.append(_with_label(strip, clip.name, f"{clip.duration:.2f} s, {loops}"))
         return _sheet(character.name, f"{CLIP_COLUMNS} frames of each clip", rows)
 
     def faces(self, character: Character) -> Image:
@@ -63,7 +63,7 @@ class ContactSheets:
         poses = [replace(pose, morphs=morphs if len(names) else None) for morphs in shapes]
         faces = self._faces.portraits(character, poses, azimuth=0.3, elevation=0.05, focus="face")
         captioned = zip(faces, ("at rest", *names), strict=True)
-        pictures = [_captioned(face, name) for face, name in captioned]
+        pictures = [_with_caption(face, name) for face, name in captioned]
         return _sheet(character.name, "its face", [side_by_side(pictures, FACE_COLUMNS)])
 
     def moods(self, character: Character, poses: Mapping[str, Pose]) -> Image:
@@ -72,7 +72,7 @@ class ContactSheets:
         bodies = self._large.portraits(character, list(poses.values()), azimuth=0.5, elevation=0.1)
         for (name, pose), whole in zip(poses.items(), bodies, strict=True):
             face = self._faces.portrait(character, pose, azimuth=0.3, elevation=0.05, focus="face")
-            columns.append(_captioned(stacked(whole, face), name))
+            columns.append(_with_caption(stack(whole, face), name))
         return _sheet(character.name, "its moods", [side_by_side(columns, len(columns))])
 
     def postures(self, character: Character, poses: Mapping[str, Pose]) -> Image:
@@ -82,9 +82,9 @@ class ContactSheets:
             for azimuth in (0.25, math.pi / 2)
         ]
         columns = [
-            _captioned(stacked(*both), name) for name, *both in zip(poses, *views, strict=True)
+            _with_caption(stack(*both), name) for name, *both in zip(poses, *views, strict=True)
         ]
-        sheet = trimmed(side_by_side(columns, len(columns)))
+        sheet = trim(side_by_side(columns, len(columns)))
         return _sheet(character.name, "how it stands in nine moods, without its face", [sheet])
 
     def release(self) -> None:
@@ -95,9 +95,9 @@ class ContactSheets:
 
 def frame_sheet(title: str, frames: Sequence[tuple[str, Image]]) -> Image:
     """Return pictures of a session in rows, each with its caption."""
-    pictures = [_captioned(picture, caption) for caption, picture in frames]
+    pictures = [_with_caption(picture, caption) for caption, picture in frames]
     rows = side_by_side(pictures, min(FRAME_COLUMNS, len(pictures)))
-    return _sheet(title, counted(len(frames), "picture"), [rows])
+    return _sheet(title, quantity(len(frames), "picture"), [rows])
 
 
 def standing_pose(character: Character) -> Pose:
@@ -112,7 +112,7 @@ def standing_pose(character: Character) -> Pose:
     return character.skeleton.rest if idle is None else idle.sample(0.0)
 
 
-def trimmed(picture: Image) -> Image:
+def trim(picture: Image) -> Image:
     """Return a picture without the empty rows of paper at its top and bottom."""
     drawn = (np.abs(picture.astype(int) - PAPER_BGR).max(axis=2) > 6).any(axis=1)
     rows = np.flatnonzero(drawn)
@@ -121,10 +121,10 @@ def trimmed(picture: Image) -> Image:
     return picture[max(rows[0] - TRIM_MARGIN_PX, 0) : rows[-1] + 1 + TRIM_MARGIN_PX]
 
 
-def stacked(*pictures: Image) -> Image:
+def stack(*pictures: Image) -> Image:
     """Return pictures below each other, on paper as wide as the widest."""
     width = max(picture.shape[1] for picture in pictures)
-    return np.concatenate([_widened(picture, width) for picture in pictures])
+    return np.concatenate([_widen(picture, width) for picture in pictures])
 
 
 def save(picture: Image, path: Path, max_bytes: int | None = None) -> None:
@@ -156,7 +156,7 @@ def _blank(width: int, height: int) -> Canvas:
     return canvas
 
 
-def _labelled(picture: Image, name: str, below: str) -> Image:
+def _with_label(picture: Image, name: str, below: str) -> Image:
     """Return a picture with a name and a smaller line to its left."""
     canvas = _blank(LABEL_WIDTH_PX, picture.shape[0])
     middle = picture.shape[0] / 2
@@ -167,7 +167,7 @@ def _labelled(picture: Image, name: str, below: str) -> Image:
     return np.concatenate([canvas.color, picture], axis=1)
 
 
-def _captioned(picture: Image, name: str) -> Image:
+def _with_caption(picture: Image, name: str) -> Image:
     """Return a picture with a name below it."""
     canvas = _blank(picture.shape[1], 26)
     canvas.text(picture.shape[1] / 2, 14, name, 15, INK, "middle")
@@ -180,15 +180,15 @@ def _sheet(title: str, below: str, rows: Sequence[Image]) -> Image:
     canvas = _blank(width, TITLE_HEIGHT_PX)
     canvas.text(0, 24, title, 25, INK)
     canvas.text(text_width(title, 25) + 14, 24, below, 15, QUIET)
-    wide = [_widened(row, width) for row in rows]
-    return _bordered(np.concatenate([canvas.color, *wide]), *[BORDER_PX] * 4)
+    wide = [_widen(row, width) for row in rows]
+    return _with_border(np.concatenate([canvas.color, *wide]), *[BORDER_PX] * 4)
 
 
-def _widened(row: Image, width: int) -> Image:
-    return _bordered(row, 0, 0, 0, width - row.shape[1])
+def _widen(row: Image, width: int) -> Image:
+    return _with_border(row, 0, 0, 0, width - row.shape[1])
 
 
-def _bordered(picture: Image, top: int, bottom: int, left: int, right: int) -> Image:
+def _with_border(picture: Image, top: int, bottom: int, left: int, right: int) -> Image:
     """Return a picture with a border of paper [px]."""
     wide = cv2.copyMakeBorder(
         picture, top, bottom, left, right, cv2.BORDER_CONSTANT, value=PAPER_BGR

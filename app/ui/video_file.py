@@ -121,7 +121,7 @@ class VideoFile:
                 self._track.write_until(elapsed)
             self._file.mux(self._stream.encode(self._frame(picture)))
         except OSError as error:
-            raise self._failed(error) from error
+            raise self._write_error(error) from error
 
     def _frame(self, picture: NDArray[np.uint8]) -> av.VideoFrame:
         """Return a picture as the encoder takes it."""
@@ -144,7 +144,7 @@ class VideoFile:
         try:
             self._finish()
         except OSError as error:
-            raise self._failed(error) from error
+            raise self._write_error(error) from error
         finally:
             self.discard()
 
@@ -164,7 +164,7 @@ class VideoFile:
                 self._file.close()
             self._partial.unlink(missing_ok=True)
 
-    def _failed(self, error: OSError) -> AppError:
+    def _write_error(self, error: OSError) -> AppError:
         return AppError(f"writing the video '{self._path}' failed: {error.strerror}")
 
 

@@ -100,9 +100,9 @@ def hand() -> Hand:
 @pytest.fixture(scope="session")
 def bundled_session() -> Path:
     """A complete bundled session."""
-    from cubeling.app.session.bundled import bundled
+    from cubeling.app.session.bundled import bundled_session
 
-    return bundled("companion")
+    return bundled_session("companion")
 
 
 @pytest.fixture

@@ -20,7 +20,7 @@ from cubeling.app.commands.session.complete import complete_session
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.session import messages
-from cubeling.app.session.bundled import bundled
+from cubeling.app.session.bundled import bundled_session
 from cubeling.app.session.encoding import MESSAGE_TYPES, decode
 from cubeling.tracking import CubeState, Intrinsics
 from cubeling.tracking.geometry import se3
@@ -52,7 +52,7 @@ TREMOR_M, TREMOR_HZ = 2e-4, np.array([6.3, 8.1, 9.7])
 def recorded() -> list[CubeState]:
     """Return the states of the bundled recording."""
     topic = "/cube/state"
-    with complete_session(bundled("follow")) as session:
+    with complete_session(bundled_session("follow")) as session:
         return [decode(MESSAGE_TYPES[topic], data) for _, _, data in messages(session, topic)]
 
 

@@ -16,7 +16,7 @@ from rich.table import Table
 
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.running.opening import intrinsics_for
-from cubeling.app.session.bundled import RECORDED, bundled
+from cubeling.app.session.bundled import RECORDED, bundled_session
 from cubeling.characters.rendering import WALL_SHARE, create_context
 from cubeling.characters.rendering.projection import project
 from cubeling.tracking import CubeTracker, open_source
@@ -33,7 +33,7 @@ SCENES = ("turn", "fingers", "wave", "static")
 
 def frame_times(name: str, frames: int, context: moderngl.Context) -> tuple[Array, Array]:
     """Return the times of `Playground.step` with an open and with a closed cube [ms]."""
-    with open_source(str(bundled(name))) as source:
+    with open_source(str(bundled_session(name))) as source:
         intrinsics = intrinsics_for(source.intrinsics, source.size)
         playing = [
             Playground(name, intrinsics, context=context, inside=choice)

@@ -29,7 +29,7 @@ from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.running.opening import intrinsics_for
-from cubeling.app.session.bundled import RECORDED, bundled
+from cubeling.app.session.bundled import RECORDED, bundled_session
 from cubeling.app.sound import Mixer, SessionSound, SoundBank
 from cubeling.app.ui.cards.overlay import overlay, virtual_robot_side
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
@@ -70,7 +70,7 @@ def measure(
     context = create_context()
     sound = SessionSound(Mixer(SoundBank()))
     with (
-        open_source(str(bundled(name))) as source,
+        open_source(str(bundled_session(name))) as source,
         patch.object(HandFinder, "update", timed(HandFinder.update, looks)),
         tempfile.TemporaryDirectory() as folder,
         av.open(str(Path(folder) / "sound.mp4"), "w") as file,

@@ -24,7 +24,7 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from cubeling.app.workshop.motion_graphs.recordings import fitted
+from cubeling.app.workshop.motion_graphs.recordings import fit_recording
 from cubeling.app.workshop.motion_graphs.tables import SPLIT_PROFILES
 from cubeling.characters import Character
 from cubeling.characters.retargeting import load_recording
@@ -75,7 +75,7 @@ class Choice:
 def clip(name: str):
     """Return a recording on the skeleton of the bundled human."""
     human = Character.load("human")
-    return fitted(load_recording(str(CMU / name[:2] / f"{name}.amc")), human)
+    return fit_recording(load_recording(str(CMU / name[:2] / f"{name}.amc")), human)
 
 
 def library(names: tuple[str, ...]) -> MotionLibrary:

@@ -22,7 +22,7 @@ from cubeling.app.preferences import Preferences, PreferenceStore
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.running.robots import RobotLine
 from cubeling.app.session import SessionOptions
-from cubeling.app.session.bundled import bundled
+from cubeling.app.session.bundled import bundled_session
 from cubeling.app.ui.panels import PANELS
 from cubeling.app.ui.panels.drawing.layer import PanelLayer
 from cubeling.app.ui.panels.monitor import SessionMonitor
@@ -86,7 +86,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--frames", type=int, default=150, help="frames of each set")
     frames = parser.parse_args().frames
-    options = SessionOptions(scenario="companion", source=str(bundled("companion")))
+    options = SessionOptions(scenario="companion", source=str(bundled_session("companion")))
     monitor = SessionMonitor(options, FrameTimes(time.perf_counter))
     table = Table("open", "mean ms", "median ms", "p95 ms", "processor ms", "target ms")
     robot = RobotLine.open("sim", time.monotonic, monitor.wire)

@@ -26,7 +26,7 @@ from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.running.robots import RobotLine
-from cubeling.app.session.bundled import bundled
+from cubeling.app.session.bundled import bundled_session
 from cubeling.characters.rendering import create_context
 from cubeling.robot.protocol import messages as m
 from cubeling.robot.protocol.schema import pack
@@ -148,7 +148,7 @@ def main() -> None:
         misbehave(asked.peer)
         return
     context = create_context()
-    with open_source(str(bundled("companion"))) as source:
+    with open_source(str(bundled_session("companion"))) as source:
         intrinsics = intrinsics_for(source.intrinsics, source.size)
         frames = [frame for frame, _ in zip(source, range(200 + FRAMES), strict=False)][200:]
     block("none", frames, intrinsics, context)  # warm

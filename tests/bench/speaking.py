@@ -18,8 +18,8 @@ from cubeling.app.speaking.line_chooser import LineRequest
 from cubeling.app.speaking.lines import bundled_lines
 from cubeling.app.speaking.live import LiveRealizer
 from cubeling.app.speaking.microphone import BLOCK, MICROPHONE_HZ
-from cubeling.app.speaking.performance import Direction, performed, write_video
-from cubeling.app.speaking.speaker import spoken
+from cubeling.app.speaking.speaker import line_of
+from cubeling.app.speaking.speech_video import Direction, speech_clip, write_video
 from cubeling.characters import Character
 from cubeling.characters.control.speech_profile import DEFAULT_PROFILE
 from cubeling.characters.face.visemes.mouth_morphs import MouthMorphs
@@ -48,7 +48,7 @@ def first_sound(voice: Voice) -> None:
                 for text in said:
                     request = LineRequest(text, language, Manner())
                     begin = time.perf_counter()
-                    spoken(voice, request, DEFAULT_PROFILE)
+                    line_of(voice, request, DEFAULT_PROFILE)
                     took.append(time.perf_counter() - begin)
     first, later = took[0], np.array(took[1:])
     worst = later.max() + FRAME_S + LOUDSPEAKER_S
@@ -96,9 +96,9 @@ def rendering(human: Character, voice: Voice, minutes: float) -> None:
     """Print how long a video of a long text takes."""
     text = TEXT * max(round(60 * minutes / SECONDS_OF_TEXT), 1)
     begin = time.perf_counter()
-    line = spoken(voice, LineRequest(text, "en", Manner()), DEFAULT_PROFILE)
+    line = line_of(voice, LineRequest(text, "en", Manner()), DEFAULT_PROFILE)
     said = time.perf_counter() - begin
-    clip = performed(human, line, Direction(), 25.0)
+    clip = speech_clip(human, line, Direction(), 25.0)
     moved = time.perf_counter() - begin - said
     with TemporaryDirectory() as folder:
         write_video(

@@ -9,7 +9,7 @@ import sys
 from rich.console import Console
 
 from cubeling.app.commands.session.complete import complete_session
-from cubeling.app.session.bundled import RECORDED, bundled
+from cubeling.app.session.bundled import RECORDED, bundled_session
 from tests.golden import FOLDER, describe, differences, renewed
 
 MOST_SHOWN = 5
@@ -26,7 +26,7 @@ def main() -> int:
     for name in arguments.names:
         file = FOLDER / f"{name}.txt"
         golden = file.read_text("utf-8") if file.exists() else ""
-        with complete_session(bundled(name)) as session:
+        with complete_session(bundled_session(name)) as session:
             now = describe(session)
         found = differences(golden, now)
         if arguments.renew:

@@ -70,14 +70,14 @@ def outline(plan: Plan, name: str) -> Tree:
         _grow(branch, node, "")
         for transition in plan.machine.transitions:
             if transition.start == state:
-                branch.add(f"[yellow]→ {_described(transition)}", highlight=True)
+                branch.add(f"[yellow]→ {_describe(transition)}", highlight=True)
     for transition in plan.machine.transitions:
         if transition.start == "*":
-            tree.add(f"[yellow]any → {_described(transition)}", highlight=True)
+            tree.add(f"[yellow]any → {_describe(transition)}", highlight=True)
     return tree
 
 
-def _described(transition: StateTransition) -> str:
+def _describe(transition: StateTransition) -> str:
     return f"{escape(transition.end)}[/] when {escape(transition.when.text)}"
 
 

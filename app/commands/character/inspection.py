@@ -17,7 +17,7 @@ from rich.progress import Progress
 from rich.table import Table
 from rich.tree import Tree
 
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 
 if TYPE_CHECKING:
@@ -143,11 +143,11 @@ def _print(console: Console, inspection: Inspection) -> None:
     character, stats = inspection.character, inspection.stats
     console.print(f"[bold]{escape(character.name)}[/], {character.anatomy.kind}", highlight=False)
     console.print(
-        f"{stats.height:.3g} m tall, {counted(stats.joints, 'joint')}, "
-        f"{counted(stats.meshes, 'mesh', 'meshes')}, "
-        f"{counted(stats.vertices, 'vertex', 'vertices')}, "
-        f"{counted(stats.triangles, 'triangle')}, {counted(stats.materials, 'material')}, "
-        f"{counted(stats.textures, 'texture')}",
+        f"{stats.height:.3g} m tall, {quantity(stats.joints, 'joint')}, "
+        f"{quantity(stats.meshes, 'mesh', 'meshes')}, "
+        f"{quantity(stats.vertices, 'vertex', 'vertices')}, "
+        f"{quantity(stats.triangles, 'triangle')}, {quantity(stats.materials, 'material')}, "
+        f"{quantity(stats.textures, 'texture')}",
         highlight=False,
     )
     if stats.morphs:

@@ -15,7 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from cubeling.affect import Emotion
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.app.ui.literal_text import literal_text
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def _describe(robot: Robot) -> Text:
     contents = "; ".join(f"{name} {', '.join(words)}" for name, words in lists if words)
     name = literal_text(catalogue.name)
     name.stylize("bold")
-    joints = counted(len(catalogue.joints), "joint")
+    joints = quantity(len(catalogue.joints), "joint")
     rest = literal_text(f" ({catalogue.firmware}), {joints}; {contents}".rstrip("; "))
     moodless = "\nIt has no moods: its emotions, motions and sounds are tried."
     return Text.assemble(name, rest, "" if catalogue.moods else moodless)

@@ -22,7 +22,7 @@ from cubeling.app.commands.session.play import (
 from cubeling.app.commands.session.preference_options import GivenPreferences, with_preferences
 from cubeling.app.errors import AppError
 from cubeling.app.scenarios import check_scenario, scenario_cube
-from cubeling.app.session.bundled import RECORDED, bundled
+from cubeling.app.session.bundled import RECORDED, bundled_session
 from cubeling.app.ui.display import has_display
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ def _of_recording(options: SessionOptions) -> SessionOptions:
             f"there is no recording of '{scenario}': take a camera, "
             f"or cubeling play {scenario} --source synthetic:companion (or follow, or sketch)"
         )
-    return replace(options, source=str(bundled(scenario)))
+    return replace(options, source=str(bundled_session(scenario)))
 
 
 def _open_camera(closing: ExitStack, console: Console) -> FrameSource | None:

@@ -148,15 +148,15 @@ def with_preferences(command: Command) -> Command:
     parameters = [*own, *added, *where]
 
     @functools.wraps(command)
-    def wrapped(**arguments: Any) -> None:
+    def run_command(**arguments: Any) -> None:
         given = {name: arguments.pop(name) for name in FLAGS}
         values = {name: FLAGS[name].parse(v) for name, v in given.items() if v is not None}
         file, keep = arguments.pop("preferences_file"), arguments.pop("keep_preferences")
         command(**arguments, preferences=GivenPreferences(values, file if keep else None))
 
-    wrapped.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
-    wrapped.__annotations__ = {each.name: each.annotation for each in parameters}
-    return wrapped
+    run_command.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
+    run_command.__annotations__ = {each.name: each.annotation for each in parameters}
+    return run_command
 
 
 def _parameter(name: str, flag: Flag) -> inspect.Parameter:

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.step import Step
 from cubeling.app.preferences import PreferenceStore
@@ -49,7 +49,7 @@ def play_session(
     console = Console()
     preferences = preferences or PreferenceStore()
     with ExitStack() as at_end:
-        at_end.enter_context(_kept(preferences, console))
+        at_end.enter_context(_keep_preferences(preferences, console))
         if options.record is not None:
             at_end.callback(report_recording, options.record, console)
         with open_session(
@@ -74,7 +74,7 @@ def play_session(
 
 
 @contextmanager
-def _kept(preferences: PreferenceStore, console: Console) -> Iterator[None]:
+def _keep_preferences(preferences: PreferenceStore, console: Console) -> Iterator[None]:
     """Keep what the player changes of the preferences; print why they are not read or kept."""
     reported = preferences.problem
     if reported is not None:
@@ -118,7 +118,7 @@ def report_recording(path: Path, console: Console) -> None:
         return
     size = path.stat().st_size / 1e6
     console.print(
-        f"Recorded to [bold]{name}[/]: {info.duration:.1f} s, {counted(info.frames, 'frame')}, "
+        f"Recorded to [bold]{name}[/]: {info.duration:.1f} s, {quantity(info.frames, 'frame')}, "
         f"{size:.1f} MB. "
         f"Play it again: [cyan]{replay}[/]",
         soft_wrap=True,

@@ -48,12 +48,12 @@ def discard(opened: Any) -> None:
         close()
 
 
-def _kept(session: OpenedSession) -> str:
+def _why_fixed(session: OpenedSession) -> str:
     return session.why_it_stays if session.keeps_scenario else ""
 
 
 def _refuse_camera(session: OpenedSession) -> str:
-    return _kept(session) if session.source.live else "The frames are those of a recording"
+    return _why_fixed(session) if session.source.live else "The frames are those of a recording"
 
 
 def _cameras(session: OpenedSession) -> Iterator[MenuChoice]:
@@ -166,7 +166,7 @@ PARTS: dict[str, Part] = {
     part.name: part
     for part in (
         Part("camera", _refuse_camera, _cameras, _open_camera, _exchange_camera),
-        Part("character", _kept, _characters, _open_character, _exchange_character),
+        Part("character", _why_fixed, _characters, _open_character, _exchange_character),
         # A replay does not depend on the robot, so a recording may go on with another one.
         Part("robot", lambda session: "", _robots, _open_robot, _exchange_robot),
     )

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.output_path import whole_file
 from cubeling.app.ui.calibration.coach import draw_coverage, words_of
@@ -45,7 +45,7 @@ class CoachLines:
         ):
             return
         self._last = new, timestamp
-        share = f"{100 * advice.coverage.progress:3.0f} %  {counted(advice.views, 'view'):>8}"
+        share = f"{100 * advice.coverage.progress:3.0f} %  {quantity(advice.views, 'view'):>8}"
         self._console.print(f"[dim]{share}[/]  {new}", highlight=False)
 
 

@@ -112,7 +112,7 @@ class CalibrationSession:
             result = self._collect(frame)
             # A recording is read to its end: it does not follow advice.
             done = source.live and self.collector.coverage.complete and self._determined()
-            request = "done" if done else self._advised(result, frame.timestamp)
+            request = "done" if done else self._advice(result, frame.timestamp)
             collector = self.collector
             advice = Advice(
                 request,
@@ -130,7 +130,7 @@ class CalibrationSession:
         if first is None:
             raise AppError("the source gave no picture at all")
 
-    def calibrated(self) -> Calibration:
+    def calibrate(self) -> Calibration:
         """Return the camera that the views determine.
 
         Raises
@@ -164,16 +164,18 @@ class CalibrationSession:
                 return result
         return results[0]
 
-    def _advised(self, result: ViewResult, now: float) -> str:
+    def _advice(self, result: ViewResult, now: float) -> str:
         collector = self.collector
         if result.sample is not None:
             self._last_seen = now
         elif now - self._last_seen > LOST_AFTER_S:
             return "show"
         wanted = collector.coverage.next_kind()
-        return "still" if result.verdict == "moving" and wanted in self._offered(result) else wanted
+        return (
+            "still" if result.verdict == "moving" and wanted in self._kinds_of(result) else wanted
+        )
 
-    def _offered(self, result: ViewResult) -> set[str]:
+    def _kinds_of(self, result: ViewResult) -> set[str]:
         return set() if result.sample is None else self.collector.coverage.kinds_of(result.sample)
 
     def _determined(self) -> bool:

@@ -111,7 +111,7 @@ def virtual_robot_side(height: int) -> int:
     return round(VIRTUAL_ROBOT_SIDE * height / PICTURE_HEIGHT)
 
 
-def interrupted(picture: NDArray[np.uint8], notice: Notice) -> NDArray[np.uint8]:
+def with_notice(picture: NDArray[np.uint8], notice: Notice) -> NDArray[np.uint8]:
     """Return the last picture (H, W, 3), dimmed, with a notice over it."""
     dim = np.asarray(cv2.convertScaleAbs(picture, alpha=DIMMED_BRIGHTNESS), np.uint8)
     scale = picture.shape[0] / PICTURE_HEIGHT

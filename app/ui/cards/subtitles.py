@@ -79,13 +79,13 @@ def subtitle_room(picture_width: float, card_width: float) -> float:
 def draw_subtitle(words: str, room: float, scale: float) -> Canvas:
     """Return the card of a subtitle that is at most as wide as its room, if its words are not."""
     size = SIZE
-    lines = wrapped(words, room - 40)
+    lines = wrap_text(words, room - 40)
     while size > MIN_SIZE and (
         LINE_HEIGHT * len(lines) * size / SIZE + 18 > MAX_HEIGHT
         or max(text_width(line, size) for line in lines) > room - 40
     ):
         size -= 2
-        lines = wrapped(words, room - 40, size)
+        lines = wrap_text(words, room - 40, size)
     line_height = LINE_HEIGHT * size / SIZE
     card_width = max(text_width(line, size) for line in lines) + 40
     canvas = Canvas(card_width, line_height * len(lines) + 18, scale)
@@ -112,7 +112,7 @@ def subtitle_place(
     return x, y
 
 
-def wrapped(words: str, width: float, size: float = SIZE) -> list[str]:
+def wrap_text(words: str, width: float, size: float = SIZE) -> list[str]:
     """Return words in lines of at most this width; a longer word has a line of its own."""
     lines = [""]
     for word in words.split():

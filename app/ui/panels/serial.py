@@ -36,7 +36,7 @@ def _health(url: str, telemetry: Telemetry, traffic: Traffic) -> tuple[Widget, .
     facts = [
         Fact("Link", f"{telemetry.state} on {url}", STATE_TONES.get(telemetry.state, "warning")),
         Fact("Round trip", f"{trip}, last heard {heard}"),
-        *(Fact(_sent(way), _flow(*traffic.rates[way])) for way in traffic.rates),
+        *(Fact(_sender(way), _flow(*traffic.rates[way])) for way in traffic.rates),
         Fact(
             "Repeated, damaged, reconnected",
             f"{counts.retries}, {counts.crc_errors}, {reconnections}",
@@ -51,7 +51,7 @@ def _health(url: str, telemetry: Telemetry, traffic: Traffic) -> tuple[Widget, .
     return tuple(facts)
 
 
-def _sent(way: str) -> str:
+def _sender(way: str) -> str:
     return SENDERS[way].capitalize()
 
 

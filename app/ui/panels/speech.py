@@ -33,10 +33,10 @@ def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
     if monitor.voice_problem:
         return (Note(monitor.voice_problem, "warning"),)
     profile = monitor.profile
-    return (_said(monitor), _plot(monitor), *_graph(monitor), *_settings(monitor, profile))
+    return (_text_note(monitor), _plot(monitor), *_graph(monitor), *_settings(monitor, profile))
 
 
-def _said(monitor: SessionMonitor) -> Widget:
+def _text_note(monitor: SessionMonitor) -> Widget:
     step = monitor.step
     speech = None if step is None else step.command.speech
     return Note("Nothing is being said." if speech is None else speech.utterance.text, "plain")

@@ -14,7 +14,7 @@ from cubeling.app.pipeline.step import Rect, RobotView, Step
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.ui.canvas import PICTURE_HEIGHT
 from cubeling.app.ui.cards.layout import CardLayout
-from cubeling.app.ui.cards.overlay import interrupted, overlay, virtual_robot_side
+from cubeling.app.ui.cards.overlay import overlay, virtual_robot_side, with_notice
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
 from cubeling.app.ui.notice import Notice
 from cubeling.app.ui.panels.drawing.layer import PanelLayer
@@ -113,7 +113,7 @@ class Window(WindowSurface):
         if self.closed:
             return
         if notice is not None and self._picture is not None:
-            self.paint(self._layer.draw(interrupted(self._picture, notice)))
+            self.paint(self._layer.draw(with_notice(self._picture, notice)))
             self._draw_over()
         elif self._layer.changed or (self._panels is not None and self._panels.busy):
             self._redraw()
@@ -177,9 +177,9 @@ class Window(WindowSurface):
         step, robot = self._shown
         if step.picture is not None:
             height, width = step.picture.shape[:2]
-            step = mirrored(step) if self._layer.mirrored else step
-            step = enlarged(step, self._enlargement(width, height))
-            step = replace(step, subjects=(*step.subjects, *self._covered()))
+            step = mirror(step) if self._layer.mirrored else step
+            step = enlarge(step, self._enlargement(width, height))
+            step = replace(step, subjects=(*step.subjects, *self._panel_areas()))
             assert step.picture is not None
             self._fit_virtual_robot(step.picture.shape[0])
             self._picture = overlay(
@@ -209,7 +209,7 @@ class Window(WindowSurface):
         _, top = self.in_picture(0.0, 0.0)
         return high * (bottom - float(self._picture.shape[0])) / (bottom - top)
 
-    def _covered(self) -> list[Rect]:
+    def _panel_areas(self) -> list[Rect]:
         """Return where panels lie in the picture [px], so that cards avoid them."""
         rects = [] if self._panels is None else self._panels.rects
         return [
@@ -234,7 +234,7 @@ class Window(WindowSurface):
             self._virtual_robot = VirtualRobot(self.context, side)
 
 
-def mirrored(step: Step) -> Step:
+def mirror(step: Step) -> Step:
     """Return a step whose picture is as in a mirror, to draw cards over it that can be read."""
     if step.picture is None:
         return step
@@ -246,7 +246,7 @@ def mirrored(step: Step) -> Step:
     return replace(step, picture=picture, subjects=subjects)
 
 
-def enlarged(step: Step, scale: float) -> Step:
+def enlarge(step: Step, scale: float) -> Step:
     """Return a step whose picture is larger, to draw cards over it that are sharp."""
     if step.picture is None or scale == 1.0:
         return step

@@ -87,7 +87,7 @@ def export(sessions: Sequence[ExportedSession], folder: Path) -> dict[str, int]:
 
 def _write_all(sessions: Sequence[ExportedSession], files: Mapping[str, Path]) -> dict[str, int]:
     """Write every file, and return the number of rows of each table."""
-    with _created(files[DICTIONARY_FILE]) as file:
+    with _create(files[DICTIONARY_FILE]) as file:
         csv.writer(file).writerows([DICTIONARY_COLUMNS, *dictionary_rows()])
     about = SESSION_CONTEXT_COLUMNS + SESSION_COLUMNS
     rows = {"sessions": _write(files, "sessions", about, _session_rows(sessions))}
@@ -126,8 +126,7 @@ def _write(
     count = 0
     with ExitStack() as closing:
         table, lines = (
-            closing.enter_context(_created(files[f"{name}.{suffix}"]))
-            for suffix in ("csv", "jsonl")
+            closing.enter_context(_create(files[f"{name}.{suffix}"])) for suffix in ("csv", "jsonl")
         )
         writer = csv.writer(table)
         writer.writerow([names[index] for index in flat])
@@ -140,7 +139,7 @@ def _write(
     return count
 
 
-def _created(path: Path) -> IO[str]:
+def _create(path: Path) -> IO[str]:
     return path.open("w", encoding="utf-8", newline="")
 
 

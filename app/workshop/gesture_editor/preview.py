@@ -124,7 +124,7 @@ class Preview:
         self._posed: PosedCharacter | None = None
         self._stage: Stage | None = None
         self._layers: dict[str, GestureLayer] = {}
-        self._performers: dict[str, GestureRealizer] = {}
+        self._realizers: dict[str, GestureRealizer] = {}
         self._cameras: dict[tuple[str, tuple[int, int]], PortraitCamera] = {}
 
     def character(self, name: str) -> Character:
@@ -168,7 +168,7 @@ class Preview:
         """Return the gesture space of a hand in the pictures of `draw`."""
         name = previewed.character
         assert self._posed is not None, "it was drawn"
-        space = self._performer(name).space
+        space = self._realizer(name).space
         space = replace(space, spatial=previewed.gesture.expressivity.spatial)
         placed = self._posed.table_from_character
         return ShownSpace(space, placed, self.camera(name, size), left)
@@ -179,7 +179,7 @@ class Preview:
         if key not in self._cameras:
             character = self.character(name)
             posed = self._new_animator(name).update(CharacterCommand(0.0))
-            extent, sitting = CharacterExtent(character), self._performer(name).posture
+            extent, sitting = CharacterExtent(character), self._realizer(name).posture
             points = np.concatenate([extent.points(pose) for pose in (posed.pose, sitting)])
             top = points[:, 1].max() + HEADROOM_SHARE * np.ptp(points[:, 1])
             points = np.concatenate([points, [[0.0, top, 0.0]]])
@@ -194,10 +194,10 @@ class Preview:
             self._stage.release()
         self._stage = None
 
-    def _performer(self, name: str) -> GestureRealizer:
-        if name not in self._performers:
-            self._performers[name] = GestureRealizer.of(self.character(name))
-        return self._performers[name]
+    def _realizer(self, name: str) -> GestureRealizer:
+        if name not in self._realizers:
+            self._realizers[name] = GestureRealizer.of(self.character(name))
+        return self._realizers[name]
 
     def _new_animator(self, name: str) -> Animator:
         """Return an animator of somebody who stays; gestures that were planned stay known."""

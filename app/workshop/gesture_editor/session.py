@@ -16,7 +16,7 @@ from cubeling.app.workshop.gesture_editor.editing.document import (
     moves,
 )
 from cubeling.app.workshop.gesture_editor.editing.edits import gesture_name
-from cubeling.app.workshop.gesture_editor.editing.importing import imported
+from cubeling.app.workshop.gesture_editor.editing.importing import import_gesture
 from cubeling.app.workshop.gesture_editor.editing.state import (
     Action,
     EditorState,
@@ -26,10 +26,10 @@ from cubeling.app.workshop.gesture_editor.editing.state import (
     Quit,
     Request,
     Save,
+    end_frame,
     fresh,
-    settled,
-    told,
     unless_unsaved,
+    with_message,
 )
 from cubeling.app.workshop.gesture_editor.editing.store import GestureStore
 from cubeling.app.workshop.gesture_editor.preview import Picture, Preview, PreviewedGesture
@@ -89,8 +89,8 @@ class EditorSession:
         self.settle(action(self.state))
 
     def settle(self, state: EditorState, held: int = 0) -> None:
-        """Take the state after a frame, and do what it asks for; `held` is that of `settled`."""
-        self.state = settled(self.state, state, held)
+        """Take the state after a frame, and do what it asks for; `held` is that of `end_frame`."""
+        self.state = end_frame(self.state, state, held)
         self._perform(self.state.requests)
 
     def ask_to_quit(self) -> None:
@@ -121,7 +121,7 @@ class EditorSession:
         try:
             self._store.keep(gesture)
         except CharacterError as error:
-            self.state = told(self.state, f"not safe yet: {error}", alarming=True)
+            self.state = with_message(self.state, f"not safe yet: {error}", alarming=True)
 
     def picture(self, size: tuple[int, int]) -> Picture:
         """Return the character, (height, width, 3) BGR; the same array while nothing changes."""
@@ -152,7 +152,7 @@ class EditorSession:
         self._preview.release()
 
     def _begin(self, name: str) -> None:
-        kept = self._store.kept()
+        kept = self._store.recover()
         if kept is not None:
             self.state = replace(
                 fresh(self.state, document_of(kept), "unsaved changes of last time are back"),
@@ -182,7 +182,7 @@ class EditorSession:
                 effects[type(request)](request)
             except (AppError, CharacterError, OSError) as error:
                 message = " ".join(str(error).split())
-                self.state = told(self.state, message, alarming=True)
+                self.state = with_message(self.state, message, alarming=True)
                 return
 
     def _save(self, request: Save) -> None:
@@ -194,7 +194,7 @@ class EditorSession:
         place = self._store.save(gesture)
         self._kept = None
         self.state = replace(
-            told(state, f"{gesture.name} is saved: {place}"),
+            with_message(state, f"{gesture.name} is saved: {place}"),
             saved=state.document,
             names=self._store.names,
         )
@@ -205,7 +205,7 @@ class EditorSession:
         self.state = fresh(self.state, document_of(gesture), f"{gesture.name}: {gesture.summary}")
 
     def _import(self, request: Import) -> None:
-        gesture = imported(request.recording, request.start, request.end)
+        gesture = import_gesture(request.recording, request.start, request.end)
         self._forget()
         message = "imported: save it under a name of your own"
         self.state = replace(fresh(self.state, document_of(gesture), message), saved=EMPTY)

@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.workshop.latency import MIN_FLIPS
 from cubeling.app.workshop.latency.flips import FlipDetector
@@ -108,7 +108,8 @@ class LatencySession:
             return
         if ended_by_user:
             raise AppError(
-                f"stopped after {counted(count, 'flip')} of the pattern; at least {MIN_FLIPS} count"
+                f"stopped after {quantity(count, 'flip')} of the pattern; at least {MIN_FLIPS} "
+                "count"
             )
         if not self._ever_seen:
             raise AppError(
@@ -117,7 +118,7 @@ class LatencySession:
                 "screen sees it in a hand mirror"
             )
         raise AppError(
-            f"the camera saw only {counted(count, 'flip')} of the pattern, and none in the last "
+            f"the camera saw only {quantity(count, 'flip')} of the pattern, and none in the last "
             f"{PATIENCE_S:.0f} s: hold the camera still, and dim the room if the screen is pale"
         )
 

@@ -87,7 +87,7 @@ def value_axis(axes: Axes, name: str, *, horizontal: bool = False) -> None:
     axis = axes.xaxis if horizontal else axes.yaxis
     (axes.set_xlim if horizontal else axes.set_ylim)(-1.0, 1.0)
     axis.set_major_locator(FixedLocator([-1.0, -0.5, 0.0, 0.5, 1.0]))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: _signed(value)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: _with_sign(value)))
     axis.set_label_text(f"{name} [1]")
     if not horizontal:
         axis.set_label_coords(-46 / width_pt(axes), 0.5)
@@ -97,10 +97,10 @@ def value_axis(axes: Axes, name: str, *, horizontal: bool = False) -> None:
     )
 
 
-def _signed(value: float) -> str:
+def _with_sign(value: float) -> str:
     """Return a number with its sign, and a real minus.
 
-    >>> [_signed(value) for value in (-0.5, 0.0, 1.0)]
+    >>> [_with_sign(value) for value in (-0.5, 0.0, 1.0)]
     ['−0.5', '0', '+1']
     """
     return f"{value:+g}".replace("-", "−").replace("+0.5", "0.5") if value else "0"

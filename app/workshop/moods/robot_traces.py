@@ -145,9 +145,9 @@ class _WireDecoder:
             case m.State():
                 emotion = content.valence, content.arousal
                 label = self._moods.get(content.mood, "")
-                self.observed.append((self._measured(content, time), emotion, label))
+                self.observed.append((self._time_of(content, time), emotion, label))
 
-    def _measured(self, state: m.State, arrival: float) -> float:
+    def _time_of(self, state: m.State, arrival: float) -> float:
         """Return when a STATE was made: by the robot's clock, or when it arrived if it has none."""
         sent = self._beats.pop(state.beat, None)
         if self._version < 3:

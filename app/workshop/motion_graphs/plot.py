@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.app.workshop.moods.colors import (
     BORDER_COLOR,
     CURVE_STYLES,
@@ -79,7 +79,7 @@ def _draw_distances(figure: Figure, axes: Axes, stored: StoredGraph, graph: Moti
         marker=".",
         markersize=2.2,
         color=JUMP_COLOR,
-        label=counted(graph.jumps, "jump"),
+        label=quantity(graph.jumps, "jump"),
     )
     for start in library.starts[1:-1].tolist():
         axes.axhline(start, color=BORDER_COLOR, linewidth=0.5)

@@ -59,11 +59,11 @@ def gather(
         recording = load_recording(name, skeleton)
         if recording.clip.name in clips:
             raise AppError(f"two clips are named {recording.clip.name!r}; give each of them once")
-        clips[recording.clip.name] = fitted(recording, character)
+        clips[recording.clip.name] = fit_recording(recording, character)
     return list(clips.values())
 
 
-def fitted(recording: Recording, character: Character) -> Clip:
+def fit_recording(recording: Recording, character: Character) -> Clip:
     """Return a recording on the skeleton of a character; its own clips stay as they are."""
     clip = recording.clip
     if recording.skeleton.names == character.skeleton.names and clip.root_motion:

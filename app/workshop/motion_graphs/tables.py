@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.characters import CharacterError
 from cubeling.characters.motion import (
     Answers,
@@ -113,7 +113,7 @@ def make_tables(
     """
     if len(library.names) != 4:
         raise CharacterError(
-            f"{counted(len(library.names), 'clip')}: give four, a walk, a run, long steps and a "
+            f"{quantity(len(library.names), 'clip')}: give four, a walk, a run, long steps and a "
             "slow walk"
         )
     progress("critical thresholds")

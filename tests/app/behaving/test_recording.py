@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from cubeling.app.behaving.recording import TAIL_S, perform
+from cubeling.app.behaving.recording import TAIL_S, record_behaviour
 from cubeling.app.sound import SAMPLE_RATE
 from cubeling.characters.behaviour.bml import BlockProgress, BmlWarning, SyncPointProgress
 from cubeling.characters.control.controllers import default_height
 from cubeling.characters.skeleton import rotations
-from tests.app.behaving.performances import HUMAN, LateSource, block, player
+from tests.app.behaving.players import HUMAN, LateSource, block, player
 
 RATE = 25.0
 
@@ -24,7 +24,7 @@ def test_speeches_sound_at_their_times_to_the_sample():
     speeches = "".join(
         f'<speech id="s{at}" start="{at}"><text>One two</text></speech>' for at in (0.51, 3.013)
     )
-    sounding = loud(perform(player(), [block(speeches)], RATE))
+    sounding = loud(record_behaviour(player(), [block(speeches)], RATE))
     first = sounding[sounding < 2.5]
     second = sounding[sounding > 2.5]
     for part, start in ((first, 0.51), (second, 3.013)):
@@ -35,13 +35,13 @@ def test_speeches_sound_at_their_times_to_the_sample():
 def test_a_speech_that_is_cut_off_is_heard_no_more():
     long = block('<speech id="s" start="0"><text>One two three four five six</text></speech>', "a")
     stop = block('<head lexeme="NOD"/>', "b", 'composition="REPLACE"')
-    recording = perform(player(), [long, stop], RATE, together=True)
+    recording = record_behaviour(player(), [long, stop], RATE, together=True)
     assert loud(recording).size == 0 or loud(recording)[-1] < 0.2
 
 
 def test_files_are_performed_one_after_the_other():
     documents = [block('<wait duration="1"/>', name) for name in "abc"]
-    recording = perform(player(), documents, RATE)
+    recording = record_behaviour(player(), documents, RATE)
     progress = [e for e in recording.feedback if isinstance(e, BlockProgress)]
     assert [(e.block, e.sync) for e in progress] == [
         (name, sync) for name in "abc" for sync in ("start", "end")
@@ -52,12 +52,14 @@ def test_files_are_performed_one_after_the_other():
 
 
 def test_a_look_without_an_end_does_not_last_for_ever():
-    recording = perform(player(), [block('<gaze target="cube"/><wait duration="1"/>')], RATE)
+    recording = record_behaviour(
+        player(), [block('<gaze target="cube"/><wait duration="1"/>')], RATE
+    )
     assert recording.clip.duration < 10.0
 
 
 def test_a_way_is_in_the_root_of_the_motion():
-    recording = perform(player(), [block('<locomotion target="0.2,0,0.2"/>')], RATE)
+    recording = record_behaviour(player(), [block('<locomotion target="0.2,0,0.2"/>')], RATE)
     root = recording.clip.poses.translations[:, 0]
     scale = default_height(HUMAN) / HUMAN.height
     gone = np.linalg.norm(root[-1] - root[0]) * scale
@@ -77,7 +79,7 @@ def test_a_voice_that_is_late_does_not_make_the_body_jump():
         lines = LateSource()
         performing = player(lines=lines)
         performing.settle(1.0, 25.0)
-        performing.perform(block(behaviours))
+        performing.play_block(block(behaviours))
         turns = []
         for number in range(90):
             lines.ready = number / 25.0 >= ready_at
@@ -96,7 +98,7 @@ def test_a_voice_that_is_late_does_not_make_the_body_jump():
 
 def test_the_same_blocks_give_the_same_motion():
     document = block('<head lexeme="SHAKE"/><faceLexeme lexeme="SMILE"/>')
-    one, other = (perform(player(), [document], RATE).clip.poses for _ in range(2))
+    one, other = (record_behaviour(player(), [document], RATE).clip.poses for _ in range(2))
     assert np.array_equal(one.rotations, other.rotations)
     assert one.morphs is not None
     assert other.morphs is not None
@@ -105,9 +107,9 @@ def test_the_same_blocks_give_the_same_motion():
 
 def test_intentions_of_fml_are_performed_and_a_bad_document_is_a_warning():
     playing = player()
-    playing.perform('<fml id="f"><performative type="agree"/></fml>')
-    playing.perform(b"<bml")
+    playing.play_block('<fml id="f"><performative type="agree"/></fml>')
+    playing.play_block(b"<bml")
     shown = playing.update(0.0)
-    assert shown.performed.heads[0].lexeme == "NOD"
+    assert shown.realized.heads[0].lexeme == "NOD"
     warnings = [each for each in shown.feedback if isinstance(each, BmlWarning)]
     assert [each.type for each in warnings] == ["PARSING_FAILURE"]

@@ -9,7 +9,7 @@ import pytest
 from cubeling.app.behaving.live import NoOutput, play_live
 from cubeling.app.behaving.server import MAX_UNSENT, BlockServer
 from cubeling.app.errors import AppError
-from tests.app.behaving.performances import block, player
+from tests.app.behaving.players import block, player
 
 WAIT_S = 20.0
 
@@ -105,7 +105,7 @@ class Limited(NoOutput):
         self.times = []
 
     def show(self, player, frame):
-        self.times.append(frame.performed.now)
+        self.times.append(frame.realized.now)
         self.closed = any(
             getattr(each, "sync", "") == "end"
             and each.block == "b"

@@ -9,7 +9,7 @@ from cubeling.app.behaving.opening import open_lines
 from cubeling.app.behaving.voice import PatientSource, ThreadedSource
 from cubeling.app.speaking import voices
 from cubeling.characters.speech.voices import VoiceError
-from tests.app.behaving.performances import speech_of
+from tests.app.behaving.players import speech_of
 
 WAIT_S = 20.0
 

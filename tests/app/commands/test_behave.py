@@ -12,7 +12,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.speaking import voices
 from cubeling.characters import CharacterError, load_motion
 from cubeling.characters.speech.voices import Voice, VoiceError
-from tests.app.behaving.performances import block
+from tests.app.behaving.players import block
 from tests.app.speaking.test_speaker import BUZZ
 
 BLOCK = """<speech id="s" start="0.5"><text>Hi</text></speech>

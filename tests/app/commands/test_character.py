@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from cubeling.app.ui.contact_sheets import ContactSheets, save, trimmed
+from cubeling.app.ui.contact_sheets import ContactSheets, save, trim
 from cubeling.characters import Character
 from cubeling.characters.formats import load_motion
 from cubeling.characters.model.stick_figures import stick_figure
@@ -168,9 +168,9 @@ def test_each_morph_has_a_face(sheets):
 
 def test_empty_margins_are_trimmed():
     picture = np.full((100, 20, 3), PAPER_BGR, np.uint8)
-    assert trimmed(picture).shape == picture.shape
+    assert trim(picture).shape == picture.shape
     picture[40:50] = 0
-    assert trimmed(picture).shape == (30, 20, 3)
+    assert trim(picture).shape == (30, 20, 3)
 
 
 def test_pictures_are_written_as_small_as_asked(tmp_path):

@@ -11,7 +11,7 @@ from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.running.summary import Summary
 from cubeling.app.session import SessionOptions, messages, session_info
-from cubeling.app.ui.cards.overlay import interrupted
+from cubeling.app.ui.cards.overlay import with_notice
 from cubeling.app.ui.notice import Notice, notice
 from cubeling.app.ui.screen import NullScreen
 from cubeling.tracking import TrackingError
@@ -142,7 +142,7 @@ def test_the_last_picture_stays_under_the_card_and_is_not_changed():
     picture = np.full((360, 640, 3), 100, np.uint8)
     words = notice(LOST)
     assert words is not None
-    shown = interrupted(picture, words)
+    shown = with_notice(picture, words)
     assert (picture == 100).all()
     assert (shown[0, 0] == 45).all()
     assert shown[180, 320].min() > 200

@@ -18,7 +18,7 @@ from cubeling.app.scenarios.reach_intents import (
     Ongoing,
     bundled_gesture,
     gesture_times,
-    left,
+    leave,
 )
 from cubeling.characters import Animator, Character
 from cubeling.characters.behaviour.intents import ReachIntent, Times
@@ -98,7 +98,7 @@ def test_it_brings_a_thing_in_its_hand_to_where_the_cube_rests(play):
             assert np.linalg.norm(away) < AT_HAND_M
         names += [thing.name for thing in held]
         for thing in held:
-            placed = play.body.placed(thing).posed.table_from_character[:3, 3]
+            placed = play.body.place_thing(thing).posed.table_from_character[:3, 3]
             palms.append(placed - thing.place + GRIP - play.body.palm(thing.hand))
         assert len(play.outcomes) < 30 * 25
     assert set(names) == {"flower"}
@@ -179,7 +179,7 @@ def test_a_character_without_hands_leaves_things_where_they_are(hand):
     play.on(9.0)
     assert "reached" in play.events
     assert "taken" not in play.events
-    where = play.body.placed(Thing("flag", np.array([0.1, 0.0, 0.0]), "left"))
+    where = play.body.place_thing(Thing("flag", np.array([0.1, 0.0, 0.0]), "left"))
     assert where.posed.table_from_character[0, 3] == 0.1
 
 
@@ -205,7 +205,7 @@ def test_an_intent_that_is_no_longer_wanted_ends_while_the_next_one_begins():
 def test_a_gesture_that_is_cut_short_keeps_the_order_of_its_phases():
     whole: Any = gesture_times(bundled_gesture("SHRUG"), 1.0)
     for now in np.arange(1.0, whole.end, 0.05):
-        cut: Any = left(whole, float(now))
+        cut: Any = leave(whole, float(now))
         times = [cut.start, cut.ready, cut.stroke_start, cut.stroke, cut.stroke_end, cut.relax]
         assert times == sorted(times)
         assert cut.end <= now + LEAVE_S

@@ -6,21 +6,27 @@ import math
 import pytest
 from hypothesis import given, strategies as st
 
-from cubeling.app.scenarios.speed import IDLE_MAX_ANGLE, SPEED_MAPS, SpeedDial, corrected, legacy
+from cubeling.app.scenarios.speed import (
+    IDLE_MAX_ANGLE,
+    SPEED_MAPS,
+    SpeedDial,
+    corrected_speed,
+    legacy,
+)
 
 DEGREES = [d / 4 for d in range(0, 721)]
 
 
 def test_corrected_map_goes_from_idle_over_walking_to_running():
-    assert corrected(math.radians(45)) == 0.0
-    assert corrected(math.radians(45.001)) == pytest.approx(0.5, abs=1e-3)
-    assert corrected(math.radians(90)) == pytest.approx(1.75)
-    assert corrected(math.radians(135)) == pytest.approx(3.0)
-    assert corrected(math.radians(180)) == pytest.approx(5.0)
+    assert corrected_speed(math.radians(45)) == 0.0
+    assert corrected_speed(math.radians(45.001)) == pytest.approx(0.5, abs=1e-3)
+    assert corrected_speed(math.radians(90)) == pytest.approx(1.75)
+    assert corrected_speed(math.radians(135)) == pytest.approx(3.0)
+    assert corrected_speed(math.radians(180)) == pytest.approx(5.0)
 
 
 def test_corrected_map_is_continuous_but_at_45_degrees_and_never_falls():
-    speeds = [corrected(math.radians(d)) for d in DEGREES]
+    speeds = [corrected_speed(math.radians(d)) for d in DEGREES]
     steps = [b - a for a, b in itertools.pairwise(speeds)]
     assert all(step >= 0 for step in steps)
     assert sum(step > 0.02 for step in steps) == 1  # the one step, from standing to walking
@@ -47,7 +53,7 @@ def test_one_turn_reads_idle_walk_run_walk_idle(name, hand):
 
 @given(st.floats(0, math.pi))
 def test_speed_stays_in_its_declared_range(angle):
-    assert 0.0 <= corrected(angle) <= 5.0
+    assert 0.0 <= corrected_speed(angle) <= 5.0
 
 
 def test_an_angle_that_trembles_about_45_degrees_does_not_flicker(hand):

@@ -9,7 +9,7 @@ import pytest
 
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.running.opening import intrinsics_for
-from cubeling.app.session.bundled import RECORDED, bundled
+from cubeling.app.session.bundled import RECORDED, bundled_session
 from cubeling.app.session.encoding import encode
 from cubeling.characters.rendering import create_context
 from cubeling.tracking import StoredFrames, open_source
@@ -27,7 +27,7 @@ def messages(playground, frames):
 
 @pytest.mark.parametrize("name", RECORDED)
 def test_what_follows_a_checkpoint_is_the_same_every_time(name):
-    with open_source(str(bundled(name))) as source:
+    with open_source(str(bundled_session(name))) as source:
         assert isinstance(source, StoredFrames)
         playground = Playground(name, intrinsics_for(source.intrinsics, source.size))
         source.skip(SKIPPED)
@@ -49,7 +49,7 @@ def darker(frame):
 @pytest.fixture
 def straight_and_after_a_seek():
     """Draw some frames, once straight on, and once after a later time that looks otherwise."""
-    with open_source(str(bundled("companion"))) as source:
+    with open_source(str(bundled_session("companion"))) as source:
         assert isinstance(source, StoredFrames)
         intrinsics = intrinsics_for(source.intrinsics, source.size)
         source.skip(SKIPPED)

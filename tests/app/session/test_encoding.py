@@ -10,7 +10,7 @@ from hypothesis import given, strategies as st
 
 from cubeling.affect import Emotion
 from cubeling.app.pipeline.scenario import EmotionTarget
-from cubeling.app.session.encoding import CHANNEL_TYPES, decode, encode, schema, upgraded
+from cubeling.app.session.encoding import CHANNEL_TYPES, decode, encode, schema, upgrade
 from cubeling.characters import (
     ActionIntent,
     CharacterCommand,
@@ -77,7 +77,7 @@ def test_noise_of_rounding_in_an_older_pose_is_no_difference():
     now = encode(posed(0.0, 0.0, 0.0, 1.0))
     old = now.replace(b"[[0.0,0.0,0.0,1.0]]", b"[[3e-16,-2e-17,0.0,1.0]]")
     assert old != now
-    assert upgraded("/character/pose", old) == now
+    assert upgrade("/character/pose", old) == now
 
 
 def test_a_hand_is_the_same_after_decoding():
@@ -135,8 +135,8 @@ def test_an_older_document_becomes_todays_and_todays_stays():
         {"emotion": {"valence": 0.5, "arousal": 0.1}, "label": "happy", "timestamp": 2}
     )
     today = encode(EmotionTarget(Emotion(0.5, 0.1, "happy"), 2.0))
-    assert upgraded("/robot/emotion", old.encode()) == today
-    assert upgraded("/robot/emotion", today) == today
+    assert upgrade("/robot/emotion", old.encode()) == today
+    assert upgrade("/robot/emotion", today) == today
 
 
 @pytest.mark.parametrize(("shaken", "gestures"), [(True, ("shaken",)), (False, ())])
@@ -146,10 +146,10 @@ def test_a_shake_of_an_older_session_is_decoded_into_a_gesture(hand, shaken, ges
     assert fields.pop("gestures") == list(gestures)
     old = json.dumps({**fields, "shaken": shaken}).encode()
     assert decode(CubeControls, old).shaken is shaken
-    assert upgraded("/cube/controls", old) == today
+    assert upgrade("/cube/controls", old) == today
 
 
 @pytest.mark.parametrize("topic", ["/robot/emotion", "/character/command"])
 @pytest.mark.parametrize("document", [b"{", b"[]", b"3", b'{"label":1}', b'{"action":""}'])
 def test_a_document_that_no_version_wrote_is_compared_as_it_is(topic, document):
-    assert upgraded(topic, document) == document
+    assert upgrade(topic, document) == document

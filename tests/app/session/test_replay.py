@@ -17,7 +17,7 @@ from cubeling.app.session import (
     messages,
     session_info,
 )
-from cubeling.app.session.bundled import RECORDED, bundled
+from cubeling.app.session.bundled import RECORDED, bundled_session
 from cubeling.app.session.encoding import APPEARANCE_TOPIC, MESSAGE_TYPES, decode, encode
 from cubeling.app.session.options import START_STAGES
 from cubeling.app.ui.screen import NullScreen
@@ -35,7 +35,7 @@ FRAMES = 120
 @pytest.mark.parametrize("name", some(sorted(RECORDED)))
 def test_a_recording_replayed_twice_gives_identical_channels(computed_session, name):
     path = computed_session(name, FIRST_S)
-    with open_source(str(bundled(name))) as source:
+    with open_source(str(bundled_session(name))) as source:
         playground = Playground(name, intrinsics_for(source.intrinsics, source.size))
         again = [
             (topic, step.frame.timestamp, encode(message))
@@ -156,14 +156,14 @@ def assert_close(topic, time, one, other):
 
 @pytest.mark.parametrize("name", RECORDED)
 def test_bundled_recordings_are_small_and_hold_what_came_in(name):
-    info = session_info(bundled(name))
+    info = session_info(bundled_session(name))
     assert info.options.scenario == name
     assert info.frames > 600
     sizes = Counter[str]()
-    for topic, _, data in messages(bundled(name)):
+    for topic, _, data in messages(bundled_session(name)):
         sizes[topic] += len(data)
     assert set(sizes) == {"/camera/image", "/camera/calibration", "/events"}
-    assert bundled(name).stat().st_size < 1.02 * sizes["/camera/image"]
+    assert bundled_session(name).stat().st_size < 1.02 * sizes["/camera/image"]
 
 
 @pytest.mark.slow(reason="a session is recorded and checked")
@@ -178,4 +178,6 @@ def test_a_replay_takes_the_character_that_was_recorded(cubeling, short_session,
 
 
 def test_every_bundled_recording_is_listed():
-    assert sorted(RECORDED) == sorted(file.stem for file in bundled("reach").parent.glob("*.mcap"))
+    assert sorted(RECORDED) == sorted(
+        file.stem for file in bundled_session("reach").parent.glob("*.mcap")
+    )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cubeling.app.sound import SAMPLE_RATE, SOUNDS
-from cubeling.app.sound.bank import VARIANT_COUNT, SoundBank, synthesised
+from cubeling.app.sound.bank import VARIANT_COUNT, SoundBank, synthesise
 from cubeling.app.sound.synthesis import MAX_AMPLITUDE, loudness
 
 
@@ -48,7 +48,7 @@ def test_variants_differ_and_are_the_same_every_time(bank, name):
     assert len(variants) == VARIANT_COUNT
     assert len({variant.tobytes() for variant in variants}) == VARIANT_COUNT
     if name in ("step", "happy"):
-        for made, again in zip(variants, synthesised(name), strict=True):
+        for made, again in zip(variants, synthesise(name), strict=True):
             np.testing.assert_array_equal(made, again)
 
 

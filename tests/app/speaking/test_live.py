@@ -32,11 +32,11 @@ def voice(seconds, loudness=0.3):
 
 def performed(character, sound):
     """Return the time and the pose of each frame."""
-    performer, frames = LiveRealizer(character), []
+    realizer, frames = LiveRealizer(character), []
     for number in range(int(len(sound) / MICROPHONE_HZ / FRAME)):
         now = (number + 1) * FRAME
         part = sound[round(number * FRAME * MICROPHONE_HZ) : round(now * MICROPHONE_HZ)]
-        frames.append((now, performer.update(part, now).pose))
+        frames.append((now, realizer.update(part, now).pose))
     return frames
 
 
@@ -96,9 +96,9 @@ def test_a_microphone_gives_what_was_heard_and_forgets_what_is_too_old(monkeypat
     microphone = Microphone()
     for number in range(MAX_BLOCKS + 3):
         streams[0].take(np.full((BLOCK, 1), number, np.float32), BLOCK, None, None)
-    heard = microphone.heard()
+    heard = microphone.read()
     assert (heard[0], heard[-1], len(heard)) == (3, MAX_BLOCKS + 2, MAX_BLOCKS * BLOCK)
-    assert len(microphone.heard()) == 0
+    assert len(microphone.read()) == 0
     microphone.close()
     assert not streams
 

@@ -177,7 +177,7 @@ def printed(summary):
 def test_the_demo_without_a_display_renders_a_video_and_says_what_happened(
     cubeling, short_session, monkeypatch
 ):
-    monkeypatch.setattr(demo, "bundled", lambda name: short_session)
+    monkeypatch.setattr(demo, "bundled_session", lambda name: short_session)
     code, out, err = cubeling("demo")
     assert (code, err) == (0, "")
     assert str(Path("demo.mp4").resolve()) in out
@@ -197,7 +197,7 @@ def test_the_demo_without_a_display_renders_a_video_and_says_what_happened(
 def test_the_demo_writes_over_its_own_video_and_over_others_only_when_asked(
     cubeling, short_session, monkeypatch
 ):
-    monkeypatch.setattr(demo, "bundled", lambda name: short_session)
+    monkeypatch.setattr(demo, "bundled_session", lambda name: short_session)
     for name, options in (("demo.mp4", []), ("mine.png", ["-o", "mine.png", "--overwrite"])):
         Path(name).write_text("old")
         assert cubeling("demo", "--end", "0.5", *options)[0] == 0

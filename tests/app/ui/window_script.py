@@ -12,7 +12,7 @@ from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.ui.notice import Notice
 from cubeling.app.ui.playback.requests import Record, Seek
 from cubeling.app.ui.window import Window
-from cubeling.app.ui.window.window import mirrored
+from cubeling.app.ui.window.window import mirror
 from cubeling.tracking import open_source
 
 
@@ -39,7 +39,7 @@ def main(session: str) -> None:
         assert screen.size == source.size
         np.testing.assert_array_equal(shown[::-1, :, ::-1], step.picture)
 
-        assert mirrored(step).subjects[0][0] == source.size[0] - step.subjects[0][2]
+        assert mirror(step).subjects[0][0] == source.size[0] - step.subjects[0][2]
         plain = pictures_of(window, step, robot)
         window.press(glfw.KEY_M)
         turned = pictures_of(window, step, robot)

@@ -259,7 +259,7 @@ class Background:
         chosen &= np.bincount(labels.ravel(), minlength=count) > MIN_ARM_SAMPLES
         chosen[0], chosen[labels[rows.start, columns.start]] = False, True
         left, top, width, height = cv2.boundingRect(chosen[labels].view(np.uint8))
-        return _grown(top, top + height), _grown(left, left + width)
+        return _grow(top, top + height), _grow(left, left + width)
 
     def changed_samples(self, lab: Floats, samples: Box) -> Flags:
         """Return which samples look like something else, and not as in a shadow, (h, w)."""
@@ -343,6 +343,6 @@ def _trust(same: float) -> float:
     return min(max((same - LOST_SHARE) / (TRUSTED_SHARE - LOST_SHARE), 0.0), 1.0)
 
 
-def _grown(first: int, stop: int) -> slice:
+def _grow(first: int, stop: int) -> slice:
     """Return the pixels of some rows or columns of samples, and those around."""
     return slice(max(first * GRID_PX - MARGIN_PX, 0), stop * GRID_PX + MARGIN_PX)

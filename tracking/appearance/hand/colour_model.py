@@ -100,11 +100,11 @@ class ColourModel:
 
     def learn_hand(self, seen: Colours, where: Flags) -> None:
         """Add the marked pixels to those of the hand."""
-        self._hand, self._odds_are_new = _learned(self._hand, seen[where]), False
+        self._hand, self._odds_are_new = _learn(self._hand, seen[where]), False
 
     def learn_behind(self, seen: Colours, where: Flags) -> None:
         """Add the marked pixels to those behind the hand."""
-        self._behind, self._odds_are_new = _learned(self._behind, seen[where]), False
+        self._behind, self._odds_are_new = _learn(self._behind, seen[where]), False
 
     def odds(self, seen: Colours) -> Floats:
         """Return what the colour of each pixel speaks for a hand, (h, w): logarithm of odds."""
@@ -117,12 +117,12 @@ class ColourModel:
             self._odds_are_new = True
         return np.asarray(self._odds.take(seen), np.float32)
 
-    def uncovered(self, now: Colours, before: Colours) -> Flags:
+    def uncovered_pixels(self, now: Colours, before: Colours) -> Flags:
         """Return where a hand may have gone: what is there now is common behind it, (n,)."""
         common = self._behind_density.take(now) > MIN_COMMON
         return np.asarray(common & self._less_like_hand(now, before))
 
-    def covered(self, now: Colours, before: Colours, recoloured: Flags) -> Flags:
+    def covered_pixels(self, now: Colours, before: Colours, recoloured: Flags) -> Flags:
         """Return where a hand may be that was not there before, (n,).
 
         Where a hand was before, it has gone. Where the hand is told by its colours, what does not
@@ -142,7 +142,7 @@ class ColourModel:
         return np.asarray(odds.take(before) - odds.take(now) > MIN_DIFFERENCE)
 
 
-def _learned(counts: Floats, seen: Colours) -> Floats:
+def _learn(counts: Floats, seen: Colours) -> Floats:
     new = np.bincount(seen, minlength=counts.size).astype(np.float32)
     return np.asarray(cv2.scaleAdd(counts, MEMORY_PER_PICTURE, new.reshape(LAB_BINS)))
 

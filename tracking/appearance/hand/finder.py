@@ -23,14 +23,14 @@ from cubeling.tracking.appearance.hand.mask import EDGE_SLOPE, HandMask
 from cubeling.tracking.appearance.hand.odds import hand_odds
 from cubeling.tracking.appearance.hand.on_cube.cube_part import CubeCheck, CubePart
 from cubeling.tracking.appearance.hand.on_cube.face_pattern import FacePattern
-from cubeling.tracking.appearance.hand.shape import connected
+from cubeling.tracking.appearance.hand.shape import choose_components
 from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_3, SQUARE_5
 from cubeling.tracking.appearance.hand.window import (
     HandWindow,
     Stillness,
     WindowFinder,
-    sampled,
-    shrunk,
+    sample,
+    shrink,
 )
 from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.geometry.arrays import Array, Flags, Floats, Image
@@ -114,27 +114,27 @@ class HandFinder:
         pose = state.camera_from_cube
         if pose is None or not state.visible:
             is_held = 0.0 <= state.timestamp - self._seen < HELD_S
-            return self._last.held(pose) if is_held else None
+            return self._last.predict(pose) if is_held else None
         self._seen = time = state.timestamp
         if not self._is_early and self._last.carry(pose, time):
             return self._last.mask
         window = self._windows.window(pose, self._scale)
         if window is None:
             self._stillness = Stillness()
-            self._last.found(None, pose, time)
+            self._last.update(None, pose, time)
             return None
         self._scale = window.scale
         self._since_whole += 1
-        samples = sampled(image, window.scale, window.samples)
+        samples = sample(image, window.scale, window.samples)
         if self._is_early or not self._stillness.is_still(window, samples):
             columns, rows = (side // window.scale for side in self._projection.size)
             self._background.match_size(columns, rows)
             view = self._view(image, window, samples)
-            hand = self._found(view, pose)
+            hand = self._find(view, pose)
             if self._is_early or hand is None:
                 self._learn_strip(image, view.window)
             found = None if hand is None else self._with_arm(image, window, hand)
-            self._last.found(found, pose, time)
+            self._last.update(found, pose, time)
         return self._last.mask
 
     def region(self, camera_from_cube: Array) -> Box | None:
@@ -150,7 +150,7 @@ class HandFinder:
     def _with_arm(self, image: Image, window: HandWindow, hand: HandMask) -> HandMask:
         """Return a hand that was found in a window together with its arm beyond that."""
         samples = arm_samples(window, self._projection.size)
-        planes = self._lab(sampled(image, window.scale, samples))
+        planes = self._lab(sample(image, window.scale, samples))
         changed = self._background.changed_samples(planes, samples)
         if self._since_whole == 0:
             changed &= ~self._forget_uncovered(planes, samples, changed)
@@ -160,7 +160,7 @@ class HandFinder:
         """Return the samples that show the desk since an arm that was there first has gone."""
         uncovered = changed & (self._background.sampled_age(samples) < MAX_RESTING_AGE)
         before = colours(self._background.sampled_lab(samples, uncovered))
-        uncovered[uncovered] = self._colours.uncovered(colours(planes[:, uncovered]), before)
+        uncovered[uncovered] = self._colours.uncovered_pixels(colours(planes[:, uncovered]), before)
         self._background.forget_samples(samples, uncovered)
         return uncovered
 
@@ -176,7 +176,7 @@ class HandFinder:
         else:
             planes, cube = self._lab(samples), window.cube_box
             window = window.part(self._background.differing(planes, window.samples, cube))
-        small = shrunk(image[window.image_box], window.scale)
+        small = shrink(image[window.image_box], window.scale)
         planes = self._lab(small)
         change = self._background.camera_change(planes, window.box) if whole else None
         if change is not None:
@@ -184,7 +184,7 @@ class HandFinder:
             planes = self._lab(small)
         return _View(window, planes, colours(planes), whole)
 
-    def _found(self, view: _View, pose: Array) -> HandMask | None:
+    def _find(self, view: _View, pose: Array) -> HandMask | None:
         """Find the hand in what is looked at, and learn from it."""
         window, by_colour = view.window, self._colours.odds(view.colours)
         nearest_is_due = self._frames % LEARNING_FRAMES == 0
@@ -199,12 +199,12 @@ class HandFinder:
             self._learn_first(view, cube)
             by_colour = self._colours.odds(view.colours)
         if view.whole:
-            place = self._without(self._uncovered(place, view, by_colour), place, window)
+            place = self._without(self._uncovered_pixels(place, view, by_colour), place, window)
         if cube.shows_hand and self._colours.hand_is_new:
             place = self._without(self._resting(place, view, by_colour, cube), place, window)
         distinctness = self._colours.distinctness
         odds = hand_odds(window, cube, place, by_colour, distinctness)
-        hand = connected(odds > 0, window, cube, place, by_colour, distinctness)
+        hand = choose_components(odds > 0, window, cube, place, by_colour, distinctness)
         self._learn(view, cube, place, odds, hand)
         if hand is None:
             return None
@@ -219,14 +219,14 @@ class HandFinder:
         self._background.forget_some(window.box, mistaken)
         return place.without(mistaken)
 
-    def _uncovered(self, place: WindowChange, view: _View, by_colour: Floats) -> Flags:
+    def _uncovered_pixels(self, place: WindowChange, view: _View, by_colour: Floats) -> Flags:
         """Return where the background was a hand, there from the beginning, which has gone."""
         box = view.window.box
         doubtful = place.changed & (by_colour < MAX_ODDS - MIN_DIFFERENCE)
         if not self._colours.knows_hand:
             doubtful &= self._background.age(box) < MAX_HAND_AGE
         before = colours(self._background.lab(box, doubtful))
-        doubtful[doubtful] = self._colours.uncovered(view.colours[doubtful], before)
+        doubtful[doubtful] = self._colours.uncovered_pixels(view.colours[doubtful], before)
         return doubtful
 
     def _resting(
@@ -273,7 +273,9 @@ class HandFinder:
         """Learn the colours of the hand where it is `sure`, (h, w), and was not before."""
         sure = sure & place.changed
         before = colours(self._background.lab(view.window.box, sure))
-        sure[sure] = self._colours.covered(view.colours[sure], before, place.recoloured[sure])
+        sure[sure] = self._colours.covered_pixels(
+            view.colours[sure], before, place.recoloured[sure]
+        )
         if np.count_nonzero(sure) > MIN_SHOWN_PX and not cube.shows_hand:
             self._colours.see_hand(view.colours[sure])
         sure[view.window.cube_box] |= cube.evidence
@@ -297,5 +299,5 @@ class HandFinder:
         first, last = max(window.top - top, 0), max(window.top + window.height - top, 0)
         free[first:last, window.left : window.left + window.width] = False
         self._background.learn_first(
-            self._lab(shrunk(part, scale)), np.s_[top:bottom, :columns], free
+            self._lab(shrink(part, scale)), np.s_[top:bottom, :columns], free
         )

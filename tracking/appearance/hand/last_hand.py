@@ -34,9 +34,9 @@ class LastHand:
         self._pose = np.eye(4)
         self._carried_looks, self._looked_at = 0, 0.0
 
-    def found(self, mask: HandMask | None, camera_from_cube: Array, time: float) -> None:
+    def update(self, mask: HandMask | None, camera_from_cube: Array, time: float) -> None:
         """Keep what was found at a time [s], with the pose of the cube, (4, 4)."""
-        expected = self._moved(camera_from_cube)
+        expected = self._move(camera_from_cube)
         is_carried = (
             mask is not None and expected is not None and expected.agreement(mask) > MIN_AGREEMENT
         )
@@ -48,7 +48,7 @@ class LastHand:
         is_due = not 0.0 < time - self._looked_at < UNSEEN_S
         if is_due or self._carried_looks < CARRIED_LOOKS:
             return False
-        hand = self._moved(camera_from_cube)
+        hand = self._move(camera_from_cube)
         if hand is None or self.mask is None:
             return False
         step_px = max(abs(hand.x - self.mask.x), abs(hand.y - self.mask.y))
@@ -58,16 +58,16 @@ class LastHand:
         self.mask, self._pose = hand, camera_from_cube
         return True
 
-    def held(self, camera_from_cube: Array | None) -> HandMask | None:
+    def predict(self, camera_from_cube: Array | None) -> HandMask | None:
         """Return the hand in a frame in which the cube is not seen, but expected somewhere."""
         self._carried_looks = 0
-        return self.mask if camera_from_cube is None else self._moved(camera_from_cube)
+        return self.mask if camera_from_cube is None else self._move(camera_from_cube)
 
-    def _moved(self, camera_from_cube: Array) -> HandMask | None:
+    def _move(self, camera_from_cube: Array) -> HandMask | None:
         """Return the hand moved with the cube; where it was if the cube is at the camera."""
         if self.mask is None or camera_from_cube[2, 3] < MIN_DEPTH:
             return self.mask
         centres = np.stack([self._pose[:3, 3], camera_from_cube[:3, 3]])
         before, now = np.rint(self._projection.project(centres))
         right, down = (int(step) for step in now - before)
-        return self.mask.moved(right, down, centres[1] - centres[0])
+        return self.mask.move(right, down, centres[1] - centres[0])

@@ -36,7 +36,7 @@ class HandMask:
     """How steeply the share of a pixel rises where half is covered, relative to what is
     interpolated between squares: an edge is sharper than they are large."""
 
-    def moved(self, right: int, down: int, step: Array) -> "HandMask":
+    def move(self, right: int, down: int, step: Array) -> "HandMask":
         """Return the same after a move, `step`, (3,) in metres, by some pixels of the image."""
         return replace(self, x=self.x + right, y=self.y + down, behind=self.behind + step)
 

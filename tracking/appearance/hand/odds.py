@@ -6,7 +6,7 @@ import numpy as np
 from cubeling.tracking.appearance.hand.background import SHADED, UNKNOWN, WindowChange
 from cubeling.tracking.appearance.hand.edge import ODDS_RANGE
 from cubeling.tracking.appearance.hand.on_cube.cube_part import CubePart
-from cubeling.tracking.appearance.hand.shape import filled
+from cubeling.tracking.appearance.hand.shape import fill
 from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_3
 from cubeling.tracking.appearance.hand.window import HandWindow
 from cubeling.tracking.geometry.arrays import Floats
@@ -50,7 +50,7 @@ def hand_odds(
     odds = odds.clip(-ODDS_RANGE, ODDS_RANGE)
     smooth = np.asarray(cv2.GaussianBlur(odds, (5, 5), 1.0), np.float32)
     part = smooth[window.cube_box]
-    part[filled(part, cube.inner, cube.doubtful, window.edge)] = 0.5 * ODDS_RANGE
+    part[fill(part, cube.inner, cube.doubtful, window.edge)] = 0.5 * ODDS_RANGE
     return smooth
 
 

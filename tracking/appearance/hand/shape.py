@@ -32,7 +32,7 @@ MIN_COLOUR_ODDS = -1.0
 desk, below -1.5 for a desk that shows where something else was."""
 
 
-def filled(odds: Floats, inner: Flags, doubtful: Flags, edge: float) -> Flags:
+def fill(odds: Floats, inner: Flags, doubtful: Flags, edge: float) -> Flags:
     """Return where the hand covers what looks like its print: as most of what is told around it."""
     side = 2 * round(CLOSED_EDGES * edge / 2) + 1
     hand = (odds > 0).view(np.uint8)
@@ -41,7 +41,7 @@ def filled(odds: Floats, inner: Flags, doubtful: Flags, edge: float) -> Flags:
     return np.asarray(inner & (closed | (doubtful & (votes > 0))))
 
 
-def connected(
+def choose_components(
     flags: Flags,
     window: HandWindow,
     cube: CubePart,

@@ -67,7 +67,7 @@ class HandWindow:
 
     @property
     def samples(self) -> Box:
-        """Rows and columns of the samples whose squares are in it, see `sampled`."""
+        """Rows and columns of the samples whose squares are in it, see `sample`."""
         rows, columns = (slice(side.start // GRID_PX, side.stop // GRID_PX) for side in self.box)
         return rows, columns
 
@@ -177,7 +177,7 @@ class Stillness:
         return bool(changed < MIN_CHANGE_EDGES2 * (window.edge / GRID_PX) ** 2)
 
 
-def sampled(image: Image, scale: int, samples: Box) -> Image:
+def sample(image: Image, scale: int, samples: Box) -> Image:
     """Return the middles of some squares of `GRID_PX` pixels at working resolution, (h, w, 3) BGR.
 
     `samples` counts rows and columns of such squares, which are in the image.
@@ -197,7 +197,7 @@ def _every(step: int, image: Image) -> Image:
     return np.asarray(part, np.uint8)
 
 
-def shrunk(image: Image, scale: int) -> Image:
+def shrink(image: Image, scale: int) -> Image:
     """Return a part of the image at working resolution, (h, w, 3) BGR: the mean of each square.
 
     Where `scale` is even, the outermost rows and columns of a square count half as much as others.

@@ -22,7 +22,7 @@ from cubeling.app.ui.panels.drawing.places import (
 from cubeling.app.ui.panels.drawing.style import (
     TITLE_SIZE,
     load_fonts,
-    packed,
+    pack_color,
     use_card_style,
     use_plot_style,
 )
@@ -252,7 +252,7 @@ def _header(title: str, width: float) -> bool:
     left, top = x + width - side, y + 0.25 * high
     imgui.set_cursor_screen_pos((left - side / 2, y))
     clicked = imgui.invisible_button("close", (2 * side, high))
-    color = packed(INK if imgui.is_item_hovered() else QUIET)
+    color = pack_color(INK if imgui.is_item_hovered() else QUIET)
     canvas = imgui.get_window_draw_list()
     for start, end in ((0.0, 1.0), (1.0, 0.0)):
         canvas.add_line(

@@ -96,7 +96,7 @@ def rgba(color: Color, opacity: float = 1.0) -> tuple[float, float, float, float
     return red / 255, green / 255, blue / 255, opacity
 
 
-def packed(color: Color, opacity: float = 1.0) -> int:
+def pack_color(color: Color, opacity: float = 1.0) -> int:
     """Return a colour as Dear ImGui's draw lists take it."""
     blue, green, red = color
     return round(255 * opacity) << 24 | blue << 16 | green << 8 | red

@@ -21,7 +21,7 @@ from cubeling.app.ui.panels.content import (
     Tone,
     Widget,
 )
-from cubeling.app.ui.panels.drawing.style import FONT_SIZE, packed, rgba
+from cubeling.app.ui.panels.drawing.style import FONT_SIZE, pack_color, rgba
 from cubeling.app.ui.playback.requests import SessionRequest
 
 TONE_COLORS: dict[Tone, Color] = {"good": HAPPY, "warning": NEUTRAL, "bad": ANGRY}
@@ -54,13 +54,13 @@ def _unit() -> float:
 def _fact(fact: Fact, width: float) -> None:
     x, y = imgui.get_cursor_screen_pos()
     canvas, unit = imgui.get_window_draw_list(), _unit()
-    canvas.add_text((x, y), packed(QUIET), fact.name)
+    canvas.add_text((x, y), pack_color(QUIET), fact.name)
     left = x + width - imgui.calc_text_size(fact.value).x
-    canvas.add_text((left, y), packed(QUIET if fact.tone == "quiet" else INK), fact.value)
+    canvas.add_text((left, y), pack_color(QUIET if fact.tone == "quiet" else INK), fact.value)
     if fact.tone in TONE_COLORS:
         middle = y + imgui.get_font_size() / 2
         canvas.add_circle_filled(
-            (left - 11 * unit, middle), 5 * unit, packed(TONE_COLORS[fact.tone]), 16
+            (left - 11 * unit, middle), 5 * unit, pack_color(TONE_COLORS[fact.tone]), 16
         )
     imgui.dummy((width, imgui.get_font_size()))
 
@@ -88,10 +88,10 @@ def _plot(plot: Plot, width: float) -> None:
     size = 0.8 * imgui.get_font_size()
     for value, word in plot.marks:
         place = y + high * (plot.high - value) / (plot.high - plot.low)
-        canvas.add_line((x, place), (x + width, place), packed(RULE), _unit())
+        canvas.add_line((x, place), (x + width, place), pack_color(RULE), _unit())
         below = place < y + high / 2
         corner = (x + 4 * _unit(), place if below else place - 1.2 * size)
-        canvas.add_text(imgui.get_font(), size, corner, packed(QUIET), word)
+        canvas.add_text(imgui.get_font(), size, corner, pack_color(QUIET), word)
     for curve in plot.curves:
         spec = _spec(curve.color, curve.width * _unit())
         implot.plot_line(curve.name, _contiguous(curve.times), _contiguous(curve.values), spec)
@@ -102,13 +102,13 @@ def _legend(plot: Plot, width: float) -> None:
     """Write the title on the left, and the names of the curves on the right."""
     x, y = imgui.get_cursor_screen_pos()
     canvas, unit, size = imgui.get_window_draw_list(), _unit(), imgui.get_font_size()
-    canvas.add_text((x, y), packed(INK), plot.title)
+    canvas.add_text((x, y), pack_color(INK), plot.title)
     left = x + width
     for curve in plot.curves if len(plot.curves) > 1 else ():
         left -= imgui.calc_text_size(curve.name).x
-        canvas.add_text((left, y), packed(QUIET), curve.name)
+        canvas.add_text((left, y), pack_color(QUIET), curve.name)
         line = (left - 22 * unit, y + size / 2), (left - 6 * unit, y + size / 2)
-        canvas.add_line(*line, packed(curve.color), curve.width * unit)
+        canvas.add_line(*line, pack_color(curve.color), curve.width * unit)
         left -= 34 * unit
     imgui.dummy((width, size))
 
@@ -121,7 +121,7 @@ def _share_bar(bar: ShareBar, width: float) -> None:
     left = x
     for share in bar.shares:
         right = left + width * share.amount / total
-        canvas.add_rect_filled((left, y), (right, y + high), packed(share.color))
+        canvas.add_rect_filled((left, y), (right, y + high), pack_color(share.color))
         left = right
     imgui.dummy((width, high))
     rows = -(-len(bar.shares) // LEGEND_COLUMNS)
@@ -137,10 +137,10 @@ def _share_bar(bar: ShareBar, width: float) -> None:
 def _legend_entry(share: Share, x: float, y: float, width: float) -> None:
     canvas, unit, size = imgui.get_window_draw_list(), _unit(), imgui.get_font_size()
     middle = y + size / 2
-    canvas.add_circle_filled((x + 5 * unit, middle), 5 * unit, packed(share.color), 16)
-    canvas.add_text((x + 16 * unit, y), packed(QUIET), share.name)
+    canvas.add_circle_filled((x + 5 * unit, middle), 5 * unit, pack_color(share.color), 16)
+    canvas.add_text((x + 16 * unit, y), pack_color(QUIET), share.name)
     left = x + width - imgui.calc_text_size(share.value).x
-    canvas.add_text((left, y), packed(INK), share.value)
+    canvas.add_text((left, y), pack_color(INK), share.value)
 
 
 def _choice(choice: Choice, width: float) -> SessionRequest | None:
@@ -195,9 +195,9 @@ def _log(log: LogLines, width: float) -> None:
     second, third = LOG_COLUMNS[0] * unit, sum(LOG_COLUMNS) * unit
     for place, (when, sender, text) in enumerate(log.rows):
         top = y + place * step
-        canvas.add_text((x, top), packed(QUIET), when)
-        canvas.add_text((x + second, top), packed(QUIET), sender)
-        canvas.add_text((x + third, top), packed(INK), text)
+        canvas.add_text((x, top), pack_color(QUIET), when)
+        canvas.add_text((x + second, top), pack_color(QUIET), sender)
+        canvas.add_text((x + third, top), pack_color(INK), text)
     canvas.pop_clip_rect()
     imgui.dummy((width, log.length * step - imgui.get_style().item_spacing.y))
 

@@ -27,13 +27,13 @@ from cubeling.app.workshop.gesture_editor.editing.state import (
     Open,
     Quit,
     Save,
-    asked,
-    committed,
-    edited,
+    commit,
     redo,
-    told,
     undo,
     unless_unsaved,
+    with_document,
+    with_message,
+    with_request,
     with_text,
 )
 from cubeling.app.workshop.gesture_editor.editing.timing import (
@@ -79,16 +79,16 @@ def save(state: EditorState) -> EditorState:
     """Save, or ask for a name first."""
     if not state.document.gesture.name.strip():
         return with_card(state, "save as")
-    return asked(state, Save())
+    return with_request(state, Save())
 
 
 def save_under_name(state: EditorState) -> EditorState:
     """Save under the name that stands in the card, and go on with what was put off."""
     name = gesture_name(state.text("new name"))
     if not name:
-        return told(state, "a gesture needs a name", alarming=True)
-    renamed = edited(state, change_gesture(state.document, name=name))
-    return go_on(asked(committed(state, renamed), Save()))
+        return with_message(state, "a gesture needs a name", alarming=True)
+    renamed = with_document(state, change_gesture(state.document, name=name))
+    return go_on(with_request(commit(state, renamed), Save()))
 
 
 def save_and_go_on(state: EditorState) -> EditorState:
@@ -99,7 +99,7 @@ def save_and_go_on(state: EditorState) -> EditorState:
 def go_on(state: EditorState) -> EditorState:
     """Ask for what was put off."""
     wanted = state.wanted
-    return state if wanted is None else asked(replace(state, wanted=None), wanted)
+    return state if wanted is None else with_request(replace(state, wanted=None), wanted)
 
 
 def found_names(state: EditorState) -> tuple[str, ...]:
@@ -122,9 +122,11 @@ def read_recording(state: EditorState) -> EditorState:
             for name, usual in (("start", "0"), ("end", "inf"))
         )
     except ValueError:
-        return told(state, "start and end are numbers of seconds, such as 2.5", alarming=True)
+        return with_message(
+            state, "start and end are numbers of seconds, such as 2.5", alarming=True
+        )
     if not state.text("recording").strip():
-        return told(state, "name a recording first", alarming=True)
+        return with_message(state, "name a recording first", alarming=True)
     return unless_unsaved(state, Import(state.text("recording").strip(), start, end))
 
 
@@ -147,7 +149,7 @@ def show_time(state: EditorState, time: float) -> EditorState:
 def show_key(state: EditorState, document: GestureDocument) -> EditorState:
     """Return the state with another document, and the preview at its selected key."""
     if not has_key(document):
-        return edited(state, document)
+        return with_document(state, document)
     time = time_of(document.gesture, document.keys[document.index].at)
     return replace(state, document=document, time=time, playing=False)
 
@@ -165,12 +167,12 @@ def choose_character(state: EditorState, name: str) -> EditorState:
 def add(state: EditorState) -> EditorState:
     """Add a key where the preview is."""
     at = nearest_moment(state.document.gesture, state.time)
-    return edited(state, add_key(state.document, at))
+    return with_document(state, add_key(state.document, at))
 
 
 def delete(state: EditorState) -> EditorState:
     """Delete the selected key."""
-    return edited(state, remove_key(state.document)) if has_key(state.document) else state
+    return with_document(state, remove_key(state.document)) if has_key(state.document) else state
 
 
 def has_key(document: GestureDocument) -> bool:
@@ -180,7 +182,7 @@ def has_key(document: GestureDocument) -> bool:
 
 def swap_sides(state: EditorState) -> EditorState:
     """Exchange left and right."""
-    return edited(state, mirror(state.document))
+    return with_document(state, mirror(state.document))
 
 
 def choose_path(state: EditorState, path: str) -> EditorState:
@@ -189,7 +191,7 @@ def choose_path(state: EditorState, path: str) -> EditorState:
     changes: dict[str, Any] = {"path": path}
     if key is not None and path != "line" and not any(key.radius):
         changes["radius"] = FIRST_RADIUS.get(path, FIRST_RADIUS["arc"])
-    return edited(state, change_key(state.document, **changes))
+    return with_document(state, change_key(state.document, **changes))
 
 
 def _card(name: CardName) -> Action:
@@ -208,20 +210,20 @@ def end_phase(state: EditorState, phase: Phase, time: float) -> EditorState:
     if phase == "stroke":
         length = stroke_for(gesture, length)
     length = round(length / SNAP_S) * SNAP_S
-    return edited(state, change_phase(state.document, phase, length))
+    return with_document(state, change_phase(state.document, phase, length))
 
 
 def put_apex(state: EditorState, time: float) -> EditorState:
     """Put the apex of the stroke to a time [s]."""
     share = moment_at(state.document.gesture, time)
     apex = round(min(max(share, 0.0), 1.0), 2)
-    return edited(state, change_gesture(state.document, apex=apex))
+    return with_document(state, change_gesture(state.document, apex=apex))
 
 
 def repeat(state: EditorState, more: int) -> EditorState:
     """Perform the stroke more times."""
     repeats = state.document.gesture.repeats + more
-    return edited(state, change_gesture(state.document, repeats=repeats))
+    return with_document(state, change_gesture(state.document, repeats=repeats))
 
 
 def _neighbour(step: int) -> Action:
@@ -252,7 +254,7 @@ def _by_sector(right: int, down: int) -> Action:
 
     def move(state: EditorState) -> EditorState:
         outward = right if state.document.row == "left" else -right
-        return edited(state, move_sector(state.document, outward, down))
+        return with_document(state, move_sector(state.document, outward, down))
 
     return move
 

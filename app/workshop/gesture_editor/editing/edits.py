@@ -167,7 +167,7 @@ def mirror(document: GestureDocument) -> GestureDocument:
     return mirrored.select(other[document.row], document.index)
 
 
-def performed_by(document: GestureDocument, choice: str) -> GestureDocument:
+def with_hands(document: GestureDocument, choice: str) -> GestureDocument:
     """Let a gesture be performed by "right", "left", "both" or "either" of the hands.
 
     Hands that had no part get the keys of the one that had.
@@ -186,8 +186,8 @@ def performed_by(document: GestureDocument, choice: str) -> GestureDocument:
     return replace(document, hand="right").select(row, document.index)
 
 
-def performers(gesture: SymbolicGesture) -> str:
-    """Return who performs a gesture: the argument of `performed_by`."""
+def hands_of(gesture: SymbolicGesture) -> str:
+    """Return the hands that perform a gesture: the argument of `with_hands`."""
     if gesture.one_handed:
         return "either"
     if gesture.left and gesture.right:

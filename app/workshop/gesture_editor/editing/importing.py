@@ -9,7 +9,7 @@ from cubeling.characters.behaviour import SymbolicGesture, gesture_from_recordin
 from cubeling.characters.model import load_recording
 
 
-def imported(recording: str, start: float = 0.0, end: float = math.inf) -> SymbolicGesture:
+def import_gesture(recording: str, start: float = 0.0, end: float = math.inf) -> SymbolicGesture:
     """Return the gesture in a span of a recording [s], named after its file.
 
     Parameters

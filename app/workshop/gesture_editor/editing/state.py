@@ -133,12 +133,12 @@ def with_text(state: EditorState, name: str, text: str) -> EditorState:
     return replace(state, texts=tuple({**dict(state.texts), name: text}.items()))
 
 
-def edited(state: EditorState, document: GestureDocument) -> EditorState:
+def with_document(state: EditorState, document: GestureDocument) -> EditorState:
     """Return the state with another document."""
     return replace(state, document=document)
 
 
-def committed(before: EditorState, after: EditorState) -> EditorState:
+def commit(before: EditorState, after: EditorState) -> EditorState:
     """Note a step of undo if the gesture changed other than by undo and redo."""
     same_history = after.past is before.past and after.future is before.future
     if not same_history or after.document.gesture == before.document.gesture:
@@ -146,7 +146,7 @@ def committed(before: EditorState, after: EditorState) -> EditorState:
     return replace(after, past=(before.document, *before.past)[:MAX_UNDO], future=())
 
 
-def settled(before: EditorState, after: EditorState, held: int) -> EditorState:
+def end_frame(before: EditorState, after: EditorState, held: int) -> EditorState:
     """Return the state after a frame, with its steps of undo.
 
     Parameters
@@ -160,9 +160,9 @@ def settled(before: EditorState, after: EditorState, held: int) -> EditorState:
         return after
     began = before if before.grip is None else replace(before, document=before.grip)
     if not held:
-        return replace(committed(began, after), held=0, grip=None)
+        return replace(commit(began, after), held=0, grip=None)
     # What was typed ends as a step of its own when the mouse takes something else.
-    ended = committed(began, before)
+    ended = commit(began, before)
     if after.past is before.past:
         after = replace(after, past=ended.past, future=ended.future)
     return replace(after, held=held, grip=before.document)
@@ -186,7 +186,7 @@ def redo(state: EditorState) -> EditorState:
     return replace(state, document=following, past=past, future=tuple(later))
 
 
-def asked(state: EditorState, request: Request) -> EditorState:
+def with_request(state: EditorState, request: Request) -> EditorState:
     """Ask the outside for something."""
     return replace(state, requests=(*state.requests, request), card="")
 
@@ -195,7 +195,7 @@ def unless_unsaved(state: EditorState, request: Request) -> EditorState:
     """Ask the outside for something, or the user first if changes would be lost."""
     if state.changed:
         return replace(state, card="unsaved", wanted=request)
-    return asked(state, request)
+    return with_request(state, request)
 
 
 def fresh(state: EditorState, document: GestureDocument, message: str) -> EditorState:
@@ -206,6 +206,6 @@ def fresh(state: EditorState, document: GestureDocument, message: str) -> Editor
     )  # fmt: skip
 
 
-def told(state: EditorState, message: str, *, alarming: bool = False) -> EditorState:
+def with_message(state: EditorState, message: str, *, alarming: bool = False) -> EditorState:
     """Return the state with a line that says what happened."""
     return replace(state, message=message, alarming=alarming)

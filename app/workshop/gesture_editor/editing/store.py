@@ -77,7 +77,7 @@ class GestureStore:
             named = replace(gesture, name=gesture.name or NO_NAME)
             save_gesture(named, self._folder / RECOVERY_FILE)
 
-    def kept(self) -> SymbolicGesture | None:
+    def recover(self) -> SymbolicGesture | None:
         """Return changes that an earlier editor could not save; None if there are none."""
         with suppress(CharacterError):
             gesture = load_gesture(self._folder / RECOVERY_FILE)

@@ -20,10 +20,10 @@ PATH_NAMES = (
 """Paths of `HandKey`, each with its name on a button."""
 
 
-def combined(present: str, chosen: str, *, added: bool) -> str:
+def combine(present: str, chosen: str, *, added: bool) -> str:
     """Return a direction after a click on one: it alone, or added to the present.
 
-    >>> combined("down", "in", added=True), combined("down-in", "in", added=True)
+    >>> combine("down", "in", added=True), combine("down-in", "in", added=True)
     ('down-in', 'down')
     """
     parts = [each for each in present.split("-") if each]

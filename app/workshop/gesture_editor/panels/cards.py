@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from imgui_bundle import ImVec2, imgui
 
-from cubeling.app.counted import counted
+from cubeling.app.counted import quantity
 from cubeling.app.ui.palette import ANGRY
 from cubeling.app.workshop.gesture_editor.editing import actions
 from cubeling.app.workshop.gesture_editor.editing.state import (
@@ -13,8 +13,8 @@ from cubeling.app.workshop.gesture_editor.editing.state import (
     EditorState,
     Open,
     Save,
-    asked,
     unless_unsaved,
+    with_request,
 )
 from cubeling.app.workshop.gesture_editor.panels.ui import LARGE, SMALL, SUBTLE, Ui
 
@@ -111,7 +111,7 @@ def _library(ui: Ui) -> None:
     ui.card_field("find", "type a part of the name", 280.0, first=True)
     names = actions.found_names(ui.state)
     imgui.same_line(0.0, 14.0 * ui.unit)
-    ui.label(counted(len(names), "gesture"), SUBTLE, SMALL)
+    ui.label(quantity(len(names), "gesture"), SUBTLE, SMALL)
     ui.space(6.0)
     height = LIBRARY_HEIGHT * ui.unit
     if imgui.begin_child("names", (LIBRARY_WIDTH * ui.unit, height)):
@@ -155,7 +155,7 @@ def _ask_name(state: EditorState) -> EditorState:
 
 
 def _replace(state: EditorState) -> EditorState:
-    return asked(state, Save(overwrite=True))
+    return with_request(state, Save(overwrite=True))
 
 
 def _question(*answers: tuple[str, Action]) -> Callable[[Ui], None]:

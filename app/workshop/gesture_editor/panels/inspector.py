@@ -12,15 +12,15 @@ from cubeling.app.workshop.gesture_editor.editing.edits import (
     change_gesture,
     change_key,
     change_place,
+    hands_of,
     move_key,
-    performed_by,
-    performers,
+    with_hands,
 )
 from cubeling.app.workshop.gesture_editor.editing.words import (
     DIRECTION_NAMES,
     PATH_NAMES,
     ROW_NAMES,
-    combined,
+    combine,
 )
 from cubeling.app.workshop.gesture_editor.panels.space_map import space_map
 from cubeling.app.workshop.gesture_editor.panels.ui import LARGE, SMALL, SUBTLE, Ui
@@ -169,7 +169,7 @@ def _hand(ui: Ui, key: HandKey | None) -> None:
         present = str(getattr(key, field))
         chosen = ui.choose(field, DIRECTION_NAMES, tuple(present.split("-")), COLUMN, 3)
         if chosen is not None:
-            direction = combined(present, chosen, added=imgui.get_io().key_shift)
+            direction = combine(present, chosen, added=imgui.get_io().key_shift)
             ui.edit(change_direction(ui.state.document, field, direction))
 
 
@@ -224,10 +224,10 @@ def _gesture(ui: Ui) -> None:
     _side_label(ui, "Hands")
     imgui.begin_group()
     options = [(each, each) for each in ("right", "left", "both", "either")]
-    who = ui.choose("hand", options, (performers(gesture),), WIDTH - LABEL_WIDTH, 4)
+    who = ui.choose("hand", options, (hands_of(gesture),), WIDTH - LABEL_WIDTH, 4)
     imgui.end_group()
     if who is not None:
-        ui.edit(performed_by(ui.state.document, who))
+        ui.edit(with_hands(ui.state.document, who))
 
 
 def _change(ui: Ui, **fields: Any) -> None:

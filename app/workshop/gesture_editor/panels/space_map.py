@@ -6,7 +6,7 @@ import numpy as np
 from imgui_bundle import imgui
 
 from cubeling.app.ui.palette import INK, PAPER, RULE, between, bgr
-from cubeling.app.ui.panels.drawing.style import packed
+from cubeling.app.ui.panels.drawing.style import pack_color
 from cubeling.app.workshop.gesture_editor.panels.ui import ACCENT, SUBTLE, Rect, Ui
 from cubeling.characters.behaviour import SECTORS_X, SECTORS_Y, Place
 
@@ -72,32 +72,32 @@ def _draw(ui: Ui, grid: Rect, columns: tuple[str, ...], shown: Rect | None) -> N
     canvas, unit = imgui.get_window_draw_list(), ui.unit
     left, top, width, height = grid
     wide, high = width / len(columns), height / len(SECTORS_Y)
-    canvas.add_rect_filled((left, top), (left + width, top + height), packed(CARD), 8.0 * unit)
+    canvas.add_rect_filled((left, top), (left + width, top + height), pack_color(CARD), 8.0 * unit)
     _figure(grid, wide, high, left + wide * (columns.index("XC") + columns.index("XOppC") + 1) / 2)
     if shown is not None:
         x, y = shown[:2]
-        color = packed(ACCENT, 0.35)
+        color = pack_color(ACCENT, 0.35)
         canvas.add_rect_filled((x + 1, y + 1), (x + wide - 1, y + high - 1), color, 5.0 * unit)
     for number, name in enumerate(columns):
         x = left + number * wide
         place = x + wide / 2, top - 0.5 * LABEL_HEIGHT * unit
         ui.write(name[1:], place, SUBTLE, LABEL_SIZE, 0.5)
         if number:
-            canvas.add_line((x, top), (x, top + height), packed(RULE), unit)
+            canvas.add_line((x, top), (x, top + height), pack_color(RULE), unit)
     for number, name in enumerate(SECTORS_Y):
         y = top + number * high
         ui.write(name[1:], (left - 8.0 * unit, y + high / 2), SUBTLE, LABEL_SIZE, 1.0)
         if number:
-            canvas.add_line((left, y), (left + width, y), packed(RULE), unit)
+            canvas.add_line((left, y), (left + width, y), pack_color(RULE), unit)
     if shown is not None:
         middle = shown[0] + wide / 2, shown[1] + high / 2
-        canvas.add_circle_filled(middle, (HAND_RADIUS + 1.5) * unit, packed(CARD))
-        canvas.add_circle_filled(middle, HAND_RADIUS * unit, packed(ACCENT))
+        canvas.add_circle_filled(middle, (HAND_RADIUS + 1.5) * unit, pack_color(CARD))
+        canvas.add_circle_filled(middle, HAND_RADIUS * unit, pack_color(ACCENT))
 
 
 def _figure(grid: Rect, wide: float, high: float, middle: float) -> None:
     """Draw head, trunk and arms about the line between the two centres."""
-    canvas, color = imgui.get_window_draw_list(), packed(FIGURE)
+    canvas, color = imgui.get_window_draw_list(), pack_color(FIGURE)
     _, top, _, height = grid
     canvas.add_circle_filled((middle, top + 1.12 * high), 0.66 * high, color)
     trunk = (middle - 0.4 * wide, top + 2.05 * high), (middle + 0.4 * wide, top + height)

@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 from numpy.typing import NDArray
 
 from cubeling.app.ui.palette import ANGRY, INK, PAPER
-from cubeling.app.ui.panels.drawing.style import packed
+from cubeling.app.ui.panels.drawing.style import pack_color
 from cubeling.app.workshop.gesture_editor.editing.actions import choose_character, toggle_sectors
 from cubeling.app.workshop.gesture_editor.panels.ui import ACCENT, GAP, LARGE, SMALL, Rect, Ui
 from cubeling.app.workshop.gesture_editor.session import EditorSession
@@ -34,11 +34,11 @@ class StagePanel:
         """Draw the character; `dense` is the number of pixels of a unit of `rect`."""
         ui.places["stage"] = rect
         size = max(round(rect[2] * dense), 1), max(round(rect[3] * dense), 1)
-        texture = self._uploaded(session.picture(size))
+        texture = self._upload(session.picture(size))
         canvas, corner = imgui.get_window_draw_list(), (rect[0] + rect[2], rect[1] + rect[3])
         canvas.add_image_rounded(
             imgui.ImTextureRef(texture.glo), rect[:2], corner, (0, 0), (1, 1),
-            packed((255, 255, 255)), 12.0 * ui.unit,
+            pack_color((255, 255, 255)), 12.0 * ui.unit,
         )  # fmt: skip
         document = ui.state.document
         if ui.state.sectors_shown or ui.map_held:
@@ -56,7 +56,7 @@ class StagePanel:
             self._texture.release()
         self._texture = self._shown = None
 
-    def _uploaded(self, picture: NDArray[np.uint8]) -> moderngl.Texture:
+    def _upload(self, picture: NDArray[np.uint8]) -> moderngl.Texture:
         """Return the texture of a picture, which is written when the picture is another one."""
         size = picture.shape[1], picture.shape[0]
         if self._texture is None or self._texture.size != size:
@@ -98,7 +98,7 @@ def _message(ui: Ui, rect: Rect) -> None:
     across, down = 16.0 * unit, 8.0 * unit
     canvas = imgui.get_window_draw_list()
     corners = (left - across, top - down), (left + size.x + across, top + size.y + down)
-    canvas.add_rect_filled(*corners, packed(ANGRY if ui.state.alarming else INK), LARGE * unit)
+    canvas.add_rect_filled(*corners, pack_color(ANGRY if ui.state.alarming else INK), LARGE * unit)
     imgui.set_cursor_screen_pos((left, top))
     imgui.push_text_wrap_pos(left + size.x + 1.0 - imgui.get_window_pos().x)
     ui.label(words, PAPER)
@@ -116,7 +116,7 @@ def _space(
     canvas = imgui.get_window_draw_list()
     for line in space.borders(CENTRES_Z_CM["ZMiddle" if place is None else place.z]):
         start, end = places(line)
-        canvas.add_line(start, end, packed(ACCENT, LINE_OPACITY), 1.2 * unit)
+        canvas.add_line(start, end, pack_color(ACCENT, LINE_OPACITY), 1.2 * unit)
     if place is not None and not place.contact:
         corners = places(space.sector(place))
-        canvas.add_convex_poly_filled([*corners], packed(ACCENT, SECTOR_OPACITY))
+        canvas.add_convex_poly_filled([*corners], pack_color(ACCENT, SECTOR_OPACITY))

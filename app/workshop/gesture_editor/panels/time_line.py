@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from imgui_bundle import imgui
 
 from cubeling.app.ui.palette import HAPPY, INK, NEUTRAL, PAPER, QUIET, Color, between
-from cubeling.app.ui.panels.drawing.style import packed
+from cubeling.app.ui.panels.drawing.style import pack_color
 from cubeling.app.workshop.gesture_editor.editing import actions
 from cubeling.app.workshop.gesture_editor.editing.document import ROWS, Row, keys_of
 from cubeling.app.workshop.gesture_editor.editing.edits import MAX_REPEATS, Phase, move_key
@@ -94,7 +94,7 @@ def time_line(ui: Ui) -> None:
     x, canvas = axis.x(time), imgui.get_window_draw_list()
     for color, width in ((PAPER, 4.0), (INK, 1.8)):
         ends = (x, top - 4.0 * unit), (x, below - ROW_GAP * unit)
-        canvas.add_line(*ends, packed(color), width * unit)
+        canvas.add_line(*ends, pack_color(color), width * unit)
 
 
 def _transport(ui: Ui) -> None:
@@ -154,14 +154,14 @@ def _phases(ui: Ui, axis: TimeAxis, rect: Rect) -> None:
         if ends[1] - ends[0] < 1.0:
             continue
         band = (ends[0], top), (ends[1], top + high)
-        canvas.add_rect_filled(*band, packed(PHASE_COLORS[phase]), 5.0 * unit)
+        canvas.add_rect_filled(*band, pack_color(PHASE_COLORS[phase]), 5.0 * unit)
         with ui.font(SMALL):
             words = _fitting(phase, end - start, ends[1] - ends[0] - 18.0 * unit)
         place = ends[0] + 10.0 * unit, top + high / 2
         ui.write(words, place, PAPER if phase == "stroke" else INK, SMALL, 0.0)
     for number in range(1, gesture.repeats):
         x = axis.x(gesture.preparation + number * period(gesture))
-        canvas.add_line((x, top + 3), (x, top + high - 3), packed(PAPER), 1.2 * unit)
+        canvas.add_line((x, top + 3), (x, top + high - 3), pack_color(PAPER), 1.2 * unit)
 
 
 def _fitting(phase: str, length: float, room: float) -> str:
@@ -186,15 +186,15 @@ def _handles(ui: Ui, axis: TimeAxis, top: float) -> None:
         if imgui.is_item_active():
             ui.state = actions.end_phase(ui.state, phase, axis.time(imgui.get_mouse_pos().x))
         ends = (x, top + 5 * unit), (x, top + high - 5 * unit)
-        canvas.add_line(*ends, packed(PAPER), 6.0 * unit)
-        canvas.add_line(*ends, packed(INK if strong else between(PAPER, INK, 0.55)), 3.0 * unit)
+        canvas.add_line(*ends, pack_color(PAPER), 6.0 * unit)
+        canvas.add_line(*ends, pack_color(INK if strong else between(PAPER, INK, 0.55)), 3.0 * unit)
     x = axis.x(time_of(gesture, gesture.apex))
     strong = _grip(ui, "apex", (x - 8 * unit, top - 13 * unit, 16 * unit, 13 * unit))
     if imgui.is_item_active():
         ui.state = actions.put_apex(ui.state, axis.time(imgui.get_mouse_pos().x))
     corner = top - (12 if strong else 10) * unit
     canvas.add_triangle_filled(
-        (x - 6.5 * unit, corner), (x + 6.5 * unit, corner), (x, top + unit), packed(INK)
+        (x - 6.5 * unit, corner), (x + 6.5 * unit, corner), (x, top + unit), pack_color(INK)
     )
 
 
@@ -220,10 +220,10 @@ def _row(ui: Ui, axis: TimeAxis, row: Row, rect: Rect) -> None:
         ui.edit(document.select(row, document.index))
     ui.note(f"row:{row}")
     chosen, canvas = row == document.row, imgui.get_window_draw_list()
-    canvas.add_rect_filled((left, top), (left + width, top + high), packed(FIELD), 5 * unit)
+    canvas.add_rect_filled((left, top), (left + width, top + high), pack_color(FIELD), 5 * unit)
     begin, end = (axis.x(time_of(document.gesture, at)) for at in (0.0, 1.0))
     share = 0.2 if chosen else 0.12 if imgui.is_item_hovered() else 0.07
-    color = packed(between(PAPER, ACCENT, share))
+    color = pack_color(between(PAPER, ACCENT, share))
     canvas.add_rect_filled((begin, top), (end, top + high), color, 5 * unit)
     place = left - NAME_GAP * unit, top + high / 2
     ui.write(ROW_NAMES[row], place, INK if chosen else SUBTLE, SMALL, 1.0)
@@ -244,7 +244,7 @@ def _key(ui: Ui, axis: TimeAxis, row: Row, index: int, y: float) -> None:
         at = moment_at(document.gesture, axis.time(imgui.get_mouse_pos().x))
         ui.state = actions.show_key(ui.state, move_key(document, at))
     canvas, chosen = imgui.get_window_draw_list(), (document.row, document.index) == (row, index)
-    canvas.add_circle_filled((x, y), radius, packed(ACCENT if chosen else QUIET))
+    canvas.add_circle_filled((x, y), radius, pack_color(ACCENT if chosen else QUIET))
     fill = ACCENT if chosen else between(PAPER, ACCENT, 0.3 * imgui.is_item_hovered())
-    canvas.add_circle_filled((x, y), radius - 1.5 * ui.unit, packed(fill))
+    canvas.add_circle_filled((x, y), radius - 1.5 * ui.unit, pack_color(fill))
     ui.write(f"{index + 1}", (x, y), PAPER if chosen else INK, 12.0, 0.5)

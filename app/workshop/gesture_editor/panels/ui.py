@@ -6,12 +6,12 @@ from contextlib import contextmanager
 from imgui_bundle import ImVec2, imgui
 
 from cubeling.app.ui.palette import ACTION_COLORS, INK, PAPER, RULE, Color, between, bgr
-from cubeling.app.ui.panels.drawing.style import packed, rgba, use_card_style
+from cubeling.app.ui.panels.drawing.style import pack_color, rgba, use_card_style
 from cubeling.app.workshop.gesture_editor.editing.document import GestureDocument
 from cubeling.app.workshop.gesture_editor.editing.state import (
     Action,
     EditorState,
-    edited,
+    with_document,
     with_text,
 )
 
@@ -90,7 +90,7 @@ class Ui:
 
     def edit(self, document: GestureDocument) -> None:
         """Replace the document of the state, as one step of undo."""
-        self.state = edited(self.state, document)
+        self.state = with_document(self.state, document)
 
     def note(self, name: str) -> None:
         """Note where the last widget is."""
@@ -184,10 +184,10 @@ class Ui:
         left, top = imgui.get_cursor_screen_pos()
         wide, high = width * self.unit, imgui.get_frame_height()
         canvas, rounding = imgui.get_window_draw_list(), imgui.get_style().frame_rounding
-        canvas.add_rect_filled((left, top), (left + wide, top + high), packed(FIELD), rounding)
+        canvas.add_rect_filled((left, top), (left + wide, top + high), pack_color(FIELD), rounding)
         shares = ((each - limits[0]) / (limits[1] - limits[0]) for each in (0.0, value))
         ends = sorted(left + (0.02 + 0.96 * share) * wide for share in shares)
-        fill = packed(between(PAPER, ACCENT, 0.3))
+        fill = pack_color(between(PAPER, ACCENT, 0.3))
         canvas.add_rect_filled((ends[0], top), (ends[1], top + high), fill, 2.0 * self.unit)
 
     def text_field(self, name: str, text: str, hint: str, width: float) -> str | None:
@@ -219,7 +219,7 @@ class Ui:
         with self.font(size):
             wide, high = imgui.calc_text_size(words)
             corner = place[0] - align * wide, place[1] - high / 2
-            imgui.get_window_draw_list().add_text(corner, packed(color), words)
+            imgui.get_window_draw_list().add_text(corner, pack_color(color), words)
 
     @contextmanager
     def font(self, size: float) -> Iterator[None]:

@@ -7,7 +7,7 @@ from imgui_bundle import imgui
 
 from cubeling.app.ui.panels.drawing.style import load_fonts
 from cubeling.app.workshop.gesture_editor.editing.actions import ACTIONS
-from cubeling.app.workshop.gesture_editor.editing.state import told
+from cubeling.app.workshop.gesture_editor.editing.state import with_message
 from cubeling.app.workshop.gesture_editor.panels.cards import CardPanel
 from cubeling.app.workshop.gesture_editor.panels.inspector import WIDTH, inspector
 from cubeling.app.workshop.gesture_editor.panels.stage import StagePanel
@@ -91,7 +91,7 @@ class EditorView:
             self._unit = unit
         ui, parts = Ui(self.session.state, unit), Parts.of(width, height, unit)
         if imgui.is_mouse_clicked(0):
-            ui.state = told(ui.state, "")
+            ui.state = with_message(ui.state, "")
         if not ui.state.card:
             _handle_keys(ui)
         with ui.part("bar", parts.bar):
@@ -135,4 +135,4 @@ def _handle_keys(ui: Ui) -> None:
             if keys == "Escape" and imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
                 imgui.internal.close_popup_to_level(0, True)  # the list of what a hand touches
             else:
-                ui.state = action(told(ui.state, ""))
+                ui.state = action(with_message(ui.state, ""))

@@ -3,7 +3,7 @@
 import numpy as np
 
 from cubeling.app.ui.canvas import text_mask, text_width
-from cubeling.app.ui.cards.subtitles import MAX_LETTERS, SIZE, parts, subtitle, wrapped
+from cubeling.app.ui.cards.subtitles import MAX_LETTERS, SIZE, parts, subtitle, wrap_text
 from cubeling.characters.control.command import SpeechIntent
 from cubeling.characters.speech.speech import Utterance, Word
 
@@ -44,7 +44,7 @@ def test_a_speech_without_words_shows_its_text():
 
 
 def test_lines_are_as_wide_as_there_is_room():
-    lines = wrapped(TEXT, 300.0)
+    lines = wrap_text(TEXT, 300.0)
     assert " ".join(lines) == TEXT
     assert all(text_width(line, SIZE) <= 300.0 for line in lines)
 

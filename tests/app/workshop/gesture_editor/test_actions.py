@@ -15,9 +15,9 @@ from cubeling.app.workshop.gesture_editor.editing.state import (
     Open,
     Quit,
     Save,
-    edited,
-    settled,
+    end_frame,
     undo,
+    with_document,
     with_text,
 )
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
@@ -37,24 +37,24 @@ def after(state, *keys):
 
 
 def with_summary(state, words):
-    return edited(state, change_gesture(state.document, summary=words))
+    return with_document(state, change_gesture(state.document, summary=words))
 
 
 def test_what_is_done_while_a_widget_is_held_is_one_step_of_undo(state):
     now = state
     for number in range(3):
-        now = settled(now, with_summary(now, f"{number}"), held=7)
+        now = end_frame(now, with_summary(now, f"{number}"), held=7)
         assert now.past == ()
-    now = settled(now, now, held=0)
+    now = end_frame(now, now, held=0)
     assert len(now.past) == 1
     assert undo(now).document == state.document
 
 
 def test_a_widget_that_takes_over_begins_another_step(state):
-    clicked = settled(state, state, held=7)
-    typed = settled(clicked, with_summary(clicked, "typed"), held=7)
-    dragged = settled(typed, with_summary(typed, "dragged"), held=8)
-    ended = settled(dragged, dragged, held=0)
+    clicked = end_frame(state, state, held=7)
+    typed = end_frame(clicked, with_summary(clicked, "typed"), held=7)
+    dragged = end_frame(typed, with_summary(typed, "dragged"), held=8)
+    ended = end_frame(dragged, dragged, held=0)
     assert [each.gesture.summary for each in ended.past] == [
         "typed",
         state.document.gesture.summary,
@@ -62,9 +62,9 @@ def test_a_widget_that_takes_over_begins_another_step(state):
 
 
 def test_undo_by_a_button_that_is_held_is_no_step(state):
-    changed = settled(state, with_summary(state, "changed"), held=0)
-    pressed = settled(changed, changed, held=7)
-    undone = settled(pressed, undo(pressed), held=0)
+    changed = end_frame(state, with_summary(state, "changed"), held=0)
+    pressed = end_frame(changed, changed, held=7)
+    undone = end_frame(pressed, undo(pressed), held=0)
     assert undone.document == state.document
     assert (undone.past, len(undone.future)) == ((), 1)
 
@@ -123,7 +123,7 @@ def test_changes_are_never_lost_without_a_question(state):
 
 
 def test_a_gesture_without_a_name_is_named_before_what_was_put_off(state):
-    nameless = edited(state, change_gesture(state.document, name=""))
+    nameless = with_document(state, change_gesture(state.document, name=""))
     asked = actions.save_and_go_on(after(nameless, "Escape"))
     assert asked.card == "save as"
     named = actions.save_under_name(with_text(asked, "new name", "hi"))

@@ -14,10 +14,10 @@ from cubeling.app.workshop.gesture_editor.editing.document import (
 )
 from cubeling.app.workshop.gesture_editor.editing.state import (
     EditorState,
-    committed,
-    edited,
+    commit,
     redo,
     undo,
+    with_document,
 )
 from cubeling.app.workshop.gesture_editor.editing.timing import (
     duration,
@@ -50,7 +50,7 @@ EDITS = st.one_of(
         lambda each: lambda document: edits.change_phase(document, *each)
     ),
     st.sampled_from(["right", "left", "both", "either"]).map(
-        lambda who: lambda each: edits.performed_by(each, who)
+        lambda who: lambda each: edits.with_hands(each, who)
     ),
     st.sampled_from(ROWS).map(lambda row: lambda each: each.select(row, each.index)),
     st.integers(-2, 2).map(lambda step: lambda each: edits.neighbour(each, step)),
@@ -73,7 +73,7 @@ def test_after_any_edits_a_gesture_can_be_performed(steps):
 def test_undo_goes_back_to_each_gesture_and_redo_returns(steps):
     state, seen = EditorState(), [EMPTY.gesture]
     for step in steps:
-        state = committed(state, edited(state, step(state.document)))
+        state = commit(state, with_document(state, step(state.document)))
         if state.document.gesture != seen[-1]:
             seen.append(state.document.gesture)
     for gesture in reversed(seen):
@@ -87,9 +87,9 @@ def test_undo_goes_back_to_each_gesture_and_redo_returns(steps):
 
 def test_a_new_edit_forgets_what_was_undone():
     state = EditorState()
-    state = committed(state, edited(state, edits.add_key(state.document, 0.0)))
+    state = commit(state, with_document(state, edits.add_key(state.document, 0.0)))
     state = undo(state)
-    state = committed(state, edited(state, edits.performed_by(state.document, "either")))
+    state = commit(state, with_document(state, edits.with_hands(state.document, "either")))
     assert redo(state) is state
 
 
@@ -134,15 +134,15 @@ def test_an_offset_stays_along_the_axes_that_do_not_change():
 def test_each_hand_alone_keeps_its_own_keys():
     gesture = replace(EMPTY.gesture, right=(HandKey(0.0),), left=(HandKey(0.5),))
     both = GestureDocument(gesture)
-    assert edits.performed_by(both, "left").gesture.left == gesture.left
-    assert edits.performed_by(both, "right").gesture.right == gesture.right
+    assert edits.with_hands(both, "left").gesture.left == gesture.left
+    assert edits.with_hands(both, "right").gesture.right == gesture.right
 
 
 def test_a_left_key_makes_a_gesture_two_handed():
-    document = edits.performed_by(edits.add_key(EMPTY, 0.0), "either")
+    document = edits.with_hands(edits.add_key(EMPTY, 0.0), "either")
     document = edits.add_key(document.select("left", 0), 0.0)
     assert not document.gesture.one_handed
-    assert edits.performers(document.gesture) == "both"
+    assert edits.hands_of(document.gesture) == "both"
 
 
 @pytest.mark.parametrize("repeats", [1, 3])

@@ -14,8 +14,8 @@ from cubeling.app.workshop.gesture_editor.editing.state import (
     EditorState,
     Open,
     Save,
-    asked,
-    edited,
+    with_document,
+    with_request,
 )
 from cubeling.app.workshop.gesture_editor.preview import Preview, PreviewedGesture
 from cubeling.app.workshop.gesture_editor.session import KEEP_INTERVAL_S, EditorSession
@@ -31,7 +31,7 @@ PICTURE_PX = 240, 180
 
 def make_fist(state: EditorState) -> EditorState:
     """Change the selected key."""
-    return edited(state, change_key(state.document, shape="fist"))
+    return with_document(state, change_key(state.document, shape="fist"))
 
 
 def hand_height(preview: Preview, previewed: PreviewedGesture, time: float) -> float:
@@ -65,7 +65,7 @@ def test_a_gesture_is_made_from_empty_to_saved(opened, tmp_path):
 def test_every_gesture_of_the_library_survives_the_editor(opened, tmp_path):
     session, library = opened(), GestureCollection.load_bundled()
     for gesture in library:
-        session.settle(asked(session.state, Open(gesture.name)))
+        session.settle(with_request(session.state, Open(gesture.name)))
         session.do(save)
         saved = load_gesture(tmp_path / "gestures" / f"{gesture.name.lower()}.toml")
         assert saved == session.state.document.gesture == gesture
@@ -160,14 +160,16 @@ def test_changes_survive_a_crash(opened):
     assert again.state.changed
     again.do(save)
     assert again.state.card == "replace"
-    again.settle(asked(again.state, Save(overwrite=True)))
+    again.settle(with_request(again.state, Save(overwrite=True)))
     assert not opened().state.changed
     assert opened().state.document.gesture.name == ""
 
 
 def test_a_gesture_without_a_name_survives_a_crash(opened):
     session = opened()
-    session.do(lambda state: edited(state, change_place(state.document, x="XEP", y="YUpperP")))
+    session.do(
+        lambda state: with_document(state, change_place(state.document, x="XEP", y="YUpperP"))
+    )
     session.close()
     again = opened()
     assert again.state.document.gesture == session.state.document.gesture

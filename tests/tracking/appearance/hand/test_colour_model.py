@@ -84,5 +84,5 @@ def test_what_moves_with_a_distinct_hand_is_its_shadow_or_has_become_of_another_
     desk = patch(220.0, 2.0, 12.0)
     model = learned(patch(150.0, 18.0, 24.0), desk)
     now, before = (colours(np.asarray(light * desk, np.float32)).ravel() for light in (0.7, 1.0))
-    covered = model.covered(now, before, np.full(now.shape, recoloured))
+    covered = model.covered_pixels(now, before, np.full(now.shape, recoloured))
     assert (covered.mean() > 0.9) == recoloured

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cubeling.app.running.opening import intrinsics_for
-from cubeling.app.session.bundled import bundled
+from cubeling.app.session.bundled import bundled_session
 from cubeling.tracking.appearance.hand.finder import MANY_FRAMES, HandFinder
 from cubeling.tracking.appearance.hand.mask import EDGE_SLOPE, HandMask
 from cubeling.tracking.appearance.hand.window import STILL_FRAMES, Stillness, WindowFinder
@@ -366,7 +366,7 @@ def test_a_hand_that_lets_go_is_in_front_until_it_has_left_the_surroundings():
 
 
 def test_a_picture_that_is_mostly_clipped_shows_no_hand():
-    with open_source(str(bundled("follow"))) as source:
+    with open_source(str(bundled_session("follow"))) as source:
         intrinsics = intrinsics_for(source.intrinsics, source.size)
         tracker, finder = CubeTracker(CUBE, intrinsics), HandFinder(CUBE, intrinsics)
         for frame in itertools.islice(source, 58):  # the hand comes later

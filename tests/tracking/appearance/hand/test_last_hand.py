@@ -48,12 +48,12 @@ def last() -> LastHand:
     hand = LastHand(CUBE, Projection(WIDE))
     for number in range(-CARRIED_LOOKS, 1):
         assert not hand.carry(POSE, number / 30)
-        hand.found(mask(), POSE, number / 30)
+        hand.update(mask(), POSE, number / 30)
     return hand
 
 
 def test_a_moved_hand_is_elsewhere_in_the_image_and_in_the_room():
-    moved = mask().moved(5, -2, np.array([0.01, 0.0, -0.02]))
+    moved = mask().move(5, -2, np.array([0.01, 0.0, -0.02]))
     assert (moved.x, moved.y, moved.scale) == (605, 298, 3)
     np.testing.assert_allclose(moved.behind, POSE[:3, 3] + [0.01, 0.0, -0.02])
     np.testing.assert_array_equal(moved.share, mask().share)
@@ -90,7 +90,7 @@ def test_a_hand_that_moved_with_the_cube_does_so_until_it_is_due_again(last):
     ids=["gone", "left behind", "moved further", "of another shape", "nearer"],
 )
 def test_a_hand_that_moves_unlike_the_cube_is_looked_at_in_each_frame(last, found):
-    last.found(found, aside(20), 0.03)
+    last.update(found, aside(20), 0.03)
     assert not last.carry(aside(20), 0.06)
 
 
@@ -104,8 +104,8 @@ def test_a_hand_is_looked_at_after_a_leap_of_the_cube_or_a_gap_or_without_a_cloc
 
 
 def test_a_hand_is_looked_at_when_a_lost_cube_is_found_again(last):
-    assert last.held(aside(20)).x == 620
-    assert last.held(None).x == 600
+    assert last.predict(aside(20)).x == 620
+    assert last.predict(None).x == 600
     assert not last.carry(POSE, 0.03)
 
 

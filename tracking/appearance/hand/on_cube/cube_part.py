@@ -84,7 +84,7 @@ class CubeCheck:
         outside = np.ones(by_colour.shape, bool)
         outside[rows, columns] = cv2.dilate(outline, SQUARE_3) == 0
         like_hand = by_colour[rows, columns] > DOUBTFUL_ODDS
-        seen = self._pattern.seen(pose, quads, size)
+        seen = self._pattern.draw(pose, quads, size)
         part = lab[:, rows, columns]
         evidence = self._faces.disagreement(part, seen, like_hand, window.edge)
         if not evidence.any():
@@ -99,7 +99,7 @@ class CubeCheck:
         inner = cv2.erode(seen.face, SQUARE_3) > 0
         slanted = (seen.face == 0) & outline.view(bool)
         doubtful = inner & ~evidence & like_hand
-        told, bare = self._faces.told_by_chroma(part, seen, evidence, doubtful)
+        told, bare = self._faces.split_by_chroma(part, seen, evidence, doubtful)
         doubtful &= ~(told | bare)
         return CubePart(outline, outside, inner, slanted, evidence, doubtful, told, behind)
 

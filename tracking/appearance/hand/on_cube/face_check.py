@@ -81,10 +81,10 @@ class FaceCheck:
         all_paper = inner & no_ink & plain
         if self._frames % LEARNING_FRAMES == 0:
             visible = _visible(light, seen.ink)
-            self._tint = _followed(self._tint, lab[1:] / light, all_paper & visible)
+            self._tint = _update_tint(self._tint, lab[1:] / light, all_paper & visible)
             # On photographs, ink is often bluish.
             inks = lab[1:].clip(-MAX_INK_CHROMA, MAX_INK_CHROMA)
-            self._ink = _followed(self._ink, inks, all_ink & (light < DARK) & visible)
+            self._ink = _update_tint(self._ink, inks, all_ink & (light < DARK) & visible)
         if self._tint is None:
             return np.zeros(cube.shape, bool)
         self._frames += 1
@@ -100,7 +100,7 @@ class FaceCheck:
         opened = cv2.morphologyEx(found.view(np.uint8), cv2.MORPH_OPEN, SQUARE_2)
         return _from_outside(np.asarray(opened), like_hand, cube, edge * edge)
 
-    def told_by_chroma(
+    def split_by_chroma(
         self, lab: Floats, seen: SeenPattern, evidence: Flags, doubtful: Flags
     ) -> tuple[Flags, Flags]:
         """Return which doubtful pixels are the hand, and which are print, (h, w) each.
@@ -157,7 +157,7 @@ def _off(a: Floats, b: Floats, tolerance: float) -> Flags:
     return np.asarray(a * a + b * b > tolerance**2)
 
 
-def _followed(known: Floats | None, chroma: Floats, where: Flags) -> Floats | None:
+def _update_tint(known: Floats | None, chroma: Floats, where: Flags) -> Floats | None:
     """Return what is known of the chroma of paper or ink, (2,), after one more look at it.
 
     `chroma` is a and b, (2, h, w). Too few pixels change nothing.

@@ -59,7 +59,7 @@ class FacePattern:
         self.corners = middles + grow * (corners - middles)
         """Corners of the faces' prints, (faces, 4, 3) [m]."""
 
-    def seen(self, camera_from_cube: Array, quads: Array, size: tuple[int, int]) -> SeenPattern:
+    def draw(self, camera_from_cube: Array, quads: Array, size: tuple[int, int]) -> SeenPattern:
         """Draw the faces at a pose into a part of the image.
 
         Parameters

@@ -1,4 +1,4 @@
-"""Performing a speech: the poses of a character that says it, and a video of them with sound."""
+"""The video of a speech: the poses of a character that says it, and its sound."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -54,7 +54,7 @@ NAME_LETTERS = 40
 
 @dataclass(frozen=True)
 class Direction:
-    """How a speech is performed."""
+    """What a speech expresses beside its words, and its random choices."""
 
     emotion: Emotion | None = None
     """What the speaker feels; None for nothing in particular."""
@@ -63,7 +63,7 @@ class Direction:
     """Of blinks, sway and the choice between gestures."""
 
 
-def performed(character: Character, line: SpokenLine, direction: Direction, rate: float) -> Clip:
+def speech_clip(character: Character, line: SpokenLine, direction: Direction, rate: float) -> Clip:
     """Return the motion of a character that says a line, `LEAD_S` after its start.
 
     `rate` is the number of frames a second.
@@ -83,7 +83,7 @@ def performed(character: Character, line: SpokenLine, direction: Direction, rate
 
 
 def sound_track(line: SpokenLine) -> Callable[[int], NDArray[np.float32]]:
-    """Return what gives the stereo sound of a performance block by block, (count, 2)."""
+    """Return what gives the stereo sound of a spoken line block by block, (count, 2)."""
     lead = np.zeros(round(LEAD_S * SAMPLE_RATE))
     samples = np.concatenate([lead, at_sample_rate(line)]).astype(np.float32)
     return sound_blocks(samples[:, None])
@@ -125,7 +125,7 @@ def write_video(
     subtitles: bool,
     blood: float = 0.0,
 ) -> None:
-    """Write a performance as a video with sound.
+    """Write the clip of a speech as a video with sound.
 
     `blood` is that in the skin of the face, as in `SceneCharacter`.
 
@@ -134,7 +134,7 @@ def write_video(
     AppError
         The file cannot be written.
     """
-    seen = framed(character, clip.poses[0], view)
+    seen = focus_of(character, clip.poses[0], view)
     speech = SpeechIntent(line.utterance, LEAD_S)
 
     def subtitle_over(picture: NDArray[np.uint8], now: float) -> None:
@@ -155,7 +155,7 @@ def write_video(
     )
 
 
-def framed(character: Character, pose: Pose, view: View) -> Focus:
+def focus_of(character: Character, pose: Pose, view: View) -> Focus:
     """Return what is seen of a character: a centre (3,) and a radius in its frame [m]."""
     joints = joints_below(character, "head") if view == "face" else None
     points = CharacterExtent(character).points(pose, joints)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from cubeling.app.behaving.player import BehaviourPlayer
-from cubeling.app.behaving.voice import PatientSource, spoken
+from cubeling.app.behaving.voice import PatientSource, line_of
 from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.characters import Character
 from cubeling.characters.speech.speech import Speech, Word
@@ -34,7 +34,7 @@ class LateSource:
         self.ready = False
 
     def line(self, text: str, language: str) -> SpokenLine | None:
-        return spoken(speech_of, text, language or "en") if self.ready else None
+        return line_of(speech_of, text, language or "en") if self.ready else None
 
     def close(self) -> None:
         return
