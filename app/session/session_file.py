@@ -4,6 +4,7 @@ import json
 import os
 import struct
 from collections.abc import Iterator
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
@@ -12,7 +13,7 @@ from pathlib import Path
 from typing import BinaryIO, Self
 
 from mcap.exceptions import McapError
-from mcap.reader import NonSeekingReader, SeekingReader
+from mcap.reader import McapReader, NonSeekingReader, SeekingReader
 from mcap.records import Chunk, DataEnd, Metadata
 from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
@@ -151,17 +152,21 @@ class SessionFile:
 
         Of a file that was cut off, yield what can be read.
         """
-        self._file.seek(0)
-        # The index of a whole session leads straight to the chunks that hold a topic.
-        reader_class = SeekingReader if self._is_whole else NonSeekingReader
-        reader = reader_class(self._file, validate_crcs=True)
-        try:
-            for _, channel, message in reader.iter_messages(
-                topics=topics or None, log_time_order=False
-            ):
-                yield channel.topic, message.log_time / 1e9, message.data
-        except READ_ERRORS:
-            return
+        with ExitStack() as closing:
+            if self._is_whole:
+                # Its index leads straight to the chunks that hold a topic, wherever another reader
+                # of the same file has gone in between.
+                self._file.seek(0)
+                reader: McapReader = SeekingReader(self._file, validate_crcs=True)
+            else:
+                own = closing.enter_context(open_session_file(self.path))
+                own.seek(0)
+                reader = NonSeekingReader(own, validate_crcs=True)
+            with suppress(*READ_ERRORS):
+                for _, channel, message in reader.iter_messages(
+                    topics=topics or None, log_time_order=False
+                ):
+                    yield channel.topic, message.log_time / 1e9, message.data
 
     def has(self, *topics: str) -> bool:
         """Return whether there are messages on all of some channels."""

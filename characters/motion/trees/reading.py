@@ -57,7 +57,7 @@ class _PlanReader:
         self._depth = 0  # nesting of the motion that is being read
 
     def plan(self) -> Plan:
-        """Return the plan."""
+        """Return the plan of the whole document, checked."""
         masks = {name: _mask(self._masks.table(name)) for name in self._masks}
         for name in self._motions:  # unused motions are checked too
             self._named_motion(self._motions, name, name)

@@ -117,6 +117,22 @@ def test_a_replay_opens_its_session_twice(cubeling, recorded, monkeypatch):
     assert opened.count(path) == 2
 
 
+@pytest.mark.parametrize("whole", [True, False])
+def test_two_readers_of_a_session_do_not_disturb_each_other(recorded, whole):
+    path, _ = recorded("jpeg", count=60)
+    if not whole:
+        path.write_bytes(path.read_bytes()[: path.stat().st_size * 2 // 3])
+    with SessionFile(path, salvage=True) as session:
+        alone = list(session.messages("/camera/image"))
+        times = []
+        for number, (_, time, _) in enumerate(session.messages("/camera/image")):
+            times.append(time)
+            if number == 3:
+                assert len(list(session.messages("/camera/image"))) == len(alone)
+    assert times == [time for _, time, _ in alone]
+    assert len(times) > 10
+
+
 def test_a_session_lasts_as_long_as_its_frames(recorded):
     path, frames_written = recorded("jpeg", robot_after_s=30.0)
     last = frames_written[-1].timestamp - frames_written[0].timestamp
