@@ -14,7 +14,7 @@ from rich.console import Console
 from cubeling.app.commands.session.progress import run_with_progress
 from cubeling.app.running.opening import open_session
 from cubeling.app.session import SessionOptions
-from cubeling.app.session.bundled import RECORDED
+from cubeling.app.session.bundled import RECORDED_SCENARIOS
 from tools.session_copy import keep_inputs
 
 FOLDER = Path(__file__).parent.parent / "recordings"
@@ -46,5 +46,5 @@ def make(name: str, console: Console) -> None:
 
 
 if __name__ == "__main__":
-    for chosen in sys.argv[1:] or RECORDED:
+    for chosen in sys.argv[1:] or RECORDED_SCENARIOS:
         make(chosen, Console())

@@ -162,10 +162,10 @@ def _characters() -> Finding:
 
 
 def _recordings() -> Finding:
-    from cubeling.app.session.bundled import RECORDED, bundled_session
+    from cubeling.app.session.bundled import RECORDED_SCENARIOS, bundled_session
 
     try:
-        names = [bundled_session(name).name for name in RECORDED]
+        names = [bundled_session(name).name for name in RECORDED_SCENARIOS]
     except AppError as error:
         return Finding("recordings", "bad", str(error))
     return Finding("recordings", "good", ", ".join(names))

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from cubeling.app.errors import AppError
 
-RECORDED = ("follow", "sketch", "companion", "reach")
+RECORDED_SCENARIOS = ("follow", "sketch", "companion", "reach")
 """The scenarios with a session in `recordings/`, and with a script of the synthetic camera."""
 
 

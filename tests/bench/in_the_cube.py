@@ -16,7 +16,7 @@ from rich.table import Table
 
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.running.opening import intrinsics_for
-from cubeling.app.session.bundled import RECORDED, bundled_session
+from cubeling.app.session.bundled import RECORDED_SCENARIOS, bundled_session
 from cubeling.characters.rendering import WALL_SHARE, create_context
 from cubeling.characters.rendering.projection import project
 from cubeling.tracking import CubeTracker, open_source
@@ -83,7 +83,7 @@ def main() -> None:
     given = parser.parse_args()
     context = create_context()
     costs = Table("scenario", "on the table ms", "in the cube ms", "ratio", title="a frame, median")
-    for name in RECORDED:
+    for name in RECORDED_SCENARIOS:
         opened, closed = frame_times(name, given.frames, context)
         ratio = float(np.median(opened / closed))
         medians = (f"{np.median(each):.1f}" for each in (closed, opened))

@@ -29,7 +29,7 @@ from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.running.opening import intrinsics_for
-from cubeling.app.session.bundled import RECORDED, bundled_session
+from cubeling.app.session.bundled import RECORDED_SCENARIOS, bundled_session
 from cubeling.app.sound import Mixer, SessionSound, SoundBank
 from cubeling.app.ui.cards.overlay import overlay, virtual_robot_side
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
@@ -155,7 +155,7 @@ def main() -> None:
     """Print a table for every scenario."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--frames", type=int, default=600, help="frames of each recording")
-    parser.add_argument("--scenario", choices=list(RECORDED), action="append")
+    parser.add_argument("--scenario", choices=list(RECORDED_SCENARIOS), action="append")
     parser.add_argument("--realism", type=realism_of, default=tuple(REALISM_CHOICES))
     parser.add_argument("--quality", choices=list(QUALITIES), default=FULL.name)
     given = parser.parse_args()
@@ -163,7 +163,7 @@ def main() -> None:
     table = Table(
         "scenario", "part", "mean ms", "median ms", "p95 ms", "share", "of detection", title=title
     )
-    for name in given.scenario or RECORDED:
+    for name in given.scenario or RECORDED_SCENARIOS:
         parts = measure(name, given.frames, given.realism, QUALITIES[given.quality])
         detection, whole = np.mean(parts[DETECTION]), np.mean(parts["the line"])
         for part, times in parts.items():

@@ -9,7 +9,7 @@ import sys
 from rich.console import Console
 
 from cubeling.app.commands.session.complete import complete_session
-from cubeling.app.session.bundled import RECORDED, bundled_session
+from cubeling.app.session.bundled import RECORDED_SCENARIOS, bundled_session
 from tests.golden import FOLDER, describe, differences, renewed
 
 MOST_SHOWN = 5
@@ -19,7 +19,7 @@ MOST_SHOWN = 5
 def main() -> int:
     """Compare or renew, and return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("names", nargs="*", default=list(RECORDED))
+    parser.add_argument("names", nargs="*", default=list(RECORDED_SCENARIOS))
     parser.add_argument("--renew", action="store_true", help="write the files again")
     arguments = parser.parse_args()
     console, code = Console(highlight=False, markup=False, soft_wrap=True), 0

@@ -2,14 +2,14 @@
 
 import pytest
 
-from cubeling.app.session.bundled import RECORDED
+from cubeling.app.session.bundled import RECORDED_SCENARIOS
 from tests.conftest import FIRST_S
 from tests.examples import some
 from tests.golden import EVERY, FOLDER, agrees, describe, differences, renewed
 
 
 @pytest.mark.slow(reason="five seconds of a recording are computed")
-@pytest.mark.parametrize("name", some(sorted(RECORDED), 2))
+@pytest.mark.parametrize("name", some(sorted(RECORDED_SCENARIOS), 2))
 def test_the_first_seconds_lead_to_what_is_written_down(computed_session, name):
     now = describe(computed_session(name, FIRST_S))
     assert now.count("frame ") == FIRST_S * 30 / EVERY
@@ -18,7 +18,7 @@ def test_the_first_seconds_lead_to_what_is_written_down(computed_session, name):
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("name", RECORDED)
+@pytest.mark.parametrize("name", RECORDED_SCENARIOS)
 def test_a_recording_leads_to_what_is_written_down(computed_session, name):
     golden = (FOLDER / f"{name}.txt").read_text("utf-8")
     assert_agrees(name, golden, describe(computed_session(name)))
@@ -29,7 +29,7 @@ def assert_agrees(name, golden, now):
     assert not found, f"python -m tests.golden {name} --renew\n" + "\n".join(found[:5])
 
 
-@pytest.mark.parametrize("name", RECORDED)
+@pytest.mark.parametrize("name", RECORDED_SCENARIOS)
 def test_what_is_written_down_of_a_recording_is_small(name):
     assert (FOLDER / f"{name}.txt").stat().st_size <= 60_000
 

@@ -22,7 +22,7 @@ from cubeling.app.commands.session.play import (
 from cubeling.app.commands.session.preference_options import GivenPreferences, with_preferences
 from cubeling.app.errors import AppError
 from cubeling.app.scenarios import check_scenario, scenario_cube
-from cubeling.app.session.bundled import RECORDED, bundled_session
+from cubeling.app.session.bundled import RECORDED_SCENARIOS, bundled_session
 from cubeling.app.ui.display import has_display
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ def end_card(scenario: str) -> EndCard:
 def _of_recording(options: SessionOptions) -> SessionOptions:
     """Return the options with the bundled recording of the scenario as the source."""
     scenario = options.scenario
-    if scenario not in RECORDED:
+    if scenario not in RECORDED_SCENARIOS:
         raise AppError(
             f"there is no recording of '{scenario}': take a camera, "
             f"or cubeling play {scenario} --source synthetic:companion (or follow, or sketch)"

@@ -14,18 +14,14 @@ from cubeling.app.scenarios import find_scenario, scenario_names
 from cubeling.app.scenarios.follow import gait
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.session import SessionFile, SessionInfo
-from cubeling.app.session.encoding import decode
+from cubeling.app.session.encoding import MESSAGE_TYPES, decode
 from cubeling.characters import CharacterCommand
 from cubeling.tracking import CubeControls
 
 Array = NDArray[np.float64]
 
-CHANNEL_TYPES: dict[str, type[Any]] = {
-    "/cube/controls": CubeControls,
-    "/character/command": CharacterCommand,
-    "/robot/emotion": EmotionTarget,
-}
-"""The channels that are read, in their order within a frame."""
+TOPICS = ("/cube/controls", "/character/command", "/robot/emotion")
+"""The channels that are read, in the order of a frame."""
 
 
 @dataclass(frozen=True)
@@ -100,13 +96,13 @@ def _history(session: SessionFile) -> MoodHistory:
     path, info = session.path, session.info
     frames: list[dict[str, Any]] = []
     frame: dict[str, Any] = {}
-    for topic, _, data in session.messages(*CHANNEL_TYPES):
+    for topic, _, data in session.messages(*TOPICS):
         try:
-            frame[topic] = decode(CHANNEL_TYPES[topic], data)
+            frame[topic] = decode(MESSAGE_TYPES[topic], data)
         except ValueError as error:
             raise AppError(f"cannot read the session '{path}': {topic} is {error}") from error
         if topic == "/robot/emotion":  # the last of these channels in a frame
-            if len(frame) == len(CHANNEL_TYPES):
+            if len(frame) == len(TOPICS):
                 frames.append(frame)
             frame = {}
     if len(frames) < 2:

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from cubeling.app.session import messages
-from cubeling.app.session.bundled import RECORDED
+from cubeling.app.session.bundled import RECORDED_SCENARIOS
 from cubeling.app.session.encoding import decode
 from cubeling.tracking import CubeControls, CubeState
 from cubeling.tracking.synthetic import open_synthetic
 from tests.conftest import FIRST_S
 from tests.examples import some
 
-PARTS = [("companion", FIRST_S), *((name, None) for name in RECORDED)]
+PARTS = [("companion", FIRST_S), *((name, None) for name in RECORDED_SCENARIOS)]
 
 
 @pytest.fixture(scope="module", params=some([[part] for part in PARTS]), ids=str)

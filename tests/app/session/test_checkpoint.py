@@ -9,7 +9,7 @@ import pytest
 
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.running.opening import intrinsics_for
-from cubeling.app.session.bundled import RECORDED, bundled_session
+from cubeling.app.session.bundled import RECORDED_SCENARIOS, bundled_session
 from cubeling.app.session.encoding import encode
 from cubeling.characters.rendering import create_context
 from cubeling.tracking import StoredFrames, open_source
@@ -25,7 +25,7 @@ def messages(playground, frames):
     ]
 
 
-@pytest.mark.parametrize("name", RECORDED)
+@pytest.mark.parametrize("name", RECORDED_SCENARIOS)
 def test_what_follows_a_checkpoint_is_the_same_every_time(name):
     with open_source(str(bundled_session(name))) as source:
         assert isinstance(source, StoredFrames)

@@ -17,7 +17,7 @@ from cubeling.app.session import (
     messages,
     session_info,
 )
-from cubeling.app.session.bundled import RECORDED, bundled_session
+from cubeling.app.session.bundled import RECORDED_SCENARIOS, bundled_session
 from cubeling.app.session.encoding import APPEARANCE_TOPIC, MESSAGE_TYPES, decode, encode
 from cubeling.app.session.options import START_STAGES
 from cubeling.app.ui.screen import NullScreen
@@ -32,7 +32,7 @@ FRAMES = 120
 
 
 @pytest.mark.slow(reason="seconds of a recording are computed twice")
-@pytest.mark.parametrize("name", some(sorted(RECORDED)))
+@pytest.mark.parametrize("name", some(sorted(RECORDED_SCENARIOS)))
 def test_a_recording_replayed_twice_gives_identical_channels(computed_session, name):
     path = computed_session(name, FIRST_S)
     with open_source(str(bundled_session(name))) as source:
@@ -154,7 +154,7 @@ def assert_close(topic, time, one, other):
             assert a == b, f"{topic} {field} at {time}"
 
 
-@pytest.mark.parametrize("name", RECORDED)
+@pytest.mark.parametrize("name", RECORDED_SCENARIOS)
 def test_bundled_recordings_are_small_and_hold_what_came_in(name):
     info = session_info(bundled_session(name))
     assert info.options.scenario == name
@@ -178,6 +178,6 @@ def test_a_replay_takes_the_character_that_was_recorded(cubeling, short_session,
 
 
 def test_every_bundled_recording_is_listed():
-    assert sorted(RECORDED) == sorted(
+    assert sorted(RECORDED_SCENARIOS) == sorted(
         file.stem for file in bundled_session("reach").parent.glob("*.mcap")
     )
