@@ -1,0 +1,1 @@
+"""Damaged files for every reader of the program: `python -m tests.campaigns.files`."""
