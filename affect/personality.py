@@ -12,13 +12,18 @@ from cubeling.affect.errors import AffectError
 from cubeling.affect.labels import LabelSet, label_set
 from cubeling.affect.personality_file import bundled_text, fields_of
 from cubeling.affect.traits import AffectImpulse, Ocean
-from cubeling.toml_file import parse, read
+from cubeling.toml_file import parse, read, toml_kind
 
 MAX_GAIN_PER_S = 10.0
 """Largest gain of an action [1/s]: it crosses the whole plane in 0.2 s."""
 
 MAX_DWELL_S = 60.0
 """Longest dwell time of a label [s]."""
+
+PERSONALITY_FILE = toml_kind(
+    "personality", AffectError, "cubeling.affect.personality:Personality.load"
+)
+"""The file of a personality."""
 
 _ORIGIN = Emotion(0.0, 0.0)
 
@@ -114,12 +119,12 @@ class Personality:
         return push.times(bad if push.valence < 0 else good)
 
     @classmethod
-    def load(cls, name: str) -> "Personality":
+    def load(cls, name_or_path: str | Path) -> "Personality":
         """Read a bundled personality by its name, or one of your own from a .toml file.
 
         Parameters
         ----------
-        name
+        name_or_path
             Its name, "lively", or the path of a file that ends in ".toml".
 
         Raises
@@ -127,8 +132,9 @@ class Personality:
         AffectError
             In one line: which file, which key, and what it may be.
         """
+        name = str(name_or_path)
         if name.endswith(".toml"):
-            return cls._of(read(Path(name), AffectError), name)
+            return cls._of(read(Path(name), PERSONALITY_FILE), name)
         return cls.parse(bundled_text(name), f"{name}.toml")
 
     @classmethod

@@ -1,9 +1,8 @@
-"""Where files go: checked before a command does the work, written whole, and named for a key."""
+"""Where files go: checked before a command does the work, and named for a key."""
 
 import os
 import shlex
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from datetime import datetime
 from pathlib import Path
 
@@ -79,21 +78,6 @@ def check_output_folder(folder: Path, files: Iterable[str], kind: str, *, overwr
         raise AppError(f"'{folder}' cannot be written to: choose another place")
     if not overwrite and any((folder / name).exists() for name in files):
         raise AppError(f"'{folder}' holds {kind} already: choose another one or add --overwrite")
-
-
-@contextmanager
-def whole_file(path: Path) -> Iterator[Path]:
-    """Yield the path to write a file at until it is whole: `PATH.partial`, with the same suffix.
-
-    Leaving the block renames it; leaving it with an error, such as Ctrl-C or a full disk, removes
-    it and leaves a file of that name as it was.
-    """
-    partial = path.with_name(f"{path.stem}.partial{path.suffix}")
-    try:
-        yield partial
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)
 
 
 def default_folder() -> Path:

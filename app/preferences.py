@@ -8,19 +8,21 @@ To add one, write a field of `Preferences` and a line of `FLAGS` in
 `change` when the player changes it; it is kept at the end.
 """
 
-import contextlib
 import json
-import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
 from cubeling.app.errors import AppError
-from cubeling.toml_file import TomlTable, read
+from cubeling.files import whole_file
+from cubeling.toml_file import TomlTable, read, toml_kind
 
 PROGRAM = "cubeling"
 """Value of the key `program` in every file of preferences; no other file is overwritten."""
+
+PREFERENCES_FILE = toml_kind("preferences", AppError, "cubeling.app.preferences:read_preferences")
+"""The file that keeps the preferences."""
 
 FILE_COMMENT = (
     "# How the window of Cubeling was left. Options of the command line override it;\n"
@@ -82,7 +84,7 @@ class PreferenceStore:
         self.problem: str | None
         """Why the file is not used, in one line; None if it is, or if there is none."""
         self._path = path
-        kept, self.problem = _read(path)
+        kept, self.problem = read_preferences(path)
         self._began = replace(kept, **(given or {}))
         self.now = self._began
         """The preferences now."""
@@ -97,17 +99,18 @@ class PreferenceStore:
         changed = {name: value for name, value in after.items() if value != before[name]}
         if self._path is None or self.problem is not None or not changed:
             return
-        kept, self.problem = _read(self._path)  # another session may have written it meanwhile
+        # Another session may have written it meanwhile.
+        kept, self.problem = read_preferences(self._path)
         if self.problem is None:
             self.problem = _write(self._path, replace(kept, **changed))
 
 
-def _read(path: Path | None) -> tuple[Preferences, str | None]:
+def read_preferences(path: Path | None) -> tuple[Preferences, str | None]:
     """Return the preferences in a file, and why they are the default ones if it is of no use."""
     if path is None or not path.exists():
         return Preferences(), None
     try:
-        content = read(path, AppError)
+        content = read(path, PREFERENCES_FILE)
         if content and content.get("program") != PROGRAM:
             raise AppError(f'{path}: it has no line program = "{PROGRAM}"')
         known = {field.name for field in fields(Preferences)}  # a newer program may have more
@@ -119,16 +122,12 @@ def _read(path: Path | None) -> tuple[Preferences, str | None]:
 
 def _write(path: Path, preferences: Preferences) -> str | None:
     """Write a file, whole or not at all; return why it is not written."""
-    path = path.resolve()  # a link stays one
-    draft = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        draft.write_text(_document(preferences), encoding="utf-8")
-        draft.replace(path)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            draft.unlink()
-        return f"the preferences are not kept in '{path}': {error.strerror}"
+        with whole_file(path, AppError) as partial:
+            partial.parent.mkdir(parents=True, exist_ok=True)
+            partial.write_text(_document(preferences), encoding="utf-8")
+    except AppError as error:
+        return f"the preferences are not kept: {error}"
     return None
 
 

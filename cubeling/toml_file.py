@@ -5,7 +5,6 @@ its own: messages between programs are msgspec structs, glTF has its own checker
 """
 
 import dataclasses
-import stat
 import sys
 import tomllib
 import types
@@ -13,6 +12,8 @@ from collections.abc import Collection, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+
+from cubeling.files import FileKind
 
 T = TypeVar("T")
 
@@ -39,34 +40,27 @@ LARGEST = sys.float_info.max
 """The greatest finite number: by default a number may not be infinite."""
 
 
-def read(
-    path: Path, error: type[Exception] = ValueError, max_bytes: int = MAX_FILE_BYTES
-) -> dict[str, Any]:
+def read(path: Path, kind: FileKind) -> dict[str, Any]:
     """Return the content of a TOML file.
 
     Raises
     ------
-    error
-        If it cannot be read, is no regular file (a device or a pipe may never end), or is not TOML.
+    kind.error
+        If it cannot be opened, is too large (see `FileKind`), or is not TOML.
     """
-    source = printable(str(path))
-    data = None
-    try:
-        if stat.S_ISREG(path.stat().st_mode):
-            with path.open("rb") as file:
-                data = file.read(max_bytes + 1)
-    except (OSError, ValueError) as cause:  # ValueError: a name that no file can have
-        reason = getattr(cause, "strerror", None) or cause
-        raise error(f"cannot read {source}: {reason}") from None
-    if data is None:
-        raise error(f"cannot read {source}: a folder, a pipe or a device; give a file")
-    if len(data) > max_bytes:
-        raise error(f"{source}: larger than {max_bytes} bytes; nobody wrote that by hand")
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as cause:
-        raise error(f"{source}: not UTF-8 (byte {cause.start}); save it as that") from None
-    return parse(text, source, error)
+    return parse(kind.read_text(path), printable(str(path)), kind.error)
+
+
+def toml_kind(
+    name: str, error: type[Exception], reader: str, max_bytes: int = MAX_FILE_BYTES
+) -> FileKind:
+    """Return a kind of TOML file; the arguments are the fields of `FileKind`."""
+    return FileKind(name, (".toml",), error, max_bytes, reader)
+
+
+def bundled(path: Path) -> dict[str, Any]:
+    """Return the content of a TOML file that comes with the program."""
+    return parse(path.read_text("utf-8"), path.name)
 
 
 def parse(text: str, source: str, error: type[Exception] = ValueError) -> dict[str, Any]:

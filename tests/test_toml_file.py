@@ -1,16 +1,15 @@
 """What a person writes in TOML: read whatever it is, and refused in one line that says where."""
 
-import os
-import sys
 import time
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Literal
 
 import pytest
 from hypothesis import given, strategies as st
 
-from cubeling.toml_file import MAX_ENTRIES, MAX_FILE_BYTES, TomlTable, parse, read
+from cubeling.toml_file import MAX_ENTRIES, MAX_FILE_BYTES, TomlTable, parse, read, toml_kind
+
+NOTES = toml_kind("note", ValueError, "none:none")
 
 
 def outcome(do, *what) -> str | None:
@@ -43,21 +42,12 @@ def test_a_file_is_read_as_an_editor_of_any_system_saves_it(tmp_path):
     path = tmp_path / "mine.toml"
     for text in (b'a = "\xc3\xa9"\nb = 1\n', b'\xef\xbb\xbfa = "\xc3\xa9"\r\nb = 1\r\n'):
         path.write_bytes(text)
-        assert read(path) == {"a": "é", "b": 1}
+        assert read(path, NOTES) == {"a": "é", "b": 1}
 
 
 def test_what_is_not_there_or_is_no_file_is_refused(tmp_path):
     for name in ("none.toml", ".", "a\0b", "a\nb"):
-        assert refusal(read, tmp_path / name).startswith("cannot read ")
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="there are no such files")
-def test_what_may_never_end_is_not_opened(tmp_path):
-    os.mkfifo(tmp_path / "pipe.toml")
-    for path in (tmp_path / "pipe.toml", Path("/dev/zero")):
-        assert (
-            refusal(read, path) == f"cannot read {path}: a folder, a pipe or a device; give a file"
-        )
+        assert refusal(read, tmp_path / name, NOTES).startswith("cannot read ")
 
 
 @pytest.mark.parametrize(
@@ -67,15 +57,16 @@ def test_what_may_never_end_is_not_opened(tmp_path):
         (b"a = 1\na = 2", "not TOML: Cannot overwrite a value"),
         (b"a = \xff", "not UTF-8 (byte 4)"),
         (b"\xff\xfea\0", "not UTF-8 (byte 0)"),
-        (b"# \n" * MAX_FILE_BYTES, f"larger than {MAX_FILE_BYTES} bytes"),
+        (b"# \n" * MAX_FILE_BYTES, "of at most 65.5 kB"),
         (b"a = " + b"9" * 1990 + b"\nb = [" + b"9" * 3000 + b"]", "more than 2000 characters"),
         (b"a = " + b"[" * 1900, "too deeply nested"),
     ],
 )
 def test_what_is_no_toml_is_refused_with_its_place(tmp_path, content, says):
     (tmp_path / "x.toml").write_bytes(content)
-    assert refusal(read, tmp_path / "x.toml").startswith(f"{tmp_path / 'x.toml'}: ")
-    assert says in refusal(read, tmp_path / "x.toml")
+    line = refusal(read, tmp_path / "x.toml", NOTES)
+    assert str(tmp_path / "x.toml") in line
+    assert says in line
 
 
 @pytest.mark.parametrize(

@@ -13,11 +13,17 @@ from cubeling.app.behaving.voice import (
 )
 from cubeling.app.speaking.voices import open_voice
 from cubeling.characters import CharacterError
-from cubeling.characters.model import read_text
 from cubeling.characters.speech import VoiceError
+from cubeling.files import FileKind
 
-MAX_BYTES = 1 << 20
-"""Size of a document that is read."""
+BEHAVIOUR_FILE = FileKind(
+    "document",
+    (".bml", ".fml", ".xml"),
+    CharacterError,
+    1 << 20,
+    "cubeling.app.behaving.opening:read_document",
+)
+"""A file of BML or FML."""
 
 
 MakeSource = Callable[[SayText, str, Callable[[], None]], LineSource]
@@ -49,7 +55,7 @@ def read_document(path: Path) -> str:
     CharacterError
         It is none; the message names the file.
     """
-    text = read_text(path, MAX_BYTES)
+    text = BEHAVIOUR_FILE.read_text(path)
     try:
         block_of(text)
     except CharacterError as error:

@@ -19,6 +19,7 @@ from cubeling.app.output_path import check_output
 from cubeling.app.speaking.view import View
 from cubeling.app.ui.display import has_display
 from cubeling.app.ui.output_formats import VIDEO_FORMATS
+from cubeling.files import write_whole
 
 if TYPE_CHECKING:
     from cubeling.app.behaving.live import Output
@@ -132,7 +133,7 @@ def behave(
     finally:
         lines.close()
     if feedback is not None:
-        feedback.write_text(feedback_document(done.feedback), "utf-8")
+        write_whole(feedback, feedback_document(done.feedback), AppError)
     _report(console, path, done, lines.problem)
 
 

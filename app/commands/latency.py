@@ -16,6 +16,7 @@ from cubeling.app.output_path import check_output
 from cubeling.app.scenarios import check_scenario
 from cubeling.app.ui.display import has_display
 from cubeling.app.workshop.latency import MIN_FLIPS
+from cubeling.files import write_whole
 
 if TYPE_CHECKING:
     from cubeling.app.workshop.latency.program import ProgramTimes
@@ -84,7 +85,7 @@ def latency(
         result = latency_result(source, session, frames.health, renderer, program)
     console.print(result)
     if results is not None:
-        results.write_text(json.dumps(result.as_json(), indent=1) + "\n")
+        write_whole(results, json.dumps(result.as_json(), indent=1) + "\n", AppError)
     if interrupted:
         raise typer.Exit(130)
 

@@ -15,13 +15,20 @@ from cubeling.app.commands.output import OverwriteOption, chosen_output
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.ui.output_formats import VIDEO_FORMATS
+from cubeling.files import FileKind
 
 if TYPE_CHECKING:
     from cubeling.characters import Character, Clip
     from cubeling.characters.motion import Motion, Schedule
 
-MAX_BYTES = 10_000_000
-"""Larger schedules are not written by hand."""
+SCHEDULE_FILE = FileKind(
+    "schedule",
+    (".xml",),
+    AppError,
+    10_000_000,
+    "cubeling.app.commands.schedule:read_schedule",
+)
+"""A blending schedule; a larger one is not written by hand."""
 
 MAX_SECONDS = 3600.0
 
@@ -55,22 +62,10 @@ def schedule(
     """
     suffixes = (".bvh", ".glb", *VIDEO_FORMATS)
     target = chosen_output(output, "schedule.bvh", "schedule", suffixes, overwrite)
-    from cubeling.characters import Character, dependent_joints_of, safe_ranges_of
-    from cubeling.characters.model import read_file, with_root_joint
-    from cubeling.characters.motion import ScheduleReader, bake
+    from cubeling.characters.motion import bake
 
-    body = with_root_joint(Character.load(character))
-    reader = ScheduleReader(
-        body.skeleton,
-        body.anatomy,
-        lambda name: _motion(_beside(file, name), body),
-        lambda name: _idle(file, name, body, seed),
-        {
-            "dependentjoints": lambda: dependent_joints_of(body).move,
-            "selfcollision": lambda: safe_ranges_of(body).keep,
-        },
-    )
-    found = reader.read(read_file(file, MAX_BYTES), str(file))
+    body = _body(character)
+    found = read_schedule(file, body, seed)
     length = seconds or _length(file, found)
     clip = bake(found, rate, length, file.stem)
     _writer(target)(clip, body, target)
@@ -79,6 +74,38 @@ def schedule(
         f"{length:.2f} s",
         soft_wrap=True,
     )
+
+
+def read_schedule(file: Path, body: Character | None = None, seed: int = 0) -> Schedule:
+    """Read a schedule for a body, that of the bundled human if it is left out.
+
+    Raises
+    ------
+    AppError, CharacterError
+        It cannot be read, is no schedule, or names what is not there.
+    """
+    from cubeling.characters import dependent_joints_of, safe_ranges_of
+    from cubeling.characters.motion import ScheduleReader
+
+    mover = body or _body("human")
+    reader = ScheduleReader(
+        mover.skeleton,
+        mover.anatomy,
+        lambda name: _motion(_beside(file, name), mover),
+        lambda name: _idle(file, name, mover, seed),
+        {
+            "dependentjoints": lambda: dependent_joints_of(mover).move,
+            "selfcollision": lambda: safe_ranges_of(mover).keep,
+        },
+    )
+    return reader.read(SCHEDULE_FILE.read(file), str(file))
+
+
+def _body(character: str) -> Character:
+    from cubeling.characters import Character
+    from cubeling.characters.model import with_root_joint
+
+    return with_root_joint(Character.load(character))
 
 
 def _length(file: Path, found: Schedule) -> float:

@@ -26,9 +26,6 @@ if TYPE_CHECKING:
     from cubeling.characters import Character
     from cubeling.characters.speech import Speech, TaggedText
 
-MAX_TEXT_BYTES = 100_000
-"""Larger files are no speeches."""
-
 OUTPUT_SUFFIXES = (".wav", ".bvh", *VIDEO_FORMATS)
 
 
@@ -84,7 +81,7 @@ def speak(
     from cubeling.app.speaking.live import speak_live
     from cubeling.app.speaking.speech_video import Direction, speech_clip, write_video
     from cubeling.characters import Character
-    from cubeling.characters.model import gestures_for, read_text, save_bvh, with_root_joint
+    from cubeling.characters.model import gestures_for, save_bvh, with_root_joint
     from cubeling.characters.speech import TaggedText, blood_of, utterance_of
 
     how = profile_of(profile, settings)
@@ -101,10 +98,9 @@ def speak(
         speak_live(body, size=pixels, view=view, emotion=feels, profile=how)
         return
     target = chosen_output(output, "speech.mp4", "speech", OUTPUT_SUFFIXES, overwrite)
-    marked = text if file is None else read_text(file, MAX_TEXT_BYTES)
-    if not marked.strip() and audio is None:
+    tagged = TaggedText.read(text) if file is None else TaggedText.load(file)
+    if not tagged.text.strip() and not tagged.spans and audio is None:
         raise AppError("there is nothing to say: give a text, --file, --audio or --live")
-    tagged = TaggedText.read(marked)
     _check_gestures(tagged, body)
     console = Console(highlight=False)
     with console.status("speaking"):

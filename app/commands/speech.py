@@ -30,9 +30,6 @@ if TYPE_CHECKING:
 MAX_PLOT_S = 120.0
 """Longest speech that is plotted [s]."""
 
-MAX_TEXT_BYTES = 100_000
-"""Larger files are no text of one recording."""
-
 app = typer.Typer(
     help="Look at recorded speech: its pitch, accents, words and phones.",
     no_args_is_help=True,
@@ -143,15 +140,9 @@ def align(
 
 def said_text(text: str) -> str:
     """Return a text, or what is in the file that it names after an @."""
-    from cubeling.characters import CharacterError
-    from cubeling.characters.model import read_text
+    from cubeling.characters.speech import TEXT_FILE
 
-    if not text.startswith("@"):
-        return text
-    try:
-        return read_text(Path(text[1:]), MAX_TEXT_BYTES)
-    except CharacterError as error:
-        raise AppError(f"cannot read the text: {error}") from error
+    return TEXT_FILE.read_text(text[1:]) if text.startswith("@") else text
 
 
 def align_speech(

@@ -9,8 +9,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import EmotionTarget
 from cubeling.app.running.network import Network
 from cubeling.app.running.players import PlayerPublisher
-from cubeling.app.session import messages, session_info
-from cubeling.app.session.encoding import decode
+from cubeling.app.session import SessionFile, session_info
 from cubeling.characters import CharacterCommand
 from cubeling.robot import Closeable, connect
 from cubeling.robot.network import (
@@ -58,11 +57,9 @@ class RecordedPlayer:
 
 
 def _messages(path: Path) -> Iterator[tuple[float, CharacterCommand | EmotionTarget]]:
-    for topic, time, data in messages(path, *PUBLISHED_TOPICS):
-        try:
-            yield time, decode(PUBLISHED_TOPICS[topic], data)
-        except ValueError as error:
-            raise AppError(f"the session '{path}' has an invalid message on {topic}") from error
+    with SessionFile(path) as session:
+        for _, time, message in session.decoded(PUBLISHED_TOPICS):
+            yield time, message
 
 
 class Bridge(Closeable):

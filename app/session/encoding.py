@@ -191,15 +191,19 @@ def _value_of(kind: Any, value: Any) -> Any:
         choices = [choice for choice in typing.get_args(kind) if choice is not type(None)]
         return None if value is None else _value_of(choices[0], value)
     if origin is np.ndarray:
-        return np.array(value, float) if isinstance(value, list) else _image(value)
+        return np.array(value, float) if isinstance(value, list) else _mask(value)
     if origin is tuple:
         return tuple(_value_of(typing.get_args(kind)[0], item) for item in value)
     if kind is float:
         return float("nan") if value is None else float(value)
+    if kind in (bool, int, str) and type(value) is not kind:
+        raise ValueError(f"{str(value)!r:.40} is no {kind.__name__}")
+    if origin is typing.Literal and value not in typing.get_args(kind):
+        raise ValueError(f"{str(value)!r:.40} is none of {typing.get_args(kind)}")
     return value
 
 
-def _image(text: str) -> NDArray[np.uint8]:
+def _mask(text: str) -> NDArray[np.uint8]:
     """Return the bytes (height, width) in a PNG file in base64."""
     image = cv2.imdecode(np.frombuffer(base64.b64decode(text), np.uint8), cv2.IMREAD_GRAYSCALE)
     if image is None:

@@ -3,14 +3,14 @@
 import json
 import os
 import struct
-from collections.abc import Iterator
-from contextlib import ExitStack, suppress
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
-from typing import BinaryIO, Self
+from typing import Any, BinaryIO, Self
 
 from mcap.exceptions import McapError
 from mcap.reader import McapReader, NonSeekingReader, SeekingReader
@@ -48,7 +48,10 @@ START_OVER_EVENT = "start over"
 INSIDE_EVENT = "cube opened or closed"
 """Event of a player who asks to open the cube, or to close it."""
 
-READ_ERRORS = (McapError, EOFError, ValueError, struct.error, LookupError, OSError, ZstdError)
+READ_ERRORS = (
+    *(McapError, EOFError, ValueError, struct.error, LookupError, OSError, ZstdError),
+    *(OverflowError, RuntimeError),
+)
 """What the MCAP reader raises for a damaged file: one that ends early, an index that points to no
 channel (KeyError) or before the file (OSError), a chunk that cannot be decompressed."""
 
@@ -106,7 +109,9 @@ class SessionFile:
         self.path, self._salvage = path, salvage
         self._file = opened or open_session_file(path)
         self._is_whole = _is_whole(self._file)
-        self._metadata = _metadata(self._file)
+        # No record is longer than the file: a damaged length takes no memory.
+        self._size = self._file.seek(0, os.SEEK_END)
+        self._metadata = _metadata(self._file, self._size)
         version = self._metadata.get(SESSION_RECORD, {}).get(FORMAT_KEY, "0")
         if not version.isdecimal() or int(version) > SESSION_FORMAT:
             self.close()
@@ -143,7 +148,10 @@ class SessionFile:
         about = self._metadata.get(SESSION_RECORD, {})
         if "scenario" not in about:
             raise AppError(f"'{self.path}' names no scenario: it was not recorded by Cubeling")
-        options = SessionOptions.from_metadata(about, str(self.path))
+        try:
+            options = SessionOptions.from_metadata(about, str(self.path))
+        except ValueError as error:
+            raise AppError(f"cannot read the session '{self.path}': {error}") from None
         clock_zero = self._metadata.get(CLOCK_RECORD, {}).get(CLOCK_ZERO, "")
         return SessionInfo(options, frames, seconds, clock_zero)
 
@@ -157,16 +165,41 @@ class SessionFile:
                 # Its index leads straight to the chunks that hold a topic, wherever another reader
                 # of the same file has gone in between.
                 self._file.seek(0)
-                reader: McapReader = SeekingReader(self._file, validate_crcs=True)
+                reader: McapReader = SeekingReader(self._file, True, record_size_limit=self._size)
             else:
                 own = closing.enter_context(open_session_file(self.path))
                 own.seek(0)
-                reader = NonSeekingReader(own, validate_crcs=True)
+                reader = NonSeekingReader(own, True, record_size_limit=self._size)
             with suppress(*READ_ERRORS):
                 for _, channel, message in reader.iter_messages(
                     topics=topics or None, log_time_order=False
                 ):
                     yield channel.topic, message.log_time / 1e9, message.data
+
+    def decoded(self, kinds: Mapping[str, type[Any]]) -> Iterator[tuple[str, float, Any]]:
+        """Yield (topic, timestamp [s], message) as `messages` does, for the types of some topics.
+
+        Raises
+        ------
+        AppError
+            A message is not what a recorder writes.
+        """
+        for topic, time, data in self.messages(*kinds):
+            with self._refusing(topic, time):
+                message = decode(kinds[topic], data)
+            yield topic, time, message
+
+    @contextmanager
+    def _refusing(self, topic: str, time: float) -> Iterator[None]:
+        """Name the message of what a block refuses."""
+        try:
+            yield
+        except (ValueError, LookupError, TypeError, AttributeError) as error:
+            reason = " ".join(str(error).split())
+            raise AppError(
+                f"cannot read the session '{self.path}': {topic} at {time:.3f} s: "
+                f"{reason if reason.isprintable() else ascii(reason)}"
+            ) from error
 
     def has(self, *topics: str) -> bool:
         """Return whether there are messages on all of some channels."""
@@ -179,8 +212,18 @@ class SessionFile:
 
     @cached_property
     def events(self) -> list[tuple[float, str]]:
-        """The events, with their timestamps [s]."""
-        return [(time, json.loads(data)["event"]) for _, time, data in self.messages("/events")]
+        """The events, with their timestamps [s].
+
+        Raises
+        ------
+        AppError
+            A message is not what a recorder writes.
+        """
+        found = []
+        for topic, time, data in self.messages("/events"):
+            with self._refusing(topic, time):
+                found.append((time, str(json.loads(data)["event"])))
+        return found
 
     @cached_property
     def inputs(self) -> dict[float, RecordedInputs]:
@@ -194,13 +237,8 @@ class SessionFile:
         AppError
             A message is not what a recorder writes.
         """
-        try:
-            found = {
-                time: decode(RecordedInputs, data) for _, time, data in self.messages(INPUTS_TOPIC)
-            }
-            return found or self._older_inputs()
-        except (ValueError, KeyError, TypeError) as error:
-            raise AppError(f"cannot read the session '{self.path}': its inputs: {error}") from error
+        found = {time: each for _, time, each in self.decoded({INPUTS_TOPIC: RecordedInputs})}
+        return found or self._older_inputs()
 
     @property
     def start_overs(self) -> frozenset[float]:
@@ -217,15 +255,25 @@ class SessionFile:
         """What the character says, by the frame in which it begins [s].
 
         What was said is an input, so a replay needs no voice.
+
+        Raises
+        ------
+        AppError
+            A message is not what a recorder writes.
         """
         said = {time: each.speech for time, each in self.inputs.items() if each.speech}
         lines: dict[float, SpokenLine] = {}
-        for _, time, data in self.messages(LINE_TOPIC) if said else ():
+        for topic, time, data in self.messages(LINE_TOPIC) if said else ():
             if (speech := said.get(time)) is not None:
                 from foxglove_schemas_protobuf.RawAudio_pb2 import RawAudio
+                from google.protobuf.message import DecodeError
 
-                audio = RawAudio.FromString(data)
-                sound = decode_sound(audio.data)
+                with self._refusing(topic, time):
+                    try:
+                        audio = RawAudio.FromString(data)
+                    except DecodeError as error:
+                        raise ValueError(error) from None
+                    sound = decode_sound(audio.data)
                 lines[time] = SpokenLine(speech.utterance, sound, audio.sample_rate, speech.profile)
         return lines
 
@@ -246,20 +294,17 @@ class SessionFile:
         return self._replay_inputs(topics)
 
     def _replay_inputs(self, topics: tuple[str, ...]) -> Iterator[ReplayInputs]:
-        for _, found in groupby(self.messages(*topics), key=itemgetter(1)):
-            fields = {
-                FIELD_OF_TOPIC[topic]: decode(CHANNEL_TYPES[topic], data)
-                for topic, _, data in found
-            }
-            yield ReplayInputs(**fields)
+        kinds = {topic: CHANNEL_TYPES[topic] for topic in topics}
+        for _, found in groupby(self.decoded(kinds), key=itemgetter(1)):
+            yield ReplayInputs(**{FIELD_OF_TOPIC[topic]: message for topic, _, message in found})
 
     def _older_inputs(self) -> dict[float, RecordedInputs]:
         happened = set(self.events)
         speech: dict[float, SpeechIntent | None] = {}
         if sounds := {time for _, time, _ in self.messages(LINE_TOPIC)}:
-            for _, time, document in self.messages("/character/command"):
+            for _, time, command in self.decoded({"/character/command": CharacterCommand}):
                 if time in sounds:
-                    speech[time] = decode(CharacterCommand, document).speech
+                    speech[time] = command.speech
         asked = {time for time, event in happened if event in (START_OVER_EVENT, INSIDE_EVENT)}
         return {
             time: RecordedInputs(
@@ -275,7 +320,7 @@ class SessionFile:
         """Return how many camera frames a whole session has, and their duration [s]."""
         try:
             self._file.seek(0)
-            reader = SeekingReader(self._file)
+            reader = SeekingReader(self._file, record_size_limit=self._size)
             summary = reader.get_summary()
             if summary is None or summary.statistics is None:
                 raise AppError(f"cannot read the session '{self.path}': it has no index")
@@ -320,12 +365,12 @@ def _end(reader: SeekingReader, *, last: bool) -> float:
     return message.log_time / 1e9
 
 
-def _metadata(file: BinaryIO) -> dict[str, dict[str, str]]:
+def _metadata(file: BinaryIO, size: int) -> dict[str, dict[str, str]]:
     """Return the metadata of a session, which the recorder writes first."""
     metadata: dict[str, dict[str, str]] = {}
     file.seek(0)
     try:
-        for record in StreamReader(file).records:
+        for record in StreamReader(file, record_size_limit=size).records:
             if isinstance(record, Metadata):
                 metadata[record.name] = record.metadata
             elif isinstance(record, Chunk | DataEnd):

@@ -12,6 +12,7 @@ import numpy as np
 from cubeling.app.errors import AppError
 from cubeling.app.sound.sounds import SOUNDS
 from cubeling.app.sound.synthesis import SAMPLE_RATE, Array, with_level
+from cubeling.files import whole_file
 
 VARIANT_COUNT = 4
 """Variants of each synthesised sound, which differ a little, so that repetition does not tire."""
@@ -55,7 +56,7 @@ class SoundBank:
             if name not in known:
                 names = ", ".join(sorted(known))
                 raise AppError(f"no sound is called '{name}' ({file}): choose one of {names}")
-            own.setdefault(name, []).append(read_wave(file))
+            own.setdefault(name, []).append(read_sound(file))
         return cls(own)
 
     def variants(self, name: str) -> list[Array]:
@@ -80,36 +81,25 @@ def synthesise(name: str) -> list[Array]:
     ]
 
 
-def read_wave(path: Path) -> Array:
-    """Return the samples of a WAV file, mixed to one channel at `SAMPLE_RATE`.
+def read_sound(path: Path) -> Array:
+    """Return the samples of a sound file, mixed to one channel at `SAMPLE_RATE`.
 
-    Raises AppError if it is no PCM file of 8 to 32 bits, or too long.
+    Raises AppError if it cannot be read, or is longer than `MAX_FILE_S`.
     """
+    from cubeling.characters import CharacterError  # few sessions have sounds of their own
+    from cubeling.characters.speech import read_speech
+
     try:
-        with wave.open(str(path)) as file:
-            width, channels, rate = file.getsampwidth(), file.getnchannels(), file.getframerate()
-            count = file.getnframes()
-            data = file.readframes(min(count, round(MAX_FILE_S * rate)))
-    except (wave.Error, EOFError, OSError) as error:
-        raise AppError(f"'{path}' cannot be read as a PCM .wav file: {error}") from error
-    if count > MAX_FILE_S * rate or not data:
-        raise AppError(
-            f"'{path}' has {count / rate:.1f} s of sound: up to {MAX_FILE_S:g} s can play"
-        )
-    numbers = np.frombuffer(data, np.uint8).reshape(-1, width)
-    # The sample's bytes are the upper ones of 32 bits, so that its sign is right.
-    words = np.zeros((len(numbers), 4), np.uint8)
-    words[:, 4 - width :] = numbers
-    if width == 1:
-        words[:, 3] ^= 0x80  # samples of 8 bits are unsigned
-    samples = words.view("<i4").reshape(-1, channels).mean(axis=1) / 2.0**31
-    wanted = np.arange(0.0, len(samples) - 0.5, rate / SAMPLE_RATE)
-    return np.asarray(np.interp(wanted, np.arange(len(samples)), samples))
+        sound = read_speech(path, MAX_FILE_S)
+    except CharacterError as error:
+        raise AppError(str(error)) from error
+    wanted = np.arange(0.0, len(sound.samples) - 0.5, sound.rate / SAMPLE_RATE)
+    return np.asarray(np.interp(wanted, np.arange(len(sound.samples)), sound.samples))
 
 
 def write_wave(path: Path, samples: Array) -> None:
     """Write samples (n,) to a WAV file of 16 bits."""
-    with wave.open(str(path), "wb") as file:
+    with whole_file(path, AppError) as partial, wave.open(str(partial), "wb") as file:
         file.setnchannels(1)
         file.setsampwidth(2)
         file.setframerate(SAMPLE_RATE)

@@ -5,7 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cubeling.app.errors import AppError
-from cubeling.toml_file import MAX_LONG_FILE_BYTES, TomlTable, read
+from cubeling.toml_file import MAX_LONG_FILE_BYTES, TomlTable, read, toml_kind
+
+LINES_FILE = toml_kind(
+    "lines", AppError, "cubeling.app.speaking.lines:languages_in", MAX_LONG_FILE_BYTES
+)
+"""A file of what a character says in play, by language and moment."""
 
 MAX_LINES = 1000
 """Most lines for one moment."""
@@ -65,7 +70,7 @@ def _bundled_file(scenario: str) -> Path:
 
 def _voice(path: Path) -> TomlTable:
     """Return the table `[voice]` of a file, by language."""
-    content = read(path, AppError, MAX_LONG_FILE_BYTES)
+    content = read(path, LINES_FILE)
     return TomlTable(content, str(path), error=AppError, most=MAX_LINES).table("voice")
 
 

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
-from cubeling.app.output_path import whole_file
 from cubeling.app.ui.canvas import Canvas, text_width
 from cubeling.app.ui.palette import INK, QUIET
 from cubeling.characters import Character, Clip, Pose
 from cubeling.characters.rendering import PAPER_BGR, PortraitRenderer, side_by_side
+from cubeling.files import whole_file
 
 Image = NDArray[np.uint8]
 
@@ -142,12 +142,9 @@ def save(picture: Image, path: Path, max_bytes: int | None = None) -> None:
         if not done or max_bytes is None or len(data) <= max_bytes or quality <= 40:
             break
         quality -= 5
-    try:
+    with whole_file(path, AppError) as partial:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with whole_file(path) as partial:
-            partial.write_bytes(data.tobytes())
-    except OSError as error:
-        raise AppError(f"cannot write {path}: {error.strerror}; name another folder") from error
+        partial.write_bytes(data.tobytes())
 
 
 def _blank(width: int, height: int) -> Canvas:

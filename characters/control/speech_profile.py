@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any, get_args
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.face.visemes.sets import viseme_sets
 from cubeling.characters.synthesis.choices import Database
-from cubeling.toml_file import TomlTable, read
+from cubeling.files import write_whole
+from cubeling.toml_file import TomlTable, read, toml_kind
 
 if TYPE_CHECKING:  # a profile is read and checked before anything that plays it is loaded
     from cubeling.characters.speech.accents import AccentSettings
@@ -23,6 +24,11 @@ if TYPE_CHECKING:  # a profile is read and checked before anything that plays it
 
 DATABASES: tuple[str, ...] = get_args(Database)
 """Parts of a gesture library: the stronger gestures, the weaker ones, or all."""
+
+PROFILE_FILE = toml_kind(
+    "profile", CharacterError, "cubeling.characters.control.speech_profile:SpeechProfile.load"
+)
+"""The file of a profile."""
 
 MAX_DISTANCE_S = 5.0
 """Greatest time between two accents that can be asked for [s]."""
@@ -95,7 +101,7 @@ class SpeechProfile:
         return _planner(library, self.database, self.threshold or None, weights)
 
     @staticmethod
-    def load(name: str) -> SpeechProfile:
+    def load(name_or_path: str | Path) -> SpeechProfile:
         """Return the bundled profile of a name, or read a .toml file; what that lacks is usual.
 
         Raises
@@ -103,6 +109,7 @@ class SpeechProfile:
         CharacterError
             If there is none, it cannot be read, or has other fields or values.
         """
+        name = str(name_or_path)
         if name in PROFILES:
             return PROFILES[name]
         if not name.endswith(".toml"):
@@ -110,7 +117,7 @@ class SpeechProfile:
                 f"there is no profile {name!r}: choose one of {', '.join(PROFILES)}, "
                 "or give a .toml file"
             )
-        content = read(Path(name), CharacterError)
+        content = read(Path(name), PROFILE_FILE)
         return TomlTable(content, name, error=CharacterError).fill(SpeechProfile)
 
     def with_settings(self, settings: Iterable[str]) -> SpeechProfile:
@@ -135,10 +142,7 @@ class SpeechProfile:
     def save(self, path: Path) -> None:
         """Write it as a .toml file."""
         lines = [f"{name} = {value!r}\n" for name, value in asdict(self).items()]
-        try:
-            path.write_text("".join(lines).replace("'", '"'), "utf-8")
-        except OSError as error:
-            raise CharacterError(f"{path}: cannot be written ({error.strerror})") from None
+        write_whole(path, "".join(lines).replace("'", '"'), CharacterError)
 
     def with_setting(self, setting: str, value: str | float) -> SpeechProfile:
         """Return the profile with another value of a setting."""

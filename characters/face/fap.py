@@ -20,13 +20,20 @@ from cubeling.characters.errors import CharacterError
 from cubeling.characters.face.lids import numbers_by_name
 from cubeling.characters.face.visemes.mouth_morphs import arkit_parts
 from cubeling.characters.skeleton.pose import Array
-from cubeling.toml_file import read
+from cubeling.files import FileKind, write_whole
+from cubeling.toml_file import bundled
 
 FAP_COUNT = 68
 """How many parameters there are."""
 
-MAX_BYTES = 50_000_000
-"""Largest file that is read [B]: more than two hours at 25 Hz."""
+FAP_FILE = FileKind(
+    "FAP file",
+    (".fap",),
+    CharacterError,
+    50_000_000,
+    "cubeling.characters.face.fap:read_faps",
+)
+"""A .fap file of at most two hours at 25 Hz."""
 
 _VERSION = "2.1"
 _MIRRORED = ((6, 7), (8, 9), (10, 11), (12, 13), (19, 20), (21, 22), (31, 32), (33, 34), (35, 36),
@@ -92,7 +99,7 @@ def write_faps(path: Path, track: FapTrack) -> None:
     for number, row in enumerate(track.values.tolist()):
         lines.append(" ".join("1" if value else "0" for value in row))
         lines.append(" ".join(map(str, (number, *(value for value in row if value)))))
-    path.write_text("\n".join(lines) + "\n", "utf-8")
+    write_whole(path, "\n".join(lines) + "\n", CharacterError)
 
 
 def read_faps(path: Path) -> FapTrack:
@@ -103,12 +110,7 @@ def read_faps(path: Path) -> FapTrack:
     CharacterError
         It cannot be read, is too large, or is no such file.
     """
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise CharacterError(f"{path} has more than {MAX_BYTES / 1e6:.0f} MB: cut it")
-        lines = path.read_text("utf-8", "replace").splitlines()
-    except OSError as error:
-        raise CharacterError(f"cannot read {path}: {error.strerror}") from error
+    lines = FAP_FILE.read(path).decode("utf-8", "replace").splitlines()
     filled = [(number, line.split()) for number, line in enumerate(lines, 1) if line.strip()]
     rate, count = _header(path, filled[0][1] if filled else [])
     if len(filled) != 1 + 2 * count:
@@ -168,7 +170,7 @@ def _known_morphs(parts: Mapping[str, Array]) -> Iterator[tuple[str, Mapping[str
 @cache
 def _table() -> tuple[Array, dict[str, Array]]:
     """Return the limits of the parameters, (68, 2), and the parameters of parts, (68,) each."""
-    data = read(Path(__file__).with_name("faps.toml"))
+    data = bundled(Path(__file__).with_name("faps.toml"))
     limits = np.zeros((FAP_COUNT, 2))
     for number, (least, greatest) in data["limits"].items():
         limits[int(number) - 1] = least, greatest

@@ -5,7 +5,6 @@ from cubeling.characters.formats.loading import (
 )
 from cubeling.characters.formats.mocap.bvh_writing import save_bvh as save_bvh
 from cubeling.characters.model.bind_pose import with_bind_pose as with_bind_pose
-from cubeling.characters.model.files import read_file as read_file, read_text as read_text
 from cubeling.characters.model.inspection import (
     ClipStats as ClipStats,
     FootContactStats as FootContactStats,

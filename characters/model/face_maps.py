@@ -22,8 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.model.files import read_file
 from cubeling.characters.model.mesh import FaceMaps, Mesh
+from cubeling.files import FileKind
 from cubeling.toml_file import TomlTable
 
 WRINKLE_LAYERS: Mapping[int, tuple[int, ...]] = {
@@ -56,7 +56,14 @@ DEPTH_MM = 1.0
 MAX_SIDE_PX = 4096
 """Pictures may be this large [px]."""
 
-_MAX_BYTES = 64_000_000
+FACE_MAP_FILE = FileKind(
+    "face map",
+    (".png",),
+    CharacterError,
+    64_000_000,
+    "cubeling.characters.model.face_maps:read_face_map",
+)
+"""A grey picture of a face's surface."""
 _REST_SHARE = 128 / 255  # the grey of skin at rest
 
 
@@ -127,7 +134,7 @@ def read_face_maps(folder: Path, depth_m: float) -> FaceMaps:
             f"{folder}: no picture of a face in it; there may be "
             f"{', '.join(name + SUFFIX for name in (*LAYER_NAMES, BLOOD_NAME))}"
         )
-    pictures = {name: _shares(folder / f"{name}{SUFFIX}") for name in names}
+    pictures = {name: read_face_map(folder / f"{name}{SUFFIX}") for name in names}
     shape = pictures[names[0]].shape
     for name, picture in pictures.items():
         if picture.shape != shape:
@@ -141,9 +148,9 @@ def read_face_maps(folder: Path, depth_m: float) -> FaceMaps:
     return FaceMaps(heights, pictures.get(BLOOD_NAME, np.zeros(shape, np.float32)), depth_m)
 
 
-def _shares(path: Path) -> NDArray[np.float32]:
+def read_face_map(path: Path) -> NDArray[np.float32]:
     """Return a grey picture of 8 or 16 bits as shares of white, (height, width)."""
-    data = np.frombuffer(read_file(path, _MAX_BYTES), np.uint8)
+    data = np.frombuffer(FACE_MAP_FILE.read(path), np.uint8)
     read = None
     if data.size:
         read = cv2.imdecode(data, cv2.IMREAD_GRAYSCALE | cv2.IMREAD_ANYDEPTH)

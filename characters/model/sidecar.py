@@ -11,7 +11,15 @@ from cubeling.characters.model.springs import SpringGroup, read_spring_groups
 from cubeling.characters.motion.trees.plan import Plan
 from cubeling.characters.motion.trees.reading import PLAN_TABLES, read_plan
 from cubeling.characters.skeleton.anatomy import BODY_PARTS
-from cubeling.toml_file import MAX_LONG_FILE_BYTES, TomlTable, read
+from cubeling.toml_file import MAX_LONG_FILE_BYTES, TomlTable, read, toml_kind
+
+SIDECAR_FILE = toml_kind(
+    "file beside the character",
+    CharacterError,
+    "cubeling.characters.model.sidecar:read_sidecar",
+    MAX_LONG_FILE_BYTES,
+)
+"""The file of the same name beside a character, which adds to it."""
 
 _MAX_ENTRIES = 1000  # a character has hundreds of joints
 
@@ -41,12 +49,12 @@ class Sidecar:
     """Wrinkles and blood of its face."""
 
 
-def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
+def read_sidecar(path: Path, clips: Collection[str] = ()) -> Sidecar:
     """Return what the file of a character says; one that does not exist is empty.
 
     `clips` are the names of the character's clips.
     """
-    content = read(path, CharacterError, MAX_LONG_FILE_BYTES) if os.path.exists(path) else {}
+    content = read(path, SIDECAR_FILE) if os.path.exists(path) else {}
     file = TomlTable(content, str(path), error=CharacterError, most=_MAX_ENTRIES)
     file.only(*_TABLES)
     joints, body = file.table("joints", *BODY_PARTS), file.table("body", *BODY_LAYERS)

@@ -33,7 +33,10 @@ from cubeling.characters.speech.speech import (
     Speech as Speech,
     Utterance as Utterance,
 )
-from cubeling.characters.speech.tagged_text import TaggedText as TaggedText
+from cubeling.characters.speech.tagged_text import (
+    TEXT_FILE as TEXT_FILE,
+    TaggedText as TaggedText,
+)
 from cubeling.characters.speech.textgrid import (
     read_textgrid as read_textgrid,
     textgrid_of as textgrid_of,

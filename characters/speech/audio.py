@@ -11,6 +11,16 @@ from numpy.typing import NDArray
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.speech.speech import Samples, Speech
+from cubeling.files import FileKind
+
+SOUND_FILE = FileKind(
+    "sound",
+    (".wav", ".flac", ".mp3", ".ogg"),
+    CharacterError,
+    4 << 30,
+    "cubeling.characters.speech.audio:read_speech",
+)
+"""A sound of at most `MAX_S`, or the sound of a video."""
 
 MAX_S = 2 * 3600.0
 """Longest sound that is read [s]: at 48 kHz its samples take 1.4 GB."""
@@ -27,8 +37,15 @@ SINC_ZEROS = 16
 """Zero crossings of the interpolating kernel on each side."""
 
 
-def read_speech(path: Path) -> Speech:
+def read_speech(path: Path, most_s: float = MAX_S) -> Speech:
     """Read a sound file of any kind; its text is not known, its channels are averaged.
+
+    Parameters
+    ----------
+    path
+        The file.
+    most_s
+        Longest sound that is read [s].
 
     Raises
     ------
@@ -36,9 +53,9 @@ def read_speech(path: Path) -> Speech:
         There is no such file, it is no sound file or broken, it has no sound, or too much.
     """
     try:
-        with path.open("rb") as file:
+        with SOUND_FILE.open(path) as file:
             rate, blocks = _wave(file, path) or _decode(path)
-            samples = _join(blocks, rate, path)
+            samples = _join(blocks, rate, path, most_s)
     except OSError as error:
         raise CharacterError(f"cannot read '{path}': {error.strerror or error}") from error
     if not len(samples):
@@ -79,7 +96,7 @@ def resample(samples: Samples, rate: int, new_rate: int) -> Samples:
     return made
 
 
-def _join(blocks: Iterator[NDArray[np.float32]], rate: int, path: Path) -> Samples:
+def _join(blocks: Iterator[NDArray[np.float32]], rate: int, path: Path, most_s: float) -> Samples:
     """Return all blocks as one array."""
     if not RATES[0] <= rate <= RATES[1]:
         raise CharacterError(f"'{path}' has {rate} samples a second: {RATES[0]} to {RATES[1]} work")
@@ -87,8 +104,9 @@ def _join(blocks: Iterator[NDArray[np.float32]], rate: int, path: Path) -> Sampl
     for block in blocks:
         parts.append(block)
         count += len(block)
-        if count > MAX_S * rate:
-            raise CharacterError(f"'{path}' is longer than {MAX_S / 3600:g} hours: cut it in parts")
+        if count > most_s * rate:
+            longest = f"{most_s / 3600:g} hours" if most_s >= 3600 else f"{most_s:g} s"
+            raise CharacterError(f"'{path}' is longer than {longest}: cut it")
     return np.concatenate(parts) if parts else np.zeros(0, np.float32)
 
 
@@ -157,16 +175,20 @@ def _decode(path: Path) -> tuple[int, Iterator[NDArray[np.float32]]]:
     import av  # slow to load, and a WAV file does not need it
 
     try:
-        container = av.open(str(path))
+        container = av.open(f"file:{path}")  # a name with a colon is no address
     except av.error.FFmpegError as error:
         raise CharacterError(f"'{path}' is no sound file that can be read") from error
     if not container.streams.audio:
         container.close()
         raise CharacterError(f"'{path}' has no sound")
     stream = container.streams.audio[0]
+    rate = getattr(stream, "rate", None)
+    if not rate:  # no decoder, or no header
+        container.close()
+        raise CharacterError(f"'{path}' has sound of a kind that cannot be read")
 
     def blocks() -> Iterator[NDArray[np.float32]]:
-        resampler = av.AudioResampler(format="fltp", layout=stream.layout, rate=stream.rate)
+        resampler = av.AudioResampler(format="fltp", layout=stream.layout, rate=rate)
         with container:
             try:
                 for frame in container.decode(stream):
@@ -175,4 +197,4 @@ def _decode(path: Path) -> tuple[int, Iterator[NDArray[np.float32]]]:
             except av.error.FFmpegError:
                 return  # a file that is cut off: what came before it counts
 
-    return int(stream.rate), blocks()
+    return int(rate), blocks()

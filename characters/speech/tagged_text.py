@@ -10,9 +10,21 @@ Both tags stand for themselves, so spans may nest or cross.
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.speech.speech import GestureSpan, Word
+from cubeling.files import FileKind
+from cubeling.toml_file import printable
+
+TEXT_FILE = FileKind(
+    "text",
+    (".txt",),
+    CharacterError,
+    100_000,
+    "cubeling.characters.speech.tagged_text:TaggedText.load",
+)
+"""A text to be said; larger files are no speeches."""
 
 MIN_SPAN_S = 0.4
 """Shortest time of a gesture [s]: one around a short word, or around none, is made longer."""
@@ -46,6 +58,11 @@ class TaggedText:
     """The gestures, in the order in which they begin."""
 
     @staticmethod
+    def load(path: Path) -> "TaggedText":
+        """Read the text of a file; CharacterError if it cannot be read, and as `read`."""
+        return TaggedText.read(TEXT_FILE.read_text(path))
+
+    @staticmethod
     def read(marked: str) -> "TaggedText":
         """Read a text with tags.
 
@@ -64,20 +81,21 @@ class TaggedText:
         begun: dict[str, tuple[str, int]] = {}
         spans: list[TaggedSpan] = []
         for tag in _TAG.finditer(marked):
+            said = printable(tag[0])
             parts.append(marked[copied : tag.start()])
             length += tag.start() - copied
             copied = tag.end()
             values = {name: a or b for name, a, b in _ATTRIBUTE.findall(tag[2])}
-            key = _value(values, "id", tag[0])
+            key = _value(values, "id", said)
             if tag[1] == "begin":
                 if key in begun:
-                    raise CharacterError(f"{tag[0]}: gesture {key!r} has begun; give another id")
-                begun[key] = _value(values, "anim", tag[0]), length
+                    raise CharacterError(f"{said}: gesture {key!r} has begun; give another id")
+                begun[key] = _value(values, "anim", said), length
             elif key in begun:
                 name, start = begun.pop(key)
                 spans.append(TaggedSpan(name, start, length))
             else:
-                raise CharacterError(f"{tag[0]}: no gesture {key!r} has begun; begin it before")
+                raise CharacterError(f"{said}: no gesture {key!r} has begun; begin it before")
         if begun:
             names = ", ".join(map(repr, begun))
             raise CharacterError(f"gesture {names} never ends; add <end_gesture id=…/>")

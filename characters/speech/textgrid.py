@@ -12,9 +12,16 @@ from pathlib import Path
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.speech.phones import fill_pauses, ipa_of_arpabet, is_arpabet
 from cubeling.characters.speech.speech import SILENCE, Phone, Speech, Word
+from cubeling.files import FileKind, write_whole
 
-MAX_BYTES = 100_000_000
-"""Largest file [B]."""
+TEXTGRID_FILE = FileKind(
+    "TextGrid",
+    (".TextGrid", ".textgrid"),
+    CharacterError,
+    100_000_000,
+    "cubeling.characters.speech.textgrid:read_textgrid",
+)
+"""A TextGrid of Praat, as text."""
 
 WORD_TIERS, PHONE_TIERS = ("words", "word", "ort-mau"), ("phones", "phone", "segments", "mau")
 """Names of tiers, without capitals, as aligners write them."""
@@ -71,12 +78,7 @@ def read_textgrid(path: Path) -> TextGrid:
     CharacterError
         There is no such file, or it is no TextGrid.
     """
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise CharacterError(f"'{path}' is too large for a TextGrid")
-        text = _decode(path.read_bytes())
-    except OSError as error:
-        raise CharacterError(f"cannot read '{path}': {error.strerror}") from error
+    text = _decode(TEXTGRID_FILE.read(path))
     tokens = [
         strings.replace('""', '"') if other == "" else other
         for strings, other in _TOKEN.findall(text)
@@ -93,10 +95,7 @@ def write_textgrid(path: Path, grid: TextGrid, *, short: bool = False) -> None:
     """Write a TextGrid in UTF-8, in the long or the short text form."""
     lines = ['File type = "ooTextFile"', 'Object class = "TextGrid"', ""]
     lines += [value if short else name + value for name, value in _named_values(grid)]
-    try:
-        path.write_text("\n".join(lines) + "\n", "utf-8", newline="\n")
-    except OSError as error:
-        raise CharacterError(f"cannot write '{path}': {error.strerror}") from error
+    write_whole(path, "\n".join(lines) + "\n", CharacterError)
 
 
 def _named_values(grid: TextGrid) -> Iterator[tuple[str, str]]:

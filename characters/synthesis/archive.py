@@ -6,6 +6,8 @@ skeleton with its identity.
 
 import hashlib
 import json
+import os
+import struct
 import tokenize
 import zipfile
 import zlib
@@ -13,13 +15,20 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, BinaryIO, TypeVar
 
 import numpy as np
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.pose import Pose, Skeleton
+from cubeling.files import FileKind, whole_file
+
+MAX_UNPACKED_BYTES = 1 << 30
+"""Most bytes of the arrays of a file: an hour of a body takes a tenth of it."""
+
+MOST_COMPRESSION = 100
+"""How many times as large as the file its arrays may be; ours are at most ten times as large."""
 
 Content = Mapping[str, Any]
 """What the JSON text says."""
@@ -40,8 +49,8 @@ class ArchiveFormat:
     version: int
     """It changes when older files can no longer be read."""
 
-    kind: str
-    """How messages call it: "motion graph"."""
+    kind: FileKind
+    """Its files: their suffix, and how large they may be."""
 
     made_by: str
     """The command that makes one."""
@@ -49,7 +58,7 @@ class ArchiveFormat:
     def save(self, path: Path, content: Content, arrays: Arrays) -> None:
         """Write content and arrays to a file of this format."""
         text = json.dumps({"format": self.name, "version": self.version, **content})
-        with path.open("wb") as file:
+        with whole_file(path, CharacterError) as partial, partial.open("wb") as file:
             np.savez_compressed(file, content=np.array(text), **arrays)
 
     def load(self, path: Path, read: Callable[[Content, Arrays], _T]) -> _T:
@@ -60,28 +69,25 @@ class ArchiveFormat:
         CharacterError
             If the file is missing, damaged, of another version, or something else.
         """
-        try:
-            with path.open("rb") as file:
-                if file.read(2) != b"PK":  # every archive begins so
-                    raise ValueError("it is no archive")
-                file.seek(0)
+        with self.kind.open(path) as file:
+            try:
+                _check_archive(file)
                 with np.load(file, allow_pickle=False) as archive:
                     content = json.loads(str(archive["content"]))
                     if content["format"] != self.name:
                         raise ValueError("it holds something else")
                     if content["version"] == self.version:
                         return read(content, {name: archive[name] for name in archive.files})
-        except OSError as error:
-            raise CharacterError(f"{path}: {error.strerror or f'not {self._one}'}") from None
-        except (
-            *(CharacterError, zipfile.BadZipFile, zlib.error),
-            *(EOFError, IndexError, KeyError, TypeError, ValueError),
-            *(NotImplementedError, tokenize.TokenError),  # of zipfile, and of numpy's headers
-        ) as error:
-            reason = " ".join(str(error).split())[:80]
-            raise CharacterError(
-                f"{path}: not {self._one} ({reason}); make one with: {self.made_by}"
-            ) from None
+            except (
+                *(CharacterError, zipfile.BadZipFile, zlib.error),
+                *(AttributeError, EOFError, IndexError, KeyError, OSError, TypeError, ValueError),
+                *(OverflowError, RecursionError, struct.error),
+                *(NotImplementedError, tokenize.TokenError),  # of zipfile, and of numpy's headers
+            ) as error:
+                reason = " ".join(str(error).split())[:80]
+                raise CharacterError(
+                    f"{path}: not {self._one} ({reason}); make one with: {self.made_by}"
+                ) from None
         raise CharacterError(
             f"{path}: written as version {content['version']}, this program reads {self.version}; "
             f"make it again with: {self.made_by}"
@@ -98,7 +104,19 @@ class ArchiveFormat:
 
     @property
     def _one(self) -> str:
-        return f"{'an' if self.kind[0] in 'aeiou' else 'a'} {self.kind}"
+        return f"{'an' if self.kind.name[0] in 'aeiou' else 'a'} {self.kind.name}"
+
+
+def _check_archive(file: BinaryIO) -> None:
+    """Refuse what is no archive, or one whose arrays are far larger than it; back to its start."""
+    if file.read(2) != b"PK":  # every archive begins so
+        raise ValueError("it is no archive")
+    size = file.seek(0, os.SEEK_END)
+    with zipfile.ZipFile(file) as archive:
+        unpacked = sum(member.file_size for member in archive.infolist())
+    if unpacked > min(MAX_UNPACKED_BYTES, 100_000 + MOST_COMPRESSION * size):
+        raise ValueError(f"its {size} bytes stand for {unpacked}")
+    file.seek(0)
 
 
 @lru_cache(maxsize=16)

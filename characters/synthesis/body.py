@@ -12,7 +12,12 @@ from pathlib import Path
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.skeleton.anatomy import BODY_PARTS, Anatomy
 from cubeling.characters.skeleton.pose import Skeleton
-from cubeling.toml_file import TomlTable, read
+from cubeling.toml_file import TomlTable, read, toml_kind
+
+BODY_PLAN_FILE = toml_kind(
+    "body plan", CharacterError, "cubeling.characters.synthesis.body:read_body_plan"
+)
+"""A file of weights, chains and profiles."""
 
 LOWER_CHAINS = ("HC5", "HC6")
 """The chains of the legs: they are always in one part, whose timing the others follow."""
@@ -115,7 +120,7 @@ def read_body_plan(path: Path) -> BodyPlan:
     CharacterError
         If the file cannot be read, names unknown body parts, or splits the body wrongly.
     """
-    file = TomlTable(read(path, CharacterError), str(path), error=CharacterError)
+    file = TomlTable(read(path, BODY_PLAN_FILE), str(path), error=CharacterError)
     file.only("weights", "chains", "profiles")
     weights, chains, profiles = (file.table(key) for key in ("weights", "chains", "profiles"))
     plan = BodyPlan(

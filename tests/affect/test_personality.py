@@ -77,7 +77,7 @@ def test_what_is_wrong_is_said_in_one_line_with_file_key_and_range(text, says):
 def test_a_name_or_a_file_that_is_not_there_is_refused(tmp_path):
     with pytest.raises(AffectError, match="no personality 'rude': choose one of thesis, calm"):
         Personality.load("rude")
-    with pytest.raises(AffectError, match=r"cannot read .*rude.toml: No such"):
+    with pytest.raises(AffectError, match=r"cannot read .*rude.toml': No such"):
         Personality.load(str(tmp_path / "rude.toml"))
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe")
     with pytest.raises(AffectError, match="not UTF-8"):

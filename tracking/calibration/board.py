@@ -7,12 +7,12 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from cubeling.files import write_whole
 from cubeling.tracking.cube.marker import marker_loops
 from cubeling.tracking.cube.model import aruco_dictionary
 from cubeling.tracking.cube.printing.layout import PAPER_SIZES_MM
 from cubeling.tracking.cube.printing.pdf_page import PdfPage
 from cubeling.tracking.errors import TrackingError
-from cubeling.tracking.files import write_whole
 from cubeling.tracking.geometry.arrays import Array
 
 BLACK = (0, 0, 0)
@@ -96,7 +96,7 @@ def write_board(path: str | Path, paper: str = "a4") -> Board:
     pen = PdfPage(width, height, "ChArUco board")
     pen.fill(_black_areas(board, np.array([(width - 5000 * board.square) / 2, MARGIN_MM])), BLACK)
     _draw_ruler(pen, width, height - MARGIN_MM)
-    write_whole(path, pen.to_bytes(), "board")
+    write_whole(path, pen.to_bytes(), TrackingError)
     return board
 
 

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
+from cubeling.files import write_whole
 from cubeling.tracking.cube.model import CubeModel, Face, face_corners
 from cubeling.tracking.errors import TrackingError
-from cubeling.tracking.files import write_whole
 
 
 def write_cube(cube: CubeModel, path: str | Path) -> None:
@@ -35,7 +35,7 @@ def write_cube(cube: CubeModel, path: str | Path) -> None:
         f"marker_mm = {cube.marker_size * 1000:.10g}",
         *(line for face in cube.faces for line in _face(cube, face)),
     ]
-    write_whole(path, ("\n".join(lines) + "\n").encode(), "cube")
+    write_whole(path, "\n".join(lines) + "\n", TrackingError)
 
 
 def _face(cube: CubeModel, face: Face) -> list[str]:

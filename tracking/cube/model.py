@@ -7,10 +7,13 @@ from typing import Any, Self
 import cv2
 import numpy as np
 
-from cubeling.toml_file import TomlTable, read
+from cubeling.toml_file import TomlTable, read, toml_kind
 from cubeling.tracking.cube.icons import ICON_COLOURS
 from cubeling.tracking.errors import TrackingError
 from cubeling.tracking.geometry.arrays import Array
+
+CUBE_FILE = toml_kind("cube", TrackingError, "cubeling.tracking.cube.model:CubeModel.load")
+"""The file of a cube."""
 
 FACE_AXES: dict[str, tuple[tuple[int, int, int], tuple[int, int, int]]] = {
     "front": ((1, 0, 0), (0, 1, 0)),
@@ -106,7 +109,7 @@ class CubeModel:
                 raise TrackingError(
                     f"no cube is called '{name_or_path}': choose {known}, or give a .toml file"
                 )
-        return cls.from_document(read(path, TrackingError), str(path), path.stem)
+        return cls.from_document(read(path, CUBE_FILE), str(path), path.stem)
 
     @classmethod
     def from_document(cls, document: dict[str, Any], where: str, name: str) -> Self:

@@ -10,12 +10,21 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike
 
+from cubeling.files import FileKind, write_whole
 from cubeling.tracking.errors import TrackingError
-from cubeling.tracking.files import write_whole
 from cubeling.tracking.geometry.arrays import Array
 
 GUESSED_FIELD_OF_VIEW = math.radians(60)
 """Horizontal field of view of a common webcam [rad]."""
+
+CAMERA_FILE = FileKind(
+    "camera file",
+    (".yaml", ".yml"),
+    TrackingError,
+    65_536,
+    "cubeling.tracking.geometry.intrinsics:Intrinsics.load",
+)
+"""A `camera_info` file as ROS writes it."""
 
 DISTORTION_MODELS = {4: "plumb_bob", 5: "plumb_bob", 8: "rational_polynomial"}
 """Name in ROS for each number of OpenCV's coefficients, k1 k2 p1 p2 [k3 [k4 k5 k6]]."""
@@ -114,12 +123,13 @@ class Intrinsics:
         """
         import yaml  # takes 15 ms to load, and most cameras have no file
 
+        text = CAMERA_FILE.read_text(path)
         try:
-            document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-        except OSError as error:
-            reason = error.strerror
-            raise TrackingError(f"cannot read the camera file '{path}': {reason}") from error
-        except (yaml.YAMLError, UnicodeDecodeError, ValueError, RecursionError) as error:
+            if any(isinstance(token, yaml.AliasToken) for token in yaml.scan(text)):
+                # A few lines of aliases of aliases stand for more numbers than fit in memory.
+                raise ValueError("it has aliases (*name): write the values out")
+            document = yaml.safe_load(text)
+        except (yaml.YAMLError, ValueError, RecursionError) as error:
             reason = " ".join(str(error).split())
             raise TrackingError(f"the camera file '{path}' is not YAML: {reason}") from error
         try:
@@ -170,7 +180,7 @@ class Intrinsics:
         import yaml
 
         text = yaml.safe_dump(document, sort_keys=False, default_flow_style=None)
-        write_whole(path, text.encode(), "camera file")
+        write_whole(path, text, TrackingError)
 
 
 def _integer(document: dict[Any, Any], key: str) -> int:

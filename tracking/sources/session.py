@@ -7,12 +7,22 @@ from pathlib import Path
 
 import numpy as np
 
+from cubeling.files import FileKind
 from cubeling.tracking.errors import TrackingError
 from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.sources.base import StoredFrames, Timeline, readable_frames
 from cubeling.tracking.sources.decoding import BrokenFileError, EncodedImage, decode
 from cubeling.tracking.sources.device import Clock
 from cubeling.tracking.sources.mcap_camera import IMAGE_TOPIC, CameraChannels
+
+SESSION_FILE = FileKind(
+    "session",
+    (".mcap",),
+    TrackingError,
+    1 << 40,
+    "cubeling.tracking.sources.session:SessionSource",
+)
+"""The camera of a session; it is read frame by frame, so its size does not matter."""
 
 PEEKED_IMAGES = 30
 """Number of images read while opening, to find the rate and the calibration."""
@@ -32,10 +42,7 @@ class SessionSource(StoredFrames):
 
     def __init__(self, path: str | Path) -> None:
         self._where = f"the session '{path}'"
-        try:
-            self._file = Path(path).open("rb")  # noqa: SIM115  # `close` closes it
-        except OSError as error:
-            raise TrackingError(f"cannot open {self._where}: {error.strerror}") from error
+        self._file = SESSION_FILE.open(path)
         try:
             channels = CameraChannels(self._file)
             self.duration = channels.duration()

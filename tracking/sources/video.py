@@ -6,11 +6,21 @@ from pathlib import Path
 import av
 from av.container import InputContainer
 
+from cubeling.files import FileKind
 from cubeling.tracking.errors import TrackingError
 from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.sources.base import StoredFrames, Timeline, readable_frames
 from cubeling.tracking.sources.decoding import bgr_of
 from cubeling.tracking.sources.device import Clock
+
+VIDEO_FILE = FileKind(
+    "video",
+    (".mp4", ".mkv", ".avi", ".webm", ".mov"),
+    TrackingError,
+    1 << 40,
+    "cubeling.tracking.sources.video:VideoSource",
+)
+"""A video; it is read frame by frame, so its size does not matter."""
 
 
 class VideoSource(StoredFrames):
@@ -76,10 +86,9 @@ def open_uri(uri: str, size: tuple[int, int] | None, clock: Clock) -> VideoSourc
 
 
 def _open(path: Path) -> InputContainer:
-    if not path.is_file():
-        raise TrackingError(f"there is no file '{path}'")
+    VIDEO_FILE.check(path)
     try:
-        container = av.open(str(path))
+        container = av.open(f"file:{path}")  # a name with a colon is no address
     except av.FFmpegError as error:
         raise TrackingError(f"'{path}' is not a video: {_reason(error)}") from error
     if not container.streams.video:

@@ -12,7 +12,8 @@ from rich.tree import Tree
 
 from cubeling.app.commands.output import OverwriteOption
 from cubeling.app.errors import AppError
-from cubeling.app.output_path import check_output, whole_file
+from cubeling.app.output_path import check_output
+from cubeling.files import write_whole
 
 if TYPE_CHECKING:
     from cubeling.characters.motion import Node, Plan, StateTransition
@@ -49,11 +50,7 @@ def graph(
     Console().print(outline(plan, loaded.name))
     if output is None:
         return
-    try:
-        with whole_file(output) as partial:
-            partial.write_text(to_dot(plan, loaded.name), encoding="utf-8")
-    except OSError as error:
-        raise AppError(f"cannot write '{output}' ({error.strerror}): check the folder") from None
+    write_whole(output, to_dot(plan, loaded.name), AppError)
     Console().print(f"[bold]{escape(str(output))}[/] is written; Graphviz draws it.")
 
 

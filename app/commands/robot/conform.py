@@ -13,6 +13,7 @@ import typer
 from rich.console import Console
 
 from cubeling.app.errors import AppError
+from cubeling.files import write_whole
 
 if TYPE_CHECKING:
     from cubeling.robot.conformance import Check, ConformanceReport
@@ -54,7 +55,6 @@ def conform(
         verdict,
     )
     from cubeling.robot.conformance import all_checks, select_checks
-    from cubeling.tracking import write_whole
 
     checks = select_checks(only) if only else all_checks()
     if list_:
@@ -71,10 +71,10 @@ def conform(
     console.print(verdict(report), soft_wrap=picture is None)
     if output is not None:
         text = json.dumps(as_json(report, port), indent=1) + "\n"
-        write_whole(output, text.encode(), "results")
+        write_whole(output, text, AppError)
     if picture is not None:
         drawn = console.export_svg(title="cubeling robot conform", code_format=SVG_TEMPLATE)
-        write_whole(picture, drawn.encode(), "picture")
+        write_whole(picture, drawn, AppError)
     if not report.conforms:
         raise typer.Exit(1)
 

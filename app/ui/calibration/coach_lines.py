@@ -10,9 +10,9 @@ from rich.console import Console
 
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
-from cubeling.app.output_path import whole_file
 from cubeling.app.ui.calibration.coach import draw_coverage, words_of
 from cubeling.app.ui.calibration.session import Advice, CalibrationSession
+from cubeling.files import write_whole
 
 Picture = NDArray[np.uint8]
 
@@ -64,8 +64,4 @@ def write_coverage(path: Path, session: CalibrationSession) -> None:
     )
     draw_coverage(picture, session.collector.outlines)
     good, data = cv2.imencode(path.suffix, picture)
-    try:
-        with whole_file(path) as partial:
-            partial.write_bytes(data.tobytes() if good else b"")
-    except OSError as error:
-        raise AppError(f"cannot write the picture '{path}': {error.strerror}") from error
+    write_whole(path, data.tobytes() if good else b"", AppError)

@@ -32,6 +32,7 @@ from cubeling.app.ui.playback.requests import (
     WindowRequest,
 )
 from cubeling.app.ui.playback.status import NO_STATUS, SessionStatus
+from cubeling.files import write_whole
 
 Picture = NDArray[np.uint8]
 
@@ -251,7 +252,7 @@ class PlaybackLayer:
             path = dated_file(
                 self._folder, self._status.scenario or "cubeling", ".png", self._now()
             )
-            path.write_bytes(cv2.imencode(".png", self._picture)[1].tobytes())
+            write_whole(path, cv2.imencode(".png", self._picture)[1].tobytes(), AppError)
         except (AppError, OSError) as error:
             self.notify(f"No snapshot was kept: {error}")
         else:

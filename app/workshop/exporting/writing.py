@@ -12,7 +12,6 @@ from typing import IO, Any
 import numpy as np
 
 from cubeling.app.errors import AppError
-from cubeling.app.output_path import whole_file
 from cubeling.app.session import SessionInfo, messages, session_info
 from cubeling.app.session.encoding import MESSAGE_TYPES, decode
 from cubeling.app.workshop.exporting.column import Cell, Column, Table
@@ -23,6 +22,7 @@ from cubeling.app.workshop.exporting.columns import (
     SESSION_CONTEXT_COLUMNS,
     dictionary_rows,
 )
+from cubeling.files import whole_file
 
 DICTIONARY_FILE = "data_dictionary.csv"
 DICTIONARY_COLUMNS = ("table", "column", "unit", "files", "meaning")
@@ -76,13 +76,10 @@ def export(sessions: Sequence[ExportedSession], folder: Path) -> dict[str, int]:
     AppError
         A message cannot be read, or a file cannot be written.
     """
-    try:
-        with ExitStack() as closing:
-            places = {name: whole_file(folder / name) for name in EXPORT_FILES}
-            files = {name: closing.enter_context(place) for name, place in places.items()}
-            return _write_all(sessions, files)
-    except OSError as error:
-        raise AppError(f"cannot write to '{folder}': {error.strerror}") from error
+    with ExitStack() as closing:
+        places = {name: whole_file(folder / name, AppError) for name in EXPORT_FILES}
+        files = {name: closing.enter_context(place) for name, place in places.items()}
+        return _write_all(sessions, files)
 
 
 def _write_all(sessions: Sequence[ExportedSession], files: Mapping[str, Path]) -> dict[str, int]:

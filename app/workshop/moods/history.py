@@ -14,7 +14,7 @@ from cubeling.app.scenarios import find_scenario, scenario_names
 from cubeling.app.scenarios.follow import gait
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.session import SessionFile, SessionInfo
-from cubeling.app.session.encoding import MESSAGE_TYPES, decode
+from cubeling.app.session.encoding import MESSAGE_TYPES
 from cubeling.characters import CharacterCommand
 from cubeling.tracking import CubeControls
 
@@ -96,11 +96,8 @@ def _history(session: SessionFile) -> MoodHistory:
     path, info = session.path, session.info
     frames: list[dict[str, Any]] = []
     frame: dict[str, Any] = {}
-    for topic, _, data in session.messages(*TOPICS):
-        try:
-            frame[topic] = decode(MESSAGE_TYPES[topic], data)
-        except ValueError as error:
-            raise AppError(f"cannot read the session '{path}': {topic} is {error}") from error
+    for topic, _, message in session.decoded({topic: MESSAGE_TYPES[topic] for topic in TOPICS}):
+        frame[topic] = message
         if topic == "/robot/emotion":  # the last of these channels in a frame
             if len(frame) == len(TOPICS):
                 frames.append(frame)

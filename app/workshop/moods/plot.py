@@ -14,7 +14,6 @@ from matplotlib.lines import Line2D
 
 from cubeling.affect import LabelSet
 from cubeling.app.errors import AppError
-from cubeling.app.output_path import whole_file
 from cubeling.app.workshop.moods.colors import (
     CURVE_STYLES,
     OBSERVED_COLOR,
@@ -46,6 +45,7 @@ from cubeling.app.workshop.moods.plot_panels import (
 )
 from cubeling.app.workshop.moods.regions import runs
 from cubeling.app.workshop.moods.robot_traces import RobotTraces
+from cubeling.files import whole_file
 
 PNG_DPI = 144.0
 """Two pixels for each point."""
@@ -94,12 +94,9 @@ def write_figure(figure: Figure, path: Path, title: str, vector_dpi: float = PNG
     """
     suffix = path.suffix.lower()
     metadata = {**FILE_METADATA[suffix], "Title": printable(title)}
-    try:
-        with whole_file(path) as partial:
-            dpi = PNG_DPI if suffix == ".png" else vector_dpi
-            figure.savefig(partial, dpi=dpi, metadata=metadata)
-    except OSError as error:
-        raise AppError(f"cannot write '{path}' ({error.strerror}): check the folder") from None
+    with whole_file(path, AppError) as partial:
+        dpi = PNG_DPI if suffix == ".png" else vector_dpi
+        figure.savefig(partial, dpi=dpi, metadata=metadata)
 
 
 def draw(

@@ -5,9 +5,9 @@ import math
 from pathlib import Path
 
 from cubeling.app.errors import AppError
-from cubeling.app.output_path import whole_file
 from cubeling.app.workshop.moods.history import EmotionTrack, MoodHistory
 from cubeling.app.workshop.moods.robot_traces import RobotTraces
+from cubeling.files import whole_file
 
 COLUMNS = (
     "time_s",
@@ -37,27 +37,27 @@ def write_table(path: Path, history: MoodHistory, track: EmotionTrack, robot: Ro
     """
     acknowledged, _ = robot.acknowledged.at(track.times)
     observed, moods = robot.observed.at(track.times)
-    try:
-        with whole_file(path) as partial, partial.open("w", encoding="utf-8", newline="") as file:
-            writer = csv.writer(file)
-            writer.writerow(COLUMNS)
-            for row, command in enumerate(history.commands):
-                writer.writerow(
-                    (
-                        f"{track.times[row]:.6f}",
-                        *(_cell(value) for value in track.emotion[row]),
-                        track.labels[row],
-                        command.activity,
-                        _cell(command.weight),
-                        _cell(command.speed),
-                        int(command.visible),
-                        *(_cell(value) for value in acknowledged[row]),
-                        *(_cell(value) for value in observed[row]),
-                        moods[row],
-                    )
+    with (
+        whole_file(path, AppError) as partial,
+        partial.open("w", encoding="utf-8", newline="") as file,
+    ):
+        writer = csv.writer(file)
+        writer.writerow(COLUMNS)
+        for row, command in enumerate(history.commands):
+            writer.writerow(
+                (
+                    f"{track.times[row]:.6f}",
+                    *(_cell(value) for value in track.emotion[row]),
+                    track.labels[row],
+                    command.activity,
+                    _cell(command.weight),
+                    _cell(command.speed),
+                    int(command.visible),
+                    *(_cell(value) for value in acknowledged[row]),
+                    *(_cell(value) for value in observed[row]),
+                    moods[row],
                 )
-    except OSError as error:
-        raise AppError(f"cannot write '{path}' ({error.strerror}): check the folder") from None
+            )
     return len(track.times)
 
 

@@ -12,11 +12,13 @@ from pathlib import Path
 import matplotlib
 from matplotlib.figure import Figure
 
+from cubeling.app.errors import AppError
 from cubeling.app.workshop.moods.colors import CURVE_STYLES
 from cubeling.app.workshop.moods.plot import FILE_METADATA
 from cubeling.app.workshop.moods.plot_layout import MATPLOTLIB_STYLE
 from cubeling.app.workshop.motion_graphs.plot import plain_log_axis
 from cubeling.app.workshop.motion_graphs.tables import Tables
+from cubeling.files import whole_file, write_whole
 
 TITLES = {
     "3.2": "Table 3.2: time between frames and response, by threshold [frames]",
@@ -44,9 +46,12 @@ def write_page(tables: Tables, path: Path) -> Path:
     body.append("<h2>Connectivity and cost of a transition</h2>")
     body.append(f'<img alt="curves" width="1000" src="data:image/png;base64,{picture}">')
     page = f"<!doctype html><meta charset=utf-8><title>Motion graphs</title><style>{STYLE}</style>"
-    path.write_text(page + "\n".join(body), encoding="utf-8")
+    write_whole(path, page + "\n".join(body), AppError)
     table = path.with_suffix(".csv")
-    with table.open("w", newline="", encoding="utf-8") as file:
+    with (
+        whole_file(table, AppError) as partial,
+        partial.open("w", newline="", encoding="utf-8") as file,
+    ):
         writer = csv.writer(file)
         writer.writerow(("table", "row", "column", "printed", "ours"))
         writer.writerows(tables.rows)

@@ -26,7 +26,15 @@ from typing import Any
 from cubeling.characters.behaviour.bml.document import SYNC_NAMES, SYNCS
 from cubeling.characters.behaviour.bml.parser import SECONDS
 from cubeling.characters.errors import CharacterError
-from cubeling.toml_file import MAX_LONG_FILE_BYTES, TomlTable, read
+from cubeling.toml_file import MAX_LONG_FILE_BYTES, TomlTable, read, toml_kind
+
+LEXICON_FILE = toml_kind(
+    "lexicon",
+    CharacterError,
+    "cubeling.characters.behaviour.fml.lexicon:Lexicon.load",
+    MAX_LONG_FILE_BYTES,
+)
+"""A file of behaviours by intention."""
 
 MAX_ENTRIES = 1000
 """Most types of a kind of intention."""
@@ -72,7 +80,7 @@ class Lexicon:
             If it cannot be read, or is no lexicon.
         """
         path = Path(__file__).with_name("lexicon.toml") if path is None else path
-        return Lexicon.of(read(path, CharacterError, MAX_LONG_FILE_BYTES), str(path))
+        return Lexicon.of(read(path, LEXICON_FILE), str(path))
 
     @staticmethod
     def of(document: Mapping[str, Any], source: str = "lexicon.toml") -> "Lexicon":

@@ -14,9 +14,7 @@ What a file leaves out is as in `SymbolicGesture`, `HandKey`, `BodyKey` and `Pla
 """
 
 import json
-import os
 from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -24,10 +22,19 @@ from typing import Any
 from cubeling.characters.behaviour.gestures.checking import MAX_KEYS, check_gesture
 from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
 from cubeling.characters.errors import CharacterError
-from cubeling.toml_file import MAX_LONG_FILE_BYTES, TomlTable, read
+from cubeling.files import whole_file
+from cubeling.toml_file import MAX_LONG_FILE_BYTES, TomlTable, read, toml_kind
 
 GESTURE_SUFFIX = ".toml"
 """Suffix of files of gestures."""
+
+GESTURE_FILE = toml_kind(
+    "gesture",
+    CharacterError,
+    "cubeling.characters.behaviour.gestures.files:load_gesture",
+    MAX_LONG_FILE_BYTES,
+)
+"""The file of a gesture."""
 
 _KEY_LISTS = ("right", "left", "body")
 
@@ -40,7 +47,7 @@ def load_gesture(path: Path) -> SymbolicGesture:
     CharacterError
         If it cannot be read, or is no gesture.
     """
-    content = {"name": path.stem.upper(), **read(path, CharacterError, MAX_LONG_FILE_BYTES)}
+    content = {"name": path.stem.upper(), **read(path, GESTURE_FILE)}
     gesture = TomlTable(content, str(path), error=CharacterError, most=MAX_KEYS).fill(
         SymbolicGesture
     )
@@ -60,17 +67,9 @@ def save_gesture(gesture: SymbolicGesture, path: Path) -> None:
         If it is no gesture that can be performed, or the file cannot be written.
     """
     check_gesture(gesture)
-    draft = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
+    with whole_file(path, CharacterError) as partial:
         path.parent.mkdir(parents=True, exist_ok=True)
-        draft.write_text("\n".join(_lines(gesture)) + "\n", encoding="utf-8")
-        draft.replace(path)
-    except OSError as error:
-        with suppress(OSError):
-            draft.unlink()
-        raise CharacterError(
-            f"{path}: cannot be written ({error.strerror}); choose another folder"
-        ) from None
+        partial.write_text("\n".join(_lines(gesture)) + "\n", encoding="utf-8")
 
 
 def _lines(gesture: SymbolicGesture) -> Iterator[str]:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from cubeling.characters.face.lids import numbers_by_name
 from cubeling.characters.face.visemes.sets import MOUTH_SHAPES, VOWEL_SHAPES
 from cubeling.characters.skeleton.pose import Array
-from cubeling.toml_file import read
+from cubeling.toml_file import bundled
 
 LEVEL_GAINS: Mapping[str, tuple[float, float, float]] = {
     "jaw": (0.45, 0.75, 1.0),
@@ -106,7 +106,7 @@ _JAW_OPENING = np.array(
 
 @cache
 def _families() -> tuple[Mapping[str, Any], ...]:
-    data = read(Path(__file__).with_name("families.toml"))
+    data = bundled(Path(__file__).with_name("families.toml"))
     return tuple(data["family"])
 
 

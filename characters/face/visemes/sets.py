@@ -12,7 +12,7 @@ from typing import Any
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.face.visemes.ipa import SEGMENTS, most_alike, parts_of
-from cubeling.toml_file import read
+from cubeling.toml_file import bundled
 
 MOUTH_SHAPES = (
     "sil",
@@ -135,7 +135,7 @@ class VisemeSet:
 @cache
 def viseme_sets() -> Mapping[str, VisemeSet]:
     """Return every set by its name."""
-    data = read(Path(__file__).with_name("sets.toml"))
+    data = bundled(Path(__file__).with_name("sets.toml"))
     return {
         each["name"]: VisemeSet(each["name"], tuple(_viseme(row) for row in each["visemes"]))
         for each in data["set"]

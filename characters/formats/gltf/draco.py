@@ -13,6 +13,8 @@ from cubeling.characters.formats.gltf.file import COMPONENT_TYPES, GltfFile
 
 EXTENSION = "KHR_draco_mesh_compression"
 _TRIANGLES = 4
+_MESH, _SEQUENTIAL, _HAS_METADATA = 1, 0, 0x8000  # of Draco's header
+_MAX_DEPTH = 8
 _CODES = {np.dtype(kind): code for code, kind in COMPONENT_TYPES.items()}
 
 
@@ -28,7 +30,9 @@ def with_unpacked_meshes(file: GltfFile) -> GltfFile:
     for where, primitive in _compressed_primitives(file):
         with error_context(where):
             packed = primitive["extensions"][EXTENSION]
-            mesh = _decode(bytes(file.view(packed["bufferView"])))
+            data = bytes(file.view(packed["bufferView"]))
+            _check_counts(file, primitive, *_packed_counts(data))
+            mesh = _decode(data)
             store = partial(_store, file, buffers)
             for name, identifier in packed["attributes"].items():
                 found = mesh.get_attribute_by_unique_id(identifier)
@@ -47,6 +51,85 @@ def _compressed_primitives(file: GltfFile) -> Iterator[tuple[str, Json]]:
         for primitive in mesh["primitives"]:
             if EXTENSION in primitive.get("extensions", {}):
                 yield label("mesh", number, mesh), primitive
+
+
+def _check_counts(file: GltfFile, primitive: Json, faces: int, vertices: int) -> None:
+    """Refuse a mesh that unpacks to more than its accessors say: a few bytes can be gigabytes."""
+    accessors = file.document["accessors"]
+    rows = max((accessors[each]["count"] for each in primitive["attributes"].values()), default=0)
+    corners = accessors[primitive["indices"]]["count"] if "indices" in primitive else 3 * faces
+    if 3 * faces != corners or vertices > rows:
+        raise DamagedFileError(
+            f"its compressed part has {faces} triangles of {vertices} vertices, its accessors "
+            f"have {corners // 3} of {rows}"
+        )
+    for count in (corners, rows):
+        if count > file.budget.numbers:
+            raise DamagedFileError("its compressed part is larger than that of any character")
+
+
+def _packed_counts(data: bytes) -> tuple[int, int]:
+    """Return how many triangles and vertices a compressed mesh says that it has.
+
+    Source: Draco Bitstream Specification 2.2 (Galligan 2017), headers of the file and of the
+    connectivity. glTF allows no other version.
+    """
+    if data[:7] != b"DRACO\x02\x02" or len(data) < 11:
+        raise DamagedFileError("is not compressed by Draco 2.2; compress it again")
+    method, flags = data[8], int.from_bytes(data[9:11], "little")
+    if data[7] != _MESH:
+        raise DamagedFileError("is compressed as a cloud of points")
+    reader = _Reader(data, 11)
+    if flags & _HAS_METADATA:
+        for _ in range(reader.number()):
+            reader.number()  # of the attribute that it tells of
+            reader.skip_metadata()
+        reader.skip_metadata()
+    if method == _SEQUENTIAL:
+        return reader.number(), reader.number()
+    reader.skip(1)  # how the triangles are visited
+    vertices = reader.number()
+    return reader.number(), vertices
+
+
+class _Reader:
+    """Reads the header of a compressed mesh."""
+
+    def __init__(self, data: bytes, place: int) -> None:
+        self._data, self._place = data, place
+
+    def number(self) -> int:
+        """Return a whole number: seven bits of it in each byte, the lowest first."""
+        value = shift = 0
+        while shift <= 28:
+            byte = self.byte()
+            value |= (byte & 0x7F) << shift
+            if byte < 0x80:
+                return value
+            shift += 7
+        raise DamagedFileError("its compressed part is damaged")
+
+    def byte(self) -> int:
+        """Return the next byte."""
+        if self._place >= len(self._data):
+            raise DamagedFileError("its compressed part is cut off")
+        self._place += 1
+        return self._data[self._place - 1]
+
+    def skip(self, count: int) -> None:
+        """Leave out some bytes."""
+        self._place += count
+
+    def skip_metadata(self, depth: int = 0) -> None:
+        """Leave out names with their values, and the same within them."""
+        if depth > _MAX_DEPTH:
+            raise DamagedFileError("its compressed part is damaged")
+        for _ in range(self.number()):
+            self.skip(self.byte())
+            self.skip(self.number())
+        for _ in range(self.number()):
+            self.skip(self.byte())
+            self.skip_metadata(depth + 1)
 
 
 def _decode(data: bytes) -> Any:

@@ -12,8 +12,17 @@ from numpy.typing import NDArray
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.formats.gltf.document import DamagedFileError, Json, error_context, parse
-from cubeling.characters.model.files import read_file
 from cubeling.characters.skeleton.pose import Array
+from cubeling.files import FileKind
+
+GLTF_FILE = FileKind(
+    "model",
+    (".glb", ".gltf", ".vrm", ".vrma"),
+    CharacterError,
+    1 << 30,
+    "cubeling.characters.model.character:Character.load",
+)
+"""A .glb, .gltf or .vrm file, or a buffer or picture beside it."""
 
 MAGIC, JSON_CHUNK, BIN_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
 _MAX_EMPTY_ROWS = 2_000_000  # of an accessor without data
@@ -149,7 +158,7 @@ class GltfFile:
         if urlsplit(uri).scheme or Path(name).is_absolute():
             raise DamagedFileError(f"needs {name!r:.80}, which is not in the same folder")
         try:
-            return read_file(self.path.parent / name)
+            return GLTF_FILE.read(self.path.parent / name)
         except CharacterError as error:
             raise DamagedFileError(f"needs {name!r:.80}: {error}") from None
 
@@ -211,7 +220,7 @@ def _component(holder: Json) -> "np.dtype[np.generic]":
 
 def open_gltf(path: Path) -> GltfFile:
     """Read a .glb or .gltf file with its buffers; refuse extensions that are not supported."""
-    data = read_file(path)
+    data = GLTF_FILE.read(path)
     text, blob = _unpack(path, data)
     try:
         document = parse(text)
@@ -251,7 +260,7 @@ def _advice(extension: str, path: Path) -> str:
 def has_mesh(path: Path) -> bool:
     """Return whether a file has a mesh; one that cannot be read is said to have one."""
     try:
-        text, _ = _unpack(path, read_file(path))
+        text, _ = _unpack(path, GLTF_FILE.read(path))
         document = json.loads(text)
     except (CharacterError, ValueError, RecursionError):
         return True

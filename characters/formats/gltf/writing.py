@@ -14,6 +14,7 @@ from cubeling.characters.model.character import Character
 from cubeling.characters.model.mesh import Mesh, Morph
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.skeleton.pose import Array, Skeleton
+from cubeling.files import write_whole
 
 MIN_CHANGE = 1e-7  # [m or part of a quaternion]: smaller changes are not written
 
@@ -22,15 +23,7 @@ def save(character: Character, path: Path) -> None:
     """Write a .glb; the same character gives the same bytes."""
     _check_character(character)
     data = _CharacterWriter(character).glb()
-    unfinished = path.with_name(path.name + ".part")
-    try:
-        unfinished.write_bytes(data)
-        unfinished.replace(path)
-    except OSError as error:
-        unfinished.unlink(missing_ok=True)
-        raise CharacterError(
-            f"{path}: cannot be written ({error.strerror}); check the folder"
-        ) from None
+    write_whole(path, data, CharacterError)
 
 
 class _CharacterWriter:

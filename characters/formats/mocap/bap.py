@@ -24,6 +24,7 @@ from cubeling.characters.formats.mocap.text import CUT_OFF, EXPORT_AGAIN, TextFi
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.files import write_whole
 
 UNIT_RAD = 1e-5
 """What 1 stands for in a parameter of an angle [rad]."""
@@ -108,10 +109,7 @@ def write_baps(path: Path, track: BapTrack) -> None:
     for number, row in enumerate(track.values.tolist()):
         lines.append(" ".join("1" if value else "0" for value in row))
         lines.append(" ".join(map(str, (number, *(value for value in row if value)))))
-    try:
-        path.write_text("\n".join(lines) + "\n", "utf-8")
-    except OSError as error:
-        raise CharacterError(f"{path}: {error.strerror}; name another file") from None
+    write_whole(path, "\n".join(lines) + "\n", CharacterError)
 
 
 def read_baps(path: Path) -> BapTrack:

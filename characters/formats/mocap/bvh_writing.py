@@ -10,6 +10,7 @@ from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.masks import subtree
 from cubeling.characters.skeleton.pose import Array, Skeleton
+from cubeling.files import write_whole
 
 ROTATION_ORDER = "ZXY"
 """Axes of a joint's rotations in the file, the last one applied first."""
@@ -60,10 +61,7 @@ def save_bvh(clip: Clip, skeleton: Skeleton, anatomy: Anatomy, path: Path) -> No
     lines = ["HIERARCHY", *_joint(0, names, above, offsets, moving.tolist()), "MOTION"]
     lines += [f"Frames: {len(values)}", f"Frame Time: {1.0 / clip.rate:.8f}"]
     lines += [" ".join(f"{value:.7g}" for value in frame) for frame in values.tolist()]
-    try:
-        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    except OSError as error:
-        raise CharacterError(f"{path}: {error.strerror}; name another file") from None
+    write_whole(path, "\n".join(lines) + "\n", CharacterError)
 
 
 def _depth_first(above: list[int]) -> list[int]:

@@ -21,8 +21,20 @@ from cubeling.characters.synthesis.archive import (
     skeleton_identity,
 )
 from cubeling.characters.synthesis.choices import Database
+from cubeling.files import FileKind
 
-GESTURE_FORMAT = ArchiveFormat("cubeling gestures", 1, "gesture library", "cubeling gesture learn")
+GESTURE_FORMAT = ArchiveFormat(
+    "cubeling gestures",
+    1,
+    FileKind(
+        "gesture library",
+        (".gestures",),
+        CharacterError,
+        1 << 30,
+        "cubeling.characters.synthesis.gestures.library:GestureLibrary.load",
+    ),
+    "cubeling gesture learn",
+)
 """The format of `.gestures` files: `cubeling gesture learn` writes them."""
 
 STEP_RAD = 1e-4

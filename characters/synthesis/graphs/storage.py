@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from cubeling.characters.errors import CharacterError
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Pose
 from cubeling.characters.synthesis.archive import (
@@ -18,8 +19,20 @@ from cubeling.characters.synthesis.archive import (
 )
 from cubeling.characters.synthesis.graphs.candidates import Candidates
 from cubeling.characters.synthesis.library import MotionLibrary
+from cubeling.files import FileKind
 
-GRAPH_FORMAT = ArchiveFormat("cubeling motion graph", 1, "motion graph", "cubeling motions build")
+GRAPH_FORMAT = ArchiveFormat(
+    "cubeling motion graph",
+    1,
+    FileKind(
+        "motion graph",
+        (".graph",),
+        CharacterError,
+        1 << 30,
+        "cubeling.characters.synthesis.graphs.storage:load_graph",
+    ),
+    "cubeling motions build",
+)
 """The format of `.graph` files: `cubeling motions build` writes them."""
 
 WHOLE_BODY = "BP123456"

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from cubeling.affect.regions import Region, RegionBox, Sector
+from cubeling.characters.errors import CharacterError
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.pose import Skeleton
@@ -19,8 +20,20 @@ from cubeling.characters.synthesis.archive import (
 )
 from cubeling.characters.synthesis.idle.posture_space import PostureVectors
 from cubeling.characters.synthesis.idle.recordings import BALANCES, RestSpan, StandingRecording
+from cubeling.files import FileKind
 
-IDLE_FORMAT = ArchiveFormat("cubeling idle motion", 2, "idle motion", "cubeling idle learn")
+IDLE_FORMAT = ArchiveFormat(
+    "cubeling idle motion",
+    2,
+    FileKind(
+        "idle motion",
+        (".idle",),
+        CharacterError,
+        1 << 30,
+        "cubeling.characters.synthesis.idle.storage:load_person",
+    ),
+    "cubeling idle learn",
+)
 """The format of `.idle` files: `cubeling idle learn` writes them."""
 
 STEP = 1e-4

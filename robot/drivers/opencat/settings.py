@@ -12,7 +12,12 @@ from cubeling.robot.contract.catalogue import MAX_NAME_BYTES, Catalogue
 from cubeling.robot.drivers.opencat import tokens
 from cubeling.robot.drivers.opencat.models import MODELS
 from cubeling.robot.errors import RobotError
-from cubeling.toml_file import TomlTable, excerpt, read
+from cubeling.toml_file import TomlTable, bundled, excerpt, read, toml_kind
+
+SETTINGS_FILE = toml_kind(
+    "OpenCat settings", RobotError, "cubeling.robot.drivers.opencat.settings:load_settings"
+)
+"""A file of settings."""
 
 BUNDLED_SETTINGS = Path(__file__).with_name("opencat.toml")
 """The bundled settings; a person's own file overrides parts of them."""
@@ -108,12 +113,12 @@ def load_settings(path: Path | None = None) -> OpenCatSettings:
     """
     if path is None:
         return parse_settings({}, BUNDLED_SETTINGS.name)
-    return parse_settings(read(path, RobotError), str(path))
+    return parse_settings(read(path, SETTINGS_FILE), str(path))
 
 
 @cache
 def _read_bundled() -> Mapping[str, Any]:
-    return read(BUNDLED_SETTINGS, RobotError)
+    return bundled(BUNDLED_SETTINGS)
 
 
 def parse_settings(document: Mapping[str, Any], source: str) -> OpenCatSettings:

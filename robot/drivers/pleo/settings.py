@@ -9,7 +9,12 @@ from cubeling.robot.contract.catalogue import MAX_NAME_BYTES, Catalogue
 from cubeling.robot.drivers.pleo import timing
 from cubeling.robot.drivers.pleo.joints import JOINT_NUMBERS, JOINTS
 from cubeling.robot.errors import RobotError
-from cubeling.toml_file import TomlTable, read
+from cubeling.toml_file import TomlTable, read, toml_kind
+
+SETTINGS_FILE = toml_kind(
+    "Pleo settings", RobotError, "cubeling.robot.drivers.pleo.settings:load_settings"
+)
+"""A file of settings."""
 
 BUNDLED_SETTINGS = Path(__file__).with_name("pleo.toml")
 """The bundled settings; a person's own file replaces them."""
@@ -107,7 +112,7 @@ def load_settings(path: Path | None = None) -> PleoSettings:
     Raises RobotError if it cannot be read, is not TOML, or a value is wrong.
     """
     path = BUNDLED_SETTINGS if path is None else path
-    top = TomlTable(read(path, RobotError), str(path), error=RobotError)
+    top = TomlTable(read(path, SETTINGS_FILE), str(path), error=RobotError)
     top.only("console", "moods", "motions", "sounds")
     console = top.table("console")
     console.only("volume", "battery_every_s", "mood_every_s", "play_within_s", "boot_text")

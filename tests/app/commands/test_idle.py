@@ -117,7 +117,7 @@ def test_a_smaller_character_stands_so_too(anna: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("show", "no.idle"), "no.idle: No such file"),
+        (("show", "no.idle"), "no.idle': No such file"),
         (("show", "human", "-o", "a.gif"), "written as .svg"),
         (("show", "human", "--mood", "blue"), "no emotion is called 'blue'"),
         (("learn", "blue=x.bvh"), "no emotion is called 'blue'"),

@@ -35,7 +35,7 @@ def test_builds_a_graph_of_clips_and_shows_it(cubeling, graph, tmp_path) -> None
         (("build", "human#wave", "--threshold", "1e-7"), "connects nothing"),
         (("build", "human#Walk", "-o", "walk.txt"), "written as .graph"),
         (("build", "human#Walk", "--character", "vleo"), "quadruped"),
-        (("show", "no.graph"), "no.graph: No such file"),
+        (("show", "no.graph"), "no.graph': No such file"),
     ],
 )
 def test_refuses_in_one_line(cubeling, arguments, message) -> None:

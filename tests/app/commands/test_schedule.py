@@ -71,7 +71,10 @@ def test_a_gesture_moves_what_depends_on_it(cubeling, tmp_path) -> None:
     ("text", "message"),
     [
         ("<a>", "bad.xml:1: not XML"),
-        ((EXAMPLES / "copy.xml").read_text().replace("human#idle", "no.bvh"), "bad.xml:5: no.bvh"),
+        (
+            (EXAMPLES / "copy.xml").read_text().replace("human#idle", "no.bvh"),
+            "bad.xml:5: cannot read the motion",
+        ),
         ((EXAMPLES / "copy.xml").read_text().replace("activate", "start"), "<start> is not known"),
         ((EXAMPLES / "copy.xml").read_text().replace("0.0f", "1e12"), "ends at 1e+12 s; give"),
         ((EXAMPLES / "copy.xml").read_text().replace("0.0f", "-50"), "ends at -41 s"),

@@ -107,7 +107,7 @@ def test_a_recording_is_aligned_with_the_text_of_a_file(recording, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("show", "missing.wav"), "cannot read 'missing.wav'"),
+        (("show", "missing.wav"), "cannot read the sound 'missing.wav'"),
         (("show", "{file}", "--text", "a", "--textgrid", "b"), "not both"),
         (("show", "{file}", "--textgrid", "missing.TextGrid"), "cannot read"),
         (("show", "{file}", "-o", "{folder}/plot.xyz"), "plot"),

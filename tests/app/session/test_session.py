@@ -1,7 +1,7 @@
 """Sessions on disk: exact, append-only, and readable after damage."""
 
-import io
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +11,7 @@ from cubeling.app.pipeline.step import ReplayInputs
 from cubeling.app.session import Recorder, SessionFile, frame_encoder, messages, session_info
 from cubeling.app.session.codecs import CODECS
 from cubeling.app.session.encoding import FORMAT_KEY, SESSION_FORMAT
+from cubeling.files import FileKind
 from cubeling.tracking import CubeState, CubeTracker, Frame, Intrinsics
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.synthetic import open_synthetic
@@ -103,16 +104,27 @@ def test_a_session_of_a_newer_version_is_refused_in_one_line(tmp_path, version):
         session_info(path)
 
 
+@pytest.mark.parametrize("turns", ["[]", "", "two"])
+def test_metadata_that_no_recorder_writes_is_refused_in_one_line(tmp_path, turns):
+    path = tmp_path / "odd.mcap"
+    with Recorder(path, {"scenario": "follow", "turns": turns}) as recorder:
+        recorder.event("started", 0.0)
+        recorder._steps = 1
+    with pytest.raises(AppError, match=r"cannot read the session '.*odd\.mcap': could not") as told:
+        session_info(path)
+    assert str(told.value).isprintable()
+
+
 def test_a_replay_opens_its_session_twice(cubeling, recorded, monkeypatch):
     """Once for all that stands in it, and once for the camera's frames."""
     path, _ = recorded("jpeg", count=4)
-    opened, real_open = [], io.open
+    opened, real_open = [], FileKind.open
 
-    def noting(file, *given, **more):
-        opened.append(file)
-        return real_open(file, *given, **more)
+    def noting(kind, file):
+        opened.append(Path(file))
+        return real_open(kind, file)
 
-    monkeypatch.setattr(io, "open", noting)
+    monkeypatch.setattr(FileKind, "open", noting)
     assert cubeling("replay", path, "--no-pictures", "--robot", "none")[0] == 0
     assert opened.count(path) == 2
 

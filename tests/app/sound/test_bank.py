@@ -7,7 +7,7 @@ import pytest
 
 from cubeling.app.errors import AppError
 from cubeling.app.sound import SAMPLE_RATE, SoundBank, bank, write_wave
-from cubeling.app.sound.bank import read_wave
+from cubeling.app.sound.bank import read_sound
 
 
 def write(path, numbers, width=2, channels=1, rate=SAMPLE_RATE):
@@ -28,12 +28,12 @@ def test_every_pcm_file_is_read(tmp_path, width, channels):
     sine = np.sin(np.arange(480) / 20)
     numbers = np.round(sine * 0.9 * (top - 1)).astype(np.int64)
     write(tmp_path / "a.wav", np.repeat(numbers, channels), width, channels)
-    np.testing.assert_allclose(read_wave(tmp_path / "a.wav"), numbers / top, atol=1e-9)
+    np.testing.assert_allclose(read_sound(tmp_path / "a.wav"), numbers / top, atol=1e-7)
 
 
 def test_other_rates_are_converted(tmp_path):
     write(tmp_path / "a.wav", np.arange(441), rate=44_100)
-    samples = read_wave(tmp_path / "a.wav")
+    samples = read_sound(tmp_path / "a.wav")
     assert len(samples) == pytest.approx(480, abs=1)
     np.testing.assert_allclose(samples * 2**15, np.arange(len(samples)) * 44.1 / 48, atol=0.6)
 
@@ -58,11 +58,11 @@ def test_what_cannot_be_used_is_refused_in_one_line(tmp_path):
     write_wave(path, np.zeros(10))
     with pytest.raises(AppError, match=r"no sound is called 'kis' .*: choose one of .*kiss"):
         SoundBank.load(tmp_path)
-    path.rename(tmp_path / "kiss.wav").write_bytes(b"RIFF no sound")
-    with pytest.raises(AppError, match="cannot be read as a PCM"):
+    path.rename(tmp_path / "kiss.wav").write_bytes(b"RIFF1234WAVEfmt ")
+    with pytest.raises(AppError, match="is a broken WAV file"):
         SoundBank.load(tmp_path)
     write(tmp_path / "kiss.wav", np.zeros(11 * 8000), rate=8000)
-    with pytest.raises(AppError, match=r"11\.0 s of sound: up to 10 s"):
+    with pytest.raises(AppError, match="is longer than 10 s: cut it"):
         SoundBank.load(tmp_path)
 
 

@@ -7,9 +7,8 @@ import pytest
 from cubeling import app
 from cubeling.app.errors import AppError
 from cubeling.app.scenarios import SCENARIOS
-from cubeling.app.speaking.lines import bundled_lines, read_lines
+from cubeling.app.speaking.lines import bundled_lines, languages_in, read_lines
 from cubeling.characters.speech.tagged_text import TaggedText
-from cubeling.toml_file import read
 
 LINES = Path(app.__file__).parent / "scenarios" / "lines"
 
@@ -62,5 +61,5 @@ def test_a_single_line_need_not_be_a_list(tmp_path):
 
 def test_bundled_lines_are_in_the_package():
     for file in LINES.iterdir():
-        read(file)
+        languages_in(file)
         assert file.stem in SCENARIOS

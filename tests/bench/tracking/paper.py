@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.toml_file import read
+from cubeling.toml_file import bundled
 
 CUBES = Path(__file__).resolve().parents[3] / "tracking" / "cubes"
 
@@ -118,7 +118,7 @@ class BenchmarkCube:
     def load(cls, name: str) -> "BenchmarkCube":
         """Read the bundled cube `name`, or the file of another."""
         path = Path(name) if name.endswith(".toml") else CUBES / f"{name}.toml"
-        document = read(path)
+        document = bundled(path)
         edge, marker = document["edge_mm"] / 1000, document["marker_mm"] / 1000
         sides = tuple(
             _side(table, document["dictionary"], edge, marker) for table in document["face"]

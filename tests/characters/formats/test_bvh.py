@@ -297,7 +297,7 @@ def test_line_ends_marks_and_capitals_do_not_matter(tmp_path: Path) -> None:
 
 
 def test_absent_files_and_wrong_names_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(CharacterError, match=r"none\.bvh: cannot be read"):
+    with pytest.raises(CharacterError, match=r"cannot read .*none\.bvh"):
         load_motion(tmp_path / "none.bvh")
     with pytest.raises(CharacterError, match="no clip 'run', only 'leg'"):
         load_motion(written(tmp_path, LEG), "run")

@@ -159,7 +159,7 @@ def test_arrays_that_do_not_fit_are_not_written(tmp_path, walker):
 
 
 def test_saving_into_a_missing_folder_is_refused(tmp_path, walker):
-    with pytest.raises(CharacterError, match="cannot be written"):
+    with pytest.raises(CharacterError, match="cannot write"):
         walker.save(tmp_path / "nowhere" / "w.glb")
 
 
@@ -180,7 +180,7 @@ def refused(path):
 
 def test_files_without_a_character_are_refused_in_one_line(tmp_path, arm):
     path = tmp_path / "x.glb"
-    assert "cannot be read" in refused(path)
+    assert "cannot read" in refused(path)
     path.write_bytes(b"not a picture of a cat")
     assert "not a glTF file" in refused(path)
     path.write_bytes(b"")

@@ -71,7 +71,10 @@ def test_a_compressed_mesh_is_unpacked(tmp_path):
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        (lambda build, data: build.document["accessors"][-1].update(count=9), "unpacked are 6 × 1"),
+        (
+            lambda build, data: build.document["accessors"][-1].update(count=9),
+            "has 2 triangles of 4 vertices, its accessors have 3 of 4",
+        ),
         (lambda build, data: build.document["accessors"][-2].update(type="VEC3"), "says 4 VEC3"),
         (
             lambda build, data: build.document["meshes"][0]["primitives"][0]["extensions"][
@@ -81,6 +84,18 @@ def test_a_compressed_mesh_is_unpacked(tmp_path):
         ),
         (
             lambda build, data: setattr(build, "blob", build.blob.replace(data[:60], bytes(60))),
+            "is not compressed by Draco 2.2",
+        ),
+        (  # it says that it has 2^32 − 1 triangles
+            lambda build, data: setattr(
+                build, "blob", build.blob.replace(data[:12], data[:11] + b"\xff\xff\xff\xff\x0f")
+            ),
+            "has 4294967295 triangles",
+        ),
+        (
+            lambda build, data: setattr(
+                build, "blob", build.blob.replace(data[60:], bytes(len(data) - 60))
+            ),
             "Draco cannot unpack it",
         ),
     ],

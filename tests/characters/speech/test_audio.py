@@ -114,6 +114,20 @@ def test_any_bytes_after_a_wav_header_are_read_or_refused(tmp_path_factory, data
         read_speech(path)
 
 
+@pytest.mark.parametrize("lost", [*range(1, 60), 4000])
+def test_a_cut_wav_file_is_read_as_far_as_it_goes_or_refused(tmp_path, lost):
+    path = tmp_path / "cut.wav"
+    with wave.open(str(path), "wb") as file:
+        file.setparams((1, 2, 22_050, 0, "NONE", ""))
+        file.writeframes(encoded(tone(22_050)[:20], 1, 16))
+    path.write_bytes(path.read_bytes()[:-lost])
+    if lost < 39:
+        assert len(read_speech(path).samples) == 20 - -(-lost // 2)
+    else:
+        with pytest.raises(CharacterError, match=r"cut\.wav"):
+            read_speech(path)
+
+
 @pytest.mark.parametrize("new_rate", [8000, 11_025, 22_050, 44_100, 96_000])
 def test_a_tone_stays_a_tone_at_another_rate(new_rate):
     made = resample(tone(48_000).astype(np.float32), 48_000, new_rate)

@@ -61,6 +61,23 @@ def test_a_file_that_cannot_be_played_is_refused(
         load_graph(_changed(saved, **changes))
 
 
+@pytest.mark.parametrize("content", ["[]", "[1, 2]", '"x"', "nonsense", '{"format": 3}'])
+def test_another_text_in_its_place_is_refused_in_one_line(saved: Path, content: str) -> None:
+    with saved.open("wb") as file:
+        np.savez(file, content=np.array(content))
+    with pytest.raises(CharacterError, match="not a motion graph") as caught:
+        load_graph(saved)
+    assert str(caught.value).isprintable()
+
+
+def test_an_archive_of_far_more_than_its_size_is_not_unpacked(saved: Path) -> None:
+    with saved.open("wb") as file:
+        np.savez_compressed(file, zeros=np.zeros(4_000_000))
+    assert saved.stat().st_size < 50_000
+    with pytest.raises(CharacterError, match="bytes stand for 32000"):
+        load_graph(saved)
+
+
 @pytest.mark.parametrize("keep", [0, 3, 2000, -20])
 def test_a_damaged_file_is_refused_in_one_line(saved: Path, keep: int) -> None:
     saved.write_bytes(saved.read_bytes()[:keep])

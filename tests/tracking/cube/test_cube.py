@@ -183,7 +183,7 @@ def test_faces_that_are_not_tables_are_refused(tmp_path):
 def test_a_missing_file_and_an_unknown_name_are_refused():
     with pytest.raises(TrackingError, match="no cube is called 'sphere': choose companion"):
         CubeModel.load("sphere")
-    with pytest.raises(TrackingError, match=r"cannot read nowhere\.toml: "):
+    with pytest.raises(TrackingError, match=r"cannot read the cube 'nowhere\.toml'"):
         CubeModel.load("nowhere.toml")
 
 
@@ -286,6 +286,6 @@ def test_a_cube_is_written_to_a_toml_file_or_not_at_all(tmp_path):
     cube = CubeModel.load("companion")
     with pytest.raises(TrackingError, match=r"\.toml file, not to"):
         write_cube(cube, tmp_path / "cube.yaml")
-    with pytest.raises(TrackingError, match="cannot write the cube"):
+    with pytest.raises(TrackingError, match=r"cannot write .*cube\.toml"):
         write_cube(cube, tmp_path / "none" / "cube.toml")
     assert list(tmp_path.iterdir()) == []

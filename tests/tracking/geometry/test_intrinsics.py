@@ -100,6 +100,7 @@ def test_a_scaled_camera_sees_the_same_rays():
         ("image_width: 640", "image_width: [640", "is not YAML"),
         (ROS_FILE, "- 1", "holds no 'camera_matrix'"),
         (ROS_FILE, "", "holds no 'camera_matrix'"),
+        ("image_width: 640", "a: &a [1, 2]\nb: *a", "it has aliases"),
     ],
 )
 def test_a_bad_camera_file_is_one_line(tmp_path, old, new, words):
@@ -114,5 +115,5 @@ def test_a_bad_camera_file_is_one_line(tmp_path, old, new, words):
 def test_absent_and_unwritable_files_are_one_line(tmp_path):
     with pytest.raises(TrackingError, match="cannot read the camera file"):
         Intrinsics.load(tmp_path / "none.yaml")
-    with pytest.raises(TrackingError, match="cannot write the camera file"):
+    with pytest.raises(TrackingError, match=r"cannot write .*camera\.yaml"):
         Intrinsics.guess((640, 480)).save(tmp_path / "none" / "camera.yaml")

@@ -286,8 +286,8 @@ def test_an_invalid_video_is_refused_with_one_line(tmp_path):
     text = tmp_path / "letter.mp4"
     text.write_text("dear grandmother", encoding="utf-8")
     assert "letter.mp4' is not a video" in read(text)[1]
-    assert "there is no file" in read(tmp_path / "none.mp4")[1]
-    assert "there is no file" in read(tmp_path)[1]
+    assert "No such file" in read(tmp_path / "none.mp4")[1]
+    assert "it is a folder" in read(tmp_path)[1]
 
 
 def test_an_unknown_scheme_is_refused_with_one_line():

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from cubeling.files import write_whole
 from cubeling.tracking.cube.icons import FOLD_GAP_SHARE, ICON_COLOURS, ICON_SHARE, icon_paths
 from cubeling.tracking.cube.marker import marker_loops
 from cubeling.tracking.cube.model import CubeModel, Face
@@ -11,7 +12,7 @@ from cubeling.tracking.cube.printing.layout import SheetLayout
 from cubeling.tracking.cube.printing.notes import draw_notes
 from cubeling.tracking.cube.printing.pdf_page import PdfPage
 from cubeling.tracking.cube.printing.unfolding import Tab
-from cubeling.tracking.files import write_whole
+from cubeling.tracking.errors import TrackingError
 
 CUT_COLOUR = (70, 76, 90)
 FOLD_COLOUR = (150, 156, 168)
@@ -51,7 +52,7 @@ def write_sheet(
     page = PdfPage(*sheet.page_size, f"{cube.name} cube, {cube.edge * 1000:g} mm")
     draw_net(page, sheet)
     draw_notes(page, sheet)
-    write_whole(path, page.to_bytes(), "sheet")
+    write_whole(path, page.to_bytes(), TrackingError)
 
 
 def draw_net(page: PdfPage, sheet: SheetLayout) -> None:

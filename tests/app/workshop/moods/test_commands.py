@@ -93,7 +93,7 @@ def test_a_pipe_is_refused_and_not_waited_for(cubeling, tmp_path):
     os.mkfifo(tmp_path / "pipe")
     code, _, told = cubeling("mood", "plot", "pipe")
     assert code == 2
-    assert "it is a pipe, no file" in told
+    assert "it is a folder, a pipe or a device" in told
 
 
 def test_a_bundled_personality_is_printed_to_make_ones_own_from(cubeling, tmp_path):
