@@ -143,7 +143,8 @@ def table_rows(pins: dict[str, str]) -> tuple[dict[str, PackageRow], set[str]]:
 def licence_of(name: str, found: Distribution) -> str:
     """Return the licence of a package: as written down here, or as its metadata says."""
     metadata = found.metadata
-    stated = metadata.get("License-Expression") or metadata.get("License") or ""
+    fields = [metadata[each] for each in ("License-Expression", "License") if each in metadata]
+    stated = next(filter(None, fields), "")
     if not stated and "License :: OSI Approved :: MIT License" in metadata.get_all(
         "Classifier", []
     ):
@@ -192,7 +193,11 @@ def ffmpeg_licence(library: Path) -> str:
     """Return the licence that an FFmpeg library says it was built under, in SPDX's words."""
     ask = ctypes.CDLL(str(library)).avcodec_license
     ask.restype = ctypes.c_char_p
-    kind, version = re.fullmatch(r"(L?GPL) version ([\d.]+) or later", ask().decode()).groups()
+    said = ask().decode()
+    match = re.fullmatch(r"(L?GPL) version ([\d.]+) or later", said)
+    if match is None:
+        raise LicenceError(f"{library.name} says of its licence: {said}")
+    kind, version = match.groups()
     return f"{kind}-{version if '.' in version else version + '.0'}-or-later"
 
 
