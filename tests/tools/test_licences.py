@@ -1,6 +1,7 @@
 """The table of licences: it follows the pins and the wheels, and nothing unknown enters it."""
 
 from pathlib import PurePosixPath
+from typing import Any
 
 import pytest
 
@@ -8,7 +9,7 @@ from tools import licences
 from tools.licences import LicenceError, holds, licence_of, pinned_versions, problems_of
 
 
-class Wheel:
+class FakeWheel:
     """An installed package with some files and metadata."""
 
     def __init__(self, *files: str, **metadata: str) -> None:
@@ -16,7 +17,12 @@ class Wheel:
         self.metadata = Metadata(metadata)
 
 
-class Metadata(dict):
+def a_wheel(*files: str, **metadata: str) -> Any:
+    """Return a stand-in for a `Distribution`, which only reads files of its own."""
+    return FakeWheel(*files, **metadata)
+
+
+class Metadata(dict[str, str]):
     """Metadata without classifiers."""
 
     def get_all(self, name, default):
@@ -61,15 +67,15 @@ def test_a_row_that_is_lost_or_changed_is_noticed(page, pins):
 
 
 def test_a_library_whose_licence_nobody_wrote_down_is_refused():
-    wheel = Wheel("a.libs/libx264-d6533a8d.so.165", "a/_a.cpython-311-x86_64-linux-gnu.so")
+    wheel = a_wheel("a.libs/libx264-d6533a8d.so.165", "a/_a.cpython-311-x86_64-linux-gnu.so")
     assert holds("a", wheel) == "x264 (**GPL-2.0-or-later**)"
     with pytest.raises(LicenceError, match="holds libnew"):
-        holds("a", Wheel("a.libs/libnew-12345678.so"))
+        holds("a", a_wheel("a.libs/libnew-12345678.so"))
 
 
 def test_a_package_without_a_licence_is_refused():
-    assert licence_of("a", Wheel(License="MIT")) == "MIT"
+    assert licence_of("a", a_wheel(License="MIT")) == "MIT"
     with pytest.raises(LicenceError, match="names no licence"):
-        licence_of("a", Wheel())
+        licence_of("a", a_wheel())
     with pytest.raises(LicenceError, match="names no licence"):
-        licence_of("a", Wheel(License="Permission is granted\nto everyone"))
+        licence_of("a", a_wheel(License="Permission is granted\nto everyone"))
