@@ -1,12 +1,14 @@
 """The audit of constraints.txt: what pip-audit reports becomes lines, and silence is no success."""
 
+from typing import Any
+
 import pytest
 
 from tools.audit import NotAuditedError, check_reachable, problems_of
 
-KNOWN = {"name": "numpy", "version": "2.4.6", "vulns": []}
-UNKNOWN = {"name": "pillow", "skip_reason": "Dependency not found on PyPI"}
-FAULTY = {
+KNOWN: dict[str, Any] = {"name": "numpy", "version": "2.4.6", "vulns": []}
+UNKNOWN: dict[str, Any] = {"name": "pillow", "skip_reason": "Dependency not found on PyPI"}
+FAULTY: dict[str, Any] = {
     "name": "pillow",
     "version": "13.0.0",
     "vulns": [
