@@ -8,7 +8,7 @@ endif
 INSTALL := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 
 .DEFAULT_GOAL := demo
-.PHONY: demo setup test test-all test-rest campaign campaign-tenth check check-format check-lint links check-floors check-types docs package bench bench-tracking bench-photographs recordings assets pictures cast clean
+.PHONY: demo setup test test-all test-rest campaign campaign-tenth check check-format check-lint check-licences links check-floors check-types licences audit docs package bench bench-tracking bench-photographs recordings assets pictures cast clean
 
 demo: .venv/ready  ## set everything up and play
 	$(BIN)/cubeling demo
@@ -47,8 +47,8 @@ campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.drawing --minutes 1
 	$(BIN)/python -m tests.campaigns.files --files 1e4
 
-# pre-commit runs the four parts, each where it has something to check.
-check: check-format check-lint check-floors check-types  ## check formatting, lint, docstrings, the floors of the rooms, and types
+# pre-commit runs the parts, each where it has something to check.
+check: check-format check-lint check-licences check-floors check-types  ## check formatting, lint, docstrings, licences, the floors of the rooms, and types
 
 check-format: .venv/ready-dev
 	$(BIN)/ruff format --check .
@@ -56,6 +56,9 @@ check-format: .venv/ready-dev
 check-lint: .venv/ready-dev
 	$(BIN)/ruff check .
 	$(BIN)/python -m tools.docstring_check
+
+check-licences: .venv/ready-dev
+	$(BIN)/python -m tools.licences --check
 
 links: .venv/ready-dev
 	$(BIN)/python -m tools.package_links
@@ -65,6 +68,15 @@ check-floors: links
 
 check-types: links
 	$(BIN)/mypy
+
+# In an environment of its own: it needs every extra, and tests must not depend on what they add.
+licences:  ## write the table of docs/licences.md again
+	$(PYTHON) -m venv build/licences
+	build/licences/$(notdir $(BIN))/python -m pip install --quiet --constraint constraints.txt --editable ".[align,plots,sound,voice]"
+	build/licences/$(notdir $(BIN))/python -m tools.licences
+
+audit: .venv/ready-audit  ## ask which versions in constraints.txt have known vulnerabilities
+	$(BIN)/python -m tools.audit
 
 docs: .venv/ready-dev  ## make the site of the guides and of the public names in build/docs, and check its links
 	$(BIN)/python -m tools.site
@@ -77,6 +89,7 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.line
 	$(BIN)/python -m tests.bench.accuracy
 	$(BIN)/python -m tests.bench.codecs
+	$(BIN)/python -m tests.bench.video_codecs
 	$(BIN)/python -m tests.bench.animation
 	$(BIN)/python -m tests.bench.crowd
 	$(BIN)/python -m tests.bench.mocap
@@ -159,6 +172,10 @@ cast: .venv/ready  ## draw the bundled characters from all sides, and their clip
 
 .venv/ready-dev: .venv/ready
 	$(INSTALL) --editable ".[dev]"
+	@touch $@
+
+.venv/ready-audit: .venv/ready-dev
+	$(INSTALL) --editable ".[audit]"
 	@touch $@
 
 clean:

@@ -1,14 +1,16 @@
 """`python -m tools.package_check`: build what is published, and try it as a stranger would.
 
-Builds the source archive and from it the wheel, and looks at what is in the wheel. Installs it into
-a fresh environment beside Robot Framework, whose package is named `robot` as one of our rooms is,
-and, from an empty folder, examines the computer, plays a bundled session, and plays the scenario
-that docs/your-own-scenario.md builds. It asks the package index, as the tests do not.
+Builds the source archive and from it the wheel, and looks at what is in both: the archive is a copy
+of the repository. Installs the wheel into a fresh environment beside Robot Framework, whose package
+is named `robot` as one of our rooms is, and, from an empty folder, examines the computer, plays a
+bundled session, and plays the scenario that docs/your-own-scenario.md builds. It asks the package
+index, as the tests do not.
 """
 
 import re
 import subprocess
 import sys
+import tarfile
 import tempfile
 import venv
 import zipfile
@@ -29,8 +31,9 @@ def main() -> int:
     """Build, install and try the package; return 1 if something is not as it should be."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        wheel = build(folder / "dist")
-        problems = problems_of(wheel)
+        archive, wheel = build(folder / "dist")
+        problems = problems_of_archive(archive)
+        problems += problems_of(wheel)
         problems += try_out(wheel, folder)
     for problem in problems:
         OUT.out(f"✗ {problem}")
@@ -38,11 +41,24 @@ def main() -> int:
     return bool(problems)
 
 
-def build(folder: Path) -> Path:
-    """Build the source archive and the wheel; return the wheel."""
+def build(folder: Path) -> tuple[Path, Path]:
+    """Build the source archive and from it the wheel; return both."""
     _run(sys.executable, "-m", "build", "--outdir", str(folder), str(ROOT), folder=ROOT)
-    (wheel,) = folder.glob("*.whl")
-    return wheel
+    (archive,), (wheel,) = folder.glob("*.tar.gz"), folder.glob("*.whl")
+    return archive, wheel
+
+
+def problems_of_archive(archive: Path) -> list[str]:
+    """Return what is wrong with the content of a source archive: all tracked files are in it."""
+    with tarfile.open(archive) as file:
+        names = {Path(*Path(each.name).parts[1:]) for each in file.getmembers() if each.isfile()}
+    made = {name for name in names if name.parts[0].endswith(".egg-info")}
+    made |= {Path("PKG-INFO"), Path("setup.cfg")}
+    tracked = _tracked_files()
+    OUT.out(f"the source archive holds {len(names & tracked)} of {len(tracked)} tracked files")
+    problems = [f"the source archive leaves out {each}" for each in sorted(tracked - names)]
+    beside = sorted(names - made - tracked)
+    return problems + [f"the source archive holds {each}, which is not tracked" for each in beside]
 
 
 def problems_of(wheel: Path) -> list[str]:
@@ -55,10 +71,7 @@ def problems_of(wheel: Path) -> list[str]:
     beside = {each for each in tops if not each.endswith(".dist-info")} - {PACKAGE}
     problems = [f"it puts {each} beside {PACKAGE}" for each in beside]
     problems += [f"the room {each} is missing" for each in {*ROOMS} - inside]
-    tracked = subprocess.run(
-        ["git", "ls-files", *ROOMS], cwd=ROOT, capture_output=True, text=True, check=True
-    ).stdout
-    left_out = {PACKAGE / Path(each) for each in tracked.splitlines()} - names
+    left_out = {PACKAGE / each for each in _tracked_files(*ROOMS)} - names
     return problems + [f"it leaves out {each}" for each in sorted(left_out) if each.suffix != ".md"]
 
 
@@ -91,6 +104,12 @@ def try_out(wheel: Path, folder: Path) -> list[str]:
         else:
             OUT.out(f"✓ {claim}")
     return problems
+
+
+def _tracked_files(*folders: str) -> set[Path]:
+    """Return the files of the repository, or of some folders of it."""
+    listed = _run("git", "ls-files", *folders, folder=ROOT)
+    return {Path(each) for each in listed.splitlines()}
 
 
 def _greeter(folder: Path) -> Path:

@@ -140,10 +140,11 @@ def write_video(
     view: View,
     subtitles: bool,
     blood: float = 0.0,
+    codec: str = "auto",
 ) -> None:
     """Write a recording as a video with sound.
 
-    `blood` is that in the skin of the face, as in `SceneCharacter`.
+    `blood` is that in the skin of the face, as in `SceneCharacter`; `codec` is as in `VideoFile`.
 
     Raises
     ------
@@ -167,6 +168,7 @@ def write_video(
         blood=blood,
         sound=sound_blocks(recording.sound()),
         draw_over=subtitle_over if subtitles else None,
+        codec=codec,
     )
 
 

@@ -10,7 +10,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from cubeling.app.commands.output import OverwriteOption, chosen_output
+from cubeling.app.commands.output import OverwriteOption, VideoCodecOption, chosen_output
 from cubeling.app.commands.session.play import VoiceOption
 from cubeling.app.commands.session.preference_options import emotion_of, size_of
 from cubeling.app.counted import quantity
@@ -18,7 +18,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.output_path import check_output
 from cubeling.app.speaking.view import View
 from cubeling.app.ui.display import has_display
-from cubeling.app.ui.output_formats import VIDEO_FORMATS
+from cubeling.app.ui.output_formats import VIDEO_FORMATS, check_video_codec
 from cubeling.files import write_whole
 
 if TYPE_CHECKING:
@@ -49,6 +49,7 @@ def behave(
         typer.Option("--output", "-o", help="A video, .bvh or .bap file; default: behaviour.mp4."),
     ] = None,
     overwrite: OverwriteOption = False,
+    codec: VideoCodecOption = "auto",
     together: Annotated[
         bool, typer.Option("--together", help="Give all blocks at the start: composition counts.")
     ] = False,
@@ -120,6 +121,7 @@ def behave(
     if not files:
         raise AppError("there is nothing to perform: name a file of BML or FML, or --serve PORT")
     path = chosen_output(output, "behaviour.mp4", "behaviour", OUTPUT_SUFFIXES, overwrite)
+    check_video_codec(path, codec)
     if feedback is not None:
         check_output(feedback, "feedback", (".xml",), overwrite=overwrite)
     documents = [read_document(file) for file in files]
@@ -129,7 +131,7 @@ def behave(
         with console.status("performing"):
             player = BehaviourPlayer(body, lines, options)
             done = record_behaviour(player, documents, rate, together=together, name=path.stem)
-            _write(path, body, done, pixels, view, subtitles, blood_of(player.emotion))
+            _write(path, body, done, pixels, view, subtitles, blood_of(player.emotion), codec)
     finally:
         lines.close()
     if feedback is not None:
@@ -194,6 +196,7 @@ def _write(
     view: View,
     subtitles: bool,
     blood: float,
+    codec: str,
 ) -> None:
     from cubeling.app.behaving.recording import write_video
     from cubeling.characters.model import save_bap, save_bvh
@@ -204,7 +207,16 @@ def _write(
         case ".bap":
             save_bap(done.clip, body.skeleton, body.anatomy, path)
         case _:
-            write_video(path, body, done, size=size, view=view, subtitles=subtitles, blood=blood)
+            write_video(
+                path,
+                body,
+                done,
+                size=size,
+                view=view,
+                subtitles=subtitles,
+                blood=blood,
+                codec=codec,
+            )
 
 
 def _report(console: Console, path: Path, done: BehaviourRecording, problem: str) -> None:

@@ -9,9 +9,15 @@ import typer
 
 from cubeling.app.errors import AppError
 from cubeling.app.output_path import check_output
+from cubeling.app.ui.output_formats import ENCODERS
 
 OverwriteOption = Annotated[
     bool, typer.Option("--overwrite", help="Overwrite the file of --output if it exists.")
+]
+
+VideoCodecOption = Annotated[
+    str,
+    typer.Option("--codec", help=f"What encodes a video: auto, {', '.join(list(ENCODERS)[:-1])}."),
 ]
 
 PLOT_SUFFIXES = (".svg", ".pdf", ".png")

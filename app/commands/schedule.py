@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,10 +10,10 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from cubeling.app.commands.output import OverwriteOption, chosen_output
+from cubeling.app.commands.output import OverwriteOption, VideoCodecOption, chosen_output
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
-from cubeling.app.ui.output_formats import VIDEO_FORMATS
+from cubeling.app.ui.output_formats import VIDEO_FORMATS, check_video_codec
 from cubeling.files import FileKind
 
 if TYPE_CHECKING:
@@ -42,6 +41,7 @@ def schedule(
         typer.Option("--output", "-o", help="A .bvh, .glb or video file; default: schedule.bvh."),
     ] = None,
     overwrite: OverwriteOption = False,
+    codec: VideoCodecOption = "auto",
     character: Annotated[
         str, typer.Option(help="Who plays it: bundled, or a .glb file.")
     ] = "human",
@@ -62,13 +62,14 @@ def schedule(
     """
     suffixes = (".bvh", ".glb", *VIDEO_FORMATS)
     target = chosen_output(output, "schedule.bvh", "schedule", suffixes, overwrite)
+    check_video_codec(target, codec)
     from cubeling.characters.motion import bake
 
     body = _body(character)
     found = read_schedule(file, body, seed)
     length = seconds or _length(file, found)
     clip = bake(found, rate, length, file.stem)
-    _writer(target)(clip, body, target)
+    _write(clip, body, target, codec)
     Console(highlight=False).print(
         f"[bold]{escape(str(target))}[/] is written: {quantity(len(clip), 'frame')}, "
         f"{length:.2f} s",
@@ -155,23 +156,16 @@ def _idle(file: Path, name: str, body: Character, seed: int) -> Motion:
     return motion(seed)
 
 
-def _writer(target: Path) -> Callable[[Clip, Character, Path], None]:
-    """Return what writes a clip of a character to a kind of file."""
-    writers = {".bvh": _write_bvh, ".glb": _write_glb}
-    return writers.get(target.suffix.lower(), _write_video)
+def _write(clip: Clip, body: Character, target: Path, codec: str) -> None:
+    """Write a clip of a character to a file; its suffix says which kind."""
+    match target.suffix.lower():
+        case ".bvh":
+            from cubeling.characters.model import save_bvh
 
+            save_bvh(clip, body.skeleton, body.anatomy, target)
+        case ".glb":
+            replace(body, clips={clip.name: clip}).save(target)
+        case _:
+            from cubeling.app.ui.clip_video import write_clip
 
-def _write_bvh(clip: Clip, body: Character, target: Path) -> None:
-    from cubeling.characters.model import save_bvh
-
-    save_bvh(clip, body.skeleton, body.anatomy, target)
-
-
-def _write_glb(clip: Clip, body: Character, target: Path) -> None:
-    replace(body, clips={clip.name: clip}).save(target)
-
-
-def _write_video(clip: Clip, body: Character, target: Path) -> None:
-    from cubeling.app.ui.clip_video import write_clip
-
-    write_clip(target, body, clip, VIDEO_SIZE)
+            write_clip(target, body, clip, VIDEO_SIZE, codec=codec)

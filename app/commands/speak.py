@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from cubeling.affect import Emotion
-from cubeling.app.commands.output import OverwriteOption, chosen_output
+from cubeling.app.commands.output import OverwriteOption, VideoCodecOption, chosen_output
 from cubeling.app.commands.session.play import VoiceOption
 from cubeling.app.commands.session.preference_options import emotion_of, size_of
 from cubeling.app.commands.speech_options import ProfileOption, SettingsOption, profile_of
@@ -20,7 +20,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.output_path import check_output
 from cubeling.app.speaking.view import View
 from cubeling.app.ui.display import has_display
-from cubeling.app.ui.output_formats import VIDEO_FORMATS
+from cubeling.app.ui.output_formats import VIDEO_FORMATS, check_video_codec
 
 if TYPE_CHECKING:
     from cubeling.characters import Character
@@ -38,6 +38,7 @@ def speak(
         typer.Option("--output", "-o", help="A video, a .wav or a .bvh file; default: speech.mp4."),
     ] = None,
     overwrite: OverwriteOption = False,
+    codec: VideoCodecOption = "auto",
     file: Annotated[Path | None, typer.Option(help="A file with the text.")] = None,
     audio: Annotated[
         Path | None, typer.Option(help="A recording of the speech, instead of the voice.")
@@ -98,6 +99,7 @@ def speak(
         speak_live(body, size=pixels, view=view, emotion=feels, profile=how)
         return
     target = chosen_output(output, "speech.mp4", "speech", OUTPUT_SUFFIXES, overwrite)
+    check_video_codec(target, codec)
     tagged = TaggedText.read(text) if file is None else TaggedText.load(file)
     if not tagged.text.strip() and not tagged.spans and audio is None:
         raise AppError("there is nothing to say: give a text, --file, --audio or --live")
@@ -127,6 +129,7 @@ def speak(
                     view=view,
                     subtitles=subtitles,
                     blood=blood_of(feels),
+                    codec=codec,
                 )
     console.print(
         f"[bold]{escape(str(target))}[/] is written: {speech.duration:.1f} s of speech, "

@@ -16,7 +16,12 @@ CAME_IN = ("mark ", "camera ", "paused", "resumed")
 
 
 def compute_channels(
-    path: Path, complete: Path, progress: Progress | None = None, *, salvage: bool = False
+    path: Path,
+    complete: Path,
+    progress: Progress | None = None,
+    *,
+    salvage: bool = False,
+    appearance: bool = False,
 ) -> None:
     """Write a session with the frames and inputs of another one, and all that follows from them.
 
@@ -32,6 +37,8 @@ def compute_channels(
         Called after every frame.
     salvage
         Whether to take the intact part of a session that was cut off, instead of refusing it.
+    appearance
+        Whether to measure what the pictures tell of hand, light and softness too.
 
     Raises
     ------
@@ -42,7 +49,13 @@ def compute_channels(
     """
     with ExitStack() as closing:
         replayed = closing.enter_context(SessionFile(path, salvage=salvage))
-        options = replace(replayed.info.options, record=complete, pictures=False, salvage=salvage)
+        options = replace(
+            replayed.info.options,
+            record=complete,
+            pictures=False,
+            salvage=salvage,
+            appearance=appearance,
+        )
         came_in: defaultdict[float, list[str]] = defaultdict(list)
         for time, event in replayed.events:
             if event.startswith(CAME_IN):

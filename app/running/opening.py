@@ -230,7 +230,14 @@ def _open_screen(
         virtual_robot = VirtualRobot(context, virtual_robot_side(source.size[1]))
         closing.callback(virtual_robot.close)
         samples = None if sound is None else sound.mixer.render
-        output = OutputFile(options.output, source.size, source.rate, virtual_robot, samples)
+        output = OutputFile(
+            options.output,
+            source.size,
+            source.rate,
+            virtual_robot,
+            samples,
+            options.video_codec,
+        )
         return closing.enter_context(output), context
     from cubeling.app.ui.playback.timeline import STRIP_HEIGHT
     from cubeling.app.ui.window import Window  # whose libraries a computer without display lacks

@@ -3,7 +3,7 @@
 from cubeling.app.errors import AppError
 from cubeling.app.output_path import check_output
 from cubeling.app.session import SessionOptions, check_codec
-from cubeling.app.ui.output_formats import OUTPUT_SUFFIXES
+from cubeling.app.ui.output_formats import OUTPUT_SUFFIXES, check_video_codec
 
 
 def check_part(options: SessionOptions) -> None:
@@ -24,6 +24,7 @@ def check_output_paths(options: SessionOptions) -> None:
         check_output(options.output, "video", OUTPUT_SUFFIXES, overwrite=options.overwrite)
         if not options.pictures:
             raise AppError(f"without pictures there is nothing to write to '{options.output}'")
+        check_video_codec(options.output, options.video_codec)
     if options.record is not None:
         check_output(options.record, "recording", (".mcap",), overwrite=False, remedy="remove it")
-        check_codec(options.codec)
+    check_codec(options.codec)  # a key may record too

@@ -89,6 +89,10 @@ class SessionOptions:
     codec: str = "auto"
     """How a recording stores the camera's pictures: one of `CODECS`."""
 
+    video_codec: str = "auto"
+    """What encodes the pictures of `output`, as `app.ui.output_formats.ENCODERS` names it; "auto"
+    for the usual one of its kind of video."""
+
     output: Path | None = None
     """The video, animation or contact sheet to write; None to open a window."""
 

@@ -124,10 +124,11 @@ def write_video(
     view: View,
     subtitles: bool,
     blood: float = 0.0,
+    codec: str = "auto",
 ) -> None:
     """Write the clip of a speech as a video with sound.
 
-    `blood` is that in the skin of the face, as in `SceneCharacter`.
+    `blood` is that in the skin of the face, as in `SceneCharacter`; `codec` is as in `VideoFile`.
 
     Raises
     ------
@@ -152,6 +153,7 @@ def write_video(
         blood=blood,
         sound=sound_track(line),
         draw_over=subtitle_over if subtitles else None,
+        codec=codec,
     )
 
 

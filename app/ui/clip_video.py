@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from cubeling.app.ui.output_formats import AUTO_CODEC
 from cubeling.app.ui.video_file import VideoFile
 from cubeling.characters import Character, Clip, Pose
 from cubeling.characters.rendering import PortraitRenderer, create_context
@@ -29,6 +30,7 @@ def write_clip(
     blood: float = 0.0,
     sound: Callable[[int], NDArray[np.float32]] | None = None,
     draw_over: Callable[[NDArray[np.uint8], float], None] | None = None,
+    codec: str = AUTO_CODEC,
 ) -> None:
     """Write a clip as a video.
 
@@ -46,6 +48,8 @@ def write_clip(
         What is heard, as `VideoFile` takes it; None for a silent video.
     draw_over
         Draws over a picture of a time [s], such as subtitles.
+    codec
+        What encodes the pictures, as in `VideoFile`.
 
     Raises
     ------
@@ -57,7 +61,7 @@ def write_clip(
     context = create_context()
     renderer = PortraitRenderer(context, size)
     try:
-        with VideoFile(path, size, clip.rate, sound) as video:
+        with VideoFile(path, size, clip.rate, sound, codec) as video:
             for number in range(len(clip)):
                 pose, now = clip.poses[number], number / clip.rate
                 picture = renderer.portrait(

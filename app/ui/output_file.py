@@ -14,7 +14,7 @@ from cubeling.app.ui.cards.layout import CardLayout
 from cubeling.app.ui.cards.overlay import overlay
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
 from cubeling.app.ui.contact_sheets import frame_sheet, save
-from cubeling.app.ui.output_formats import SHEET_SUFFIX
+from cubeling.app.ui.output_formats import AUTO_CODEC, SHEET_SUFFIX
 from cubeling.app.ui.playback.cards import draw_ending
 from cubeling.app.ui.playback.status import SessionStatus
 from cubeling.app.ui.screen import NullScreen
@@ -54,6 +54,8 @@ class OutputFile(NullScreen):
         Shown if there is no real robot; None to draw a face instead. The caller closes it.
     sound
         What is heard in a video, as `VideoFile` takes it; None for a silent one.
+    codec
+        What encodes the pictures of a video, as `VideoFile` takes it.
 
     Raises
     ------
@@ -68,13 +70,17 @@ class OutputFile(NullScreen):
         rate: float,
         virtual_robot: VirtualRobot | None = None,
         sound: AudioSource | None = None,
+        codec: str = AUTO_CODEC,
     ) -> None:
         self._virtual_robot = virtual_robot
         self._layout = CardLayout()
         self._last: tuple[NDArray[np.uint8], float] | None = None
         self._moving = path.suffix.lower() != SHEET_SUFFIX
         self._writer: PictureWriter
-        self._writer = VideoFile(path, size, rate, sound) if self._moving else FrameSheet(path)
+        if self._moving:
+            self._writer = VideoFile(path, size, rate, sound, codec)
+        else:
+            self._writer = FrameSheet(path)
 
     def __enter__(self) -> Self:
         return self

@@ -2,6 +2,24 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
+
+from cubeling.app.errors import AppError
+
+AUTO_CODEC = "auto"
+"""Stands for the first encoder of a kind of video that FFmpeg has."""
+
+# Each gives about the same quality for this content, and leaves processor time for rendering.
+ENCODERS: Mapping[str, Mapping[str, str]] = {
+    "libx264": {"preset": "veryfast", "crf": "19"},
+    "libx265": {"preset": "veryfast", "crf": "22", "x265-params": "log-level=error"},
+    "libsvtav1": {"preset": "9", "crf": "28"},
+    "libvpx-vp9": {"deadline": "realtime", "cpu-used": "7", "row-mt": "1", "crf": "28", "b": "0"},
+    "libvpx": {"deadline": "realtime", "cpu-used": "7", "crf": "8", "b": "8M"},
+    "mpeg4": {"flags": "+qscale", "global_quality": "354"},  # quantizer 3, times FF_QP2LAMBDA
+    "gif": {},
+}
+"""The encoders of pictures by FFmpeg's names, with their options. Two are GPL: docs/licences.md."""
 
 
 @dataclass(frozen=True)
@@ -11,11 +29,8 @@ class VideoFileFormat:
     container: str
     """FFmpeg's name of the file format."""
 
-    codec: str
-    """FFmpeg's name of the encoder."""
-
-    options: Mapping[str, str]
-    """Options of the encoder."""
+    encoders: tuple[str, ...]
+    """Those of `ENCODERS` whose pictures it takes; the usual one first."""
 
     container_options: Mapping[str, str] = field(default_factory=dict)
     """Options of the file format."""
@@ -36,17 +51,15 @@ class VideoFileFormat:
     """Wider pictures are scaled down to this width [px]."""
 
 
-# Good quality for this content; veryfast leaves processor time for rendering.
-_X264 = {"preset": "veryfast", "crf": "19"}
-_VP9 = {"deadline": "realtime", "cpu-used": "7", "row-mt": "1", "crf": "28", "b": "0"}
+_MP4_ENCODERS = ("libx264", "libx265", "libsvtav1", "libvpx-vp9", "mpeg4")
 
 VIDEO_FORMATS = {
-    ".mp4": VideoFileFormat("mp4", "libx264", _X264, {"movflags": "faststart"}, audio_codec="aac"),
-    ".mkv": VideoFileFormat("matroska", "libx264", _X264, audio_codec="libopus"),
-    ".webm": VideoFileFormat("webm", "libvpx-vp9", _VP9, audio_codec="libopus"),
+    ".mp4": VideoFileFormat("mp4", _MP4_ENCODERS, {"movflags": "faststart"}, audio_codec="aac"),
+    ".mkv": VideoFileFormat("matroska", (*_MP4_ENCODERS, "libvpx"), audio_codec="libopus"),
+    ".webm": VideoFileFormat("webm", ("libvpx-vp9", "libsvtav1", "libvpx"), audio_codec="libopus"),
     # A GIF hardly compresses: at full size and rate, a second of it has several megabytes.
     ".gif": VideoFileFormat(
-        "gif", "gif", {}, pixel_format="pal8", ticks_per_s=100, interval=0.1, max_width=480
+        "gif", ("gif",), pixel_format="pal8", ticks_per_s=100, interval=0.1, max_width=480
     ),
 }
 """The kinds of video by the suffix of the file."""
@@ -56,3 +69,17 @@ SHEET_SUFFIX = ".png"
 
 OUTPUT_SUFFIXES = (*VIDEO_FORMATS, SHEET_SUFFIX)
 """Suffixes of the files that a session can be written to."""
+
+
+def check_video_codec(path: Path, codec: str) -> None:
+    """Raise AppError if a file cannot hold the pictures of an encoder; "auto" fits every file."""
+    if codec == AUTO_CODEC:
+        return
+    suffix = path.suffix.lower()
+    if suffix not in VIDEO_FORMATS:
+        raise AppError(f"{path.name} is no video: leave out --codec")
+    known = VIDEO_FORMATS[suffix].encoders
+    if codec not in known:
+        raise AppError(
+            f"a {suffix} video cannot hold '{codec}' pictures: choose one of {', '.join(known)}"
+        )

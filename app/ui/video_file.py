@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from cubeling.app.errors import AppError
 from cubeling.app.sound import SAMPLE_RATE
-from cubeling.app.ui.output_formats import VIDEO_FORMATS
+from cubeling.app.ui.output_formats import AUTO_CODEC, ENCODERS, VIDEO_FORMATS
 
 AudioSource = Callable[[int], NDArray[np.float32]]
 """Returns the next samples of stereo sound, (count, 2)."""
@@ -48,11 +48,14 @@ class VideoFile:
     sound
         What is heard with the pictures: before a picture is written, it is asked for the samples
         up to that picture. None for a silent video; a GIF is always silent.
+    codec
+        FFmpeg's name of the encoder, one of `VideoFileFormat.encoders`; "auto" for the first of
+        them that FFmpeg has.
 
     Raises
     ------
     AppError
-        The file cannot be written.
+        The file cannot be written, or FFmpeg lacks the encoder.
     """
 
     def __init__(
@@ -61,7 +64,9 @@ class VideoFile:
         size: tuple[int, int],
         rate: float,
         sound: AudioSource | None = None,
+        codec: str = AUTO_CODEC,
     ) -> None:
+        encoder = _available_encoder(path, codec)
         self._path = path
         self._partial = path.with_name(path.name + ".partial")
         self._format = VIDEO_FORMATS[path.suffix.lower()]
@@ -79,9 +84,11 @@ class VideoFile:
         except OSError as error:
             raise AppError(f"cannot write the video '{path}': {error.strerror}") from error
         stream = self._file.add_stream(
-            self._format.codec, rate=Fraction(round(rate)), options=dict(self._format.options)
+            encoder, rate=Fraction(round(rate)), options=dict(ENCODERS[encoder])
         )
         assert isinstance(stream, av.VideoStream)
+        if encoder == "libx265" and self._format.container == "mp4":
+            stream.codec_context.codec_tag = "hvc1"  # Apple's players open no other kind of HEVC
         scale = min(1.0, self._format.max_width / size[0])
         stream.width, stream.height = (2 * int(scale * side / 2) for side in size)
         stream.pix_fmt = self._format.pixel_format
@@ -166,6 +173,28 @@ class VideoFile:
 
     def _write_error(self, error: OSError) -> AppError:
         return AppError(f"writing the video '{self._path}' failed: {error.strerror}")
+
+
+def _available_encoder(path: Path, codec: str) -> str:
+    """Return the encoder of a video's pictures; AppError if FFmpeg lacks it."""
+    encoders = VIDEO_FORMATS[path.suffix.lower()].encoders
+    available = [name for name in encoders if _is_available(name)]
+    chosen = available[:1] if codec == AUTO_CODEC else [codec]
+    if not chosen or chosen[0] not in available:
+        lacking = ", ".join(chosen or encoders)
+        instead = f"; it has {', '.join(available)}" if available else ""
+        raise AppError(f"cannot write the video '{path}': PyAV lacks {lacking}{instead}")
+    if chosen == ["libsvtav1"]:
+        os.environ.setdefault("SVT_LOG", "1")  # errors only: it prints its settings otherwise
+    return chosen[0]
+
+
+def _is_available(encoder: str) -> bool:
+    """Return whether the FFmpeg of PyAV's wheel has an encoder."""
+    try:
+        return av.Codec(encoder, "w").name == encoder  # it finds decoders' names too, such as h264
+    except ValueError:
+        return False
 
 
 class AudioTrack:

@@ -49,7 +49,7 @@ from cubeling.characters.synthesis.idle.recordings import (
     find_rests,
     read_standing,
 )
-from cubeling.characters.synthesis.transitions.comparison import bootstrap_interval
+from tests.bench.intervals import bootstrap_interval
 
 Array = NDArray[np.float64]
 

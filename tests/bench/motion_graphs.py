@@ -36,11 +36,11 @@ from cubeling.characters.synthesis.joint_weights import fit_weights
 from cubeling.characters.synthesis.library import MotionLibrary
 from cubeling.characters.synthesis.transitions.comparison import (
     Comparison,
-    bootstrap_interval,
     common_requests,
 )
 from cubeling.characters.synthesis.transitions.evaluation import graph_requests, merge_answers
 from cubeling.characters.synthesis.transitions.progressive import SearchSettings, TransitionPlanner
+from tests.bench.intervals import bootstrap_interval
 
 CMU = Path(__file__).parents[3] / "shared" / "data" / "cmu-mocap"
 FRAMES, MAX_GRAPH_S, MAX_MEMORY_MB, MAX_QUERY_MS = 6600, 10.0, 500.0, 5.0

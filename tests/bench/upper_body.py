@@ -29,7 +29,7 @@ from cubeling.characters.body.self_collision import SafeRanges
 from cubeling.characters.control.controllers.recordings import read_motions
 from cubeling.characters.skeleton.pose import Array
 from cubeling.characters.synthesis.idle.posture_space import PostureVectors
-from cubeling.characters.synthesis.transitions.comparison import bootstrap_interval
+from tests.bench.intervals import bootstrap_interval
 
 DATA = Path(__file__).parents[3] / "shared" / "data"
 GESTURES = ("wave", "cheer", "jump", "nod", "shake")

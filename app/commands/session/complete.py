@@ -9,10 +9,13 @@ from rich.console import Console
 
 
 @contextmanager
-def complete_session(path: Path, *, salvage: bool = False) -> Iterator[Path]:
+def complete_session(
+    path: Path, *, salvage: bool = False, appearance: bool = False
+) -> Iterator[Path]:
     """Yield a session with every channel: the file itself, or a temporary one if it lacks some.
 
-    What it lacks is computed first, with a progress bar on standard error.
+    What it lacks is computed first, with a progress bar on standard error; what its pictures tell
+    of hand, light and softness only with `appearance`, as it takes longer.
 
     Raises
     ------
@@ -35,5 +38,5 @@ def complete_session(path: Path, *, salvage: bool = False) -> Iterator[Path]:
     with TemporaryDirectory(prefix="cubeling-") as folder:
         complete = Path(folder) / f"{path.stem}.mcap"
         with show_progress(f"computing {path.name}", duration, Console(stderr=True)) as progress:
-            compute_channels(path, complete, progress, salvage=salvage)
+            compute_channels(path, complete, progress, salvage=salvage, appearance=appearance)
         yield complete

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
-from cubeling.app.commands.output import OverwriteOption
+from cubeling.app.commands.output import OverwriteOption, VideoCodecOption
 from cubeling.app.commands.session.part import EndOption, LoopOption, StartOption
 from cubeling.app.commands.session.play import (
     DEFAULT_CAMERA,
@@ -43,6 +43,7 @@ def demo(
     ] = False,
     output: OutputOption = None,
     overwrite: OverwriteOption = False,
+    codec: VideoCodecOption = "auto",
     personality: PersonalityOption = None,
     start: StartOption = 0.0,
     end: EndOption = None,
@@ -77,6 +78,7 @@ def demo(
             _of_recording(part),
             output=(output or DEFAULT_VIDEO).resolve(),
             overwrite=overwrite or output is None,
+            video_codec=codec,
         )
         render(preferences.open(options)[0], console)
         return

@@ -56,7 +56,10 @@ def export(
     with ExitStack() as closing:
         complete = [
             replace(
-                each, complete=closing.enter_context(complete_session(each.path, salvage=salvage))
+                each,
+                complete=closing.enter_context(
+                    complete_session(each.path, salvage=salvage, appearance=True)
+                ),
             )
             for each in exported
         ]
@@ -64,7 +67,7 @@ def export(
         rows = write_tables(complete, output)
     console = Console(highlight=False, soft_wrap=True)
     for name, count in rows.items():
-        console.print(f"{name:10} {count:8} {'row' if count == 1 else 'rows'}")
+        console.print(f"{name:11} {count:8} {'row' if count == 1 else 'rows'}")
     console.print(f"[bold]{escape(str(output))}[/] holds the tables as .csv and .jsonl")
 
 

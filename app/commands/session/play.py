@@ -21,6 +21,7 @@ from cubeling.app.pipeline.choices import (
 from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
 from cubeling.app.scenarios import check_scenario, scenario_names, scenario_summary
 from cubeling.app.ui.display import has_display
+from cubeling.app.ui.output_formats import AUTO_CODEC, ENCODERS
 from cubeling.characters import CONTROLLER_CHOICES, check_controller
 from cubeling.characters.rendering import QUALITIES
 from cubeling.robot.network import DEFAULT_SITE
@@ -154,7 +155,8 @@ CodecOption = Annotated[
     str,
     typer.Option(
         help="How --record stores pictures: auto (the camera's own JPEG, else h264), jpeg, or h264 "
-        "(smaller)."
+        "(smaller). Or what encodes the video of --output: "
+        f"{', '.join(list(ENCODERS)[:-1])}."
     ),
 ]
 FolderOption = Annotated[
@@ -181,6 +183,12 @@ SoundsOption = Annotated[
     Path | None,
     typer.Option(help="A folder of .wav files instead of our sounds; see cubeling sounds."),
 ]
+
+
+def codecs_of(codec: str, record: Path | None, output: Path | None) -> tuple[str, str]:
+    """Return how a recording and a video store pictures: what --codec names is known to one."""
+    of_video = output is not None and (codec in ENCODERS or record is None)
+    return (AUTO_CODEC, codec) if of_video else (codec, AUTO_CODEC)
 
 
 @with_preferences
@@ -238,6 +246,7 @@ def play(
     from cubeling.app.running.option_checks import check_output_paths
     from cubeling.app.session import SessionOptions
 
+    record_codec, video_codec = codecs_of(codec, record, output)
     options = SessionOptions(
         scenario=scenario,
         source=source,
@@ -261,7 +270,8 @@ def play(
         robot=robot,
         robot_settings=robot_settings,
         record=record,
-        codec=codec,
+        codec=record_codec,
+        video_codec=video_codec,
         output=output,
         overwrite=overwrite,
         pictures=pictures,

@@ -29,6 +29,7 @@ from cubeling.app.commands.session.play import (
     RobotOption,
     RobotSettingsOption,
     SoundsOption,
+    codecs_of,
 )
 from cubeling.app.commands.session.preference_options import GivenPreferences, with_preferences
 from cubeling.app.errors import AppError
@@ -114,13 +115,15 @@ def replay(
         check_stage(stage)
         if inside:
             inside_of(inside)
+        record_codec, video_codec = codecs_of(codec, record, output)
         chosen_realism, chosen_quality = realism_of(realism), checked_quality(quality)
         check_output_paths(
             SessionOptions(
                 scenario=scenario or "",
                 source=str(session),
                 record=record,
-                codec=codec,
+                codec=record_codec,
+                video_codec=video_codec,
                 output=output,
                 overwrite=overwrite,
             )
@@ -143,7 +146,8 @@ def replay(
             robot=robot,
             robot_settings=robot_settings,
             record=record,
-            codec=codec,
+            codec=record_codec,
+            video_codec=video_codec,
             output=output,
             overwrite=overwrite,
             pictures=pictures and not check and (output is not None or has_display()),

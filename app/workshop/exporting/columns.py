@@ -4,15 +4,16 @@ This is the one place that names them: files, data dictionary and docs/exporting
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.workshop.exporting.column import Column, Table, field, vector
+from cubeling.app.workshop.exporting.column import Cell, Column, Table, field, vector
 from cubeling.characters import CharacterCommand, PosedCharacter
 from cubeling.characters.motion import rotations
 from cubeling.tracking import CubeState
+from cubeling.tracking.appearance import Appearance, HandMask
 
 
 def _cube_place(state: CubeState) -> NDArray[np.float64] | None:
@@ -23,6 +24,20 @@ def _cube_rotation(state: CubeState) -> NDArray[np.float64] | None:
     if state.camera_from_cube is None:
         return None
     return rotations.from_matrix(state.camera_from_cube[:3, :3])
+
+
+def _of_hand(value: Callable[[HandMask], Cell]) -> Callable[[Appearance], Cell]:
+    """Return what takes a cell from the hand; empty where there is none."""
+    return lambda seen: None if seen.hand is None else value(seen.hand)
+
+
+def _covered(hand: HandMask) -> float:
+    return float(hand.share.sum()) / 255.0 * hand.scale**2
+
+
+def _of_light(name: str) -> Callable[[Appearance], Cell]:
+    """Return what takes a vector from the light; None until it was measured."""
+    return lambda seen: None if seen.light is None else getattr(seen.light, name)
 
 
 def _target(command: CharacterCommand) -> NDArray[np.float64] | None:
@@ -36,6 +51,8 @@ def _yaw(posed: PosedCharacter) -> float:
 
 CAMERA_AXES = ("to the right", "down", "forward")
 """Axes of the camera frame, as in OpenCV."""
+
+COLOURS = ("red", "green", "blue")
 
 CONTEXT_COLUMNS = (
     Column("session", "", "Name of the session's file, without its suffix", lambda row: row[0]),
@@ -127,6 +144,59 @@ EXPORT_TABLES = (
             field("placements", "", "How often the cube has been placed so far"),
             field("shaken", "", "1 in the frame in which a shake is recognised"),
             field("gestures", "", "Gestures recognised in this frame", nested=True),
+        ),
+    ),
+    Table(
+        "appearances",
+        "/picture/appearance",
+        (
+            Column("hand", "", "1 if a hand is in front of the cube",
+                   lambda seen: seen.hand is not None),
+            Column("hand_x_px", "px", "Left edge of the part of the picture that the hand covers; "
+                   "as the next ones, empty without a hand", _of_hand(lambda hand: hand.x)),
+            Column("hand_y_px", "px", "Its upper edge", _of_hand(lambda hand: hand.y)),
+            Column("hand_width_px", "px", "Its width",
+                   _of_hand(lambda hand: hand.share.shape[1] * hand.scale)),
+            Column("hand_height_px", "px", "Its height",
+                   _of_hand(lambda hand: hand.share.shape[0] * hand.scale)),
+            Column("hand_area_px", "px²", "What the hand covers near the cube", _of_hand(_covered)),
+            *vector(
+                ("behind_x_m", "behind_y_m", "behind_z_m"),
+                "m",
+                [f"Nearest point of the cube that the hand hides, in the camera frame, {axis}"
+                 for axis in CAMERA_AXES],
+                _of_hand(lambda hand: hand.behind),
+            ),
+            *vector(
+                ("light_x", "light_y", "light_z"),
+                "",
+                [f"Unit vector towards the key light in the camera frame, {axis}; "
+                 "empty until it was measured" for axis in CAMERA_AXES],
+                _of_light("to_light"),
+            ),
+            *vector(
+                ("key_r", "key_g", "key_b"),
+                "",
+                [f"Irradiance of the key light, linear {colour}; 1 makes white just white"
+                 for colour in COLOURS],
+                _of_light("key"),
+            ),
+            *vector(
+                ("ambient_r", "ambient_g", "ambient_b"),
+                "",
+                [f"Irradiance from all around, linear {colour}" for colour in COLOURS],
+                _of_light("ambient"),
+            ),
+            field("light_certainty", "", "How well the direction of the light is known, 0 to 1",
+                   "light.certainty"),
+            field("blur_px", "px", "Standard deviation of the blur of sharp edges; as the next "
+                   "ones, empty until a still cube was measured", "softness.blur"),
+            field("noise", "", "Standard deviation of a pixel's noise, grey values of 0 to 255",
+                   "softness.noise"),
+            field("haze", "", "Share of the light of paper that glare adds to everything",
+                   "softness.haze"),
+            field("paper", "", "Light of the paper, linear; 1 is the brightest white",
+                   "softness.paper"),
         ),
     ),
     Table(

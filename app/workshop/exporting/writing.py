@@ -13,7 +13,7 @@ import numpy as np
 
 from cubeling.app.errors import AppError
 from cubeling.app.session import SessionInfo, messages, session_info
-from cubeling.app.session.encoding import MESSAGE_TYPES, decode
+from cubeling.app.session.encoding import CHANNEL_TYPES, decode
 from cubeling.app.workshop.exporting.column import Cell, Column, Table
 from cubeling.app.workshop.exporting.columns import (
     CONTEXT_COLUMNS,
@@ -104,7 +104,7 @@ def _table_rows(sessions: Sequence[ExportedSession], table: Table) -> Iterator[l
     for session in sessions:
         for topic, time, data in messages(session.complete or session.path, table.topic):
             try:
-                kind = MESSAGE_TYPES.get(topic)
+                kind = CHANNEL_TYPES.get(topic)
                 message = json.loads(data) if kind is None else decode(kind, data)
             except ValueError as error:
                 raise AppError(

@@ -129,6 +129,12 @@ def read_names(names: Sequence[str]) -> list[JointName]:
     >>> names = read_names(["LeftOver_Head", *(f"LeftOver_Foot_{n}" for n in "RABCD")])
     >>> names[0] == JointName("head"), names[1] == JointName("foot", "right")
     (True, True)
+    >>> [read_names([name])[0].side for name in ("mixamorig:LeftUpLeg", "lfemur", "FootR")]
+    ['left', 'left', 'right']
+    >>> read_names(["BackUpLeg.L"]) == [JointName("upleg", "left", hind=True)]
+    True
+    >>> read_names(["L_legUpper0001_bind_JNT"]) == [JointName("legupper", "left")]
+    True
     """
     pieces = _without_frame([list(_pieces(name)) for name in names])
     counts = Counter(word for words in pieces for word in set(words) if word not in SIDE_OF)
@@ -153,19 +159,6 @@ def _without_frame(pieces: list[list[str]]) -> list[tuple[str, ...]]:
                 if len(words) > 1 and words[end] == word:
                     del words[end]
     return [tuple(words) for words in pieces]
-
-
-def read_name(name: str) -> JointName:
-    """Return side and part that a joint's name encodes.
-
-    >>> read_name("mixamorig:LeftUpLeg").word, read_name("lfemur").side, read_name("FootR").side
-    ('upleg', 'left', 'right')
-    >>> read_name("BackUpLeg.L") == JointName("upleg", "left", hind=True)
-    True
-    >>> read_name("L_legUpper0001_bind_JNT") == JointName("legupper", "left")
-    True
-    """
-    return read_names([name])[0]
 
 
 @cache

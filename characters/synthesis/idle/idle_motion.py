@@ -23,9 +23,8 @@ from cubeling.characters.synthesis.idle.database import IdleDatabase, RestingPos
 from cubeling.characters.synthesis.idle.motion_texture import StretchStream
 from cubeling.characters.synthesis.idle.variations import VariationStream
 
-Small = Literal["recorded", "extrema", "none"]
-"""How small variations are made: of recorded stretches, or of clustered extrema as published; with
-"none", `layering.Varied` may add them to a blend."""
+Small = Literal["recorded", "extrema"]
+"""How small variations are made: of recorded stretches, or of clustered extrema as published."""
 
 REACTION_S = 0.7
 """After how long it leaves a posture that does not suit a new emotion [s]."""
@@ -53,10 +52,10 @@ class IdleMotion:
         self._emotion = NEUTRAL
         self._database = database
         self._suiting = database.suiting(NEUTRAL)
-        self._variations: StretchStream | VariationStream | None = None
+        self._variations: StretchStream | VariationStream
         if small == "recorded":
             self._variations = StretchStream(self._suiting.stretches, self._rng)
-        elif small == "extrema":
+        else:
             variations = self._suiting.variations
             self._variations = VariationStream(variations, database.space, self._rng)
         self._posture = self._draw(self._suiting.postures)
@@ -109,7 +108,7 @@ class IdleMotion:
         self._suiting = suiting
         if isinstance(self._variations, StretchStream):
             self._variations.change(suiting.stretches)
-        elif self._variations is not None:
+        else:
             self._variations.change(suiting.variations)
 
     def shift_now(self) -> None:
@@ -165,11 +164,8 @@ class IdleMotion:
         frame = self._entered + int(at)
         while self._made < frame + 3:
             self._here = self.next_posture()
-            shown = self._here
-            if self._variations is not None:
-                varied = self._variations.at(self._made / self.database.rate)
-                shown = shown + self._liveliness() * varied
-            self._kept.append(shown)
+            varied = self._variations.at(self._made / self.database.rate)
+            self._kept.append(self._here + self._liveliness() * varied)
             self._made += 1
         first = frame - (self._made - len(self._kept))
         rows = [self._kept[max(first + n, 0)] for n in (-1, 0, 1, 2)]

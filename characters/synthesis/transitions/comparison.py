@@ -4,9 +4,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 
-import numpy as np
-
-from cubeling.characters.skeleton.pose import Array
 from cubeling.characters.synthesis.body import BodyPart, default_body_plan
 from cubeling.characters.synthesis.distances import JointAngles, thesis_distance
 from cubeling.characters.synthesis.graphs.building import LARGEST_THRESHOLD, critical_threshold
@@ -158,16 +155,3 @@ class SplitComparison:
 def common_requests(standard: MotionGraph, graphs: PartGraphs, stride: int) -> Requests:
     """Return requests that both can answer; see `requests`."""
     return graph_requests(standard.library, standard.kept & graphs.kept, stride)
-
-
-def bootstrap_interval(values: Array, seed: int = 0) -> tuple[float, float]:
-    """Return the 95 % interval of a mean, (n,) values, by the percentile bootstrap.
-
-    >>> low, high = bootstrap_interval(np.array([1.0, 2.0, 3.0]))
-    >>> 1.0 <= low < 2.0 < high <= 3.0
-    True
-    """
-    rng = np.random.default_rng(seed)
-    means = rng.choice(values, (2000, len(values))).mean(axis=1)
-    low, high = np.quantile(means, [0.025, 0.975])
-    return float(low), float(high)

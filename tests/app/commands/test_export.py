@@ -2,16 +2,20 @@
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from cubeling.app.session import messages
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.session import Recorder, frame_encoder, messages
 from cubeling.app.session.encoding import MESSAGE_TYPES, decode
 from cubeling.app.workshop.exporting import CONTEXT_COLUMNS, EXPORT_TABLES, dictionary_rows, writing
 from cubeling.app.workshop.exporting.writing import DICTIONARY_FILE
 from cubeling.characters.skeleton import rotations
+from cubeling.tracking import Frame, Intrinsics
+from cubeling.tracking.appearance import Appearance, HandMask, MeasuredLight
 from tests.app.conftest import SHORT_FRAMES
 from tools.export_dictionary import DOCUMENT, updated
 
@@ -33,7 +37,7 @@ def exported(cubeling, short_session):
     labels = ["--participant", "P1", "--participant", "P 2", "--condition", "happy, loud"]
     code, out, err = cubeling("export", short_session, "second.mcap", "-o", "out", *labels)
     assert (code, err) == (0, "")
-    assert f"emotions        {2 * SHORT_FRAMES:3} rows" in out
+    assert f"emotions         {2 * SHORT_FRAMES:3} rows" in out
     return {
         topic: [decode(kind, data) for _, _, data in messages(short_session, topic)]
         for topic, kind in MESSAGE_TYPES.items()
@@ -77,6 +81,29 @@ def test_the_values_are_those_of_the_messages(exported):
     np.testing.assert_array_equal(row["joint_rotations"], last.pose.rotations)
     assert row["x_m"] == last.table_from_character[0, 3]
     assert "joint_rotations" not in table("characters")[0]
+
+
+def test_what_the_picture_tells_is_a_table_where_it_was_measured(cubeling):
+    light = MeasuredLight(np.array([0.0, -0.6, -0.8]), np.full(3, 0.5), np.full(3, 0.25), 0.9)
+    share = np.array([[0, 255], [255, 51]], np.uint8)
+    hand = HandMask(16, 8, share, np.array([0.01, 0.02, 0.5]), scale=4)
+    playground = Playground("companion", Intrinsics.guess((64, 48)))
+    with Recorder(Path("seen.mcap"), {"scenario": "companion"}) as recorder:
+        encode = frame_encoder("jpeg", (64, 48), 30.0)
+        for index, seen in enumerate(
+            (Appearance(None, None, None, 0.0), Appearance(hand, light, None, 0.1))
+        ):
+            frame = encode(Frame(np.zeros((48, 64, 3), np.uint8), 0.1 * index, index))
+            recorder.write(replace(playground.step(frame), appearance=seen))
+    playground.close()
+    assert cubeling("export", "seen.mcap", "-o", "out")[0] == 0
+    nothing, seen = table("appearances")
+    assert (nothing["hand"], nothing["hand_x_px"], nothing["key_r"]) == ("0", "", "")
+    sides = [float(seen[f"hand_{name}_px"]) for name in ("x", "y", "width", "height", "area")]
+    assert sides == [16.0, 8.0, 8.0, 8.0, pytest.approx(2.2 * 16)]
+    assert [float(seen[f"behind_{axis}_m"]) for axis in "xyz"] == [0.01, 0.02, 0.5]
+    assert [float(seen[f"light_{axis}"]) for axis in "xyz"] == [0.0, -0.6, -0.8]
+    assert (seen["ambient_g"], seen["light_certainty"], seen["blur_px"]) == ("0.25", "0.9", "")
 
 
 def test_the_dictionary_names_every_column_of_every_file(exported):

@@ -14,6 +14,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import RobotView
 from cubeling.app.running.summary import Summary
+from cubeling.app.ui import video_file
 from cubeling.app.ui.canvas import Canvas, rounded_rectangle
 from cubeling.app.ui.cards.overlay import overlay
 from cubeling.app.ui.output_file import ENDING_RATE, ENDING_S, MAX_FRAMES, FrameSheet
@@ -69,6 +70,34 @@ def test_a_video_keeps_the_uneven_times_of_a_live_camera(tmp_path):
     with av.open(str(path)) as file:
         seen = [frame.time for frame in file.decode(video=0)]
     assert seen == pytest.approx(times - times[0], abs=0.003)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "encoder"),
+    [(suffix, name) for suffix, kind in VIDEO_FORMATS.items() for name in kind.encoders],
+)
+def test_a_video_holds_the_pictures_of_every_encoder_of_its_kind(tmp_path, suffix, encoder):
+    path = tmp_path / f"out{suffix}"
+    across, down = np.meshgrid(np.arange(96), np.arange(64))
+    picture = np.stack([2 * across, 3 * down, across + down], axis=2).astype(np.uint8)
+    with VideoFile(path, (96, 64), 30, codec=encoder) as video:
+        for index in range(12):
+            video.write(picture, index / 30)
+    with av.open(str(path)) as file:
+        shown = [frame.to_ndarray(format="bgr24") for frame in file.decode(video=0)]
+    assert len(shown) == (12 if suffix != ".gif" else 4)
+    error = np.abs(shown[-1].astype(float) - picture).mean()
+    assert error < 6.0
+
+
+def test_an_encoder_that_pyav_lacks_is_named_with_those_it_has(tmp_path, monkeypatch):
+    monkeypatch.setattr(video_file, "_is_available", lambda name: name == "mpeg4")
+    with pytest.raises(AppError, match="PyAV lacks libx264; it has mpeg4"):
+        VideoFile(tmp_path / "out.mp4", (64, 48), 30, codec="libx264")
+    VideoFile(tmp_path / "out.mp4", (64, 48), 30).close()  # the usual one is missing: the next
+    with pytest.raises(AppError, match="PyAV lacks libvpx-vp9, libsvtav1, libvpx"):
+        VideoFile(tmp_path / "out.webm", (64, 48), 30)
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from hypothesis import given, settings, strategies as st
 from cubeling.characters import Character, CharacterError, Pose, Skeleton
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import BODY_PARTS, Anatomy
-from cubeling.characters.skeleton.body_parts.joint_names import read_name
+from cubeling.characters.skeleton.body_parts.joint_names import read_names
 from tests.characters.skeleton.bodies import DOG, PERSON, named_body, skeleton_of
 from tests.characters.skeleton.test_naming import ANIMALS, PEOPLE
 from tests.examples import examples, some
@@ -260,7 +260,7 @@ def test_a_lamp_is_neither_humanoid_nor_quadruped():
 
 @given(st.text(max_size=20))
 def test_any_name_can_be_read(name):
-    read_name(name)
+    read_names([name])
 
 
 @settings(max_examples=examples(25))
