@@ -1,10 +1,11 @@
 """The bundled characters, read once for all tests of a process.
 
-They are never changed. `tests/characters/formats` reads their files. What the graphics card needs
-of their meshes is computed once as well, with their levels of detail: that takes longer than the
-first picture of a character.
+They are never changed. `tests/characters/formats` reads their files. Their levels of detail are
+computed once as well, also for others with the same meshes: that takes half of the first picture of
+a character.
 """
 
+import functools
 import hashlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -16,25 +17,18 @@ from numpy.typing import NDArray
 
 from cubeling.characters import Character
 from cubeling.characters.rendering.geometry import detail_levels
-from cubeling.characters.rendering.geometry.character_geometry import CharacterGeometry
-from cubeling.characters.rendering.geometry.detail_levels import LEVEL_TOLERANCES
 from cubeling.characters.rendering.geometry.edge_collapse import Tolerance, collapsed_levels
-from cubeling.characters.rendering.scene import Drawable
 
 BUNDLED = Character.bundled_names()
 """Their names."""
 
-_read, _prepare = Character.load, CharacterGeometry.of
+_read = Character.load
 
 
-_bundled: dict[str, Character] = {}
-
-
+@functools.cache
 def bundled_character(name: str) -> Character:
     """Return a bundled character, the same one every time."""
-    if name not in _bundled:
-        _bundled[name] = _read(name)
-    return _bundled[name]
+    return _read(name)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -42,7 +36,6 @@ def bundled_characters_are_read_once() -> Iterator[None]:
     """Let all tests of a module share the characters, instead of reading them each time."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Character, "load", staticmethod(_read_once))
-        patch.setattr(CharacterGeometry, "of", staticmethod(_prepared_once))
         patch.setattr(detail_levels, "collapsed_levels", _collapsed_once)
         yield
 
@@ -50,21 +43,6 @@ def bundled_characters_are_read_once() -> Iterator[None]:
 def _read_once(name_or_path: str | Path) -> Character:
     return bundled_character(str(name_or_path)) if name_or_path in BUNDLED else _read(name_or_path)
 
-
-def _prepared_once(
-    character: Drawable, tolerances: Sequence[Tolerance] = LEVEL_TOLERANCES
-) -> CharacterGeometry:
-    """Return what `CharacterGeometry.of` does, the same for a bundled character every time."""
-    key = id(character), tuple(tolerances)
-    if key not in _geometries:
-        geometry = _prepare(character, tolerances)
-        if all(character is not each for each in _bundled.values()):
-            return geometry
-        _geometries[key] = geometry
-    return _geometries[key]
-
-
-_geometries: dict[tuple[int, tuple[Tolerance, ...]], CharacterGeometry] = {}
 
 _levels: dict[bytes, list[NDArray[np.intp]]] = {}
 

@@ -145,17 +145,10 @@ class CharacterCache:
         key = id(character), copy, leveled
         kept = self._kept.pop(key, None)
         if kept is None:
-            geometry = self._geometry(character, leveled)
+            geometry = CharacterGeometry.of(character, LEVEL_TOLERANCES if leveled else ())
             kept = character, SkinnedCharacter(self._context, self._programs, character, geometry)
         self._kept[key] = kept
         return kept[1]
-
-    def _geometry(self, character: Drawable, leveled: bool) -> CharacterGeometry:
-        """Return that of another copy of a character, or compute it: that takes the longest."""
-        for (number, _, has_levels), (_, skinned) in self._kept.items():
-            if number == id(character) and has_levels == leveled:
-                return skinned.geometry
-        return CharacterGeometry.of(character, LEVEL_TOLERANCES if leveled else ())
 
     def _evict(self, drawn: int) -> None:
         """Release the least recently drawn, but none of the last `drawn`."""

@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Self
+from typing import Any
+from weakref import finalize
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,14 +66,29 @@ class CharacterGeometry:
     """Their runs."""
 
     @classmethod
-    def of(cls, character: Drawable, tolerances: Sequence[Tolerance] = LEVEL_TOLERANCES) -> Self:
-        """Prepare a character; `tolerances` are those of its levels of detail, see `with_levels`.
+    def of(
+        cls, character: Drawable, tolerances: Sequence[Tolerance] = LEVEL_TOLERANCES
+    ) -> "CharacterGeometry":
+        """Prepare a character, or return what was prepared while that same object lives.
+
+        `tolerances` are those of its levels of detail, see `with_levels`.
 
         Raises
         ------
         CharacterError
             There is nothing to draw.
         """
+        number = id(character)
+        if number not in _prepared:
+            _prepared[number] = {}
+            finalize(character, _prepared.pop, number).atexit = False
+        kept = _prepared[number]
+        if tuple(tolerances) not in kept:
+            kept[tuple(tolerances)] = cls._prepare(character, tolerances)
+        return kept[tuple(tolerances)]
+
+    @classmethod
+    def _prepare(cls, character: Drawable, tolerances: Sequence[Tolerance]) -> "CharacterGeometry":
         given = CharacterVertices.of(character.meshes)
         rest = given.palette(character.skeleton.rest.globals(character.skeleton))
         hidden = are_vanished(rest)
@@ -103,6 +119,11 @@ class CharacterGeometry:
             caster_indices=caster_indices,
             caster_runs=caster_runs,
         )
+
+
+# By the identity of a character. To prepare one takes longer than ten pictures, and each copy of it
+# asks for it, and each new stage: of a window that is made larger, of a sheet of pictures.
+_prepared: dict[int, dict[tuple[Tolerance, ...], CharacterGeometry]] = {}
 
 
 def are_vanished(palette: NDArray[np.floating[Any]], scale: float = 1.0) -> NDArray[np.bool_]:
