@@ -63,7 +63,7 @@ class CharacterGeometry:
     """Indices of the triangles that cast its shadow."""
 
     caster_runs: tuple[CasterRun, ...]
-    """Their runs."""
+    """Runs of these triangles, by whether they are dormant and seen from both sides."""
 
     @classmethod
     def of(
