@@ -139,8 +139,8 @@ class CalibrationModel:
     def _camera_prior(self) -> tuple[Array, Array]:
         return camera_vector.prior(self.target.size, self.camera[0], self.target.free)
 
-    def apply_step(self, shared: Array, by_view: Sequence[Array]) -> Self:
-        """Apply a step of camera and plates (9 + 6 P,) and one of each view (7,)."""
+    def apply_step(self, shared: Array, by_view: Array) -> Self:
+        """Apply a step of camera and plates (9 + 6 P,) and one of each view (V, 7)."""
         camera, width = self.camera + shared[:9], self.target.size[0]
         # A single bad step must not take the focal length out of the range of real cameras.
         camera[:2] = np.clip(camera[:2], 0.2 * width, 8 * width)
@@ -149,7 +149,7 @@ class CalibrationModel:
         poses = [
             se3.apply_delta(pose, step[:6]) for pose, step in zip(self.poses, by_view, strict=True)
         ]
-        blooms = self.blooms + np.array([step[6] for step in by_view])
+        blooms = self.blooms + by_view[:, 6]
         return replace(
             self, camera=camera, plates=np.array(plates), poses=np.array(poses), blooms=blooms
         )

@@ -92,19 +92,19 @@ def test_derivatives_match_finite_differences():
     for number in range(9):
         shared = np.zeros(9 + 6 * len(model.plates))
         shared[number] = small * max(1.0, abs(TRUE[number]))
-        moved = model.apply_step(shared, [np.zeros(7)] * len(kept))
+        moved = model.apply_step(shared, np.zeros((len(kept), 7)))
         slope = (at_rest - moved.linearise(blooming)[0]) / shared[number]
         np.testing.assert_allclose(camera[:, number], slope, rtol=1e-3, atol=1e-3)
     for number in range(6):
         shared = np.zeros(9 + 6 * len(model.plates))
         shared[9 + number :: 6] = small
-        moved = model.apply_step(shared, [np.zeros(7)] * len(kept))
+        moved = model.apply_step(shared, np.zeros((len(kept), 7)))
         slope = (at_rest - moved.linearise(blooming)[0]) / small
         np.testing.assert_allclose(plate[:, number], slope, rtol=1e-3, atol=0.2)
     for number in range(7):
         step = np.zeros(7)
         step[number] = small
-        moved = model.apply_step(np.zeros(9 + 6 * len(model.plates)), [step] * len(kept))
+        moved = model.apply_step(np.zeros(9 + 6 * len(model.plates)), np.tile(step, (len(kept), 1)))
         slope = (at_rest - moved.linearise(blooming)[0]) / small
         np.testing.assert_allclose(own[:, number], slope, rtol=1e-3, atol=0.2)
 
