@@ -1,7 +1,8 @@
 """The bundled characters, read once for all tests of a process.
 
 They are never changed. `tests/characters/formats` reads their files. Their levels of detail are
-computed once as well: that takes half of the first picture of a character.
+computed once as well, also for others with the same meshes: that takes half of the first picture of
+a character.
 """
 
 import functools

@@ -104,11 +104,16 @@ def blink_shares(morphs: Sequence[str], meshes: Iterable[Mesh], lids: Lids) -> A
             if morph.name in names:
                 blink[morph.vertices] += morph.displacements
         lid = np.flatnonzero(blink.any(axis=1))
-        displacements = np.zeros((len(morphs), *blink.shape))
+        # Lids are a small part of a mesh, and most morphs move none of it.
+        place = np.full(len(blink), -1)
+        place[lid] = np.arange(len(lid))
+        displacements = np.zeros((len(morphs), len(lid), 3))
         for morph in mesh.morphs if lid.size else ():
-            displacements[morphs.index(morph.name), morph.vertices] = morph.displacements
+            places = place[morph.vertices]
+            on_lid = places >= 0
+            displacements[morphs.index(morph.name), places[on_lid]] = morph.displacements[on_lid]
         ways.append(blink[lid])
-        moved.append(displacements[:, lid])
+        moved.append(displacements)
     way = np.concatenate(ways)
     if not len(way):
         return np.zeros(len(morphs))

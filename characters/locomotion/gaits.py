@@ -5,6 +5,7 @@ Source: Fernández-Baena's thesis, section 5.2. Both trees, over Angular, are bl
 
 import math
 from collections.abc import Mapping
+from functools import cached_property
 
 import numpy as np
 
@@ -82,6 +83,7 @@ class Gaits:
         """The legs that keep feet from sliding, or None if the skeleton has no suitable legs."""
         self._skeleton = skeleton
         self._contacts: dict[int, tuple[Clip, list[list[bool]]]] = {}
+        self._radii: dict[float, float] = {}
         self._still = StaticPose(standing, self._walk.at(0.0).duration)
         self._trajectories: FootTrajectories | None = None
         if self.legs is not None:
@@ -115,8 +117,24 @@ class Gaits:
         """Return the Speed for a ground speed [m/s]: the inverse of `pace`."""
         return interpolate(pace, self._paces, self._speeds)
 
+    @cached_property
+    def first_phase(self) -> float:
+        """Phase of the slowest walk that is most similar to the standing pose: where to set off."""
+        motion, phases = self.at(IDLE_SPEED, 0.0), np.arange(32) / 32
+        standing, *walking = (
+            pose.globals(self._skeleton)[:, :3, 3]
+            for pose in (self._still.pose, *map(motion.at, phases))
+        )
+        errors = [np.square(places - standing).sum() for places in walking]
+        return float(phases[int(np.argmin(errors))])
+
     def radius(self, speed: float) -> float:
-        """Return the radius of the tightest curve at a Speed [m]."""
+        """Return the radius of the tightest curve at a Speed [m], which is measured once."""
+        if speed not in self._radii:
+            self._radii[speed] = self._measure_radius(speed)
+        return self._radii[speed]
+
+    def _measure_radius(self, speed: float) -> float:
         motion = self.at(speed, MAX_ANGULAR_RAD)
         # In parts, because an animal may walk a whole circle in one slow cycle.
         parts = [motion.between(at, at + _RADIUS_PART) for at in np.arange(0.0, 1.0, _RADIUS_PART)]

@@ -49,25 +49,26 @@ class AdjustmentResult:
 def adjust(views: Sequence[View], model: CalibrationModel) -> AdjustmentResult:
     """Return the unknowns that fit the measurements best, from a first guess."""
     damping = 1e-3
-    sigma = _robust_sigma(views, model)
+    residuals = model.residuals(views)
+    sigma = _robust_sigma(residuals, model)
     equations = _normal_equations(views, model, sigma)
-    cost = _cost(views, model, sigma)
+    cost = _cost(residuals, model, sigma)
     for _ in range(MAX_ITERATIONS):
         moved = model.apply_step(*equations.solve(damping, model.free_parameters))
-        new_cost = _cost(views, moved, sigma)
+        new_residuals = moved.residuals(views)
+        new_cost = _cost(new_residuals, moved, sigma)
         if new_cost > cost:
             damping *= 8
             if damping > 1e6:
                 break
             continue
         gain = cost - new_cost
-        model, damping = moved, max(1e-9, damping / 5)
-        sigma = _robust_sigma(views, model)
+        model, residuals, damping = moved, new_residuals, max(1e-9, damping / 5)
+        sigma = _robust_sigma(residuals, model)
         equations = _normal_equations(views, model, sigma)
-        cost = _cost(views, model, sigma)
+        cost = _cost(residuals, model, sigma)
         if gain < MIN_GAIN * max(1.0, cost):
             break
-    residuals = model.residuals(views)
     clipped = [np.minimum(np.abs(residual), 3.0) for residual in residuals]
     view_residuals = np.array([np.sqrt((part**2).mean()) for part in clipped])
     inflation = _correlation_inflation(views, residuals, sigma)
@@ -77,62 +78,65 @@ def adjust(views: Sequence[View], model: CalibrationModel) -> AdjustmentResult:
     )
 
 
-def _robust_sigma(views: Sequence[View], model: CalibrationModel) -> float:
+def _robust_sigma(residuals: Sequence[Array], model: CalibrationModel) -> float:
     """Return the robust standard deviation of a row [px], corrected for degrees of freedom."""
-    residual = np.concatenate(model.residuals(views))
-    unknowns = 7 * len(views) + len(model.free_parameters)
+    residual = np.concatenate(residuals)
+    unknowns = 7 * len(residuals) + len(model.free_parameters)
     correction = len(residual) / max(len(residual) - unknowns, 0.25 * len(residual))
     sigma = 1.4826 * float(np.median(np.abs(residual))) * float(np.sqrt(correction))
     return max(MIN_SIGMA_PX, sigma)
 
 
-def _cost(views: Sequence[View], model: CalibrationModel, sigma: float) -> float:
-    total = 0.0
-    for residual in model.residuals(views):
-        scaled = np.abs(residual) / sigma
-        total += float(np.where(scaled < 2, scaled**2, 4 * scaled - 4).sum())
-    return total + float((model.blooms**2).sum()) / BLOOM_SIGMA_PX**2 + model.prior_cost
-
-
-@dataclass(frozen=True)
-class _ViewBlock:
-    """Normal equations of one view's own unknowns, and their coupling to the shared ones."""
-
-    normal: Array
-    right: Array
-    cross: Array
-
-    def solve(self, right: Array, damping: float) -> Array:
-        """Solve the damped equations for one or several right sides."""
-        damped = self.normal + damping * np.diag(np.diag(self.normal))
-        return np.asarray(np.linalg.solve(damped, right))
+def _cost(residuals: Sequence[Array], model: CalibrationModel, sigma: float) -> float:
+    scaled = np.abs(np.concatenate(residuals)) / sigma
+    cost = float(np.where(scaled < 2, scaled**2, 4 * scaled - 4).sum())
+    return cost + float((model.blooms**2).sum()) / BLOOM_SIGMA_PX**2 + model.prior_cost
 
 
 @dataclass(frozen=True)
 class _NormalEquations:
-    """Normal equations of the shared unknowns, and those of each view."""
+    """Normal equations of the shared unknowns, those of each view, and their coupling."""
 
     normal: Array
+    """Of the shared unknowns, (S, S)."""
+
     right: Array
-    blocks: list[_ViewBlock]
+    """Right side of the shared unknowns, (S,)."""
+
+    own: Array
+    """Of the unknowns of each view, (V, 7, 7)."""
+
+    own_right: Array
+    """Right side of the unknowns of each view, (V, 7)."""
+
+    cross: Array
+    """Between the unknowns of each view and the shared ones, (V, 7, S)."""
 
     def reduce(self, damping: float) -> tuple[Array, Array]:
         """Return the equations of the intrinsics alone: the Schur complement of the views."""
         normal, right = self.normal.copy(), self.right.copy()
         normal[np.diag_indices(len(normal))] *= 1 + damping
-        for block in self.blocks:
-            solved = block.solve(np.column_stack([block.cross, block.right]), damping)
-            normal -= block.cross.T @ solved[:, :-1]
-            right -= block.cross.T @ solved[:, -1]
+        sides = np.concatenate([self.cross, self.own_right[..., None]], axis=2)
+        solved = self._solve_views(sides, damping)
+        # A sum over views of products is one product of all their rows.
+        cross, solved = self.cross.reshape(-1, len(right)), solved.reshape(-1, len(right) + 1)
+        normal -= cross.T @ solved[:, :-1]
+        right -= cross.T @ solved[:, -1]
         return normal, right
 
-    def solve(self, damping: float, free: Indices) -> tuple[Array, list[Array]]:
-        """Return the step of the shared unknowns and that of each view."""
+    def solve(self, damping: float, free: Indices) -> tuple[Array, Array]:
+        """Return the step of the shared unknowns (S,) and that of each view (V, 7)."""
         normal, right = self.reduce(damping)
         step = np.zeros(len(right))
         step[free] = np.linalg.solve(normal[np.ix_(free, free)], right[free])
-        by_view = [block.solve(block.right - block.cross @ step, damping) for block in self.blocks]
-        return step, by_view
+        left_over = self.own_right - self.cross @ step
+        return step, self._solve_views(left_over[..., None], damping)[..., 0]
+
+    def _solve_views(self, right: Array, damping: float) -> Array:
+        """Solve the damped equations of each view for its right sides, (V, 7, n)."""
+        damped, diagonal = self.own.copy(), np.arange(self.own.shape[1])
+        damped[:, diagonal, diagonal] *= 1 + damping
+        return np.asarray(np.linalg.solve(damped, right))
 
     def covariance(self, free: Indices) -> Array:
         """Return the covariance of the shared unknowns; zero for those that are not free."""
@@ -146,25 +150,28 @@ def _normal_equations(
     views: Sequence[View], model: CalibrationModel, sigma: float
 ) -> _NormalEquations:
     count = 9 + 6 * len(model.plates)
-    normal, right, blocks = np.zeros((count, count)), np.zeros(count), []
-    for number, view in enumerate(views):
-        residual, by_camera, by_plate, by_view = model.linearise(view, number)
-        rows = np.zeros((len(residual), count))
-        rows[:, :9] = by_camera
-        columns = 9 + 6 * view.plates[:, None] + np.arange(6)
-        np.put_along_axis(rows, columns, by_plate, axis=1)
-        # Huber weights limit the pull of a row to that of a residual of two sigma.
-        huber = 1 / np.maximum(1.0, np.abs(residual) / (2 * sigma))
-        weights = huber[:, None] / sigma**2
-        normal += rows.T @ (rows * weights)
-        right += (rows * weights).T @ residual
-        own_normal = by_view.T @ (by_view * weights)
-        own_right = (by_view * weights).T @ residual
-        own_normal[6, 6] += 1 / BLOOM_SIGMA_PX**2
-        own_right[6] -= model.blooms[number] / BLOOM_SIGMA_PX**2
-        blocks.append(_ViewBlock(own_normal, own_right, by_view.T @ (rows * weights)))
+    residual, by_camera, by_plate, by_view = model.linearise(views)
+    rows = np.zeros((len(residual), count))
+    rows[:, :9] = by_camera
+    plates = np.concatenate([view.plates for view in views])
+    np.put_along_axis(rows, 9 + 6 * plates[:, None] + np.arange(6), by_plate, axis=1)
+    # Huber weights limit the pull of a row to that of a residual of two sigma.
+    weights = 1 / np.maximum(1.0, np.abs(residual) / (2 * sigma)) / sigma**2
+    weighted = rows * weights[:, None]
+    normal, right = rows.T @ weighted, weighted.T @ residual
+    own = np.zeros((len(views), 7, 7))
+    own_right, cross = np.zeros((len(views), 7)), np.zeros((len(views), 7, count))
+    ends = np.cumsum([len(view.points) for view in views])
+    for number, end in enumerate(ends.tolist()):
+        at = slice(end - len(views[number].points), end)
+        by_own = by_view[at].T
+        own[number] = (by_own * weights[at]) @ by_own.T
+        own_right[number] = (by_own * weights[at]) @ residual[at]
+        cross[number] = by_own @ weighted[at]
+    own[:, 6, 6] += 1 / BLOOM_SIGMA_PX**2
+    own_right[:, 6] -= model.blooms / BLOOM_SIGMA_PX**2
     model.add_priors(normal, right)
-    return _NormalEquations(normal, right, blocks)
+    return _NormalEquations(normal, right, own, own_right, cross)
 
 
 def _correlation_inflation(

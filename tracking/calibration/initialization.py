@@ -9,7 +9,7 @@ from cubeling.tracking.calibration import camera_vector
 from cubeling.tracking.calibration.view import View
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.arrays import Array
-from cubeling.tracking.geometry.projection import planar_poses
+from cubeling.tracking.geometry.projection import Projection, planar_poses
 
 FIELDS_OF_VIEW_RAD = np.deg2rad(np.linspace(30, 100, 15))
 """Horizontal fields of view to try: telephoto to action camera."""
@@ -52,7 +52,11 @@ def _poses(view: View, camera: Array) -> Iterator[tuple[Array, float]]:
     proposal is refined on the points of all plates.
     """
     intrinsics = camera_vector.to_intrinsics(camera, (1, 1))
-    matrix, distortion = intrinsics.matrix, intrinsics.distortion
+    matrix, distortion, projection = (
+        intrinsics.matrix,
+        intrinsics.distortion,
+        Projection(intrinsics),
+    )
     rays = cv2.undistortPoints(view.pixels[:, None], matrix, distortion)[:, 0].astype(np.float64)
     starts = [
         pose
@@ -65,6 +69,6 @@ def _poses(view: View, camera: Array) -> Iterator[tuple[Array, float]]:
         pose = se3.pose(se3.rotation(np.ravel(rotation)), np.ravel(origin))
         points = view.points @ pose[:3, :3].T + pose[:3, 3]
         if np.isfinite(points).all() and points[:, 2].min() > 0.01:
-            pixels = camera_vector.project(camera, points)
+            pixels = projection.project(points)
             errors = np.einsum("ni,ni->n", view.normals, view.pixels - pixels)
             yield pose, float(np.sqrt((errors**2).mean()))

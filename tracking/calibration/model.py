@@ -67,27 +67,32 @@ class CalibrationModel:
 
     def residuals(self, views: Sequence[View]) -> list[Array]:
         """Return measured minus predicted position of each view's rows [px], each (N,)."""
-        counts = [len(view.points) for view in views]
-        rows, numbers = join_views(0.0, views), np.repeat(np.arange(len(views)), counts)
+        rows, numbers = self._joined(views)
         pixels = camera_vector.project(self.camera, self._place(rows, numbers)[2])
-        return np.split(self._misses(rows, numbers, pixels), np.cumsum(counts)[:-1])
+        ends = np.cumsum([len(view.points) for view in views])
+        return np.split(self._misses(rows, numbers, pixels), ends[:-1])
 
-    def linearise(self, view: View, number: int) -> tuple[Array, Array, Array, Array]:
-        """Return the residuals (N,) [px] of view `number` and derivatives of the prediction.
+    def linearise(self, views: Sequence[View]) -> tuple[Array, Array, Array, Array]:
+        """Return the residuals of all rows (N,) [px] and derivatives of their prediction.
 
-        These are by the camera (N, 9), by the plate's pose (N, 6), and by the view's pose and bloom
-        (N, 7). Steps of poses are as in `se3.moved`.
+        These are by the camera (N, 9), by the pose of a row's plate (N, 6), and by the pose and
+        bloom of its view (N, 7). Steps of poses are as in `se3.moved`.
         """
-        numbers = np.full(len(view.points), number)
-        from_plate, from_target, in_camera = self._place(view, numbers)
+        rows, numbers = self._joined(views)
+        from_plate, from_target, in_camera = self._place(rows, numbers)
         pixels, by_point, by_camera = camera_vector.project_with_jacobian(self.camera, in_camera)
-        by_point = np.einsum("ni,nij->nj", view.normals, by_point)
-        by_camera = np.einsum("ni,nij->nj", view.normals, by_camera)
-        by_shift = by_point @ self.poses[number, :3, :3]
+        by_point = np.einsum("ni,nij->nj", rows.normals, by_point)
+        by_camera = np.einsum("ni,nij->nj", rows.normals, by_camera)
+        by_shift = np.einsum("ni,nij->nj", by_point, self.poses[numbers, :3, :3])
         by_plate = np.concatenate([by_shift, se3.cross(from_plate, by_shift)], axis=1)
         by_pose = [by_point, se3.cross(from_target, by_point)]
-        by_view = np.concatenate([*by_pose, view.bloom[:, None]], axis=1)
-        return self._misses(view, numbers, pixels), by_camera, by_plate, by_view
+        by_view = np.concatenate([*by_pose, rows.bloom[:, None]], axis=1)
+        return self._misses(rows, numbers, pixels), by_camera, by_plate, by_view
+
+    def _joined(self, views: Sequence[View]) -> tuple[View, Indices]:
+        """Return the rows of all views, and the number of each row's view, (N,)."""
+        counts = [len(view.points) for view in views]
+        return join_views(0.0, views), np.repeat(np.arange(len(views)), counts)
 
     def _place(self, rows: View, numbers: Indices) -> tuple[Array, Array, Array]:
         """Place the points of rows of the views with these numbers, (N, 3) each [m].
@@ -134,8 +139,8 @@ class CalibrationModel:
     def _camera_prior(self) -> tuple[Array, Array]:
         return camera_vector.prior(self.target.size, self.camera[0], self.target.free)
 
-    def apply_step(self, shared: Array, by_view: Sequence[Array]) -> Self:
-        """Apply a step of camera and plates (9 + 6 P,) and one of each view (7,)."""
+    def apply_step(self, shared: Array, by_view: Array) -> Self:
+        """Apply a step of camera and plates (9 + 6 P,) and one of each view (V, 7)."""
         camera, width = self.camera + shared[:9], self.target.size[0]
         # A single bad step must not take the focal length out of the range of real cameras.
         camera[:2] = np.clip(camera[:2], 0.2 * width, 8 * width)
@@ -144,7 +149,7 @@ class CalibrationModel:
         poses = [
             se3.apply_delta(pose, step[:6]) for pose, step in zip(self.poses, by_view, strict=True)
         ]
-        blooms = self.blooms + np.array([step[6] for step in by_view])
+        blooms = self.blooms + by_view[:, 6]
         return replace(
             self, camera=camera, plates=np.array(plates), poses=np.array(poses), blooms=blooms
         )

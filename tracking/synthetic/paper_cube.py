@@ -143,9 +143,12 @@ class PaperCube:
         scale, middle = texels / self.cube.edge, texels / 2 - 0.5
         to_texel = np.array([[scale, 0, middle], [0, scale, middle], [0, 0, 1]])
         matrix = (to_texel @ np.linalg.inv(plane)).astype(np.float32)
-        flat = rays @ matrix[:, :2].T + matrix[:, 2]
+        # A row for each coordinate: loops over three values at a time take four times as long.
+        flat = matrix[:, :2] @ rays.reshape(-1, 2).T
+        flat += matrix[:, 2:]
         with np.errstate(divide="ignore", invalid="ignore"):  # rays parallel to the face
-            x, y = flat[..., 0] / flat[..., 2], flat[..., 1] / flat[..., 2]
+            flat[:2] /= flat[2]
+        x, y = flat[:2].reshape(2, *rays.shape[:2])
         end = texels - 0.5
         inside = (x >= -0.5) & (x < end) & (y >= -0.5) & (y < end)
         rows = np.flatnonzero(inside.any(axis=1))

@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 from cubeling.characters.control.command import CharacterCommand
 from cubeling.characters.control.controllers.actions import (
     WEIGHT_LAG_S,
@@ -25,9 +23,8 @@ from cubeling.characters.locomotion.steering import STANDSTILL, Steering, Steeri
 from cubeling.characters.locomotion.stride_blending import StrideBlend
 from cubeling.characters.model.character import Character
 from cubeling.characters.motion.motion import Motion, RootDelta
-from cubeling.characters.motion.phase import Cyclic, RetimedMotion
+from cubeling.characters.motion.phase import RetimedMotion
 from cubeling.characters.motion.state_machine import StateMachine
-from cubeling.characters.skeleton.pose import Pose, Skeleton
 from cubeling.characters.smoothing import low_pass
 
 SPEED_LAG_S = 0.15
@@ -50,7 +47,7 @@ class WalkController:
     walks = True
 
     def __init__(self, character: Character, scale: float, place: RootDelta | None) -> None:
-        clips, skeleton = character.clips, character.skeleton
+        clips = character.clips
         self._standing = character.stand()
         idle: Motion = self._standing or clips.get("idle", clips["Walk"])
         self.gaits = character.gaits
@@ -62,7 +59,7 @@ class WalkController:
         self._steering = Steering(self.gaits, scale)
         self._motion = self.gaits.at(IDLE_SPEED, 0.0)
         self._strides = RetimedMotion(self._motion)
-        self._first_phase = _most_similar_phase(idle.sample(0.0), self._motion, skeleton)
+        self._first_phase = self.gaits.first_phase
         self._actions = actions_of(character, NOT_ACTIONS)
         self._finished = ""
         self._machine = StateMachine({"idle": idle, "move": self._strides, **self._actions}, "idle")
@@ -208,11 +205,3 @@ class WalkController:
             return
         self._weight = low_pass(self._weight, weight, self._time - now, WEIGHT_LAG_S)
         action.set_weight(self._weight, now - self._machine.entered)
-
-
-def _most_similar_phase(pose: Pose, motion: Cyclic, skeleton: Skeleton) -> float:
-    """Return the phase at which a cyclic motion is most similar to a pose: where to set off."""
-    places = pose.globals(skeleton)[:, :3, 3]
-    phases = np.arange(32) / 32
-    errors = [np.square(motion.at(p).globals(skeleton)[:, :3, 3] - places).sum() for p in phases]
-    return float(phases[int(np.argmin(errors))])

@@ -232,7 +232,7 @@ def surface_records(characters: tuple[CharacterInstance, ...]) -> Array:
     """
     rows = []
     for character in characters:
-        scale = character.height / character.skinned.height
+        scale = character.height / character.skinned.geometry.height
         for part in character.skinned.surfaces:
             toon = part.material.toon
             shading = (0, 0, 0, 0) if toon is None else (1, toon.shift, toon.toony, toon.evenness)

@@ -10,6 +10,7 @@ import moderngl
 import numpy as np
 
 from cubeling.characters.rendering.camera_picture.occlusion import is_usable
+from cubeling.characters.rendering.geometry.character_geometry import CharacterGeometry
 from cubeling.characters.rendering.geometry.detail_levels import LEVEL_TOLERANCES
 from cubeling.characters.rendering.geometry.skinned_character import SkinnedCharacter
 from cubeling.characters.rendering.programs import ShaderPrograms
@@ -118,14 +119,17 @@ class CharacterCache:
             with np.errstate(invalid="ignore", over="ignore"):  # `skin` checks the result
                 joints = each.posed.pose.globals(each.character.skeleton)
                 enclosing = skinned.skin(
-                    joints, place, each.posed.pose.morphs, fineness.error(place, skinned.height)
+                    joints,
+                    place,
+                    each.posed.pose.morphs,
+                    fineness.error(place, skinned.geometry.height),
                 )
             if enclosing is not None:
-                pixel = fineness.detail(place, skinned.height)
+                pixel = fineness.detail(place, skinned.geometry.height)
                 skinned.show_face(
                     each.posed.pose.morphs, each.blood, place, pixel if each.wrinkles else np.inf
                 )
-                height = skinned.height * float(np.linalg.norm(place[:3, 1]))
+                height = skinned.geometry.height * float(np.linalg.norm(place[:3, 1]))
                 instances.append(CharacterInstance(skinned, enclosing, height, place, each.inside))
         self._evict(copies.total())
         self.triangles = sum(each.skinned.triangles for each in instances)
@@ -141,9 +145,8 @@ class CharacterCache:
         key = id(character), copy, leveled
         kept = self._kept.pop(key, None)
         if kept is None:
-            tolerances = LEVEL_TOLERANCES if leveled else ()
-            skinned = SkinnedCharacter(self._context, self._programs, character, tolerances)
-            kept = character, skinned
+            geometry = CharacterGeometry.of(character, LEVEL_TOLERANCES if leveled else ())
+            kept = character, SkinnedCharacter(self._context, self._programs, character, geometry)
         self._kept[key] = kept
         return kept[1]
 

@@ -1,23 +1,17 @@
 """A character on the graphics card: uploaded once, skinned in every picture."""
 
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import Any
 
 import moderngl
 import numpy as np
-from numpy.typing import NDArray
 
 from cubeling.characters.face.action_units import ActionUnits
-from cubeling.characters.rendering.geometry.detail_levels import (
-    LEVEL_TOLERANCES,
-    chosen_level,
-    shape_only,
-    with_levels,
+from cubeling.characters.rendering.geometry.character_geometry import (
+    CharacterGeometry,
+    are_vanished,
 )
-from cubeling.characters.rendering.geometry.edge_collapse import Tolerance
+from cubeling.characters.rendering.geometry.detail_levels import chosen_level
 from cubeling.characters.rendering.geometry.extreme_vertices import SkinnedPoints
-from cubeling.characters.rendering.geometry.face_split import split_faces
 from cubeling.characters.rendering.geometry.face_texture import FaceTexture
 from cubeling.characters.rendering.geometry.morph_mixer import MorphMixer
 from cubeling.characters.rendering.geometry.surfaces import (
@@ -26,17 +20,10 @@ from cubeling.characters.rendering.geometry.surfaces import (
     Surface,
     SurfaceBuffers,
 )
-from cubeling.characters.rendering.geometry.vertices import CasterRun, CharacterVertices
+from cubeling.characters.rendering.geometry.vertices import CasterRun
 from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
 from cubeling.characters.rendering.scene import Drawable
 from cubeling.characters.skeleton.pose import Array
-
-SHADOW_CELLS = 44
-"""Grid cells along a character's height to which the mesh for its shadow is simplified; a shadow
-map is not much finer."""
-
-HIDING_SCALE = 0.002
-"""A joint that scales by less hides what it moves, as that of an effect does before it begins."""
 
 RECORD_BYTES = 24
 """Bytes of the position and the normal of a vertex."""
@@ -49,7 +36,7 @@ class SkinnedCharacter:
     where the passes for shadow and colour read them. The joint matrices go through a texture with
     one row for each joint, so their number is not limited.
 
-    `tolerances` are those of its levels of detail; see `with_levels`.
+    `geometry` is that of the character, which its copies share; None to compute it.
     """
 
     def __init__(
@@ -57,49 +44,29 @@ class SkinnedCharacter:
         context: moderngl.Context,
         programs: ShaderPrograms,
         character: Drawable,
-        tolerances: Sequence[Tolerance] = LEVEL_TOLERANCES,
+        geometry: CharacterGeometry | None = None,
     ) -> None:
-        given = CharacterVertices.of(character.meshes)
-        rest = given.palette(character.skeleton.rest.globals(character.skeleton))
-        dormant = _vanished(rest)
-        self._dormant = np.flatnonzero(dormant)
-        vertices, self._levels = with_levels(given, dormant, tolerances)
-        self._vertices, self._level = vertices, 0
-        self._asleep = False
-        extreme = vertices.extreme()
-        heights = vertices.skin(rest, slice(None))[:, 1]
-        self.height = float(max(heights.max() - min(heights.min(), 0.0), 1e-6))
-        """Height of the rest pose above the ground [m in the character frame]."""
+        self.geometry = geometry or CharacterGeometry.of(character)
+        """What all copies of the character share."""
+        vertices, extreme = self.geometry.vertices, self.geometry.extreme
+        self._level, self._asleep = 0, False
         self._morphs = MorphMixer(
             vertices.shape_records[: vertices.moved], vertices.morphs, character.morphs
         )
+        rows = sum(len(binds) for binds in vertices.binds)
         self._enclosing = SkinnedPoints(
-            vertices.positions[extreme],
-            vertices.joints[extreme],
-            vertices.weights[extreme],
-            len(rest),
+            vertices.positions[extreme], vertices.joints[extreme], vertices.weights[extreme], rows
         )
         self._moved_extreme = np.flatnonzero(extreme < vertices.moved)
         self._moved_vertices = extreme[self._moved_extreme]
         self._shapes = context.buffer(vertices.shape_records)
         joints = context.buffer(np.hstack([vertices.joints.view(np.float32), vertices.weights]))
         colors = context.buffer(np.hstack([vertices.colors, vertices.uvs]))
-        leveled = [
-            replace(vertices, indices=level.indices, materials=level.materials)
-            for level in self._levels
-        ]
-        splits = [split_faces(each) for each in leveled]
-        drawn = [
-            np.concatenate([each.indices, again])
-            for each, (_, again) in zip(leveled, splits, strict=True)
-        ]
-        indices = context.buffer(np.concatenate(drawn))
-        shape = shape_only(leveled[-1])
-        simplified, self._caster_runs = shape.simplify(SHADOW_CELLS, self._levels[-1].awake)
-        caster_indices = context.buffer(simplified)
+        indices = context.buffer(self.geometry.indices)
+        caster_indices = context.buffer(self.geometry.caster_indices)
         self.skinned = context.buffer(reserve=RECORD_BYTES * len(vertices.positions))
         """Positions and normals in the table frame, 3 + 3 float32 for each vertex."""
-        self._palette = context.texture((3, len(rest)), 4, dtype="f4")
+        self._palette = context.texture((3, rows), 4, dtype="f4")
         self._palette.filter = (moderngl.NEAREST, moderngl.NEAREST)
         self._skinning = context.vertex_array(
             programs.load_transform("skin", "skinned_position", "skinned_normal"),
@@ -115,23 +82,21 @@ class SkinnedCharacter:
         )
         """Draws its shadow, in the runs of indices `caster_runs`."""
         self._surfaces = SurfaceBuffers(context, programs, self.skinned, colors, indices)
-        starts = np.cumsum([0, *(len(each) for each in drawn)]).tolist()
         self._plain = [
             self._surfaces.surfaces(level.materials, start)
-            for level, start in zip(self._levels, starts, strict=False)
+            for level, start in zip(self.geometry.levels, self.geometry.starts, strict=True)
         ]
         self._faced = self._plain
         self._shows_face = False
         self.face: FaceTexture | None = None
         """Wrinkles and blood, if its sidecar file has them."""
-        finest = splits[0][0]
-        maps = leveled[0].materials[finest[0].run][0].face if finest else None
+        maps = self.geometry.face
         if maps is not None:
             self.face = FaceTexture(context, maps, ActionUnits.of(character.morphs))
             self._faced = [
-                self._surfaces.with_faces(plain, level_splits, self.face, start)
-                for plain, (level_splits, _), start in zip(
-                    self._plain, splits, starts, strict=False
+                self._surfaces.with_faces(plain, splits, self.face, start)
+                for plain, splits, start in zip(
+                    self._plain, self.geometry.splits, self.geometry.starts, strict=True
                 )
             ]
         self._buffers = (self._shapes, joints, colors, indices, caster_indices, self.skinned)
@@ -143,13 +108,13 @@ class SkinnedCharacter:
         Those of a face that shows something are apart.
         """
         surfaces = (self._faced if self._shows_face else self._plain)[self._level]
-        level = self._levels[self._level]
+        level = self.geometry.levels[self._level]
         return surfaces[: level.awake - len(level.materials) or None] if self._asleep else surfaces
 
     @property
     def caster_runs(self) -> tuple[CasterRun, ...]:
         """The triangles that cast its shadow in the pose of the last `skin`."""
-        return tuple(run for run in self._caster_runs if not (self._asleep and run.dormant))
+        return tuple(run for run in self.geometry.caster_runs if not (self._asleep and run.dormant))
 
     @property
     def triangles(self) -> int:
@@ -169,7 +134,7 @@ class SkinnedCharacter:
         level of detail is the coarsest with an error of at most `max_error` [m in the character
         frame]. The result is None if the pose is not finite; then there is nothing to draw.
         """
-        matrices = self._vertices.palette(table_from_character @ character_from_joint)
+        matrices = self.geometry.vertices.palette(table_from_character @ character_from_joint)
         palette = matrices[:, :3].astype(np.float32)
         if not np.isfinite(palette).all():
             return None
@@ -181,9 +146,10 @@ class SkinnedCharacter:
             self._enclosing.move(self._moved_extreme, mixed[self._moved_vertices, :3])
         self._palette.write(palette)
         self._palette.use(0)
+        dormant = self.geometry.dormant
         scale = float(np.abs(table_from_character[:3, :3]).max())
-        self._asleep = bool(len(self._dormant) and _vanished(palette[self._dormant], scale).all())
-        self._level = chosen_level(self._levels, self._level, max_error)
+        self._asleep = bool(len(dormant) and are_vanished(palette[dormant], scale).all())
+        self._level = chosen_level(self.geometry.levels, self._level, max_error)
         self._skin_used()
         return self._enclosing.skin(palette)
 
@@ -222,7 +188,7 @@ class SkinnedCharacter:
 
     def _skin_used(self) -> None:
         """Skin the vertices of the level, which are the first ones of each part of the buffer."""
-        parts = self._levels[self._level].parts
+        parts = self.geometry.levels[self._level].parts
         for first, count in parts[: 2 if self._asleep else 3]:
             if count:
                 self._skinning.transform(
@@ -239,11 +205,3 @@ class SkinnedCharacter:
             each.release()
         if self.face is not None:
             self.face.release()
-
-
-def _vanished(palette: NDArray[np.floating[Any]], scale: float = 1.0) -> NDArray[np.bool_]:
-    """Return which matrices (n, 3 or 4, 4) shrink what they move to nothing, (n,).
-
-    `scale` is that of the character on the table.
-    """
-    return np.asarray(np.abs(palette[:, :3, :3]).max(axis=(1, 2)) < HIDING_SCALE * scale)

@@ -14,6 +14,9 @@ from numpy.typing import NDArray
 SUBPIXELS = 2
 """Sub-pixels per pixel and axis on which rays are cast and the lens blurs."""
 
+ROWS_AT_ONCE = 8
+"""Rows of sub-pixels whose rays are found together: they fit into the processor's cache."""
+
 
 @dataclass(frozen=True, eq=False)
 class LensModel:
@@ -55,44 +58,49 @@ class LensModel:
         width, height = self.size
         return replace(self, matrix=matrix, size=(width // 2, height // 2))
 
-    def bend(self, ideal: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Distort ideal image coordinates (..., 2) at depth 1; also give the Jacobian (…, 2, 2).
+    def bend(
+        self, x: NDArray[np.float64], y: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], ...]:
+        """Distort ideal image coordinates at depth 1.
 
         Brown, "Close-range camera calibration", 1971: radial and tangential terms.
+
+        Returns
+        -------
+        The distorted x and y, and their derivatives: of x by x, of y by y, and of one by the other.
         """
         k1, k2, p1, p2, k3 = self.distortion
-        x, y = ideal[..., 0], ideal[..., 1]
         square = x * x + y * y
         radial = 1 + square * (k1 + square * (k2 + square * k3))
         # The slope of `radial` by the squared radius; the squared radius has the slope (2x, 2y).
         slope = k1 + square * (2 * k2 + square * 3 * k3)
-        bent = np.empty_like(ideal)
-        bent[..., 0] = x * radial + 2 * p1 * x * y + p2 * (square + 2 * x * x)
-        bent[..., 1] = y * radial + p1 * (square + 2 * y * y) + 2 * p2 * x * y
-        jacobian = np.empty((*ideal.shape, 2))
-        jacobian[..., 0, 0] = radial + 2 * x * x * slope + 2 * p1 * y + 6 * p2 * x
-        jacobian[..., 0, 1] = 2 * x * y * slope + 2 * p1 * x + 2 * p2 * y
-        jacobian[..., 1, 0] = jacobian[..., 0, 1]
-        jacobian[..., 1, 1] = radial + 2 * y * y * slope + 6 * p1 * y + 2 * p2 * x
-        return bent, jacobian
+        return (
+            x * radial + 2 * p1 * x * y + p2 * (square + 2 * x * x),
+            y * radial + p1 * (square + 2 * y * y) + 2 * p2 * x * y,
+            radial + 2 * x * x * slope + 2 * p1 * y + 6 * p2 * x,
+            radial + 2 * y * y * slope + 6 * p1 * y + 2 * p2 * x,
+            2 * x * y * slope + 2 * p1 * x + 2 * p2 * y,
+        )
 
     def project(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Pixels (..., 2) of points (..., 3) in the camera frame [m], in front of the camera."""
-        bent, _ = self.bend(points[..., :2] / points[..., 2:])
+        ideal = points[..., :2] / points[..., 2:]
+        bent = np.stack(self.bend(ideal[..., 0], ideal[..., 1])[:2], axis=-1)
         return np.asarray(bent * self.matrix[[0, 1], [0, 1]] + self.matrix[:2, 2])
 
     def directions(self, pixels: NDArray[np.float64]) -> NDArray[np.float64]:
         """Where rays through `pixels` (..., 2) meet the plane at depth 1, (..., 2)."""
         target = (pixels - self.matrix[:2, 2]) / self.matrix[[0, 1], [0, 1]]
-        ideal = target.copy()
+        # Loops over two values take twice as long as those over a whole array of each.
+        x_there, y_there = target[..., 0].copy(), target[..., 1].copy()
+        x, y = x_there, y_there
         for _ in range(4):  # Newton's method: the error squares in each round.
-            bent, jacobian = self.bend(ideal)
-            bent -= target
-            (a, b), (c, d) = np.moveaxis(jacobian, (-2, -1), (0, 1))
-            size = a * d - b * c
-            ideal[..., 0] -= (d * bent[..., 0] - b * bent[..., 1]) / size
-            ideal[..., 1] -= (a * bent[..., 1] - c * bent[..., 0]) / size
-        return ideal
+            x_bent, y_bent, x_by_x, y_by_y, mixed = self.bend(x, y)
+            x_off, y_off = x_bent - x_there, y_bent - y_there
+            size = x_by_x * y_by_y - mixed * mixed
+            x = x - (y_by_y * x_off - mixed * y_off) / size
+            y = y - (x_by_x * y_off - mixed * x_off) / size
+        return np.stack([x, y], axis=-1)
 
     @cached_property
     def rays(self) -> NDArray[np.float32]:
@@ -102,8 +110,9 @@ class LensModel:
         pixels[..., 0] = (np.arange(width * SUBPIXELS) + 0.5) / SUBPIXELS - 0.5
         pixels[..., 1] = ((np.arange(height * SUBPIXELS) + 0.5) / SUBPIXELS - 0.5)[:, None]
         found = np.empty(pixels.shape, np.float32)
-        for rows in range(0, len(pixels), 90):
-            found[rows : rows + 90] = self.directions(pixels[rows : rows + 90])
+        for top in range(0, len(pixels), ROWS_AT_ONCE):
+            rows = np.s_[top : top + ROWS_AT_ONCE]
+            found[rows] = self.directions(pixels[rows])
         return found
 
     @cached_property

@@ -42,6 +42,7 @@ from cubeling.app.session.options import START_STAGES
 from cubeling.characters import CharacterError
 from cubeling.files import KINDS, FileKind
 from cubeling.robot.errors import RobotError
+from cubeling.tracking import FrameSource
 from cubeling.tracking.errors import TrackingError
 from tests.campaigns.files.examples import examples_of, make_examples
 from tests.campaigns.files.mutations import mutant
@@ -97,14 +98,13 @@ def reader_of(name: str) -> Callable[[Path], object]:
 def read_all(read: Callable[[Path], object], path: Path) -> object:
     """Read a file, and what is read only when it is asked for: frames, messages of a session."""
     found = read(path)
-    if not hasattr(found, "__enter__"):
-        return found
-    with found:
-        if isinstance(found, SessionFile):
+    if isinstance(found, SessionFile):
+        with found:
             _read_session(found)
-        else:
+    elif isinstance(found, FrameSource):
+        with found:
             list(islice(found, FRAMES))
-    return None
+    return found
 
 
 def _read_session(session: SessionFile) -> None:
@@ -247,7 +247,7 @@ def report(trials: dict[str, list[Trial]], problems: list[str]) -> int:
             name.removeprefix("cubeling."), str(len(found)), refused, str(failed),
             *(f"{figure:.1f}" for figure in figures),
         )  # fmt: skip
-        kinds = defaultdict(int)
+        kinds: dict[str, int] = defaultdict(int)
         for trial in found:
             if trial.failure:
                 kinds[trial.failure] += 1

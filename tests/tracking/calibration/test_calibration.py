@@ -86,27 +86,26 @@ def test_outlier_views_are_dropped():
 def test_derivatives_match_finite_differences():
     views, _ = views_of(7, count=8)
     model, kept = fit_poses(views, TRUE, TARGET)
-    view = replace(kept[2], bloom=np.full(len(kept[2].bloom), 0.7))
-    _, camera, plate, own = model.linearise(view, 2)
-    at_rest = model.linearise(view, 2)[0]
+    blooming = [replace(view, bloom=np.full(len(view.bloom), 0.7)) for view in kept]
+    at_rest, camera, plate, own = model.linearise(blooming)
     small = 1e-6
     for number in range(9):
         shared = np.zeros(9 + 6 * len(model.plates))
         shared[number] = small * max(1.0, abs(TRUE[number]))
-        moved = model.apply_step(shared, [np.zeros(7)] * len(kept))
-        slope = (at_rest - moved.linearise(view, 2)[0]) / shared[number]
+        moved = model.apply_step(shared, np.zeros((len(kept), 7)))
+        slope = (at_rest - moved.linearise(blooming)[0]) / shared[number]
         np.testing.assert_allclose(camera[:, number], slope, rtol=1e-3, atol=1e-3)
     for number in range(6):
         shared = np.zeros(9 + 6 * len(model.plates))
         shared[9 + number :: 6] = small
-        moved = model.apply_step(shared, [np.zeros(7)] * len(kept))
-        slope = (at_rest - moved.linearise(view, 2)[0]) / small
+        moved = model.apply_step(shared, np.zeros((len(kept), 7)))
+        slope = (at_rest - moved.linearise(blooming)[0]) / small
         np.testing.assert_allclose(plate[:, number], slope, rtol=1e-3, atol=0.2)
     for number in range(7):
         step = np.zeros(7)
         step[number] = small
-        moved = model.apply_step(np.zeros(9 + 6 * len(model.plates)), [step] * len(kept))
-        slope = (at_rest - moved.linearise(view, 2)[0]) / small
+        moved = model.apply_step(np.zeros(9 + 6 * len(model.plates)), np.tile(step, (len(kept), 1)))
+        slope = (at_rest - moved.linearise(blooming)[0]) / small
         np.testing.assert_allclose(own[:, number], slope, rtol=1e-3, atol=0.2)
 
 

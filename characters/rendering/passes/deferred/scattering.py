@@ -70,6 +70,6 @@ class DeferredScatteringPass(RenderPass):
         for character in frame.characters:
             nearest, _ = frame.depths_of(character)
             scattering = max(each.material.scattering for each in character.skinned.surfaces)
-            scale = character.height / character.skinned.height
+            scale = character.height / character.skinned.geometry.height
             reaches.append(scale * scattering * LEVEL_RADII_M[-1] / nearest)
         return max(reaches) * float(frame.camera_matrix[1, 1])

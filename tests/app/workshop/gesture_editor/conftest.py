@@ -6,6 +6,8 @@ from pathlib import Path
 import moderngl
 import pytest
 
+from cubeling.app.workshop.gesture_editor import session as editor_session
+from cubeling.app.workshop.gesture_editor.preview import Preview
 from cubeling.app.workshop.gesture_editor.session import EditorSession
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.rendering import create_context
@@ -24,6 +26,20 @@ def context() -> Iterator[moderngl.Context]:
         pytest.skip(f"no OpenGL here: {error}")
     yield made
     made.release()
+
+
+@pytest.fixture(scope="module")
+def kept_previews(context: moderngl.Context) -> Iterator[None]:
+    """Let the editors of a module draw in one preview, as the next user of a long session does.
+
+    To load and upload a character takes as long as ten of its pictures.
+    """
+    preview = Preview(context)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(editor_session, "Preview", lambda _context: preview)
+        patch.setattr(preview, "release", lambda: None)
+        yield
+    preview.release()
 
 
 @pytest.fixture

@@ -13,6 +13,8 @@ from cubeling.app.workshop.gesture_editor.panels.view import MIN_SIZE
 from cubeling.characters.behaviour import NEUTRAL
 from tools.gesture_tour import Hand
 
+pytestmark = pytest.mark.usefixtures("kept_previews")
+
 CARDS = ("", "open", "import", "save as", "replace", "unsaved", "keys")
 FULL_SIZE = round(MIN_SIZE[0]), round(MIN_SIZE[1])
 LAYERED = ("stage", "time", "end:", "apex", "row:", "key:")

@@ -11,7 +11,7 @@ from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.synthetic import SyntheticOptions
 from tests.bench.hand_scenes import RATE_HZ, HandScene, HandView
 
-AT_REST = 5
+AT_REST = 3
 """Pictures of the desk at rest: they are shown to and fro, and differ by noise and shadow."""
 
 Size = tuple[int, int]
@@ -46,7 +46,7 @@ class SizedScene(HandScene):
 
 
 class RestingScene(SizedScene):
-    """Such a scene of which the desk at rest is drawn five times."""
+    """Such a scene of which the desk at rest is drawn three times."""
 
     def __init__(
         self, view: HandView, cube: CubeModel, rate_hz: float = RATE_HZ, size: Size = SMALL

@@ -129,10 +129,10 @@ def test_a_finger_on_the_cube_shows_the_hand_that_rested_beside_it_from_the_begi
     assert overlap_in(HandView(skin, azimuth_deg=10, seed=1), 31, begin=25) > 0.85
 
 
-@pytest.mark.slow(reason="a desk is drawn in full size")
+@pytest.mark.slow(reason="a desk is drawn")
 def test_a_hand_from_the_beginning_stays_when_it_hides_no_face_any_more():
     view = HandView(SKINS["Monk 03"], azimuth_deg=10, seed=1)
-    assert overlap_in(view, 49, begin=46, size=FULL) > 0.85  # no smaller
+    assert overlap_in(view, 49, begin=46, size=FILM) > 0.85  # no smaller
 
 
 @pytest.mark.slow(reason="the frames of a film are drawn")
