@@ -1,7 +1,7 @@
 """The summary of a session, on one screen."""
 
 import statistics
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from rich.console import Group, RenderableType
@@ -29,6 +29,33 @@ MAX_LOG_LINES = 3
 
 MAX_TIMELINE_ENTRIES = 12
 """Entries of a timeline before the rest is summed up."""
+
+MAX_GAPS = 5
+"""Gaps of camera or robot that are named one by one."""
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A time in which a part of the session was missing."""
+
+    part: str
+    """ "camera" or "robot"."""
+
+    start: float
+    """Timestamp of the last frame before it [s]."""
+
+    played: float
+    """What was played until then [s]."""
+
+    seconds: float = 0.0
+    """How long it lasted [s]."""
+
+    back: bool = True
+    """Whether the part came back before the end of the session."""
+
+    def until(self, timestamp: float, *, back: bool = True) -> "Gap":
+        """Return the gap as it ended at a timestamp [s]."""
+        return replace(self, seconds=timestamp - self.start, back=back)
 
 
 @dataclass
@@ -62,8 +89,8 @@ class Summary:
     lost: RobotError | TrackingError | None = None
     """Why the robot could not be reached at the end, or why the camera stopped; None if neither."""
 
-    gaps: list[tuple[float, float]] = field(default_factory=list)
-    """When the camera was lost [s, its timestamps], and how long until its next frame [s]."""
+    gaps: list[Gap] = field(default_factory=list)
+    """When the camera or the robot was missing, in the order of their ends."""
 
     robot_log: tuple[LogLine, ...] = ()
     """The last lines of the robot's log."""
@@ -155,10 +182,9 @@ class Summary:
         )
         if self.camera is not None:
             table.add_row("camera", camera_line(self.camera))
-        if self.gaps:
-            lost = sum(seconds for _, seconds in self.gaps)
-            count = "once" if len(self.gaps) == 1 else f"{len(self.gaps)} times"
-            table.add_row("camera lost", f"{count}, {lost:.1f} s in all")
+        for part in ("camera", "robot"):
+            if gaps := [gap for gap in self.gaps if gap.part == part]:
+                table.add_row(f"{part} lost", gaps_line(gaps))
         if self.lens is not None:
             table.add_row("lens", self.lens)
         names = dict.fromkeys([self.scenario, *(name for _, name in self.scenarios)])
@@ -175,6 +201,26 @@ class Summary:
         return "".join(CURVE_BLOCKS[min(7, height)] for height in heights)
 
 
+def gaps_line(gaps: list[Gap]) -> str:
+    """Return when a part was missing, in one line.
+
+    >>> gaps_line([Gap("robot", 70.0, 12.3, 4.0)])
+    '4.0 s: after 12.3 s'
+    >>> gaps_line([Gap("camera", 61.0, 3.0, 1.5), Gap("camera", 80.0, 22.0, 8.0, back=False)])
+    '9.5 s in all: after 3.0 s for 1.5 s, after 22.0 s until the end'
+    """
+    total = sum(gap.seconds for gap in gaps)
+    if len(gaps) == 1 and gaps[0].back:
+        return f"{total:.1f} s: after {gaps[0].played:.1f} s"
+    entries = [
+        f"after {gap.played:.1f} s " + (f"for {gap.seconds:.1f} s" if gap.back else "until the end")
+        for gap in gaps
+    ]
+    if len(entries) > MAX_GAPS:
+        entries = [*entries[: MAX_GAPS - 1], f"and {len(entries) - MAX_GAPS + 1} times more"]
+    return f"{total:.1f} s in all: {', '.join(entries)}"
+
+
 def camera_line(health: Health) -> str:
     """Return the figures of a live source in one line.
 
@@ -182,10 +228,11 @@ def camera_line(health: Health) -> str:
     '30.0 pictures/s, 41 ms old (since arrival), 2 left out for newer ones, none waited'
     """
     clock = "since exposure" if health.stamped_by == "driver" else "since arrival"
+    unusable = f", {health.unusable} broken or of another size" if health.unusable else ""
     waited = f"at most {health.max_queue} waited" if health.max_queue else "none waited"
     return (
         f"{health.rate:.1f} pictures/s, {1000 * health.latency:.0f} ms old ({clock}), "
-        f"{health.dropped} left out for newer ones, {waited}"
+        f"{health.dropped} left out for newer ones{unusable}, {waited}"
     )
 
 
