@@ -1,11 +1,9 @@
 """The loop of a session: frames in, pictures and emotions out, all of it recorded if asked for."""
 
-import signal
-import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 
+from cubeling.app.interrupts import defer_interrupts
 from cubeling.app.pipeline.step import Step
 from cubeling.app.running.clock import Pace
 from cubeling.app.running.frame_loop import FrameLoop
@@ -181,34 +179,3 @@ class _Runner:
         if self._session.screen.attended and now - self._shown_at >= PREVIEW_INTERVAL_S:
             self._loop.preview()
             self._shown_at = time.monotonic()
-
-
-SIGNALS = [
-    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
-]
-"""The signals that end a command; Windows has no SIGHUP."""
-
-
-@contextmanager
-def defer_interrupts() -> Iterator[None]:
-    """Let Ctrl-C and a termination signal wait for the end of the block.
-
-    A frame that is half encoded or half recorded would spoil the file. Signals reach only the main
-    thread.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    waiting: list[int] = []
-    handlers = {
-        number: handler for number in SIGNALS if callable(handler := signal.getsignal(number))
-    }
-    for number in handlers:
-        signal.signal(number, lambda number, frame: waiting.append(number))
-    try:
-        yield
-    finally:
-        for number, handler in handlers.items():
-            signal.signal(number, handler)
-    if waiting:
-        signal.raise_signal(waiting[0])
