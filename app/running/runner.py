@@ -7,7 +7,7 @@ from cubeling.app.interrupts import defer_interrupts
 from cubeling.app.pipeline.step import Step
 from cubeling.app.running.clock import Pace
 from cubeling.app.running.frame_loop import FrameLoop
-from cubeling.app.running.gaps import GapWatch, Say
+from cubeling.app.running.gap_watch import GapWatch, Say
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.playback.player_controls import PlayerControls
 from cubeling.app.running.playback.transport import Transport

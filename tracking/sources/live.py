@@ -19,6 +19,7 @@ from cubeling.tracking.sources.capture import (
 )
 from cubeling.tracking.sources.capture_timing import RECENT_IMAGES
 from cubeling.tracking.sources.device import (
+    MAX_IMAGE_PX,
     CapturedImage,
     Clock,
     Device,
@@ -194,7 +195,11 @@ class LiveSource(FrameSource):
             found = self._size_of(image)
             if expected in (None, found):
                 return image
-        if expected is None or found in (None, expected):
+        if found is not None and math.prod(found) > MAX_IMAGE_PX:
+            self._unusable_text = (
+                f"{self._name} sends images that claim {found[0]}x{found[1]} pixels"
+            )
+        elif expected is None or found in (None, expected):
             self._unusable_text = f"{self._name} sends images that cannot be decoded"
         else:
             sizes = " to ".join(f"{width}x{height}" for width, height in (expected, found))

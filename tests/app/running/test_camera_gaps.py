@@ -11,11 +11,12 @@ import pytest
 from rich.console import Console
 
 from cubeling.app.pipeline.step import RobotView
-from cubeling.app.running.gaps import MAX_LINES, GapWatch
+from cubeling.app.running.gap_watch import MAX_LINES, GapWatch
+from cubeling.app.running.gaps import Gap
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.robots import RobotLine
 from cubeling.app.running.runner import run
-from cubeling.app.running.summary import Gap, Summary
+from cubeling.app.running.summary import Summary
 from cubeling.app.session import Recorder, SessionOptions, messages, session_info
 from cubeling.app.ui.cards.overlay import with_notice
 from cubeling.app.ui.notice import Notice, notice
