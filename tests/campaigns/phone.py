@@ -19,11 +19,10 @@ RECORDING = Path(__file__).parents[2] / "recordings" / "companion.mcap"
 def jpegs(count: int | None = None, size: tuple[int, int] | None = None) -> list[bytes]:
     """Return the first pictures of the recording, or all, as JPEG files, of a size [px] or its."""
     with open_source(str(RECORDING)) as source:
-        pictures = [frame.image for frame in islice(source, count)]
-    return [
-        cv2.imencode(".jpg", picture if size is None else cv2.resize(picture, size))[1].tobytes()
-        for picture in pictures
-    ]
+        return [
+            cv2.imencode(".jpg", image if size is None else cv2.resize(image, size))[1].tobytes()
+            for image in (frame.image for frame in islice(source, count))
+        ]
 
 
 class PhoneServer(ThreadingHTTPServer):
