@@ -39,7 +39,7 @@ INDEX_BYTES = 2_500
 """What the recorder remembers of a chunk until it writes the index at the end of the file [B]: one
 place for each channel. Two chunks a second are 18 MB in an hour at most."""
 
-RATE = 2.0
+RATE = 6.0
 """Pictures a second in virtual time: what the cube does lasts for longer than one."""
 
 PHONE_RATE, PHONE_SIZE = 10.0, (320, 180)

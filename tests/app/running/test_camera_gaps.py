@@ -16,7 +16,7 @@ from cubeling.app.running.gaps import Gap
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.robots import RobotLine
 from cubeling.app.running.runner import run
-from cubeling.app.running.summary import Summary
+from cubeling.app.running.summary import MAX_SAMPLES, Summary
 from cubeling.app.session import Recorder, SessionOptions, messages, session_info
 from cubeling.app.ui.cards.overlay import with_notice
 from cubeling.app.ui.notice import Notice, notice
@@ -281,6 +281,14 @@ def test_a_session_that_ends_before_its_first_frame_has_a_summary():
     with console.capture() as capture:
         console.print(Summary("follow", interrupted=True))
     assert "0 frames" in capture.get()
+
+
+def test_a_summary_of_hours_is_as_small_as_one_of_minutes():
+    taken = Summary("follow").frame_seconds
+    for index in range(200_000):
+        taken.add(index / 200_000)
+    assert len(taken.values) <= MAX_SAMPLES
+    assert np.median(taken.values) == pytest.approx(0.5, abs=0.001)
 
 
 def test_the_summary_of_one_frame_is_in_the_singular():
