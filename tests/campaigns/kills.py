@@ -53,18 +53,19 @@ FORMS = ("--codec", "auto"), ("--codec", "h264", "--robot", "none")
 end by their time."""
 
 NOTED = struct.Struct("=dd")
-"""What the program notes of the last picture that it gave to its recorder: when, and the picture's
-timestamp, both by the monotonic clock [s]; zeros before the first one."""
+"""What the program notes: the timestamps of the first and the last picture that it gave to its
+recorder [s]; zeros before the first one."""
 
 PROGRAM = """
-import mmap, struct, sys, time
+import mmap, struct, sys
 from cubeling.app.session.recorder import Recorder
 with open(sys.argv.pop(1), "r+b") as file:
     noted = mmap.mmap(file.fileno(), 0)
-write = Recorder.write
+write, given = Recorder.write, []
 def write_and_note(self, step, inputs=None):
     write(self, step, inputs)
-    struct.pack_into("=dd", noted, 0, time.monotonic(), step.frame.timestamp)
+    given[1:] = [step.frame.timestamp] * (1 if given else 2)
+    struct.pack_into("=dd", noted, 0, *given)
 Recorder.write = write_and_note
 from cubeling.app.entry import main
 main()
@@ -86,8 +87,8 @@ class Kill:
     """Pictures that can be read."""
 
     lost: float
-    """From the last of them to the last one that was processed [s]; the time from the first to the
-    last one that was processed if none can be read."""
+    """From the last of them to the last one that was processed [s]; if none can be read, from one
+    before the first to the last one that was processed."""
 
     problem: str = ""
     """What is wrong with the file; "" if it opens."""
@@ -115,28 +116,26 @@ def kill_once(camera: str, rate: float, after: float, form: tuple[str, ...], fol
             process.kill()
             process.wait()
     with note.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as noted:
-        _, processed = NOTED.unpack_from(noted)
-    return _read(Kill(rate, after, 0, 0.0), path, processed)
+        first, last = NOTED.unpack_from(noted)
+    return _read(Kill(rate, after, 0, 0.0), path, first, last)
 
 
-def _read(kill: Kill, path: Path, processed: float) -> Kill:
+def _read(kill: Kill, path: Path, first: float, last: float) -> Kill:
     """Open what was left, decode every picture, and compare it with what was processed."""
     try:
         frames = session_info(path, salvage=True).frames
     except AppError as error:
         return Kill(kill.rate, kill.after, 0, math.inf, str(error))
     if not frames:  # nothing is lost where nothing was processed
-        return Kill(kill.rate, kill.after, 0, math.inf if processed else 0.0)
-    times = []
+        return Kill(kill.rate, kill.after, 0, last - first + 1 / kill.rate if last else 0.0)
+    times: list[float] = []
     try:
         with open_source(str(path)) as source:
             times.extend(frame.timestamp for frame in source)
     except TrackingError:
         pass  # it ends within a chunk, after all that can be read
     problem = "" if len(times) == frames else f"{len(times)} of {frames} pictures can be decoded"
-    return Kill(
-        kill.rate, kill.after, frames, processed - times[-1] if times else math.inf, problem
-    )
+    return Kill(kill.rate, kill.after, frames, last - times[-1] if times else math.inf, problem)
 
 
 def kills(count: int, seed: int, jobs: int) -> list[Kill]:
