@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 import pytest
@@ -38,7 +39,7 @@ class Blank:
         for index in range(self.count):
             yield Frame(black, self._script.time(index), index)
 
-    def __enter__(self) -> "Blank":
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
