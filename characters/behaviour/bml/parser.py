@@ -8,6 +8,7 @@ from typing import Literal
 from cubeling.characters.behaviour.bml.document import (
     BML,
     BMLA,
+    MAX_BLOCK_S,
     SYNC_NAMES,
     Behaviour,
     Block,
@@ -37,9 +38,6 @@ MAX_ID_CHARS = 100
 
 MAX_NAMES = 64
 """Blocks that an attribute may name."""
-
-MAX_BLOCK_S = 3600.0
-"""How long after its start a block may end [s], and how far a moment may be from another."""
 
 _NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 SECONDS = re.compile(rf"\s*[+-]?{_NUMBER}\s*")
@@ -216,10 +214,8 @@ class _DocumentReader:
     def _composition(self, text: str) -> tuple[Composition, tuple[str, ...]]:
         found = _COMPOSITION.fullmatch(text.strip())
         if found is None:
-            raise _error(
-                self._root,
-                f'composition "{text[:MAX_ID_CHARS]}" is none of MERGE, APPEND, REPLACE, APPEND-AFTER(ids)',
-            )
+            known = "MERGE, APPEND, REPLACE, APPEND-AFTER(ids)"
+            raise _error(self._root, f'composition "{text[:MAX_ID_CHARS]}" is none of {known}')
         if found[2] is not None:
             return "MERGE", self._names(found[2])
         composition: Composition = found[1].upper()  # type: ignore[assignment]
