@@ -25,6 +25,11 @@ class DocumentSplitter:
     def __init__(self) -> None:
         self._restart()
 
+    @property
+    def open(self) -> bool:
+        """Whether a document has begun and has not ended."""
+        return bool(self._document)
+
     def feed(self, received: bytes) -> Iterator[bytes]:
         """Yield the documents that bytes complete.
 

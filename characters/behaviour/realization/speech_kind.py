@@ -73,6 +73,7 @@ def retime_speeches(realizer: Realizer, who: RealizationContext, now: float) -> 
     if not who.estimated:
         return
     known: set[tuple[str, str]] = set()
+    waiting: set[tuple[str, str]] = set()
     moves: list[tuple[str, str, str, float]] = []
     for scheduled in realizer.scheduled:
         behaviour = scheduled.behaviour
@@ -80,6 +81,7 @@ def retime_speeches(realizer: Realizer, who: RealizationContext, now: float) -> 
             continue
         utterance = utterance_of(behaviour, who)
         if utterance is None:
+            waiting.add(_text_and_language(behaviour))
             continue
         known.add(_text_and_language(behaviour))
         if scheduled.key in who.late:
@@ -89,7 +91,8 @@ def retime_speeches(realizer: Realizer, who: RealizationContext, now: float) -> 
         for sync, time in {**marks, "end": utterance.duration}.items():
             moves.append((scheduled.block, behaviour.id, sync, start + time))
     realizer.retime_all(moves)
-    who.estimated -= known
+    # What is not scheduled any more is over, or is estimated again when it starts.
+    who.estimated &= waiting - known
 
 
 def utterance_of(behaviour: Behaviour, who: RealizationContext) -> Utterance | None:
