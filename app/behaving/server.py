@@ -164,13 +164,14 @@ class BlockServer:
         with contextlib.suppress(OSError):
             accepted, _ = self._listener.accept()
             accepted.setblocking(False)
-            # Those without the token cannot take the places of those that have it.
-            strangers = [c for c in self._connections.values() if not c.client.admitted]
-            if len(strangers) >= self._limits.clients:
-                self._drop(strangers[0])
             client = ServedClient(self._token, self._limits, self._clock())
             self._connections[accepted] = _Connection(accepted, client)
             self._selector.register(accepted, selectors.EVENT_READ)
+            self._receive(self._connections[accepted])  # most tell the token at once
+            # Those without the token cannot take the places of those that have it.
+            strangers = [c for c in self._connections.values() if not c.client.admitted]
+            if len(strangers) > self._limits.clients:
+                self._drop(strangers[0])
 
     def _receive(self, connection: _Connection) -> None:
         try:
