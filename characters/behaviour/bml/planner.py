@@ -63,7 +63,8 @@ class _Planner:
         self._orders: dict[str, list[Order]] = {}
         self._unmets: list[Unmet] = []
         self._certain = True  # whether what fails now has moved nothing else
-        self._rules_of = Counter(rule.owner for rule in (*problem.links, *problem.orders))
+        self._rules_of = Counter(link.owner for link in problem.links)
+        self._rules_of.update(order.owner for order in problem.orders)
         for link in problem.links:
             self._links[link.a[0]].append(link)
             if link.b is not None and link.b[0] != link.a[0]:

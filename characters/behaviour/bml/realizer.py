@@ -119,7 +119,7 @@ class Realizer:
         moves
             Block, behaviour and sync point of each, and when it is now expected [s].
         """
-        moved = {block for block, *move in moves if self._move(block, *move)}
+        moved = {move[0] for move in moves if self._move(*move)}
         changed = set[str]()
         for other in self._running():
             if other.block.id in moved or other.refers_to(changed):
