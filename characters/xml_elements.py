@@ -48,13 +48,13 @@ class XmlLimits:
     """How large a document may be."""
 
     bytes: int
-    """Its size."""
+    """Most bytes of a document, or characters of a text."""
 
     elements: int
-    """Elements in it."""
+    """Most elements of a document: each becomes an object of Python."""
 
     depth: int
-    """Elements within elements."""
+    """Most elements that are open at one time: readers and texts recurse so deep."""
 
 
 def read_xml(text: str | bytes, limits: XmlLimits, place: Callable[[int], str]) -> XmlElement:

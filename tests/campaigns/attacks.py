@@ -186,6 +186,7 @@ ATTACKS: dict[str, Attack] = {
         lambda n: f"<!DOCTYPE b [<!ENTITY x SYSTEM 'file:///etc/passwd'>]><bml id='x{n}'>&x;</bml>"
     ),
     "binary junk": again(JUNK),
+    "a comment of ends": once(b"<bml><!--" + b">" * 1_000_000),
     "junk after a tag": again(b"<bml>" + JUNK),
     "zero bytes": again(b"<bml id='z'>" + bytes(1 << 16)),
     "unknown encodings": documents(lambda n: f'<?xml version="1.0" encoding="utf-{n}"?><bml/>'),

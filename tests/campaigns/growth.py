@@ -186,7 +186,11 @@ def main() -> int:
     arguments.add_argument("--only", default="", help="part of the names of kinds")
     wanted = arguments.parse_args()
     gc.freeze()  # or each collection looks at all that is loaded
-    readers = {"bml": perform, "fml": mean, "schedule": ScheduleTrial()}
+    readers: dict[str, Callable[[str], str]] = {
+        "bml": perform,
+        "fml": mean,
+        "schedule": ScheduleTrial(),
+    }
     console, faults = Console(width=150, highlight=False, markup=False, emoji=False), list[str]()
     console.print(f"{'what grows':42} {'to':>10} {'CPU s':>6} {'MB':>4} {'exponent':>8}  refused")
     for growing in everything():
