@@ -52,7 +52,7 @@ class ClientLimits:
     bytes: int = 1 << 20
     """Size of these documents after which no more are read [B]."""
 
-    unsent: int = 4 << 20
+    unsent: int = 8 << 20
     """What waits to be sent to a client [B]; one that takes less is disconnected."""
 
     admission_s: float = 5.0

@@ -224,6 +224,9 @@ class BlockServer:
                     self._drop(connection)
                 continue
             client = connection.client
+            if connection.socket not in self._selector.get_map() and _is_reset(connection.socket):
+                self._drop(connection)
+                continue
             with self._changed:
                 why = client.overdue(now)
             if why:
@@ -289,3 +292,14 @@ class BlockServer:
             if not self._gone:
                 self._turns.append(self._gone)
             self._gone.extend(waiting)
+
+
+def _is_reset(connection: socket.socket) -> bool:
+    """Return whether a connection that is not read has been cut off: it would hold its place."""
+    try:
+        connection.recv(1, socket.MSG_PEEK)
+    except BlockingIOError:
+        return False
+    except OSError:
+        return True
+    return False

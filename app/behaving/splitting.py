@@ -56,7 +56,7 @@ class DocumentSplitter:
                 yield document
         if not self._document:
             self._markup.skip_space()
-            if self._markup.rest[:1] not in (b"", b"<"):
+            if bytes(self._markup.rest[:1]) not in (b"", b"<"):
                 raise StreamBroken("not XML (a document begins with <)")
         self._check_size(len(self._markup.rest))
 

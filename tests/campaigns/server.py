@@ -9,6 +9,7 @@ Exits with 1 if one has waited longer than `SERVED_S`, a frame has taken more CP
 """
 
 import argparse
+import os
 import sys
 import threading
 import time
@@ -20,7 +21,8 @@ from tests.campaigns.attacks import ATTACKS, Attack
 from tests.campaigns.served import Seen, Served, serve, served_s
 
 SERVED_S = 2.0
-"""Most time from connecting to the start of a block [s]."""
+"""Most time from connecting to the start of a block [s], on a machine that nobody else uses. Where
+programs wait for a core before the campaign begins, it is as many times longer as they are for one."""
 
 FRAME_CPU_S = 0.3
 """Most CPU time of a frame [s]. It lasts longer beside the attacks, which run here too."""
@@ -58,11 +60,14 @@ class Outcome:
 
     seen: Seen
 
+    allowed_s: float = SERVED_S
+    """Most time that a client may wait on this machine [s]."""
+
     @property
     def wrong(self) -> str:
         """What is wrong, or ""."""
         found = []
-        if self.waited_s > SERVED_S:
+        if self.waited_s > self.allowed_s:
             found.append("not served")
         if self.seen.worst_cpu_s > FRAME_CPU_S:
             found.append("a long frame")
@@ -71,7 +76,9 @@ class Outcome:
         return ", ".join(found)
 
 
-def run_attack(server: Served, name: str, attack: Attack, seconds: float) -> Outcome:
+def run_attack(
+    server: Served, name: str, attack: Attack, seconds: float, allowed_s: float = SERVED_S
+) -> Outcome:
     """Attack for a time [s] while honest clients come."""
     until = time.monotonic() + seconds
     thread = threading.Thread(target=attack, args=(server, until), daemon=True)
@@ -80,10 +87,10 @@ def run_attack(server: Served, name: str, attack: Attack, seconds: float) -> Out
     waits: list[float] = []
     key = "".join(letter for letter in name if letter.isalnum())
     while time.monotonic() < until or not waits:
-        waits.append(served_s(server, f"{key}{len(waits)}", 3.0 * SERVED_S))
+        waits.append(served_s(server, f"{key}{len(waits)}", 3.0 * allowed_s))
     seen = server.seen()
     thread.join(JOIN_S)
-    return Outcome(max(waits), sum(wait < SERVED_S for wait in waits), seen)
+    return Outcome(max(waits), sum(wait < allowed_s for wait in waits), seen, allowed_s)
 
 
 def main() -> int:
@@ -104,7 +111,7 @@ def main() -> int:
     )
     with serve() as server:
         for name, attack in chosen.items():
-            outcome = run_attack(server, name, attack, wanted.seconds)
+            outcome = run_attack(server, name, attack, wanted.seconds, allowed_s)
             wrong += bool(outcome.wrong)
             console.print(
                 f"{name:34} {outcome.clients:6} {outcome.waited_s:8.2f} "
