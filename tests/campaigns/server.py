@@ -21,8 +21,8 @@ from tests.campaigns.attacks import ATTACKS, Attack
 from tests.campaigns.served import Seen, Served, serve, served_s
 
 SERVED_S = 2.0
-"""Most time from connecting to the start of a block [s], on a machine that nobody else uses. Where
-programs wait for a core before the campaign begins, it is as many times longer as they are for one."""
+"""Most time from connecting to the start of a block [s], on a machine that nobody else uses.
+Where programs share a core when the campaign begins, it is longer by their number."""
 
 FRAME_CPU_S = 0.3
 """Most CPU time of a frame [s]. It lasts longer beside the attacks, which run here too."""
@@ -109,6 +109,8 @@ def main() -> int:
     console.print(
         f"{'attack':34} {'served':>6} {'waited s':>8} {'frame s':>8} {'CPU s':>6} {'MB':>5}"
     )
+    allowed_s = SERVED_S * max(os.getloadavg()[0] / (os.cpu_count() or 1), 1.0)
+    console.print(f"each client is to be served within {allowed_s:.1f} s")
     with serve() as server:
         for name, attack in chosen.items():
             outcome = run_attack(server, name, attack, wanted.seconds, allowed_s)
