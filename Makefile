@@ -35,6 +35,8 @@ campaign: .venv/ready-dev  ## the long runs: exchanges with robots, planted faul
 	$(BIN)/python -m tests.campaigns.soak --hours 24
 	$(BIN)/python -m tests.campaigns.afternoon
 	$(BIN)/python -m tests.campaigns.behaviour
+	$(BIN)/python -m tests.campaigns.growth
+	$(BIN)/python -m tests.campaigns.server
 	$(BIN)/python -m tests.campaigns.drawing
 	$(BIN)/python -m tests.campaigns.files --files 1e5
 	$(BIN)/python -m tests.campaigns.kills
@@ -48,6 +50,8 @@ campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.soak --hours 2.4
 	$(BIN)/python -m tests.campaigns.afternoon --scenes "every key" "record and replay"
 	$(BIN)/python -m tests.campaigns.behaviour --blocks 10000
+	$(BIN)/python -m tests.campaigns.growth --steps 5
+	$(BIN)/python -m tests.campaigns.server --short --seconds 1
 	$(BIN)/python -m tests.campaigns.drawing --minutes 1
 	$(BIN)/python -m tests.campaigns.files --files 1e4
 	$(BIN)/python -m tests.campaigns.kills --kills 10

@@ -25,6 +25,12 @@ from cubeling.characters.behaviour import feedback_xml
 from cubeling.characters.rendering import PortraitRenderer
 from cubeling.characters.speech import blood_of
 
+MAX_FRAME_DOCUMENTS = 16
+"""Documents that are read and scheduled for one frame; others wait for the next one."""
+
+MAX_FRAME_BYTES = 1 << 14
+"""Size of documents after which no other one is read for a frame [B]."""
+
 
 class Output(Protocol):
     """Shows the frames of a player and lets them sound."""
@@ -174,11 +180,14 @@ def play_live(
     frames = 0
     while not output.closed:
         due = begin + frames / rate
-        while (left := due - clock()) > 0.0:
-            for document in server.documents(left):
-                player.play_block(document)
-        for document in server.documents():
+        left = MAX_FRAME_DOCUMENTS, MAX_FRAME_BYTES
+        while min(left) > 0:
+            document = server.next_document(due - clock())
+            if document is None:
+                break
             player.play_block(document)
+            left = left[0] - 1, left[1] - len(document)
+        time.sleep(max(due - clock(), 0.0))
         now = clock() - begin
         frames = max(frames, math.floor(now * rate)) + 1
         frame = player.update(now)

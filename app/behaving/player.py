@@ -56,8 +56,8 @@ EYE_SHARE = 0.88
 """Height of the eyes of a body without eyes, as a part of its height."""
 
 
-MAX_RECENT = 64
-"""Lines whose sound is kept."""
+MAX_RECENT_LETTERS = 20_000
+"""Letters of the lines whose sound is kept, besides the last one."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,7 @@ class BehaviourPlayer:
         self._animator = Animator(character, place=RootDelta(), seed=options.seed)
         self._ways = WalkingTimes(character)
         self._refused: list[str] = []
-        self._recent: deque[SpokenLine] = deque(maxlen=MAX_RECENT)
+        self._recent: deque[SpokenLine] = deque()
         self._eye_height = _eye_height(character)
         places = {"viewer": VIEWER, "cube": CUBE, "left": LEFT, "right": RIGHT}
         places |= {name.lower(): place for name, place in (options.targets or {}).items()}
@@ -178,6 +178,9 @@ class BehaviourPlayer:
             return None
         if line not in self._recent:
             self._recent.append(line)
+            letters = sum(len(each.utterance.text) for each in self._recent)
+            while letters > MAX_RECENT_LETTERS and len(self._recent) > 1:
+                letters -= len(self._recent.popleft().utterance.text)
         return line.utterance
 
     def _tell_place(self, posed: PosedCharacter) -> None:

@@ -5,47 +5,65 @@ import queue
 import selectors
 import socket
 import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from functools import partial
 
-from cubeling.app.behaving.splitting import DocumentSplitter, StreamBroken
+from cubeling.app.admission import ClientLimits, Token
+from cubeling.app.behaving.client import ServedClient
+from cubeling.app.behaving.splitting import StreamBroken
 from cubeling.app.errors import AppError
 from cubeling.characters.behaviour import BmlWarning, feedback_xml
-
-MAX_CLIENTS = 16
-"""Connections at one time; more are closed at once."""
-
-MAX_WAITING = 256
-"""Documents that wait for the next frame; more are refused."""
-
-MAX_UNSENT = 1 << 20
-"""Feedback that waits for a client [B]; one that takes less is disconnected."""
 
 MAX_PORT = 65_535
 """The last TCP port."""
 
-RECEIVED_AT_ONCE = 1 << 16
+RECEIVED_AT_ONCE = 1 << 14
 """Bytes that are taken from a client before it is another's turn."""
 
+MAX_GONE = 64
+"""Documents of clients that have gone and wait; the oldest go first."""
 
-class _Client:
-    """A connection."""
+CHECK_EVERY_S = 0.5
+"""Time after which limits of time are checked, also if nothing comes [s]."""
 
-    def __init__(self, connection: socket.socket) -> None:
-        self.connection = connection
-        self.splitter = DocumentSplitter()
+
+class _Connection:
+    """A client, and what is to be sent to it."""
+
+    def __init__(self, socket: socket.socket, client: ServedClient) -> None:
+        self.socket, self.client = socket, client
         self.unsent = bytearray()
-        self.broken = False
-        """Whether nothing more is taken from it."""
+        self.left: float | None = None
+        """When it was told that it is disconnected [s]: nothing more is taken from it."""
+
+    @property
+    def events(self) -> int:
+        """What the selector is to wait for; what is thrown away is read too."""
+        reading = self.left is not None or not self.client.full
+        return (selectors.EVENT_READ if reading else 0) | (
+            selectors.EVENT_WRITE if self.unsent else 0
+        )
 
 
 class BlockServer:
     """Receives documents from all clients, and sends feedback to all. Whoever opens it closes it.
 
+    Clients tell the token in their first line. Their documents are taken by turns, one of each.
+
     Parameters
     ----------
     port
         The TCP port; 0 for any free one.
+    token
+        What admits a client.
     host
         The address that it listens at.
+    limits
+        What clients may use.
+    clock
+        The time [s].
 
     Raises
     ------
@@ -53,7 +71,14 @@ class BlockServer:
         The port cannot be used.
     """
 
-    def __init__(self, port: int, host: str = "127.0.0.1") -> None:
+    def __init__(
+        self,
+        port: int,
+        token: Token,
+        host: str = "127.0.0.1",
+        limits: ClientLimits | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
         if not 0 <= port <= MAX_PORT:
             raise AppError(f"there is no port {port}: choose another port, up to {MAX_PORT}")
         try:
@@ -64,10 +89,13 @@ class BlockServer:
             ) from error
         self.port: int = self._listener.getsockname()[1]
         """The port."""
-        self._documents: queue.Queue[bytes] = queue.Queue(MAX_WAITING)
+        self._token, self._limits, self._clock = token, limits or ClientLimits(), clock
         self._outgoing: queue.SimpleQueue[bytes] = queue.SimpleQueue()
         self._waking, self._woken = socket.socketpair()
-        self._clients: dict[socket.socket, _Client] = {}
+        self._connections: dict[socket.socket, _Connection] = {}
+        self._gone: deque[bytes] = deque(maxlen=MAX_GONE)
+        self._turns: deque[deque[bytes]] = deque()
+        self._changed = threading.Condition()  # guards the turns and what waits for one
         self._selector = selectors.DefaultSelector()
         for each in (self._listener, self._woken, self._waking):
             each.setblocking(False)
@@ -77,15 +105,17 @@ class BlockServer:
         self._thread = threading.Thread(target=self._run, name="blocks", daemon=True)
         self._thread.start()
 
-    def documents(self, timeout_s: float = 0.0) -> list[bytes]:
-        """Return the documents that have come; wait for the first one so long at most [s]."""
-        found: list[bytes] = []
-        with contextlib.suppress(queue.Empty):
-            if timeout_s > 0.0:
-                found.append(self._documents.get(timeout=timeout_s))
-            while True:
-                found.append(self._documents.get_nowait())
-        return found
+    def next_document(self, timeout_s: float = 0.0) -> bytes | None:
+        """Return the document whose turn it is; None if none comes within so many seconds."""
+        with self._changed:
+            if not self._changed.wait_for(lambda: self._turns, max(timeout_s, 0.0)):
+                return None
+            waiting = self._turns.popleft()
+            document = waiting.popleft()
+            if waiting:
+                self._turns.append(waiting)
+        self._wake()  # there is room for more of this client
+        return document
 
     def send(self, document: str) -> None:
         """Send a document to all clients."""
@@ -105,13 +135,14 @@ class BlockServer:
     def _run(self) -> None:
         try:
             while not self._closing:
-                for key, events in self._selector.select():
+                for key, events in self._selector.select(CHECK_EVERY_S):
                     self._serve(key.fileobj, events)
                 self._distribute()
+                self._check()
             self._distribute()
         finally:
-            for client in list(self._clients.values()):
-                self._drop(client)
+            for connection in list(self._connections.values()):
+                self._drop(connection)
             self._selector.close()
             for each in (self._listener, self._woken, self._waking):
                 each.close()
@@ -122,80 +153,153 @@ class BlockServer:
         elif ready is self._woken:
             with contextlib.suppress(OSError):
                 self._woken.recv(4096)
-        elif isinstance(ready, socket.socket) and ready in self._clients:
-            client = self._clients[ready]
+        elif isinstance(ready, socket.socket) and ready in self._connections:
+            connection = self._connections[ready]
             if events & selectors.EVENT_READ:
-                self._receive(client)
-            if events & selectors.EVENT_WRITE and ready in self._clients:
-                self._flush(client)
+                self._receive(connection)
+            if events & selectors.EVENT_WRITE and ready in self._connections:
+                self._flush(connection)
 
     def _accept(self) -> None:
         with contextlib.suppress(OSError):
-            connection, _ = self._listener.accept()
-            if len(self._clients) >= MAX_CLIENTS:
-                connection.close()
-                return
-            connection.setblocking(False)
-            self._clients[connection] = _Client(connection)
-            self._selector.register(connection, selectors.EVENT_READ)
+            accepted, _ = self._listener.accept()
+            accepted.setblocking(False)
+            client = ServedClient(self._token, self._limits, self._clock())
+            self._connections[accepted] = _Connection(accepted, client)
+            self._selector.register(accepted, selectors.EVENT_READ)
+            self._receive(self._connections[accepted])  # most tell the token at once
+            # Those without the token cannot take the places of those that have it.
+            strangers = [c for c in self._connections.values() if not c.client.admitted]
+            if len(strangers) > self._limits.clients:
+                self._drop(strangers[0])
 
-    def _receive(self, client: _Client) -> None:
+    def _receive(self, connection: _Connection) -> None:
         try:
-            received = client.connection.recv(RECEIVED_AT_ONCE)
+            received = connection.socket.recv(RECEIVED_AT_ONCE)
         except BlockingIOError:
             return
         except OSError:
             received = b""
         if not received:
-            self._drop(client)
-        if not received or client.broken:
-            return
-        try:
-            for document in client.splitter.feed(received):
-                self._documents.put_nowait(document)
-        except StreamBroken as error:
-            self._refuse(client, f"{error}; connect again")
-        except queue.Full:
-            self._refuse(client, "too many documents at once; connect again, and wait for feedback")
+            self._drop(connection)
+        elif connection.left is None:
+            client, known = connection.client, connection.client.admitted
+            self._read(connection, partial(client.receive, received, self._clock()))
+            if client.admitted and not known:
+                self._welcome(connection)
 
-    def _refuse(self, client: _Client, why: str) -> None:
+    def _read(self, connection: _Connection, read: Callable[[], None]) -> None:
+        """Let a client find documents, and give them their turns."""
+        waiting = connection.client.waiting
+        try:
+            with self._changed:
+                known = bool(waiting)
+                try:
+                    read()
+                finally:
+                    if waiting and not known:
+                        self._turns.append(waiting)
+                        self._changed.notify()
+        except StreamBroken as error:
+            self._refuse(connection, f"{error}; connect again")
+
+    def _welcome(self, newcomer: _Connection) -> None:
+        """Refuse a client for which there is no place."""
+        served = [c for c in self._connections.values() if c.client.admitted and c.left is None]
+        if len(served) > self._limits.clients:
+            self._refuse(newcomer, f"there are {self._limits.clients} clients; connect later")
+
+    def _refuse(self, connection: _Connection, why: str) -> None:
         """Warn one client, and take nothing more from it."""
         warning = BmlWarning("", "PARSING_FAILURE", why, 0.0)
-        client.broken = True
-        self._offer(client, feedback_xml(warning).encode() + b"\n")
+        connection.left = self._clock()
+        self._offer(connection, feedback_xml(warning).encode() + b"\n")
+
+    def _check(self) -> None:
+        """Read on where there is room again, and disconnect those that exceed limits of time."""
+        now = self._clock()
+        for connection in list(self._connections.values()):
+            if connection.left is not None:
+                if now > connection.left + self._limits.farewell_s:
+                    self._drop(connection)
+                continue
+            client = connection.client
+            if connection.socket not in self._selector.get_map() and _is_reset(connection.socket):
+                self._drop(connection)
+                continue
+            with self._changed:
+                why = client.overdue(now)
+            if why:
+                self._refuse(connection, f"{why}; connect again")
+                continue
+            self._read(connection, partial(client.read, now))
+            if connection.socket in self._connections:
+                self._watch(connection)
 
     def _distribute(self) -> None:
         with contextlib.suppress(queue.Empty):
             while True:
                 document = self._outgoing.get_nowait()
-                for client in list(self._clients.values()):
-                    if not client.broken:
-                        self._offer(client, document)
+                for connection in list(self._connections.values()):
+                    if connection.left is None and connection.client.admitted:
+                        self._offer(connection, document)
 
-    def _offer(self, client: _Client, document: bytes) -> None:
-        client.unsent += document
-        if len(client.unsent) > MAX_UNSENT:
-            self._drop(client)
-        else:
-            self._flush(client)
+    def _offer(self, connection: _Connection, document: bytes) -> None:
+        connection.unsent += document
+        self._flush(connection)
+        if len(connection.unsent) > self._limits.unsent:
+            self._drop(connection)
 
-    def _flush(self, client: _Client) -> None:
+    def _flush(self, connection: _Connection) -> None:
         """Send as much as the client takes now."""
         try:
-            sent = client.connection.send(client.unsent) if client.unsent else 0
+            sent = connection.socket.send(connection.unsent) if connection.unsent else 0
         except BlockingIOError:
             sent = 0
         except OSError:
-            self._drop(client)
+            self._drop(connection)
             return
-        del client.unsent[:sent]
-        wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if client.unsent else 0)
-        self._selector.modify(client.connection, wanted)
-        if client.broken and not client.unsent:
+        del connection.unsent[:sent]
+        self._watch(connection)
+        if connection.left is not None and not connection.unsent:
             with contextlib.suppress(OSError):
-                client.connection.shutdown(socket.SHUT_WR)  # what it still sends is thrown away
+                connection.socket.shutdown(socket.SHUT_WR)  # what it still sends is thrown away
 
-    def _drop(self, client: _Client) -> None:
-        if self._clients.pop(client.connection, None) is not None:
-            self._selector.unregister(client.connection)
-            client.connection.close()
+    def _watch(self, connection: _Connection) -> None:
+        """Wait for what a connection is to do next; for one that does nothing, only for room."""
+        with self._changed:
+            events = connection.events
+        watched = connection.socket in self._selector.get_map()
+        if watched and events:
+            self._selector.modify(connection.socket, events)
+        elif watched:
+            self._selector.unregister(connection.socket)
+        elif events:
+            self._selector.register(connection.socket, events)
+
+    def _drop(self, connection: _Connection) -> None:
+        if self._connections.pop(connection.socket, None) is None:
+            return
+        if connection.socket in self._selector.get_map():
+            self._selector.unregister(connection.socket)
+        connection.socket.close()
+        with self._changed:
+            # What those that have gone have left shares one turn, or it would come before others'.
+            waiting = connection.client.waiting
+            if not waiting:
+                return
+            self._turns = deque(each for each in self._turns if each is not waiting)
+            if not self._gone:
+                self._turns.append(self._gone)
+            self._gone.extend(waiting)
+
+
+def _is_reset(connection: socket.socket) -> bool:
+    """Return whether a connection that is not read has been cut off: it would hold its place."""
+    try:
+        connection.recv(1, socket.MSG_PEEK)
+    except BlockingIOError:
+        return False
+    except OSError:
+        return True
+    return False

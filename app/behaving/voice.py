@@ -12,6 +12,12 @@ from cubeling.characters.speech import DEFAULT_PROFILE, Speech, TaggedText, Voic
 MAX_REMEMBERED = 256
 """Lines that are remembered, so that a text that is said again is there at once."""
 
+MAX_LETTERS = 40_000
+"""Letters of the lines that are remembered: about 45 minutes, 0.2 GB of sound."""
+
+MAX_ASKED = 32
+"""Texts that wait for the voice; later ones are asked for again when there is room."""
+
 SayText = Callable[[str, str], Speech]
 """Returns the speech of a text in a language; raises `CharacterError`."""
 
@@ -106,11 +112,20 @@ class ThreadedSource:
         """Return what is said as soon as the voice has answered; None until then."""
         asked = text, language or self._language
         if asked not in self._lines:
-            while len(self._lines) >= MAX_REMEMBERED:
-                del self._lines[next(iter(self._lines))]
+            if self._asked.qsize() >= MAX_ASKED:
+                return None
+            self._forget(len(text))
             self._lines[asked] = None
             self._asked.put(asked)
         return self._lines[asked]
+
+    def _forget(self, letters: int) -> None:
+        """Forget the oldest lines, so that there is room for one with so many letters."""
+        letters += sum(len(text) for text, _ in self._lines)
+        while self._lines and (len(self._lines) >= MAX_REMEMBERED or letters > MAX_LETTERS):
+            oldest = next(iter(self._lines))
+            letters -= len(oldest[0])
+            del self._lines[oldest]
 
     def close(self) -> None:
         """End the voice; a second call does nothing."""

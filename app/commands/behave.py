@@ -60,6 +60,10 @@ def behave(
         int | None,
         typer.Option(help="Take blocks on this TCP port while playing, from this computer."),
     ] = None,
+    token: Annotated[
+        str,
+        typer.Option(help="What clients have to tell first; default: a new one, printed."),
+    ] = "",
     window: Annotated[
         bool, typer.Option("--window/--no-window", help="Show the character while serving.")
     ] = True,
@@ -116,8 +120,11 @@ def behave(
     body, pixels = with_root_joint(Character.load(character)), size_of(size)
     if serve is not None:
         first = [read_document(file) for file in files or []]
-        _serve(serve, body, options, first, voice, lang, rate, (pixels, view) if window else None)
+        shown = (pixels, view) if window else None
+        _serve(serve, token, body, options, first, voice, lang, rate, shown)
         return
+    if token:
+        raise AppError("--token is for --serve: add --serve PORT")
     if not files:
         raise AppError("there is nothing to perform: name a file of BML or FML, or --serve PORT")
     path = chosen_output(output, "behaviour.mp4", "behaviour", OUTPUT_SUFFIXES, overwrite)
@@ -141,6 +148,7 @@ def behave(
 
 def _serve(
     port: int,
+    told: str,
     body: Character,
     options: BehaviourOptions,
     first: list[str],
@@ -152,14 +160,16 @@ def _serve(
     """Play in a window, or without one, and take blocks until that is closed or interrupted."""
     if shown is not None and not has_display():
         raise AppError("there is no display here: add --no-window")
+    from cubeling.app.admission import Token
     from cubeling.app.behaving.live import NoOutput, WindowOutput, play_live
     from cubeling.app.behaving.opening import open_lines
     from cubeling.app.behaving.player import BehaviourPlayer
     from cubeling.app.behaving.server import BlockServer
     from cubeling.app.behaving.voice import ThreadedSource
 
+    token = Token(told) if told else Token.generate()
     with ExitStack() as closing:
-        server = BlockServer(port)
+        server = BlockServer(port, token)
         closing.callback(server.close)
         lines = open_lines(voice, language, ThreadedSource)
         closing.callback(lines.close)
@@ -173,7 +183,9 @@ def _serve(
         if lines.problem:
             console.print(f"[yellow]nothing is said:[/] {escape(lines.problem)}", soft_wrap=True)
         console.print(
-            f"Blocks of BML come in at 127.0.0.1:{server.port}; end with Ctrl-C", soft_wrap=True
+            f"Blocks of BML come in at 127.0.0.1:{server.port}; end with Ctrl-C\n"
+            f"Clients begin with the line: token {'and yours' if told else token.text}",
+            soft_wrap=True,
         )
         play_live(player, server, output, rate)
 

@@ -5,6 +5,7 @@ section 4.2).
 """
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -113,9 +114,9 @@ class Schedule:
     """The skeleton's rest pose: shown by joints without actions, and reference of scales."""
 
     def __post_init__(self) -> None:
-        names = [action.name for action in self.actions if action.name]
-        for name in names:
-            if names.count(name) > 1:
+        names = Counter(action.name for action in self.actions if action.name)
+        for name, count in names.items():
+            if count > 1:
                 raise CharacterError(f"schedule: two actions are named {name!r}; rename one")
 
     @property

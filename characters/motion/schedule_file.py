@@ -5,8 +5,9 @@ The two appendices spell some things differently (erratum 12); both spellings ar
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
-from xml.parsers import expat
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import islice
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from cubeling.characters.motion.motion import Motion
 from cubeling.characters.motion.schedule import Action, Schedule
 from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
 from cubeling.characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.xml_elements import XmlElement, XmlLimits, read_xml
 
 _SIDED_HANIM = {
     "sternoclavicular": "Shoulder",
@@ -41,8 +43,11 @@ _HANIM_PARTS = {
 }
 """Body parts by the joint names of the documents (H-Anim)."""
 
-MAX_DEPTH = 60
-"""Elements within elements that are read."""
+LIMITS = XmlLimits(bytes=4_000_000, elements=20_000, depth=60)
+"""Larger schedules are not written by hand."""
+
+MAX_ACTIVE = 500
+"""Actions that are activated: each costs time in every frame."""
 
 SCOPES: dict[str, tuple[str, ...]] = {
     "all": (),
@@ -55,19 +60,11 @@ SCOPES: dict[str, tuple[str, ...]] = {
 }
 """What a scope covers: these body parts and all joints below them; "all" covers every joint."""
 
+MAX_LISTED = 12
+"""Names of actions that a message lists."""
+
 Opener = Callable[[str], Motion]
 """Opens the motion of a name that a schedule gives."""
-
-
-@dataclass
-class ScheduleElement:
-    """An XML element, and where it begins."""
-
-    tag: str
-    attributes: Mapping[str, str]
-    line: int
-    children: list["ScheduleElement"] = field(default_factory=list)
-    text: str = ""
 
 
 @dataclass(frozen=True)
@@ -105,7 +102,9 @@ class ScheduleReader:
         filters: Mapping[str, Callable[[], PoseFilter]] | None = None,
     ) -> None:
         self._skeleton, self._anatomy = skeleton, anatomy
-        self._open_motion, self._open_idle = open_motion, open_idle
+        # Actions that name one motion share it: a recording may take a second to open.
+        self._open_motion, self._open_idle = cache(open_motion), cache(open_idle)
+        self._scope = cache(self._joints_in)
         self._filters = dict(filters or {})
         self._origin = ""
 
@@ -118,7 +117,7 @@ class ScheduleReader:
             If it is not XML, or says something that is not known; the message has the line.
         """
         self._origin = origin
-        root = parse(text, origin)
+        root = read_xml(text, LIMITS, lambda line: f"{origin}:{line}")
         if root.tag != "blendingschedule":
             raise self._error(root, f"<{root.tag}> is not a <blendingschedule>")
         self._check_tag(root, ("actionpool", "activate"))
@@ -130,9 +129,12 @@ class ScheduleReader:
                     if self._name(each) in pool:
                         raise self._error(each, f"a second action {self._name(each)!r}; rename one")
                     pool[self._name(each)] = self._action(each)
-        actions = [self._activate(e, pool) for e in root.children if e.tag == "activate"]
-        if not actions:
+        activated = [each for each in root.children if each.tag == "activate"]
+        if not activated:
             raise self._error(root, "no action is activated; add <activate>")
+        if len(activated) > MAX_ACTIVE:
+            raise self._error(activated[MAX_ACTIVE], f"more than {MAX_ACTIVE} actions activated")
+        actions = [self._activate(each, pool) for each in activated]
         counts: dict[str, int] = {}
         for number, action in enumerate(actions):
             counts[action.name] = count = counts.get(action.name, 0) + 1
@@ -140,7 +142,7 @@ class ScheduleReader:
                 actions[number] = replace(action, name=f"{action.name} #{count}")
         return Schedule(tuple(actions), self._skeleton.rest)
 
-    def _action(self, element: ScheduleElement) -> Action:
+    def _action(self, element: XmlElement) -> Action:
         """Return an action of the pool, which starts at 0."""
         self._check_tag(element, ("blendingparams", "blendableobject"))
         motion = self._object(self._one(element, "blendableobject"))
@@ -162,14 +164,15 @@ class ScheduleReader:
             name=self._name(element),
         )
 
-    def _activate(self, element: ScheduleElement, pool: Mapping[str, Action]) -> Action:
+    def _activate(self, element: XmlElement, pool: Mapping[str, Action]) -> Action:
         name, start = self._name(element), self._number(element, "offset", 0.0)
         if name not in pool:
-            raise self._error(element, f"no action {name!r}; there are {', '.join(pool) or 'none'}")
+            known = ", ".join(islice(pool, MAX_LISTED)) + (", …" if len(pool) > MAX_LISTED else "")
+            raise self._error(element, f"no action {name!r}; there are {known or 'none'}")
         action = pool[name]
         return replace(action, start=start)
 
-    def _object(self, element: ScheduleElement) -> Motion:
+    def _object(self, element: XmlElement) -> Motion:
         """Return the motion that an object describes."""
         kind = element.attributes.get("type", "")
         if kind == "keyframebodyanimation":
@@ -185,7 +188,7 @@ class ScheduleReader:
         kinds = "keyframebodyanimation, idlemotion, modifier"
         raise self._error(element, f'type="{kind}" is not known here; there are {kinds}')
 
-    def _modify(self, element: ScheduleElement, motion: Motion) -> Motion:
+    def _modify(self, element: XmlElement, motion: Motion) -> Motion:
         kind = element.attributes.get("type", "")
         self._check_tag(element, ("duration", "begin", "end"))
         try:
@@ -204,7 +207,7 @@ class ScheduleReader:
         known = ", ".join(("stretch", "window", *self._filters))
         raise self._error(element, f'type="{kind}" is not known here; there are {known}')
 
-    def _parameters(self, element: ScheduleElement, duration: float) -> _Parameters:
+    def _parameters(self, element: XmlElement, duration: float) -> _Parameters:
         """Return the parameters of an action that lasts a duration [s]."""
         kind, ones = element.attributes.get("type", "none"), np.ones(len(self._skeleton))
         if kind == "none":
@@ -214,22 +217,19 @@ class ScheduleReader:
             return self._joints(element)
         if kind == "merge":
             self._check_tag(element, ("blendingparams",))
-            merged = _Parameters(ones, ones)
-            for each in element.children:
-                one = self._parameters(each, duration)
-                merged = _Parameters(
-                    merged.weights * one.weights,
-                    merged.scales * one.scales,
-                    merged.curves + one.curves,
-                )
-            return merged
+            merged = [self._parameters(each, duration) for each in element.children]
+            return _Parameters(
+                np.prod([ones, *(one.weights for one in merged)], axis=0),
+                np.prod([ones, *(one.scales for one in merged)], axis=0),
+                tuple(curve for one in merged for curve in one.curves),
+            )
         if kind == "curve":
             self._check_tag(element, ("curveshape",))
             element = self._one(element, "curveshape")
             kind = element.attributes.get("type", "")
         return _Parameters(ones, ones, (self._curve(element, kind, duration),))
 
-    def _curve(self, element: ScheduleElement, kind: str, duration: float) -> Weight:
+    def _curve(self, element: XmlElement, kind: str, duration: float) -> Weight:
         """Return a curve; its lengths are written in percent of the duration."""
         shapes: dict[str, Ease] = {"": "linear", "linear": "linear", "cubic": "cubic"}
         shapes["gonio"] = "gonio"
@@ -253,7 +253,7 @@ class ScheduleReader:
         level = self._percent(element, "sustain", 100.0)
         return Adsr(part("attack"), part("decay"), level, part("release"), shape)
 
-    def _joints(self, element: ScheduleElement) -> _Parameters:
+    def _joints(self, element: XmlElement) -> _Parameters:
         """Return weights and scales of joints; later elements override earlier ones."""
         self._check_tag(element, ("default", "scope", "rotation", "translation"))
         weights, scales = np.ones(len(self._skeleton)), np.ones(len(self._skeleton))
@@ -268,18 +268,15 @@ class ScheduleReader:
             raise self._error(element, "a weight below 0")
         return _Parameters(weights, scales)
 
-    def _joints_of(self, element: ScheduleElement) -> list[int]:
+    def _joints_of(self, element: XmlElement) -> list[int]:
         """Return the joints that an element is about."""
-        everything = list(range(len(self._skeleton)))
         if element.tag == "default":
-            return everything
+            return self._scope("all")
         name = self._name(element)
         if element.tag == "scope":
             if name not in SCOPES:
                 raise self._error(element, f"no scope {name!r}; there are {', '.join(SCOPES)}")
-            tops = {self._anatomy.joint(part) for part in SCOPES[name]} - {None}
-            below = [j for j in everything if tops & {j, *self._skeleton.with_ancestors([j])}]
-            return everything if name == "all" else below
+            return self._scope(name)
         if name in self._skeleton.names:
             return [self._skeleton.index(name)]
         joint = self._anatomy.joint(_HANIM_PARTS.get(name, name))
@@ -287,7 +284,15 @@ class ScheduleReader:
             raise self._error(element, f"no joint {name!r}")
         return [joint]
 
-    def _open(self, opener: Opener, element: ScheduleElement) -> Motion:
+    def _joints_in(self, scope: str) -> list[int]:
+        """Return the joints that a scope covers."""
+        everything = list(range(len(self._skeleton)))
+        if scope == "all":
+            return everything
+        tops = {self._anatomy.joint(part) for part in SCOPES[scope]} - {None}
+        return [j for j in everything if tops & {j, *self._skeleton.with_ancestors([j])}]
+
+    def _open(self, opener: Opener, element: XmlElement) -> Motion:
         name = element.text.strip()
         if not name:
             raise self._error(element, f"<{element.tag}> names no file")
@@ -296,26 +301,26 @@ class ScheduleReader:
         except CharacterError as error:
             raise self._error(element, str(error)) from None
 
-    def _one(self, element: ScheduleElement, tag: str) -> ScheduleElement:
+    def _one(self, element: XmlElement, tag: str) -> XmlElement:
         found = [each for each in element.children if each.tag == tag]
         if len(found) != 1:
             raise self._error(element, f"<{element.tag}> needs one <{tag}>, not {len(found)}")
         return found[0]
 
-    def _check_tag(self, element: ScheduleElement, tags: tuple[str, ...]) -> None:
+    def _check_tag(self, element: XmlElement, tags: tuple[str, ...]) -> None:
         for child in element.children:
             if child.tag not in tags:
                 there = ", ".join(f"<{tag}>" for tag in tags) or "none"
                 message = f"<{child.tag}> is not known in <{element.tag}>; there are {there}"
                 raise self._error(child, message)
 
-    def _name(self, element: ScheduleElement) -> str:
+    def _name(self, element: XmlElement) -> str:
         name = element.attributes.get("id", "")
         if not name:
             raise self._error(element, f"<{element.tag}> has no id")
         return name
 
-    def _number(self, element: ScheduleElement, name: str, default: float | None = None) -> float:
+    def _number(self, element: XmlElement, name: str, default: float | None = None) -> float:
         """Return a number, which is an attribute or the text of an element; "0.5f" is 0.5."""
         texts = [each.text for each in element.children if each.tag == name]
         text = element.attributes.get(name, texts[0] if texts else None)
@@ -331,51 +336,12 @@ class ScheduleReader:
             raise self._error(element, f'{name}="{text.strip()[:40]}" is not a number')
         return number
 
-    def _percent(self, element: ScheduleElement, name: str, default: float) -> float:
+    def _percent(self, element: XmlElement, name: str, default: float) -> float:
         """Return a share that is written in percent."""
         number = self._number(element, name, default)
         if not 0.0 <= number <= 100.0:
             raise self._error(element, f"{name} is {number:g} percent; give 0 to 100")
         return number / 100.0
 
-    def _error(self, element: ScheduleElement, message: str) -> CharacterError:
+    def _error(self, element: XmlElement, message: str) -> CharacterError:
         return CharacterError(f"{self._origin}:{element.line}: {message}")
-
-
-def parse(text: bytes, origin: str) -> ScheduleElement:
-    """Return the root of an XML document.
-
-    Raises
-    ------
-    CharacterError
-        If it is not well-formed, or declares entities.
-    """
-    parser, open_elements, roots = (
-        expat.ParserCreate(),
-        list[ScheduleElement](),
-        list[ScheduleElement](),
-    )
-
-    def start(tag: str, attributes: dict[str, str]) -> None:
-        element = ScheduleElement(tag, attributes, parser.CurrentLineNumber)
-        if len(open_elements) >= MAX_DEPTH:
-            raise CharacterError(f"{origin}:{element.line}: more than {MAX_DEPTH} nested elements")
-        (open_elements[-1].children if open_elements else roots).append(element)
-        open_elements.append(element)
-
-    def add(more: str) -> None:
-        open_elements[-1].text += more
-
-    def refuse(*_: object) -> None:
-        raise CharacterError(f"{origin}:{parser.CurrentLineNumber}: entities are not read")
-
-    parser.StartElementHandler, parser.CharacterDataHandler = start, add
-    parser.EndElementHandler = lambda tag: open_elements.pop()
-    parser.EntityDeclHandler = refuse
-    try:
-        parser.Parse(text, True)
-    except expat.ExpatError as error:
-        raise CharacterError(
-            f"{origin}:{error.lineno}: not XML ({expat.errors.messages[error.code]})"
-        ) from None
-    return roots[0]

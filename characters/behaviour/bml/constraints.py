@@ -7,6 +7,9 @@ from functools import partial
 from cubeling.characters.behaviour.bml.document import Behaviour, Block, Constraint, SyncReference
 from cubeling.characters.behaviour.bml.timing import Timing
 
+MAX_LISTED = 12
+"""Sync points that a message lists."""
+
 Moment = tuple[str, int]
 """A sync point: a behaviour's id, and the index in its `Timing.syncs`."""
 
@@ -128,11 +131,17 @@ class Resolver:
             return None, time + reference.offset
         timing = self._timings.get(reference.behaviour)
         if timing is None:
-            raise Unmet(owner, f"{reference} is of no behaviour that is performed")
-        if reference.sync not in timing.syncs:
-            points = ", ".join(timing.syncs)
+            raise Unmet(owner, not_performed(reference))
+        if reference.sync not in timing.index:
+            more = ", …" if len(timing.syncs) > MAX_LISTED else ""
+            points = ", ".join(timing.syncs[:MAX_LISTED]) + more
             raise Unmet(owner, f"{reference} is no sync point of it; it has {points}")
-        return (reference.behaviour, timing.syncs.index(reference.sync)), reference.offset
+        return (reference.behaviour, timing.index[reference.sync]), reference.offset
+
+
+def not_performed(reference: SyncReference) -> str:
+    """Return why what is tied to a sync point of a behaviour that is left out is left out too."""
+    return f"{reference} is of no behaviour that is performed"
 
 
 def _link(first: _Place, second: _Place, owner: str) -> Link:

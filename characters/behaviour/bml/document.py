@@ -41,6 +41,9 @@ SYNCS: Mapping[str, tuple[str, ...]] = {
 SYNC_NAMES = frozenset(sync for syncs in SYNCS.values() for sync in syncs)
 """Attributes of a behaviour that say when one of its sync points is to be."""
 
+MAX_BLOCK_S = 3600.0
+"""How long after its start a block may end [s], and how far a moment may be from another."""
+
 Composition = Literal["MERGE", "APPEND", "REPLACE"]
 """What a block does with those before it: joins them, waits for their end, or ends them."""
 

@@ -1,13 +1,14 @@
 """Read BML 1.0: one `bml` element, without DTD and entities, of bounded size."""
 
-import math
 import re
+from collections import Counter
 from collections.abc import Collection, Iterable
 from typing import Literal
 
 from cubeling.characters.behaviour.bml.document import (
     BML,
     BMLA,
+    MAX_BLOCK_S,
     SYNC_NAMES,
     Behaviour,
     Block,
@@ -17,20 +18,33 @@ from cubeling.characters.behaviour.bml.document import (
     SyncMark,
     SyncReference,
 )
-from cubeling.characters.behaviour.bml.xml_elements import OpenElement, read_xml
 from cubeling.characters.errors import CharacterError
+from cubeling.characters.xml_elements import XmlElement, XmlLimits, read_xml
+
+LIMITS = XmlLimits(bytes=1 << 20, elements=5000, depth=32)
+"""How large a document may be."""
 
 MAX_BEHAVIOURS = 200
 """Behaviours of a block that is read: more are too many to schedule between two frames."""
 
-MAX_OFFSET = 1e6
-"""Seconds that a moment may be from another."""
+MAX_TIED = 500
+"""Moments that the constraints of a block tie, as each is scheduled again with the others."""
 
-_NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+MAX_MARKS = 500
+"""Sync points in the texts of a block."""
+
+MAX_ID_CHARS = 100
+"""Longest id: feedback repeats it for every sync point, to all clients."""
+
+MAX_NAMES = 64
+"""Blocks that an attribute may name."""
+
+_NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 SECONDS = re.compile(rf"\s*[+-]?{_NUMBER}\s*")
 """A number of seconds."""
 
 _REFERENCE = re.compile(rf"\s*(?:([^\s:]+):)?([^\s:]+):([^\s:]+?)\s*(?:([+-])\s*({_NUMBER})\s*)?")
+_SPACE = re.compile(r"\s+")
 _COMPOSITION = re.compile(r"(MERGE|REPLACE|APPEND)|APPEND-AFTER\(([^()]*)\)", re.IGNORECASE)
 
 
@@ -55,8 +69,8 @@ def parse_as(document: str | bytes, roots: Collection[str]) -> Block:
     CharacterError
         As for `parse`.
     """
-    root = read_xml(document)
-    if root.tag not in roots or root.namespace != BML:
+    root = read_xml(document, LIMITS, _place)
+    if root.tag not in roots or not _standard(root):
         raise _error(root, f"<{root.tag}> is no <{'> or <'.join(roots)}> of namespace {BML}")
     return _DocumentReader(root, roots).block()
 
@@ -77,11 +91,13 @@ def reference(text: str) -> SyncReference:
     found = _REFERENCE.fullmatch(text)
     if found is None and not SECONDS.fullmatch(text):
         raise CharacterError(
-            f'"{text}" is no moment; write 1.5, speech1:start or speech1:start+0.5'
+            f'"{text[:MAX_ID_CHARS]}" is no moment; write 1.5, speech1:start or speech1:start+0.5'
         )
     offset = float(text) if found is None else float((found[4] or "") + (found[5] or "0"))
-    if not math.isfinite(offset) or abs(offset) > MAX_OFFSET:
-        raise CharacterError(f'"{text}" is farther than {MAX_OFFSET:g} s; give fewer seconds')
+    if not abs(offset) <= MAX_BLOCK_S:
+        raise CharacterError(
+            f'"{text[:MAX_ID_CHARS]}" is farther than {MAX_BLOCK_S:g} s; give fewer seconds'
+        )
     if found is None:
         return SyncReference(offset=offset)
     return SyncReference(found[2], found[3], found[1] or "", offset)
@@ -90,15 +106,17 @@ def reference(text: str) -> SyncReference:
 class _DocumentReader:
     """Makes a block of a `bml` element."""
 
-    def __init__(self, root: OpenElement, roots: Collection[str]) -> None:
+    def __init__(self, root: XmlElement, roots: Collection[str]) -> None:
         self._root, self._roots = root, roots
         self._behaviours: list[Behaviour] = []
         self._constraints: list[Constraint] = []
         self._ids: set[str] = set()
+        self._numbers = Counter[str]()
+        self._tied = self._marks = 0
 
     def block(self) -> Block:
         given = dict(self._root.attributes)
-        name = given.pop("id", "").strip()
+        name = _id(self._root, given.pop("id", ""))
         if not name:
             raise _error(self._root, "a block without an id; write <bml id=…>")
         self._read(self._root.children, required=False)
@@ -108,39 +126,44 @@ class _DocumentReader:
             behaviours=tuple(self._behaviours),
             constraints=tuple(self._constraints),
             composition=composition,
-            append_after=after + _names(given.pop(f"{{{BMLA}}}appendAfter", "")),
-            chunk_after=_names(given.pop(f"{{{BMLA}}}chunkAfter", "")),
-            interrupt=_names(given.pop(f"{{{BMLA}}}interrupt", "")),
-            on_start=_names(given.pop(f"{{{BMLA}}}onStart", "")),
+            append_after=after + self._names(given.pop(f"{{{BMLA}}}appendAfter", "")),
+            chunk_after=self._names(given.pop(f"{{{BMLA}}}chunkAfter", "")),
+            interrupt=self._names(given.pop(f"{{{BMLA}}}interrupt", "")),
+            on_start=self._names(given.pop(f"{{{BMLA}}}onStart", "")),
             preplan=given.pop(f"{{{BMLA}}}preplan", "").strip().lower() in ("true", "1"),
-            character=given.pop("characterId", ""),
+            character=_id(self._root, given.pop("characterId", "")),
             attributes=given,
         )
 
-    def _read(self, elements: Iterable[OpenElement], required: bool) -> None:
+    def _read(self, elements: Iterable[XmlElement], required: bool) -> None:
         for element in elements:
-            if element.namespace == BML and element.tag == "required":
+            if _standard(element) and element.tag == "required":
                 self._read(element.children, required=True)
-            elif element.namespace == BML and element.tag in self._roots:
+            elif _standard(element) and element.tag in self._roots:
                 self._read(element.children, required)
-            elif element.namespace == BML and element.tag == "constraint":
+            elif _standard(element) and element.tag == "constraint":
                 self._read_constraint(element, required)
             else:
                 self._behaviours.append(self._behaviour(element, required))
 
-    def _behaviour(self, element: OpenElement, required: bool) -> Behaviour:
-        name = element.attributes.get("id", "").strip() or self._new_id(element.tag)
+    def _behaviour(self, element: XmlElement, required: bool) -> Behaviour:
+        name = _id(element, element.attributes.get("id", "")) or self._new_id(element.tag)
         if name in self._ids:
             raise _error(element, f'a second behaviour with id "{name}"; give each its own')
         self._ids.add(name)
         if len(self._behaviours) >= MAX_BEHAVIOURS:
             raise _error(element, f"more than {MAX_BEHAVIOURS} behaviours; send several blocks")
         text, marks = _speech(element) if element.tag == "speech" else ("", ())
+        self._marks += len(marks)
+        if self._marks > MAX_MARKS:
+            raise _error(
+                element, f"more than {MAX_MARKS} sync points in texts; send several blocks"
+            )
         given = element.attributes.items()
         return Behaviour(
             id=name,
             kind=element.tag,
-            namespace=element.namespace,
+            namespace=element.namespace or BML,
             syncs={key: _moment(element, v) for key, v in given if key in SYNC_NAMES},
             attributes={k: v for k, v in given if k not in SYNC_NAMES and k != "id"},
             children=tuple(_as_element(child) for child in element.children),
@@ -150,12 +173,13 @@ class _DocumentReader:
         )
 
     def _new_id(self, tag: str) -> str:
-        number = 1
-        while f"{tag}{number}" in self._ids:
-            number += 1
-        return f"{tag}{number}"
+        # Ids are never given back, so a number that is taken stays taken.
+        self._numbers[tag] += 1
+        while f"{tag}{self._numbers[tag]}" in self._ids:
+            self._numbers[tag] += 1
+        return f"{tag}{self._numbers[tag]}"
 
-    def _read_constraint(self, element: OpenElement, required: bool) -> None:
+    def _read_constraint(self, element: XmlElement, required: bool) -> None:
         for rule in element.children:
             if rule.tag not in ("synchronize", "before", "after"):
                 raise _error(rule, f"<{rule.tag}> is no synchronize, before or after")
@@ -171,75 +195,97 @@ class _DocumentReader:
             moment = None if other is None else _moment(rule, other)
             if kind == "synchronize" and moment is not None:
                 syncs, moment = (moment, *syncs), None
-            name = element.attributes.get("id", "").strip()
+            name = _id(element, element.attributes.get("id", ""))
             name = self._new_id("constraint") if not name or name in self._ids else name
             self._ids.add(name)
+            self._tied += len(syncs) + (moment is not None)
+            if self._tied > MAX_TIED:
+                raise _error(
+                    rule, f"constraints tie more than {MAX_TIED} moments; send several blocks"
+                )
             self._constraints.append(Constraint(kind, syncs, moment, name, required))
+
+    def _names(self, text: str) -> tuple[str, ...]:
+        names = tuple(text.replace(",", " ").split())
+        if len(names) > MAX_NAMES:
+            raise _error(self._root, f"more than {MAX_NAMES} blocks named in an attribute")
+        return names
 
     def _composition(self, text: str) -> tuple[Composition, tuple[str, ...]]:
         found = _COMPOSITION.fullmatch(text.strip())
         if found is None:
-            raise _error(
-                self._root,
-                f'composition "{text}" is none of MERGE, APPEND, REPLACE, APPEND-AFTER(ids)',
-            )
+            known = "MERGE, APPEND, REPLACE, APPEND-AFTER(ids)"
+            raise _error(self._root, f'composition "{text[:MAX_ID_CHARS]}" is none of {known}')
         if found[2] is not None:
-            return "MERGE", _names(found[2])
+            return "MERGE", self._names(found[2])
         composition: Composition = found[1].upper()  # type: ignore[assignment]
         return composition, ()
 
 
-def _speech(element: OpenElement) -> tuple[str, tuple[SyncMark, ...]]:
+def _speech(element: XmlElement) -> tuple[str, tuple[SyncMark, ...]]:
     """Return the text of a speech with single spaces, and its marks."""
-    text, marks = "", list[SyncMark]()
+    written, marks, length = list[str](), list[SyncMark](), 0
 
-    def add(parts: Iterable[str | OpenElement]) -> None:
-        nonlocal text
+    def add(parts: Iterable[str | XmlElement]) -> None:
+        nonlocal length
         for part in parts:
-            if isinstance(part, OpenElement):
+            if isinstance(part, XmlElement):
                 if part.tag == "sync" and part.attributes.get("id"):
-                    marks.append(SyncMark(part.attributes["id"].strip(), len(text)))
+                    marks.append(SyncMark(_id(part, part.attributes["id"]), length))
                 add(part.parts)
                 continue
-            for character in part:
-                if not character.isspace():
-                    text += character
-                elif text and text[-1] != " ":
-                    text += " "
+            words = _SPACE.sub(" ", part)
+            if words.startswith(" ") and (not written or written[-1].endswith(" ")):
+                words = words[1:]
+            if words:
+                written.append(words)
+                length += len(words)
 
     add([child for child in element.children if child.tag in ("text", "ssml", "description")])
     _check_marks(element, marks)
-    text = text.rstrip()
+    text = "".join(written).rstrip()
     return text, tuple(SyncMark(mark.id, min(mark.at, len(text))) for mark in marks)
 
 
-def _check_marks(element: OpenElement, marks: list[SyncMark]) -> None:
-    names = [mark.id for mark in marks] + ["start", "end"]
-    for name in names:
-        if names.count(name) > 1:
+def _check_marks(element: XmlElement, marks: list[SyncMark]) -> None:
+    for name, count in Counter([*(mark.id for mark in marks), "start", "end"]).items():
+        if count > 1:
             raise _error(element, f'a second sync point "{name}" in a text; give each its own id')
 
 
-def _as_element(element: OpenElement) -> BmlElement:
+def _as_element(element: XmlElement) -> BmlElement:
     return BmlElement(
         element.tag,
-        element.namespace,
+        element.namespace or BML,
         element.attributes,
         tuple(_as_element(child) for child in element.children),
         element.text,
     )
 
 
-def _moment(element: OpenElement, text: str) -> SyncReference:
+def _moment(element: XmlElement, text: str) -> SyncReference:
     try:
         return reference(text)
     except CharacterError as error:
         raise _error(element, str(error)) from None
 
 
-def _names(text: str) -> tuple[str, ...]:
-    return tuple(text.replace(",", " ").split())
+def _standard(element: XmlElement) -> bool:
+    """Return whether an element is of the standard; those without a namespace are."""
+    return element.namespace in ("", BML)
 
 
-def _error(element: OpenElement, message: str) -> CharacterError:
-    return CharacterError(f"BML, line {element.line}: {message}")
+def _id(element: XmlElement, text: str) -> str:
+    """Return an id, "" if there is none."""
+    name = text.strip()
+    if len(name) > MAX_ID_CHARS:
+        raise _error(element, f"an id of more than {MAX_ID_CHARS} characters; give a shorter one")
+    return name
+
+
+def _place(line: int) -> str:
+    return f"BML, line {line}"
+
+
+def _error(element: XmlElement, message: str) -> CharacterError:
+    return CharacterError(f"{_place(element.line)}: {message}")

@@ -7,11 +7,13 @@ owner, who is then left out: it is what the standard asks for, and no search is 
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from cubeling.characters.behaviour.bml.constraints import Contradictory, Link, Moment, Order, Unmet
 from cubeling.characters.behaviour.bml.problem import TimingProblem, check, sequence
+from cubeling.characters.behaviour.bml.shifts import Shifts
 from cubeling.characters.behaviour.bml.spans import TOLERANCE, fits, stretch
 
 LATENESS = 0.1
@@ -59,6 +61,10 @@ class _Planner:
         self._known: dict[str, dict[int, float]] = {}
         self._links: dict[str, list[Link]] = {name: [] for name in problem.timings}
         self._orders: dict[str, list[Order]] = {}
+        self._unmets: list[Unmet] = []
+        self._certain = True  # whether what fails now has moved nothing else
+        self._rules_of = Counter(link.owner for link in problem.links)
+        self._rules_of.update(order.owner for order in problem.orders)
         for link in problem.links:
             self._links[link.a[0]].append(link)
             if link.b is not None and link.b[0] != link.a[0]:
@@ -69,33 +75,42 @@ class _Planner:
                     self._orders.setdefault(end[0], []).append(order)
 
     def plan(self) -> dict[str, list[float]]:
-        unmet = [*self._place_all()]
-        if not unmet:
+        self._place_all()
+        if not self._unmets:
             try:
                 self._ground_all()
-                if self._problem.strict:
+                if self._problem.strict and not self._unmets:
                     check(self._problem, self._times)
             except Unmet as error:
-                unmet.append(error)
-        if unmet:
-            raise Contradictory(unmet)
+                self._unmets.append(error)
+        if self._unmets:
+            raise Contradictory(self._unmets)
         start = self._problem.start
         return {name: [max(t, start) for t in times] for name, times in self._times.items()}
 
-    def _place_all(self) -> Iterator[Unmet]:
-        """Place all behaviours; yield what cannot be met, as far as it is certain.
+    def _place_all(self) -> None:
+        """Place all behaviours, and note what cannot be met, as far as it is certain.
 
-        A behaviour that fails after it has moved others may have moved them wrongly: then it is
-        the last that is looked at.
+        What fails after it has moved others may have moved them wrongly: then it is the last that
+        is looked at.
         """
         for name in sequence(self._problem):
             clusters = {id(self._cluster(anchor)) for anchor in self._anchors(name)}
+            self._certain = len(clusters) <= 1
             try:
                 self._place(name)
             except Unmet as unmet:
-                yield unmet
-                if len(clusters) > 1 or unmet.owner != name:
+                self._unmets.append(unmet)
+                if not self._certain or unmet.owner != name:
                     return
+
+    def _pass_over(self, unmet: Unmet) -> None:
+        """Note a constraint that is not met and has moved nothing; raise for anything else."""
+        if not self._certain or self._rules_of[unmet.owner] > 1:
+            raise unmet
+        if unmet.owner in self._problem.timings:
+            raise unmet
+        self._unmets.append(unmet)
 
     def _unmet(self, owner: str, reason: str) -> None:
         if self._problem.strict:
@@ -110,7 +125,10 @@ class _Planner:
         fixed = self._fixed_times(name, anchors, facts)
         for link in self._links[name]:
             if link.b is not None and link.b[0] == link.a[0] and (fixed or not cluster.grounded):
-                self._fix_distance(name, link, fixed)
+                try:
+                    self._fix_distance(name, link, fixed)
+                except Unmet as unmet:
+                    self._pass_over(unmet)
         timing = self._problem.timings[name]
         if fixed:
             times = self._stretch(name, fixed, cluster)
@@ -121,7 +139,10 @@ class _Planner:
         self._clusters[name], self._times[name], self._known[name] = cluster, times, fixed
         cluster.members.append(name)
         for order in self._orders.get(name, ()):
-            self._obey(name, order)
+            try:
+                self._obey(name, order)
+            except Unmet as unmet:
+                self._pass_over(unmet)
 
     def _anchors(self, name: str) -> list[_Anchor]:
         anchors = []
@@ -191,7 +212,10 @@ class _Planner:
         fixed = dict(facts)
         for anchor in anchors:
             time = self._in_time(anchor, self._time(anchor))
-            self._fix(name, fixed, anchor.index, time, anchor.owner)
+            try:
+                self._fix(name, fixed, anchor.index, time, anchor.owner)
+            except Unmet as unmet:
+                self._pass_over(unmet)
         return fixed
 
     def _fix(self, name: str, fixed: dict[int, float], index: int, time: float, owner: str) -> None:
@@ -209,21 +233,26 @@ class _Planner:
             return
         if not earliest <= time <= latest:
             self._unmet(owner, f"{self._point(name, index)} is out of order")
-        fixed[index] = min(max(time, earliest), latest)
-        self._check_span(name, fixed, low, index, owner)
-        self._check_span(name, fixed, index, high, owner)
+        time = min(max(time, earliest), latest)
+        if low is not None:
+            self._check_span(name, (low, index), time - earliest, owner)
+        if high is not None:
+            self._check_span(name, (index, high), latest - time, owner)
+        fixed[index] = time
 
     def _fix_distance(self, name: str, link: Link, fixed: dict[int, float]) -> None:
         """Fix how far two sync points of one behaviour are from each other."""
         assert link.b is not None
         one, other = link.a[1], link.b[1]
-        if one not in fixed and other not in fixed:
-            times = stretch(self._problem.timings[name], fixed or {0: 0.0})
-            fixed[other] = times[other]
-        if other in fixed:
-            self._fix(name, fixed, one, fixed[other] + link.offset, link.owner)
-        else:
+        if one in fixed and other not in fixed:
             self._fix(name, fixed, other, fixed[one] - link.offset, link.owner)
+            return
+        times = fixed
+        if other not in fixed:
+            natural = stretch(self._problem.timings[name], fixed or {0: 0.0})
+            times = {**fixed, other: natural[other]}
+        self._fix(name, times, one, times[other] + link.offset, link.owner)
+        fixed |= times
 
     def _in_time(self, anchor: _Anchor, time: float) -> float:
         """Return a time that is not in the past, if it is only a little."""
@@ -234,14 +263,9 @@ class _Planner:
             time = max(time, self._problem.now)
         return time
 
-    def _check_span(
-        self, name: str, fixed: dict[int, float], first: int | None, last: int | None, owner: str
-    ) -> None:
-        if first is None or last is None or not self._problem.strict:
-            return
-        duration = fixed[last] - fixed[first]
-        if not fits(self._problem.timings[name], first, last, duration):
-            a, b = self._point(name, first), self._point(name, last)
+    def _check_span(self, name: str, span: tuple[int, int], duration: float, owner: str) -> None:
+        if self._problem.strict and not fits(self._problem.timings[name], *span, duration):
+            a, b = (self._point(name, index) for index in span)
             raise Unmet(owner, f"{a} and {b} cannot be {duration:.3g} s apart")
 
     def _stretch(self, name: str, fixed: dict[int, float], cluster: _Cluster) -> list[float]:
@@ -314,33 +338,31 @@ class _Planner:
 
     def _ground_all(self) -> None:
         """Give every cluster the earliest time that the orders between clusters allow."""
+        self._certain = True
         clusters = {id(c): c for c in self._clusters.values() if not c.grounded}
-        shifts = {key: self._problem.start - self._begin(c) for key, c in clusters.items()}
-        shifts[id(self._ground)] = 0.0
-        for _ in range(len(shifts) + 1):
-            late = [order for order in self._problem.orders if self._raise(order, shifts)]
-            if not late:
-                break
-        else:
-            self._unmet(late[-1].owner, "its order goes round in a circle")
+        shifts = Shifts({key: self._problem.start - self._begin(c) for key, c in clusters.items()})
+        for order in self._problem.orders:
+            if not self._keep_apart(order, shifts):
+                self._pass_over(Unmet(order.owner, "its order goes round in a circle"))
         for key, cluster in clusters.items():
             for member in cluster.members:
-                self._move(member, shifts[key], grounded=True)
+                self._move(member, shifts.of(key), grounded=True)
                 self._clusters[member] = self._ground
         for order in self._problem.orders:
             moment = order.later or order.earlier
-            if moment is not None:
-                self._obey(moment[0], order)
+            try:
+                if moment is not None:
+                    self._obey(moment[0], order)
+            except Unmet as unmet:
+                self._pass_over(unmet)
 
-    def _raise(self, order: Order, shifts: dict[int, float]) -> bool:
-        """Move the later cluster of an order if it is too early; return whether it was."""
+    def _keep_apart(self, order: Order, shifts: Shifts) -> bool:
+        """Let an order between two clusters hold; return False if it cannot."""
         earlier, later = self._of(order.earlier), self._of(order.later)
         assert earlier is not None
         assert later is not None
-        if earlier[0] is later[0]:
-            return False
-        late = earlier[1] + shifts[id(earlier[0])] - later[1] - shifts[id(later[0])] - order.offset
-        if late <= TOLERANCE or later[0].grounded or not math.isfinite(late):
-            return False
-        shifts[id(later[0])] += late
-        return True
+        distance = earlier[1] - later[1] - order.offset
+        if earlier[0] is later[0] or later[0].grounded or not math.isfinite(distance):
+            return True
+        kept = shifts.keep_after(id(later[0]), id(earlier[0]), distance)
+        return kept or not self._problem.strict

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
+from heapq import heapify, heappop, heapreplace
 from typing import Literal
 
 from cubeling.characters.behaviour.bml.constraints import External, Resolver
@@ -49,6 +50,14 @@ class Realization:
     interrupts: tuple[str, ...] = ()
     """Blocks that it has to end before it starts."""
 
+    _coming: list[tuple[float, int, BehaviourTrack]] | None = None
+    """A heap of the behaviours by their next sync points; None if times have changed since."""
+
+    @property
+    def load(self) -> int:
+        """How much there is to schedule: behaviours, and moments that constraints tie."""
+        return len(self.block.behaviours) + sum(len(c.syncs) for c in self.block.constraints)
+
     @property
     def awaits_nothing(self) -> bool:
         """Whether it can start."""
@@ -78,13 +87,32 @@ class Realization:
 
     def next_track(self) -> BehaviourTrack | None:
         """Return the behaviour whose sync point comes next, the first of those that tie."""
-        found, earliest = None, math.inf
-        for track in self.tracks.values():
-            if track.happened < len(track.times):
-                time = track.times[track.happened]
-                if found is None or time < earliest:
-                    found, earliest = track, time
-        return found
+        if self._coming is None:
+            self._coming = [
+                (track.times[track.happened], number, track)
+                for number, track in enumerate(self.tracks.values())
+                if not track.over
+            ]
+            heapify(self._coming)
+        return self._coming[0][2] if self._coming else None
+
+    def advance(self) -> str:
+        """Note that the next sync point has come, and return its name."""
+        track = self.next_track()
+        assert track is not None
+        assert self._coming is not None
+        sync = track.timing.syncs[track.happened]
+        track.happened += 1
+        if track.over:
+            heappop(self._coming)
+        else:
+            entry = track.times[track.happened], self._coming[0][1], track
+            heapreplace(self._coming, entry)
+        return sync
+
+    def reorder(self) -> None:
+        """Look again which sync point comes next, as behaviours or their times have changed."""
+        self._coming = None
 
     def behaviours(self, at: float | None = None) -> Iterator[Scheduled]:
         """Yield its behaviours that are not over, or only those that go on then."""
@@ -125,6 +153,7 @@ class Realization:
             Ids of those to leave alone.
         """
         self.latest = now
+        self.reorder()
         for name, track in list(self.tracks.items()):
             if (only and name not in only) or name in but or track.over:
                 continue
@@ -172,3 +201,4 @@ class Realization:
         problem = TimingProblem(timings, links, orders, self.start, now, facts, moved, strict=False)
         for name, times in plan(problem).items():
             self.tracks[name].times = times
+        self.reorder()

@@ -29,6 +29,15 @@ from cubeling.characters.behaviour.bml.schedule import (
 from cubeling.characters.behaviour.bml.timing import Scheduled, TimingEstimator
 from cubeling.characters.errors import CharacterError
 
+MAX_BLOCKS = 32
+"""Blocks that are not over; one that replaces the others is taken even then."""
+
+MAX_LOAD = 1000
+"""Behaviours of blocks that are not over, and moments that their constraints tie: they may all be
+scheduled in one frame."""
+
+FULL = f"more than {MAX_BLOCKS} blocks, or too many behaviours; wait for their end or replace them"
+
 
 class Realizer:
     """Plays blocks: lays each out in time, and tells what is active.
@@ -100,23 +109,40 @@ class Realizer:
         time
             When it is now expected [s]; what is past counts as now.
         """
-        realization = self._realizations.get(block)
-        if realization is None or realization.state != "running":
-            return
-        track = realization.tracks.get(behaviour)
-        if track is None or track.interrupted or sync not in track.timing.syncs:
-            return
-        index = track.timing.syncs.index(sync)
-        if index < track.happened:
-            return
-        realization.move(track, index, time, self._now)
+        self.retime_all([(block, behaviour, sync, time)])
+
+    def retime_all(self, moves: Iterable[tuple[str, str, str, float]]) -> None:
+        """Move sync points as `retime` does, and find the times of what depends on them once.
+
+        Parameters
+        ----------
+        moves
+            Block, behaviour and sync point of each, and when it is now expected [s].
+        """
+        moved = {move[0] for move in moves if self._move(*move)}
         changed = set[str]()
         for other in self._running():
-            if other is realization or other.refers_to(changed):
+            if other.block.id in moved or other.refers_to(changed):
                 changed.add(other.block.id)
                 other.replan(self._now, self._external)
                 lead_over(other.tracks.values(), self._others(other), self._now)
                 self._feedback.append(other.prediction())
+        if changed:
+            self._reorder()
+
+    def _move(self, block: str, behaviour: str, sync: str, time: float) -> bool:
+        """Note when a sync point is to be; return whether it is still to come."""
+        realization = self._realizations.get(block)
+        if realization is None or realization.state != "running":
+            return False
+        track = realization.tracks.get(behaviour)
+        if track is None or track.interrupted or sync not in track.timing.index:
+            return False
+        index = track.timing.index[sync]
+        if index < track.happened:
+            return False
+        realization.move(track, index, time, self._now)
+        return True
 
     # Arrival
 
@@ -131,11 +157,19 @@ class Realizer:
             self._warn(bml, "", "PARSING_FAILURE", "a block with this id is not over yet")
             return
         realization = Realization(bml, "preplanned", self._now)
+        if bml.composition != "REPLACE" and not self._has_room_for(realization):
+            self._warn(bml, "", "IMPOSSIBLE_TO_SCHEDULE", FULL)
+            return
         self._realizations[bml.id] = realization
         if not bml.preplan:
             self._activate(realization, self._now)
         if not realization.awaits_nothing:
             self._preview(realization)
+
+    def _has_room_for(self, realization: Realization) -> bool:
+        known = self._realizations.values()
+        load = realization.load + sum(each.load for each in known)
+        return len(known) < MAX_BLOCKS and load <= MAX_LOAD
 
     def _activate(self, realization: Realization, time: float) -> None:
         """Find out what a block has to wait for."""
@@ -164,6 +198,7 @@ class Realizer:
         with suppress(BlockFailed):
             scheduler = Scheduler(realization.block, self._estimator, self._external)
             realization.tracks = scheduler.schedule(start, ()).tracks
+            realization.reorder()
             self._feedback.append(realization.prediction())
 
     def _schedule(self, realization: Realization, start: float) -> bool:
@@ -177,6 +212,8 @@ class Realizer:
             self._finish(realization, start, report=False)
             return False
         realization.tracks, realization.constraints = schedule.tracks, schedule.constraints
+        realization.reorder()
+        self._reorder()  # behaviours of other blocks may lead over to its own
         for failure in schedule.failures:
             self._warn(block, failure.id, failure.type, failure.reason)
         return True
@@ -230,8 +267,7 @@ class Realizer:
         track = realization.next_track()
         assert track is not None
         block, behaviour = realization.block, track.behaviour
-        sync = track.timing.syncs[track.happened]
-        track.happened += 1
+        sync = realization.advance()
         realization.latest = time
         self._feedback.append(
             SyncPointProgress(
@@ -240,8 +276,9 @@ class Realizer:
         )
         if behaviour.namespace == BMLA and sync == "start":
             self._control(block, behaviour, time)
-        if realization.released:
-            for other in self._realizations.values():
+        awaiting = [r for r in self._realizations.values() if block.id in r.awaits_release]
+        if awaiting and realization.released:
+            for other in awaiting:
                 self._stop_waiting(other.awaits_release, other, realization, time)
 
     def _finish(self, realization: Realization, time: float, *, report: bool = True) -> None:
@@ -303,6 +340,10 @@ class Realizer:
     def _running(self) -> list[Realization]:
         return [p for p in self._realizations.values() if p.state == "running"]
 
+    def _reorder(self) -> None:
+        for realization in self._running():
+            realization.reorder()
+
     def _others(self, realization: Realization) -> list[BehaviourTrack]:
         others = [other for other in self._running() if other is not realization]
         return [track for other in others for track in other.tracks.values()]
@@ -313,9 +354,9 @@ class Realizer:
         if realization is None or not math.isfinite(realization.start):
             return None
         track = realization.tracks.get(reference.behaviour)
-        if track is None or reference.sync not in track.timing.syncs:
+        if track is None or reference.sync not in track.timing.index:
             return None
-        return track.times[track.timing.syncs.index(reference.sync)]
+        return track.times[track.timing.index[reference.sync]]
 
     def _warn(self, block: Block, part: str, kind: WarningType, why: str) -> None:
         name = f"{block.id}:{part}" if part else block.id

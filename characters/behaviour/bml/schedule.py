@@ -1,6 +1,8 @@
 """Schedule a block: what can be performed of it, and when."""
 
-from collections.abc import Iterable, Iterator, Sequence
+import math
+from collections import defaultdict, deque
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from cubeling.characters.behaviour.bml.constraints import (
@@ -9,20 +11,26 @@ from cubeling.characters.behaviour.bml.constraints import (
     Link,
     Order,
     Resolver,
+    not_performed,
 )
 from cubeling.characters.behaviour.bml.document import (
     BML,
     BMLA,
+    MAX_BLOCK_S,
     SYNCS,
     Behaviour,
     Block,
     Constraint,
+    SyncReference,
 )
 from cubeling.characters.behaviour.bml.feedback import WarningType
 from cubeling.characters.behaviour.bml.planner import plan
 from cubeling.characters.behaviour.bml.problem import TimingProblem
 from cubeling.characters.behaviour.bml.spans import TOLERANCE
 from cubeling.characters.behaviour.bml.timing import CannotRealize, Timing, TimingEstimator
+
+MAX_ATTEMPTS = 25
+"""Times that a block is planned, each without what could not be met the time before."""
 
 CONTROLS = {
     "interrupt": Timing(("start", "end"), (0.0,), (0.0,), (0.0,)),
@@ -120,13 +128,17 @@ class Scheduler:
         self._behaviours = {behaviour.id: behaviour for behaviour in block.behaviours}
         self._constraints = {constraint.id: constraint for constraint in block.constraints}
         self._parts: dict[str, Behaviour | Constraint] = {**self._behaviours, **self._constraints}
+        self._tied = _tied(block)
         self._timings: dict[str, Timing] = {}
         self._failures: list[Failure] = []
+        unable: list[Failure] = []
         for behaviour in block.behaviours:
             try:
                 self._timings[behaviour.id] = _timing(behaviour, block, estimator)
             except CannotRealize as error:
-                self._leave_out(behaviour.id, _failure_type(behaviour, error), str(error))
+                kind = _failure_type(behaviour, error)
+                unable.append(Failure(behaviour.id, kind, str(error)))
+        self._leave_out(unable)
 
     def schedule(self, start: float, others: Sequence[BehaviourTrack]) -> BlockSchedule:
         """Return the schedule of the block if it starts at `start` [s] beside `others`.
@@ -134,21 +146,21 @@ class Scheduler:
         Raises
         ------
         BlockFailed
-            If something that is required cannot be performed.
+            If something that is required cannot be performed, or too much contradicts itself.
         """
-        while True:
+        for _ in range(MAX_ATTEMPTS):
             try:
                 tracks = self._attempt(start)
             except Contradictory as error:
-                for unmet in error.unmet:
-                    self._leave_out(unmet.owner, "IMPOSSIBLE_TO_SCHEDULE", str(unmet))
+                self._leave_out(_impossible(each.owner, str(each)) for each in error.unmet)
                 continue
-            conflicts = [*_conflicts(tracks.values(), others)]
+            conflicts = [*_late(tracks.values(), start), *_conflicts(tracks.values(), others)]
             if not conflicts:
                 lead_over(tracks.values(), others, start)
                 return BlockSchedule(tracks, tuple(self._constraints.values()), self._failures)
-            for name, reason in conflicts:
-                self._leave_out(name, "IMPOSSIBLE_TO_SCHEDULE", reason)
+            self._leave_out(conflicts)
+        reason = f"its constraints contradict each other in more than {MAX_ATTEMPTS} ways"
+        raise BlockFailed(_impossible(self._block.id, reason))
 
     def _attempt(self, start: float) -> dict[str, BehaviourTrack]:
         links, orders = self._rules(start)
@@ -172,20 +184,47 @@ class Scheduler:
             raise Contradictory(unmet)
         return links, orders
 
-    def _leave_out(self, name: str, kind: WarningType, reason: str) -> None:
-        """Leave a behaviour or a constraint out, and constraints on it; once is enough."""
-        part = self._parts.pop(name, None)
-        if part is None:
-            return
-        failure = Failure(name, kind, reason)
-        if part.required:
-            raise BlockFailed(failure)
-        self._failures.append(failure)
-        self._timings.pop(name, None)
-        self._constraints.pop(name, None)
-        for constraint in list(self._constraints.values()):
-            if not constraint.required and _names(constraint, self._block.id, name):
-                del self._constraints[constraint.id], self._parts[constraint.id]
+    def _leave_out(self, failures: Iterable[Failure]) -> None:
+        """Leave behaviours and constraints out, and then what is tied to them; each once.
+
+        A constraint that is tied to one goes without a warning, unless it is required.
+        """
+        waiting = deque(failures)
+        while waiting:
+            failure = waiting.popleft()
+            part = self._parts.pop(failure.id, None)
+            if part is None:
+                continue
+            if part.required:
+                raise BlockFailed(failure)
+            self._failures.append(failure)
+            self._constraints.pop(failure.id, None)
+            self._timings.pop(failure.id, None)
+            for name, reference in self._tied.get(failure.id, ()):
+                other = self._constraints.get(name)
+                if other is not None and not other.required:
+                    del self._constraints[name], self._parts[name]
+                else:
+                    waiting.append(_impossible(name, not_performed(reference)))
+
+
+def _tied(block: Block) -> Mapping[str, list[tuple[str, SyncReference]]]:
+    """Return ids of behaviours and constraints by the behaviour that they refer to, and how."""
+    tied: dict[str, list[tuple[str, SyncReference]]] = defaultdict(list)
+    for behaviour in block.behaviours:
+        for reference in behaviour.syncs.values():
+            if reference.block in ("", block.id) and reference.behaviour != behaviour.id:
+                tied[reference.behaviour].append((behaviour.id, reference))
+    for constraint in block.constraints:
+        moments = constraint.syncs + ((constraint.reference,) if constraint.reference else ())
+        for reference in moments:
+            if reference.block in ("", block.id):
+                tied[reference.behaviour].append((constraint.id, reference))
+    return tied
+
+
+def _impossible(name: str, reason: str) -> Failure:
+    return Failure(name, "IMPOSSIBLE_TO_SCHEDULE", reason)
 
 
 def lead_over(
@@ -196,36 +235,54 @@ def lead_over(
     Those that others have taken from already end `now` [s].
     """
     tracks = [track for track in tracks if track.timing.occupies]
+    before = [
+        (other.release, other)
+        for other in (*others, *tracks)
+        if other.timing.occupies and not (other.fixed_end or other.over or other.interrupted)
+    ]
     for track in tracks:
-        for other in [*others, *tracks]:
-            if other is track or other.fixed_end or other.over or other.interrupted:
-                continue
-            shares = track.timing.occupies & other.timing.occupies
-            if shares and other.release <= track.times[0] + TOLERANCE < other.times[-1]:
-                end = max(track.times[0], other.release, now)
-                other.times[-1] = min(other.times[-1], end)
+        start = track.times[0]
+        for release, other in before:
+            taken = release <= start + TOLERANCE < other.times[-1] and other is not track
+            if taken and track.timing.occupies & other.timing.occupies:
+                other.times[-1] = min(other.times[-1], max(start, release, now))
+
+
+def _late(tracks: Iterable[BehaviourTrack], start: float) -> Iterator[Failure]:
+    """Yield what of a block ends, or never begins, more than an hour after it has started."""
+    for track in tracks:
+        last = max((time for time in track.times if time < math.inf), default=math.inf)
+        if last > start + MAX_BLOCK_S:
+            reason = f"it would not be over {MAX_BLOCK_S:g} s after its block has started"
+            yield _impossible(track.behaviour.id, reason)
 
 
 def _conflicts(
     tracks: Iterable[BehaviourTrack], others: Iterable[BehaviourTrack]
-) -> Iterator[tuple[str, str]]:
+) -> Iterator[Failure]:
     """Yield what of a block wants something of the body that another behaviour has, and why."""
-    earlier = [o for o in others if o.timing.occupies and not o.over and not o.interrupted]
+    # Pairs are compared: what the loop needs of each is looked up once.
+    earlier = [
+        (other.times[0] + TOLERANCE, other.release - TOLERANCE, other)
+        for other in others
+        if other.timing.occupies and not other.over and not other.interrupted
+    ]
     for track in tracks:
         if not track.timing.occupies:
             continue
-        for other in earlier:
-            shared = track.timing.occupies & other.timing.occupies
-            overlaps = (
-                track.times[0] < other.release - TOLERANCE
-                and other.times[0] < track.release - TOLERANCE
+        start, release = track.times[0], track.release
+        for begins, ends, other in earlier:
+            shared = (
+                start < ends
+                and begins < release
+                and (track.timing.occupies & other.timing.occupies)
             )
-            if shared and overlaps:
-                what = ", ".join(sorted(shared))
-                yield track.behaviour.id, f"{other.behaviour.id} has the {what} at that time"
+            if shared:
+                reason = f"{other.behaviour.id} has the {', '.join(sorted(shared))} at that time"
+                yield _impossible(track.behaviour.id, reason)
                 break
         else:
-            earlier.append(track)
+            earlier.append((start + TOLERANCE, release - TOLERANCE, track))
 
 
 def _timing(behaviour: Behaviour, block: Block, estimator: TimingEstimator) -> Timing:
@@ -240,8 +297,3 @@ def _failure_type(behaviour: Behaviour, error: CannotRealize) -> WarningType:
     if behaviour.namespace != BML:
         return "CUSTOM_BEHAVIOR_NOT_SUPPORTED"
     return "CANNOT_CREATE_BEHAVIOR" if behaviour.kind in SYNCS else "BEHAVIOR_TYPE_NOT_SUPPORTED"
-
-
-def _names(constraint: Constraint, block: str, behaviour: str) -> bool:
-    syncs = constraint.syncs + ((constraint.reference,) if constraint.reference else ())
-    return any(sync.behaviour == behaviour and sync.block in ("", block) for sync in syncs)

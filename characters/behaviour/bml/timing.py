@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 from cubeling.characters.behaviour.bml.document import Behaviour, Block
@@ -40,10 +41,15 @@ class Timing:
     persistent: bool = False
     """Whether it goes on for ever if nothing says when it relaxes or ends."""
 
-    @property
+    @cached_property
+    def index(self) -> Mapping[str, int]:
+        """Indices in `syncs` by name."""
+        return {sync: index for index, sync in enumerate(self.syncs)}
+
+    @cached_property
     def release(self) -> int:
         """Index of the sync point from which on it gives way: "relax", or "end"."""
-        return self.syncs.index("relax") if "relax" in self.syncs else len(self.syncs) - 1
+        return self.index.get("relax", len(self.syncs) - 1)
 
 
 @dataclass(frozen=True)

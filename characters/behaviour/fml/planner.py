@@ -15,9 +15,10 @@ What is not an intention, speech above all, is BML and stays as it is. An elemen
 """
 
 from dataclasses import replace
+from functools import cache
 
 from cubeling.characters.behaviour.bml.document import BML, SYNCS, Behaviour, Block, SyncReference
-from cubeling.characters.behaviour.bml.parser import parse_as
+from cubeling.characters.behaviour.bml.parser import MAX_BEHAVIOURS, parse_as
 from cubeling.characters.behaviour.fml.lexicon import Lexicon, Shown
 from cubeling.characters.errors import CharacterError
 
@@ -42,7 +43,7 @@ def behaviours_of(fml: str | bytes, lexicon: Lexicon | None = None) -> Block:
     CharacterError
         If the document cannot be read, or a number in it is none.
     """
-    lexicon = lexicon or Lexicon.load()
+    lexicon = lexicon or _bundled_lexicon()
     block = parse_as(fml, ROOTS)
     speech = next((b for b in block.behaviours if b.kind == "speech"), None)
     behaviours = list[Behaviour]()
@@ -53,7 +54,14 @@ def behaviours_of(fml: str | bytes, lexicon: Lexicon | None = None) -> Block:
             behaviours += _behaviours_of(behaviour, lexicon, speech)
         else:
             behaviours.append(replace(behaviour, namespace=FML, syncs={}))
+    if len(behaviours) > MAX_BEHAVIOURS:
+        raise CharacterError(f"FML: more than {MAX_BEHAVIOURS} behaviours; send several documents")
     return replace(block, behaviours=tuple(behaviours))
+
+
+@cache
+def _bundled_lexicon() -> Lexicon:
+    return Lexicon.load()
 
 
 def _behaviours_of(

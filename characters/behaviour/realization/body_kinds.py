@@ -34,6 +34,9 @@ SHIFT_S = 1.0
 WAIT_S = 1.0
 """Time of a wait that says nothing [s]."""
 
+MAX_POSES = 8
+"""Stances and poses of one posture: the arms perform each in every frame."""
+
 UPRIGHT = ("STANDING", "NEUTRAL", "BALANCED")
 """Names of the posture that a body has by itself."""
 
@@ -125,6 +128,8 @@ def take(scheduled: Scheduled, times: Times, who: RealizationContext, frame: Rea
 def _check_posture(behaviour: Behaviour, who: RealizationContext) -> None:
     """Refuse a posture of which the body can do nothing."""
     names = [*_names(behaviour)]
+    if len(names) > MAX_POSES:
+        raise CannotRealize(f"a posture of more than {MAX_POSES} stances and poses")
     able = [
         name
         for name in names

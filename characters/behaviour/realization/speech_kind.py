@@ -1,6 +1,8 @@
 """The behaviour `speech`: what a voice says, or an estimate of it until the voice has answered."""
 
 import math
+from bisect import bisect_left
+from collections.abc import Iterator
 from itertools import pairwise
 
 from cubeling.characters.behaviour.bml import (
@@ -47,7 +49,7 @@ class SpeechKind:
         if utterance is None:
             who.estimated.add(_text_and_language(behaviour))
             utterance = estimate(behaviour.text)
-        marks = [(mark.id, mark_time(utterance, mark.at)) for mark in behaviour.marks]
+        marks = [*_times_of_marks(behaviour, utterance)]
         names = ("start", *(name for name, _ in marks), "end")
         times = [0.0, *(time for _, time in marks), utterance.duration]
         spans = tuple(max(b - a, 0.0) for a, b in pairwise(times))
@@ -71,21 +73,26 @@ def retime_speeches(realizer: Realizer, who: RealizationContext, now: float) -> 
     if not who.estimated:
         return
     known: set[tuple[str, str]] = set()
+    waiting: set[tuple[str, str]] = set()
+    moves: list[tuple[str, str, str, float]] = []
     for scheduled in realizer.scheduled:
         behaviour = scheduled.behaviour
         if behaviour.kind != "speech" or _text_and_language(behaviour) not in who.estimated:
             continue
         utterance = utterance_of(behaviour, who)
         if utterance is None:
+            waiting.add(_text_and_language(behaviour))
             continue
         known.add(_text_and_language(behaviour))
         if scheduled.key in who.late:
             who.late[scheduled.key] = now
         start = who.late.get(scheduled.key, scheduled.start)
-        marks = {mark.id: mark_time(utterance, mark.at) for mark in behaviour.marks}
+        marks = dict(_times_of_marks(behaviour, utterance))
         for sync, time in {**marks, "end": utterance.duration}.items():
-            realizer.retime(scheduled.block, behaviour.id, sync, start + time)
-    who.estimated -= known
+            moves.append((scheduled.block, behaviour.id, sync, start + time))
+    realizer.retime_all(moves)
+    # What is not scheduled any more is over, or is estimated again when it starts.
+    who.estimated &= waiting - known
 
 
 def utterance_of(behaviour: Behaviour, who: RealizationContext) -> Utterance | None:
@@ -109,9 +116,12 @@ def estimate(text: str) -> Utterance:
     return Utterance(text, "", words[-1].end if words else SHORTEST_S, tuple(words))
 
 
-def mark_time(utterance: Utterance, at: int) -> float:
-    """Return when the next word after a mark begins [s]; the end after the last word."""
-    return min((w.start for w in utterance.words if w.offset >= at), default=utterance.duration)
+def _times_of_marks(behaviour: Behaviour, utterance: Utterance) -> Iterator[tuple[str, float]]:
+    """Yield when the next word after each mark begins [s]; the end after the last word."""
+    offsets = [word.offset for word in utterance.words]
+    starts = [*(word.start for word in utterance.words), utterance.duration]
+    for mark in behaviour.marks:
+        yield mark.id, starts[bisect_left(offsets, mark.at)]
 
 
 def _text_and_language(behaviour: Behaviour) -> tuple[str, str]:

@@ -1,5 +1,6 @@
 """Streams of XML documents, cut wherever the network cuts them."""
 
+import time
 from contextlib import suppress
 
 import pytest
@@ -12,6 +13,8 @@ DOCUMENTS = [
     b'<?xml version="1.0"?><bml id="b > c"><speech><text>1 &lt; 2 \xc3\xa9</text></speech></bml>',
     b"<bml><!-- a > b </bml> --><x/></bml>",
     b"<bml>\n<x><![CDATA[</bml>]]></x></bml>",
+    b"<bml a='>\"' b=\">'/>\"><!-- - > ' \" --><?x ?>?><![CDATA[]]]]></bml>",
+    b"<bml><a/>text<b>&gt;</b\n></bml\t>",
 ]
 
 
@@ -42,6 +45,18 @@ def test_what_is_no_xml_breaks_the_stream_in_one_line(stream, why):
         list(DocumentSplitter().feed(stream))
     assert why in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("opening", [b"<!--", b"<b c='", b"<![CDATA[", b"<?x ", b"<b>", b""])
+def test_a_document_full_of_ends_costs_as_much_as_it_is_long(opening):
+    """The parser was given each piece up to the next >, and looked at all before it again."""
+    document = b"<a>" + opening + b">" * (MAX_BYTES // 2)
+    began = time.process_time()
+    splitter = DocumentSplitter()
+    for start in range(0, len(document), 4096):
+        assert not list(splitter.feed(document[start : start + 4096]))
+    assert splitter.open
+    assert time.process_time() - began < 2.0  # 90 s then, 10 ms now
 
 
 @given(st.binary(max_size=60))

@@ -92,3 +92,12 @@ def test_nothing_to_perform_is_one_line():
 def test_an_emotion_that_there_is_not_is_one_line(document):
     with pytest.raises(AppError, match="no emotion is called"):
         behave([document], emotion="sqush")
+
+
+@pytest.mark.parametrize(
+    ("serve", "token", "why"),
+    [(None, "open-sesame", "add --serve PORT"), (0, "short", "8 to 128 letters")],
+)
+def test_a_token_is_for_a_server_and_not_too_short(document, serve, token, why):
+    with pytest.raises(AppError, match=why):
+        behave([document], serve=serve, token=token, window=False)

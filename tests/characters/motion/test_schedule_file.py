@@ -185,7 +185,7 @@ def test_a_modifier_filters_poses(human, reader) -> None:
         (b"<blendingschedule/>", "x:1: no action is activated; add <activate>"),
         (b"<schedule/>", "x:1: <schedule> is not a <blendingschedule>"),
         (b"", "x:1: not XML (no element found)"),
-        (b'<!DOCTYPE a [<!ENTITY b "c">]><a>&b;</a>', "x:1: entities are not read"),
+        (b'<!DOCTYPE a [<!ENTITY b "c">]><a>&b;</a>', "x:1: DTDs and entities are not read"),
     ],
 )
 def test_what_is_wrong_is_named_with_its_line(reader, text, message) -> None:

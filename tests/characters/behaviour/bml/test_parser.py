@@ -4,10 +4,19 @@ import pytest
 from hypothesis import given, strategies as st
 
 from cubeling.characters.behaviour.bml import BML, SyncMark, SyncReference, parse
-from cubeling.characters.behaviour.bml.parser import MAX_BEHAVIOURS, reference
-from cubeling.characters.behaviour.bml.xml_elements import MAX_BYTES, MAX_DEPTH, MAX_ELEMENTS
+from cubeling.characters.behaviour.bml.parser import (
+    LIMITS,
+    MAX_BEHAVIOURS,
+    MAX_ID_CHARS,
+    MAX_MARKS,
+    MAX_NAMES,
+    MAX_TIED,
+    reference,
+)
 from cubeling.characters.errors import CharacterError
 from tests.characters.behaviour.bml.suite import block
+
+BEFORE = "<before ref='1'><sync ref='2'/></before>"
 
 
 def test_text_has_single_spaces_and_marks_between_words():
@@ -97,10 +106,23 @@ def test_block_attributes(more, field, value):
         block("<constraint><synchronize><sync/></synchronize></constraint>"),
         block("<speech id='s'><text>a<sync id='end'/></text></speech>"),
         block(more='composition="LATER"'),
-        block("<g>" * MAX_DEPTH + "</g>" * MAX_DEPTH),
-        block(f"<gesture>{'<g/>' * MAX_ELEMENTS}</gesture>"),
+        block("<g>" * LIMITS.depth + "</g>" * LIMITS.depth),
+        block(f"<gesture>{'<g/>' * LIMITS.elements}</gesture>"),
         block("<g/>" * (MAX_BEHAVIOURS + 1)),
-        block(" " * MAX_BYTES),
+        block(f"<constraint>{BEFORE * MAX_TIED}</constraint>"),
+        block(
+            "<speech><text>"
+            + "".join(f"<sync id='m{i}'/>" for i in range(MAX_MARKS + 1))
+            + "</text></speech>"
+        ),
+        block(name="b" * (MAX_ID_CHARS + 1)),
+        block(f"<wait id='{'w' * (MAX_ID_CHARS + 1)}'/>"),
+        block(more=f"composition='APPEND-AFTER({'a ' * (MAX_NAMES + 1)})'"),
+        block("<wait start='3601'/>"),
+        block("<wait start='w:end+3601'/>"),
+        block(f"<wait start='{'1' * 100_000}x'/>"),
+        block(f"<{'g' * 300}/>"),
+        block(" " * LIMITS.bytes),
         b"\xff\xfe<",
         b'<?xml version="1.0" encoding="none"?><bml id="a"/>',
         "<bml id='\ud800'/>",
@@ -110,6 +132,7 @@ def test_bad_documents_are_refused_in_one_line(document):
     with pytest.raises(CharacterError) as error:
         parse(document)
     assert "\n" not in str(error.value)
+    assert len(str(error.value)) < 250
 
 
 @given(

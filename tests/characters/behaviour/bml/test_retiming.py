@@ -113,3 +113,16 @@ def test_times_stay_in_order_however_often_speech_is_moved():
 
 def _past(scheduled: Scheduled, now: float) -> dict[str, float]:
     return {sync: time for sync, time in scheduled.times.items() if time <= now}
+
+
+def test_sync_points_that_move_together_are_planned_once():
+    session, other = (Session(block(TALK), Until(seconds=0.5)) for _ in range(2))
+    before = times(session, "s")
+    moves = [("bml1", "s", sync, before[sync] + late) for sync, late in (("a", 0.3), ("end", 0.9))]
+    session.realizer.retime_all(moves)
+    for move in moves:
+        other.realizer.retime(*move)
+    assert [times(session, name) for name in "sgnz"] == [times(other, name) for name in "sgnz"]
+    session.frame()
+    assert len(session.predictions("bml1")) == 2
+    session.finish().check_clean()

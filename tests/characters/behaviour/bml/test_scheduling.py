@@ -3,6 +3,9 @@
 import pytest
 
 from cubeling.characters.behaviour.bml import BlockPrediction, BmlWarning, Realizer
+from cubeling.characters.behaviour.bml.parser import MAX_BEHAVIOURS, MAX_TIED
+from cubeling.characters.behaviour.bml.realizer import MAX_BLOCKS, MAX_LOAD
+from cubeling.characters.behaviour.bml.schedule import MAX_ATTEMPTS
 from tests.characters.behaviour.bml.estimates import Estimates
 from tests.characters.behaviour.bml.suite import block
 
@@ -149,3 +152,64 @@ def test_gestures_that_follow_each_other_do_not_return_to_rest():
     times, warnings = schedule("<gesture id='a' start='0'/><gesture id='b' start='1.2'/>")
     assert not warnings
     assert times["a:relax"] <= times["a:end"] == times["b:start"] == pytest.approx(1.2)
+
+
+def test_a_behaviour_is_over_an_hour_after_its_block_has_started():
+    times, warnings = schedule(
+        "<wait id='a' end='3600'/><wait id='b' start='a:end' end='a:end+1'/><gaze id='c'/>"
+    )
+    assert [warning.id for warning in warnings] == ["bml1:b"]
+    assert "3600 s" in warnings[0].description
+    assert {"a:end", "c:end"} <= times.keys()
+
+
+def test_what_is_tied_to_what_is_left_out_is_left_out_at_once():
+    """A chain that was left out link by link, each time planned anew."""
+    heads = [f"<head id='h{i}' start='h{i - 1}:end'/>" for i in range(1, MAX_BEHAVIOURS - 1)]
+    gone = dropped(f"<head id='h0' start='2' end='1'/>{''.join(heads)}<gaze id='z'/>")
+    assert len(gone) == MAX_BEHAVIOURS - 1
+
+
+def test_constraints_that_are_not_met_are_left_out_at_once():
+    rules = [
+        f"<synchronize><sync ref='w:start'/><sync ref='g:start+{i}'/></synchronize>"
+        for i in range(MAX_TIED // 2)
+    ]
+    inside = f"<wait id='w'/><head id='g'/><constraint>{''.join(rules)}</constraint>"
+    assert len(dropped(inside)) == MAX_TIED // 2 - 1
+
+
+def test_a_block_that_contradicts_itself_in_too_many_ways_fails_in_one_line():
+    """Constraints of several moments, which have to be left out one after the other."""
+    rules = [
+        f"<synchronize><sync ref='w:start+{i}'/><sync ref='g:start'/><sync ref='g:end'/>"
+        "</synchronize>"
+        for i in range(MAX_ATTEMPTS + 1)
+    ]
+    times, warnings = schedule(
+        f"<wait id='w'/><gesture id='g'/><constraint>{''.join(rules)}</constraint>"
+    )
+    assert not times
+    assert [warning.id for warning in warnings] == ["bml1"]
+    assert str(MAX_ATTEMPTS) in warnings[0].description
+
+
+@pytest.mark.parametrize(
+    ("inside", "taken"),
+    [
+        ("<posture/>", MAX_BLOCKS),
+        ("<head/>" * MAX_BEHAVIOURS, MAX_LOAD // MAX_BEHAVIOURS),
+    ],
+)
+def test_there_is_room_for_so_many_blocks_and_one_that_replaces_them(inside, taken):
+    realizer = Realizer(Estimates())
+    for number in range(MAX_BLOCKS + 3):
+        realizer.accept(block(inside, name=f"b{number}"))
+    feedback = realizer.update(0.0)
+    warnings = [each for each in feedback if isinstance(each, BmlWarning)]
+    assert [each.id for each in warnings] == [f"b{n}" for n in range(taken, MAX_BLOCKS + 3)]
+    assert all("replace them" in each.description for each in warnings)
+    realizer.accept(block("<wait/>", name="last", more='composition="REPLACE"'))
+    later = [*realizer.update(0.1), *realizer.update(9.0)]
+    assert not any(isinstance(each, BmlWarning) for each in later)
+    assert any(isinstance(each, BlockPrediction) and each.block == "last" for each in later)
