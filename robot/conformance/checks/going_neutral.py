@@ -159,12 +159,16 @@ def stopped_robot_stays_still(probe: Probe) -> None:
     probe.command(m.Stop(probe.next_number()))
     expect_stop_pose(probe, "STOP", within=EMOTION_WITHIN_S)
     for end in ("the failsafe", "BYE", "HELLO of another host"):
+        # Again, so that there is a command in force that the end of a session takes back.
+        probe.command(m.Stop(probe.next_number()))
         if end == "HELLO of another host":
             probe.open_session()
         else:
             if end == "BYE":
                 probe.send(m.Bye())
             probe.receive(SILENCE_S + EXTRA_SILENCE_S)
+            probe.send(m.Beat(probe.next_beat()))
+            probe.expect(m.Gone, f"STOP, {end}, BEAT")
             probe.reopen_session()
         expect_stop_pose(probe, f"STOP and {end}", within=0.0)
         state = probe.keep_alive(EFFECT_WITHIN_S)[-1]

@@ -1,14 +1,14 @@
 """Checks of section 6: MOVE turns single joints, and holds them until they are let go."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 from cubeling.robot.conformance.check import CheckGroup
 from cubeling.robot.conformance.checks.catalogue import known_joints
 from cubeling.robot.conformance.checks.failsafe import SILENCE_S
 from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
-from cubeling.robot.conformance.probe import EFFECT_WITHIN_S, Probe
-from cubeling.robot.protocol import messages as m
+from cubeling.robot.conformance.probe import EFFECT_WITHIN_S, TIMING_SLACK_S, Probe
+from cubeling.robot.protocol import messages as m, timing
 
 MOVING = CheckGroup("Joints", 6)
 
@@ -23,6 +23,24 @@ SPARE_TIME = 1.5
 
 MIN_DURATION_S = 0.6
 """Shortest duration of a tested way [s]."""
+
+MAX_UNEVENNESS = 0.3
+"""How much of its way a joint may be ahead or behind: servos start and stop slowly."""
+
+LONG_DURATION_S = 60.0
+"""Duration of a slow way [s]; as a signed number of 16 bits it would be negative."""
+
+MAX_WAY_S = 2.0
+"""Longest way that is waited for [s]."""
+
+MAX_MOTIONS = 8
+"""Most motions that are tried against held joints."""
+
+HELD_S = 0.35
+"""Time for each of them [s]."""
+
+_FAR_RAD = 32.767
+"""An angle beyond the limits of all joints [rad]."""
 
 _LEVEL = (0.0,) * m.JOINTS_MAX
 
@@ -82,38 +100,117 @@ def joint_moved(probe: Probe) -> None:
 
 @MOVING.must
 def joint_moved_evenly(probe: Probe) -> None:
-    """A joint of MOVE is about half-way when half of `duration` is over."""
+    """A joint of MOVE goes evenly: when half of `duration` is over, it is about half-way.
+
+    It does so also when a second MOVE turns back half-way, and in a minute.
+    """
     way = _choose(probe)
-    begin = probe.now
-    probe.command(way.command(probe.next_number()))
-    states = probe.keep_alive(way.duration / 2)
-    passed = (probe.now - begin) / way.duration
-    gone = (states[-1].joints[way.joint.index] - way.start) / (way.goal - way.start)
-    if not passed - 0.3 <= gone <= passed + 0.3:
-        raise CheckFailed(
-            f"joint {way.joint.index} {100 * passed:.0f} % of its way after so much of its time",
-            f"{100 * gone:.0f} %",
-        )
+    _expect_even(probe, way, way.duration / 2)
+    state = probe.beat("MOVE")
+    back = replace(way, start=state.joints[way.joint.index], goal=way.start)
+    _expect_even(probe, back, way.duration / 2)
+    state = probe.beat("MOVE")
+    slow = replace(way, start=state.joints[way.joint.index], duration=LONG_DURATION_S)
+    _expect_even(probe, slow, MIN_DURATION_S)
 
 
 @MOVING.must
 def held_joint_stays(probe: Probe) -> None:
-    """EXPRESS, PLAY, and a MOVE of no joint neither move nor let go of a held joint."""
-    way = _begin(probe)
-    probe.keep_alive(way.duration + EFFECT_WITHIN_S)
+    """EXPRESS, PLAY, and a MOVE of no joint neither move nor let go of held joints.
+
+    Here all joints are held, each where it happens to be.
+    """
+    joints = _joints(probe)
+    if not joints:
+        raise NotApplicableError("it has no joints")
+    angles = _within_limits(joints, probe.beat("HELLO").joints)
+    bits = (1 << len(joints)) - 1
+    probe.command(m.Move(probe.next_number(), 0.0, 0, bits, angles))
+    _expect_held(probe, bits, "MOVE of all joints")
+    probe.keep_alive(EFFECT_WITHIN_S)  # they moved on while that MOVE was on its way
     probe.express(0.8, 0.6)
     assert probe.welcome is not None
-    if probe.welcome.motions:
-        motion = probe.welcome.motions - 1
-        probe.command(m.Play(probe.next_number(), m.ITEM_MOTION, motion))
-    probe.command(m.Move(probe.next_number(), 0.0, 0, 0, _LEVEL))
-    for state in probe.keep_alive(1.0):
-        angle = state.joints[way.joint.index]
-        if state.held != way.bit or abs(angle - way.goal) > ANGLE_TOLERANCE_RAD:
+    motions = [*range(probe.welcome.motions)][:: -(-probe.welcome.motions // MAX_MOTIONS) or 1]
+    for motion in motions or [m.NOTHING]:
+        probe.send(m.Play(probe.next_number(), m.ITEM_MOTION, motion))
+        probe.command(m.Move(probe.next_number(), 0.0, 0, 0, _LEVEL))
+        for state in probe.keep_alive(HELD_S):
+            _expect_angles(state, bits, angles, "EXPRESS and PLAY")
+
+
+@MOVING.must
+def other_joints_left_alone(probe: Probe) -> None:
+    """A MOVE neither takes nor lets go of joints that it does not name; their angles are ignored.
+
+    A MOVE of several joints takes all of them, each to its own angle.
+    """
+    joints = _joints(probe)
+    if len(joints) < 2:
+        raise NotApplicableError("it has fewer than two joints")
+    angles = _within_limits(joints, probe.beat("HELLO").joints)
+    last = 1 << len(joints) - 1
+    for released, moved, held, named in (
+        (0, last, last, (*(_FAR_RAD,) * (len(joints) - 1), angles[len(joints) - 1])),
+        (0, 1, last | 1, (angles[0], *(-_FAR_RAD,) * (len(joints) - 1))),
+        (last, 0, 1, (_FAR_RAD,) * len(joints)),
+    ):
+        named = (*named, *(_FAR_RAD,) * m.JOINTS_MAX)[: m.JOINTS_MAX]
+        probe.command(m.Move(probe.next_number(), 0.3, released, moved, named))
+        _expect_held(probe, held, f"MOVE(released={released}, moved={moved})")
+    bits = (1 << len(joints)) - 1
+    targets = _within_limits(joints, [0.5 * (one.low + one.high) for one in joints])
+    longest = max(
+        abs(targets[one.index] - angles[one.index]) / max(one.speed, 1e-3) for one in joints
+    )
+    duration = round(min(SPARE_TIME * longest + MIN_DURATION_S, MAX_WAY_S), 3)
+    probe.command(m.Move(probe.next_number(), duration, 0, bits, targets))
+    state = probe.keep_alive(duration + EFFECT_WITHIN_S)[-1]
+    if SPARE_TIME * longest < MAX_WAY_S:
+        _expect_angles(state, bits, targets, f"MOVE of all joints in {duration:.1f} s")
+
+
+@MOVING.must_of(7)
+def joint_returns_within_its_speed(probe: Probe) -> None:
+    """A joint that is let go returns no faster than its top speed."""
+    joints = _joints(probe)
+    wide = [one for one in joints if one.high - one.low >= MIN_RANGE_RAD]
+    if not wide:
+        raise NotApplicableError(f"no joint turns by {MIN_RANGE_RAD} rad")
+    # The way of a slow joint is seen for longest; one that takes seconds would cost too much.
+    joint = max(wide, key=lambda one: (_way_time(one) <= MAX_WAY_S, _way_time(one)))
+    start = probe.beat("HELLO").joints[joint.index]
+    goal = joint.low if start > (joint.low + joint.high) / 2 else joint.high
+    bit = 1 << joint.index
+    probe.command(m.Move(probe.next_number(), 0.0, 0, bit, _with(joint.index, goal)))
+    probe.keep_alive(_way_time(joint) + EFFECT_WITHIN_S)
+    before = probe.beat("MOVE").joints[joint.index]
+    begin = probe.now
+    probe.command(m.Move(probe.next_number(), 0.0, bit, 0, _LEVEL))
+    for state in probe.keep_alive(EFFECT_WITHIN_S):
+        time = probe.now - begin
+        way = abs(state.joints[joint.index] - before)
+        if way > joint.speed * (time + TIMING_SLACK_S) + ANGLE_TOLERANCE_RAD:
             raise CheckFailed(
-                f"joint {way.joint.index} held at {way.goal:.3f} rad after EXPRESS and PLAY",
-                f"{angle:.3f} rad, held={state.held}",
+                f"joint {joint.index} at most {joint.speed} rad/s after it was let go",
+                f"{way:.3f} rad in {1000 * time:.0f} ms at most",
             )
+
+
+@MOVING.must_of(5)
+def move_taken_in_earlier_versions(probe: Probe) -> None:
+    """A MOVE is taken in sessions of versions 1 and 2 too."""
+    if not _joints(probe):
+        raise NotApplicableError("it has no joints")
+    angles = _within_limits(known_joints(probe), probe.beat("HELLO").joints)
+    for offer in (1, 2):
+        probe.hello(offer=offer)
+        number = probe.next_number()
+        probe.send(m.Move(number, 0.0, 0, 1, angles))
+        after = f"MOVE in a session of version {offer}"
+        probe.expect(m.Ack, after, number=number, result=m.RESULT_TAKEN)
+        probe.hello()
+        _expect_held(probe, 1, after)
+        probe.command(m.Move(probe.next_number(), 0.0, 1, 0, _LEVEL))
 
 
 @MOVING.must
@@ -158,7 +255,9 @@ def unknown_joint_refused(probe: Probe) -> None:
     for bit in {1 << joints, 1 << m.JOINTS_MAX - 1}:
         for released, moved in ((bit, 0), (0, bit)):
             number = probe.next_number()
-            probe.command(m.Move(number, 0.0, released, moved, _LEVEL), m.RESULT_REFUSED)
+            # Beyond their limits too, but the smaller result counts.
+            far = (_FAR_RAD,) * m.JOINTS_MAX
+            probe.command(m.Move(number, 0.0, released, moved | 1, far), m.RESULT_REFUSED)
             probe.expect_taken(number, "a refused MOVE")
 
 
@@ -177,7 +276,7 @@ def old_move_without_effect(probe: Probe) -> None:
 
 @MOVING.must
 def stop_lets_go(probe: Probe) -> None:
-    """STOP lets go of all joints, and the next MOVE ends the stop."""
+    """STOP lets go of all joints, and the next MOVE ends the stop, also one of no joint."""
     way = _begin(probe)
     probe.command(m.Stop(probe.next_number()))
     _expect_held(probe, 0, "STOP")
@@ -188,12 +287,26 @@ def stop_lets_go(probe: Probe) -> None:
         f"flag 1 clear and held={way.bit} after STOP and MOVE",
         "flags", "held",
     )  # fmt: skip
+    probe.command(m.Stop(probe.next_number()))
+    probe.command(m.Move(probe.next_number(), 0.0, 0, 0, _LEVEL))
+    probe.expect_state(
+        lambda state: not state.flags & m.FLAG_STILL,
+        EFFECT_WITHIN_S,
+        "flag 1 clear after STOP and a MOVE of no joint",
+        "flags",
+    )
 
 
 @MOVING.must_of(7)
 def failsafe_lets_go(probe: Probe) -> None:
-    """The failsafe lets go of all joints."""
-    _expect_let_go(probe, lambda: probe.receive(SILENCE_S), probe.reopen_session, "the failsafe")
+    """The failsafe acts while joints are held too, and lets go of all of them."""
+
+    def wait() -> None:
+        probe.receive(SILENCE_S)
+        probe.send(m.Beat(probe.next_beat()))
+        probe.expect(m.Gone, f"MOVE, {1000 * SILENCE_S:.0f} ms of silence, BEAT")
+
+    _expect_let_go(probe, wait, probe.reopen_session, "the failsafe")
 
 
 @MOVING.must_of(7)
@@ -237,6 +350,46 @@ def _choose(probe: Probe) -> Way:
     goal = round(joint.low + share * (joint.high - joint.low), 3)
     least = abs(goal - start) / max(joint.speed, 1e-3)
     return Way(joint, start, goal, round(max(SPARE_TIME * least, MIN_DURATION_S), 3))
+
+
+def _expect_even(probe: Probe, way: Way, seconds: float) -> None:
+    """Command a way, and expect for a time that the joint goes evenly [s]."""
+    begin = probe.now
+    probe.command(way.command(probe.next_number()))
+    end = probe.now + seconds
+    while probe.now < end:
+        state = probe.keep_alive(timing.BEAT_EVERY)[-1]
+        passed = (probe.now - begin) / way.duration
+        gone = (state.joints[way.joint.index] - way.start) / (way.goal - way.start)
+        if not passed - MAX_UNEVENNESS <= gone <= passed + MAX_UNEVENNESS:
+            raise CheckFailed(
+                f"joint {way.joint.index} {100 * passed:.0f} % of its way after so much of its "
+                f"{way.duration:.1f} s",
+                f"{100 * gone:.0f} %",
+            )
+
+
+def _expect_angles(state: m.State, bits: int, angles: Sequence[float], after: str) -> None:
+    """Expect that joints are held, each at its angle [rad]."""
+    if state.held != bits:
+        raise CheckFailed(f"held={bits} after {after}", f"held={state.held}")
+    for index, (angle, now) in enumerate(zip(angles, state.joints, strict=True)):
+        if bits >> index & 1 and abs(now - angle) > ANGLE_TOLERANCE_RAD:
+            expected = f"joint {index} at {angle:.3f} rad after {after}"
+            raise CheckFailed(expected, f"{now:.3f} rad")
+
+
+def _within_limits(joints: Sequence[m.Joint], angles: Sequence[float]) -> tuple[float, ...]:
+    """Return angles for MOVE, each within its joint's limits [rad]."""
+    known = [
+        min(max(angle, one.low), one.high) for one, angle in zip(joints, angles, strict=False)
+    ]
+    return (*known, *_LEVEL)[: m.JOINTS_MAX]
+
+
+def _way_time(joint: m.Joint) -> float:
+    """Return the time for a joint's whole range at its top speed [s]."""
+    return (joint.high - joint.low) / max(joint.speed, 1e-3)
 
 
 def _begin(probe: Probe) -> Way:
