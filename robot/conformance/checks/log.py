@@ -140,9 +140,7 @@ def log_comes_after_its_ack(probe: Probe) -> None:
         then = probe.beat("others").time
         refused = m.Play(probe.next_number(), m.ITEM_MOTION, welcome.motions)
         probe.send(refused)
-        answer, before = probe.wait_for(
-            lambda one: isinstance(one.message, m.Ack), REPLY_WITHIN_S
-        )
+        answer, before = probe.wait_for(lambda one: isinstance(one.message, m.Ack), REPLY_WITHIN_S)
         logged = [one.message for one in before if isinstance(one.message, m.Log)]
         early += bool(logged)  # once, it may be about something else
         found, _ = probe.wait_for(

@@ -381,9 +381,7 @@ def _expect_angles(state: m.State, bits: int, angles: Sequence[float], after: st
 
 def _within_limits(joints: Sequence[m.Joint], angles: Sequence[float]) -> tuple[float, ...]:
     """Return angles for MOVE, each within its joint's limits [rad]."""
-    known = [
-        min(max(angle, one.low), one.high) for one, angle in zip(joints, angles, strict=False)
-    ]
+    known = [min(max(angle, one.low), one.high) for one, angle in zip(joints, angles, strict=False)]
     return (*known, *_LEVEL)[: m.JOINTS_MAX]
 
 

@@ -1,11 +1,15 @@
 """Robots with faults that their makers may make, planted in the source of the firmware."""
 
-from tests.robot.conformance.planted.bodies import BODIES
-from tests.robot.conformance.planted.commands import COMMANDS
-from tests.robot.conformance.planted.framing import FRAMING
-from tests.robot.conformance.planted.robot import PlantedFault
-from tests.robot.conformance.planted.sessions import SESSIONS
-from tests.robot.conformance.planted.states import STATES
+from pathlib import Path
 
-FAULTS: tuple[PlantedFault, ...] = FRAMING + BODIES + SESSIONS + COMMANDS + STATES
-"""All of them, in the order of the document."""
+from tests.robot.conformance.planted.robot import PlantedFault, read_faults
+
+SUBJECTS = ("framing", "bodies", "sessions", "commands", "states")
+"""The files of faults, in the order of the document."""
+
+FAULTS: tuple[PlantedFault, ...] = tuple(
+    fault
+    for subject in SUBJECTS
+    for fault in read_faults(Path(__file__).parent / f"{subject}.txt")
+)
+"""All of them."""

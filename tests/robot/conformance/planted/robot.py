@@ -2,10 +2,22 @@
 
 The firmware `robot/firmware/dino` is a robot of its own: it shares no code with the suite. A fault
 is an edit of its source; the edited copy is imported under another name and runs in virtual time.
+
+The faults are in the text files beside this module, written as the hunks of a diff::
+
+    GONE names session 0 [version 2 3] [should]
+    @ session
+    -    the lines of session.py that it replaces
+    +    what it replaces them by
+         lines that stay, so that the place is clear
+
+Without "[version ...]" a robot of any version may have the fault; with "[should]" such a robot
+conforms all the same. Lines that begin with # are comments.
 """
 
 import importlib
 import itertools
+import re
 import shutil
 import sys
 import tempfile
@@ -41,6 +53,8 @@ EARLIER_VERSIONS: dict[int, tuple[Edit, ...]] = {
 }
 """What makes the firmware a robot of a version."""
 
+_HEAD = re.compile(r"(?P<name>.*?)( \[version (?P<versions>[\d ]+)\])?(?P<should> \[should\])?")
+
 _copies = itertools.count()
 
 
@@ -51,10 +65,6 @@ class PlantedFault:
     name: str
     """What the robot does wrong, in words; no two have the same."""
 
-    check: str
-    """Name of a check that the robot fails in every version; "" if it does not even say WELCOME,
-    and `NOT_OBSERVABLE` if nothing can tell it from a robot without the fault."""
-
     edits: tuple[Edit, ...]
     """The fault."""
 
@@ -63,6 +73,34 @@ class PlantedFault:
 
     level: Level = "must"
     """Whether such a robot conforms all the same."""
+
+
+def read_faults(file: Path) -> Iterator[PlantedFault]:
+    """Yield the faults of a file.
+
+    Raises
+    ------
+    ValueError
+        If a line belongs to no fault.
+    """
+    text = "\n".join(line for line in file.read_text("utf-8").splitlines() if line[:1] != "#")
+    for block in re.split(r"\n+(?=[^\s@+-])", "\n" + text.strip("\n")):
+        if not block.strip():
+            continue
+        head, *hunks = re.split(r"\n@ ", block)
+        found = _HEAD.fullmatch(head)
+        if not hunks or found is None:
+            raise ValueError(f"{file.name}: no fault: {head}")
+        versions = tuple(map(int, (found["versions"] or "1 2 3").split()))
+        level: Level = "should" if found["should"] else "must"
+        yield PlantedFault(found["name"], tuple(map(_edit, hunks)), versions, level)
+
+
+def _edit(hunk: str) -> Edit:
+    module, *lines = hunk.rstrip("\n").split("\n")
+    old = [line[1:] for line in lines if line[:1] != "+"]
+    new = [line[1:] for line in lines if line[:1] != "-"]
+    return module, "".join(f"{line}\n" for line in old), "".join(f"{line}\n" for line in new)
 
 
 class PlantedRobot:
