@@ -29,9 +29,10 @@ test-rest: .venv/ready-dev  ## what `make test-all` does beyond `make test`
 	$(PYTEST) --hypothesis-profile full -m "full or hypothesis"
 
 # The campaigns run for longer than a test suite may take, over random faults in virtual time.
-campaign: .venv/ready-dev  ## a million exchanges with robots, what the checksum misses, a day without growth, an afternoon of key presses, 10⁵ blocks of BML, ten minutes of pictures
+campaign: .venv/ready-dev  ## a million exchanges with robots, what the checksum misses, 500 faults of robots, a day without growth, an afternoon of key presses, 10⁵ blocks of BML, ten minutes of pictures
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e6
 	$(BIN)/python -m tests.campaigns.crc
+	$(BIN)/python -m tests.campaigns.mutants
 	$(BIN)/python -m tests.campaigns.soak --hours 24
 	$(BIN)/python -m tests.campaigns.afternoon
 	$(BIN)/python -m tests.campaigns.behaviour
@@ -40,6 +41,7 @@ campaign: .venv/ready-dev  ## a million exchanges with robots, what the checksum
 campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e5
 	$(BIN)/python -m tests.campaigns.crc --random 1.2e5 --trials 1e6
+	$(BIN)/python -m tests.campaigns.mutants --every 10
 	$(BIN)/python -m tests.campaigns.soak --hours 2.4
 	$(BIN)/python -m tests.campaigns.afternoon --scenes "every key" "record and replay"
 	$(BIN)/python -m tests.campaigns.behaviour --blocks 10000

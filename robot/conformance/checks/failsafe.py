@@ -185,7 +185,9 @@ def clock_read_before_waiting_bytes(probe: Probe) -> None:
     probe.beat("HELLO")
     if not probe.hold_up(SILENCE_S):
         raise NotApplicableError("only a simulated robot can be held up")
-    _expect_session_gone(probe, f"{_SILENCE_MS} ms in which the robot did not run")
+    # Nothing is read before, so that the robot finds bytes and time at once.
+    probe.write(probe.frame(m.Beat(probe.next_beat())), keep=True)
+    probe.expect(m.Gone, f"{_SILENCE_MS} ms in which the robot did not run, and a BEAT meanwhile")
 
 
 @FAILSAFE.must
@@ -218,11 +220,13 @@ def failsafe_not_reset_by_skipped_bodies(probe: Probe) -> None:
 
 @FAILSAFE.must
 def bye_ends_the_session(probe: Probe) -> None:
-    """After BYE the session is gone, and no command is in force."""
+    """After BYE the session is gone, and no command is in force; BYE itself is not answered."""
     probe.open_session()
     probe.express(0.3, 0.3)
     probe.send(m.Bye())
-    probe.receive(REPLY_WITHIN_S)
+    received = probe.receive(REPLY_WITHIN_S)
+    if any(isinstance(one.message, m.Gone) for one in received):
+        raise CheckFailed("no answer to BYE in the open session", describe_frames(received))
     _expect_session_gone(probe, "BYE")
     _expect_welcome(probe, 0, "BYE")
 

@@ -124,6 +124,7 @@ class PlantedRobot:
         joints = self._robot.ServoJoints(self._table.servos, self._board)
         self.firmware = self._robot.Firmware(self._board, self._table, joints, log)
         self._start: float | None = None
+        self._stepped = -self._robot.WAIT_MS
 
     def receive(self, data: bytes, now: float) -> None:
         """Process received bytes at time `now` [s]."""
@@ -134,6 +135,10 @@ class PlantedRobot:
         """Advance to time `now` [s]."""
         self._start = now if self._start is None else self._start
         self._board.now = round(1000 * (now - self._start))
+        # As in its main loop, which waits for bytes. It is a robot whose clock may starve.
+        if not self._board.incoming and self._board.now - self._stepped < self._robot.WAIT_MS:
+            return
+        self._stepped = self._board.now
         try:
             self.firmware.step(self._board.now)
             while self._board.incoming:
