@@ -93,8 +93,9 @@ def test_a_robot_without_a_fault_conforms_in_every_version(version: int):
 
 
 def test_a_fault_that_does_not_fit_the_firmware_is_refused():
-    with pytest.raises(ValueError, match="has 0 times, not once"), planted_robot(
-        edits=(("session", "no such line", ""),)
+    with (
+        pytest.raises(ValueError, match="has 0 times, not once"),
+        planted_robot(edits=(("session", "no such line", ""),)),
     ):
         pass
 

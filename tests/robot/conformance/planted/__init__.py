@@ -8,8 +8,6 @@ SUBJECTS = ("framing", "bodies", "sessions", "commands", "states")
 """The files of faults, in the order of the document."""
 
 FAULTS: tuple[PlantedFault, ...] = tuple(
-    fault
-    for subject in SUBJECTS
-    for fault in read_faults(Path(__file__).parent / f"{subject}.txt")
+    fault for subject in SUBJECTS for fault in read_faults(Path(__file__).parent / f"{subject}.txt")
 )
 """All of them."""
