@@ -33,7 +33,7 @@ PLANTED = {
     "other joints left alone": "MOVE lets go of the joints that it does not name",
     "joint returns within its speed": "joints faster than their top speed when they are let go",
     "move taken in earlier versions": "MOVE refused in sessions of earlier versions",
-    "repeated beat answered": "BEAT with the count of the one before not answered",
+    "beats of one count answered": "BEAT with the count of the one before not answered",
     "clock read while bytes arrive": "clock read only while no bytes wait",
     "clock read before waiting bytes": "waiting bytes processed before the clock is read",
     "clock read for every state": "clock in steps of 20 ms",
