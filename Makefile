@@ -32,6 +32,7 @@ test-rest: .venv/ready-dev  ## what `make test-all` does beyond `make test`
 campaign: .venv/ready-dev  ## the long runs: exchanges with robots, planted faults, damaged files, kills, cameras, blocks of BML, hours of play and drawing
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e6
 	$(BIN)/python -m tests.campaigns.crc
+	$(BIN)/python -m tests.campaigns.mutants
 	$(BIN)/python -m tests.campaigns.soak --hours 24
 	$(BIN)/python -m tests.campaigns.afternoon
 	$(BIN)/python -m tests.campaigns.behaviour
@@ -47,6 +48,7 @@ campaign: .venv/ready-dev  ## the long runs: exchanges with robots, planted faul
 campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e5
 	$(BIN)/python -m tests.campaigns.crc --random 1.2e5 --trials 1e6
+	$(BIN)/python -m tests.campaigns.mutants --every 10
 	$(BIN)/python -m tests.campaigns.soak --hours 2.4
 	$(BIN)/python -m tests.campaigns.afternoon --scenes "every key" "record and replay"
 	$(BIN)/python -m tests.campaigns.behaviour --blocks 10000

@@ -31,6 +31,9 @@ class Channel(Protocol):
         Every call takes some time, so a robot that never pauses cannot stop the clock.
         """
 
+    def hold_up(self, seconds: float) -> bool:
+        """Let time pass in which the robot does not run; return whether that is possible."""
+
 
 class PortChannel:
     """A port in real time.
@@ -73,6 +76,10 @@ class PortChannel:
         except OSError as error:  # pySerial's own errors are OSErrors too
             raise _port_loss(error) from error
 
+    def hold_up(self, seconds: float) -> bool:
+        """Return False: nobody can keep a real robot from running."""
+        return False
+
 
 class SimulatedChannel:
     """A simulated robot in virtual time.
@@ -103,6 +110,11 @@ class SimulatedChannel:
             data = self._robot.bytes_to_send()
             if data or self._now >= until:
                 return data
+
+    def hold_up(self, seconds: float) -> bool:
+        """Let time pass in which the robot does not run."""
+        self._now += seconds
+        return True
 
 
 def _port_loss(error: OSError) -> RobotError:

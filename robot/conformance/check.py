@@ -57,6 +57,10 @@ class CheckGroup:
         """Add a function as `must` does, for a requirement of another section."""
         return lambda run: self._add(run, "must", section)
 
+    def should_of(self, section: int) -> Callable[[CheckFunction], CheckFunction]:
+        """Add a function as `should` does, for a requirement of another section."""
+        return lambda run: self._add(run, "should", section)
+
     def _add(self, run: CheckFunction, level: Level, section: int | None = None) -> CheckFunction:
         name = getattr(run, "__name__", "").replace("_", " ")
         requires = " ".join((run.__doc__ or "").split())

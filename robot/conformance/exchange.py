@@ -12,6 +12,7 @@ from cubeling.robot.conformance.received import (
     ReceivedFrame,
     describe_frames,
 )
+from cubeling.robot.conformance.requests import OpenRequests
 from cubeling.robot.contract.port import READ_TIMEOUT_S
 from cubeling.robot.link.line_sample import LineSample
 from cubeling.robot.protocol import timing
@@ -43,6 +44,7 @@ class FrameExchange:
         """Longest overrun of a wait, because this computer was busy [s]."""
         self._channel = channel
         self._splitter = FrameSplitter()
+        self._requests = OpenRequests()
         self._queue: deque[ReceivedFrame] = deque(maxlen=MAX_QUEUED_FRAMES)
 
     @property
@@ -50,11 +52,16 @@ class FrameExchange:
         """Time of the channel's clock [s], which is virtual for a simulated robot."""
         return self._channel.now()
 
+    def hold_up(self, seconds: float) -> bool:
+        """Let time pass in which the robot does not run; return whether that is possible."""
+        return self._channel.hold_up(seconds)
+
     def write(self, data: bytes, *, keep: bool = False) -> None:
         """Send raw bytes; frames received before are dropped, unless `keep` is set."""
         if not keep:
             self.receive(0)
         self.sample.add("tx", data)
+        self._requests.add(data)
         self._channel.write(data)
 
     def send(self, *messages: Any, session: int | None = None, version: int | None = None) -> None:
@@ -142,5 +149,5 @@ class FrameExchange:
         self.max_overrun = max(self.max_overrun, self.now - until)
         self.sample.add("rx", data)
         for received in self._splitter.feed(data, self.now):
-            self.log.add(received)
+            self.log.add(received, asked=self._requests.take(received))
             self._queue.append(received)

@@ -169,7 +169,7 @@ class Probe(FrameExchange):
         return state
 
     def replies_to(self, *data: bytes, after: str = "it") -> list[ReceivedFrame]:
-        """Send bytes, then BEAT; return the messages before its STATE, without other STATEs.
+        """Send bytes, then BEAT; return the messages before its STATE, without STATEs and LOGs.
 
         A robot processes bytes in order, so its replies to them precede that STATE.
         """
@@ -183,7 +183,7 @@ class Probe(FrameExchange):
         if found is None:
             expected = f"STATE(beat={count}) after {after}, then BEAT({count})"
             raise CheckFailed(expected, describe_frames(before))
-        return [one for one in before if not isinstance(one.message, m.State | None)]
+        return [one for one in before if not isinstance(one.message, m.State | m.Log | None)]
 
     def expect_no_reply(self, data: bytes, what: str) -> None:
         """Send bytes that the robot must skip; raises CheckFailed if it answers them."""

@@ -2,11 +2,11 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, Literal
 
 from cubeling.robot.protocol import messages as m, timing
 from cubeling.robot.protocol.fields import MessageError
-from cubeling.robot.protocol.schema import MESSAGES, spec_of, unpack
+from cubeling.robot.protocol.schema import MESSAGES, pack, spec_of, unpack
 from cubeling.robot.protocol.wire import MAX_FRAME, FrameError, decode_frame
 
 MAX_STATES = 20_000
@@ -17,6 +17,12 @@ MAX_EXAMPLES = 3
 
 MAX_SHOWN_BYTES = 40
 """Most bytes of a frame in a report."""
+
+Rule = Literal["frame", "session", "unasked", "edges", "padding"]
+"""What a frame violates: it is not valid, of another session, sent unasked or out of order, without
+an edge of its own, or has a text that is not padded with zero bytes."""
+
+_WITH_TEXT = m.Welcome | m.Joint | m.Name | m.Log
 
 
 @dataclass(frozen=True)
@@ -40,6 +46,12 @@ class ReceivedFrame:
 
     error: str = ""
     """Why it is not valid."""
+
+    own_edges: bool = True
+    """Whether it has an edge before it that does not also end the frame before."""
+
+    padded: bool = True
+    """Whether its texts are padded with zero bytes."""
 
     @property
     def name(self) -> str:
@@ -66,6 +78,7 @@ class FrameSplitter:
     def __init__(self) -> None:
         self._buffer = bytearray()
         self._edge_seen = False  # bytes before the first edge may be half a frame
+        self._own_edge = True
 
     def feed(self, data: bytes, now: float) -> Iterator[ReceivedFrame]:
         """Take bytes received at time `now` [s]; yield the frames that they complete."""
@@ -75,7 +88,8 @@ class FrameSplitter:
             frame = bytes(self._buffer)
             self._buffer.clear()
             if frame and self._edge_seen:
-                yield parse_frame(frame, now)
+                yield replace(parse_frame(frame, now), own_edges=self._own_edge)
+            self._own_edge = not (frame and self._edge_seen)
             self._edge_seen = True
         self._append(rest)
 
@@ -94,7 +108,8 @@ def parse_frame(frame: bytes, now: float) -> ReceivedFrame:
         spec = MESSAGES.get(body[0])
         reason = f"{body[0]:02X} is no message" if spec is None else f"{spec.name} is the host's"
         return ReceivedFrame(now, frame, session, error=reason)
-    return ReceivedFrame(now, frame, session, message, len(body))
+    padded = not isinstance(message, _WITH_TEXT) or pack(message, session)[: len(body)] == body
+    return ReceivedFrame(now, frame, session, message, len(body), padded=padded)
 
 
 class FrameLog:
@@ -103,9 +118,9 @@ class FrameLog:
     def __init__(self) -> None:
         self.states: list[tuple[float, m.State]] = []
         """Timestamp [s] and content of the STATEs of our sessions."""
-        self.violations: dict[str, list[ReceivedFrame]] = {}
-        """The first frames that violated each rule: "frame" or "session"."""
-        self.violation_counts: dict[str, int] = {}
+        self.violations: dict[Rule, list[ReceivedFrame]] = {}
+        """The first frames that violated each rule."""
+        self.violation_counts: dict[Rule, int] = {}
         """How many violated it."""
         self.readings: list[tuple[float, int]] = []
         """Timestamp [s] and the robot's clock [ms] of the STATEs that have one."""
@@ -115,8 +130,11 @@ class FrameLog:
         self._version = timing.VERSION
         self._welcomed = False
 
-    def add(self, received: ReceivedFrame) -> None:
-        """Record a frame, and test it against the rules for all frames."""
+    def add(self, received: ReceivedFrame, asked: bool = True) -> None:
+        """Record a frame, and test it against the rules for all frames.
+
+        `asked` says whether a message of the host asked for it.
+        """
         if received.message is None:
             # Before the first WELCOME it may be the text of a boot loader.
             if self._welcomed:
@@ -125,18 +143,29 @@ class FrameLog:
         if isinstance(received.message, m.Welcome):
             self._session, self._welcomed = received.session, True
             self._version = min(received.message.version, timing.VERSION)
-        if not self._welcomed or isinstance(received.message, m.Gone):
+        if not self._welcomed:
             return
+        self._test_sending(received, asked)
         spec = spec_of(type(received.message))
         size = spec.size_in(self._version)
         if received.size != size:
             what = f"{size} bytes" if size else "nothing"
             reason = f"{spec.name} has {what} in version {self._version}, not {received.size} bytes"
             self._add_violation("frame", replace(received, message=None, error=reason))
+        elif isinstance(received.message, m.Gone):
+            return
         elif received.session != self._session:
             self._add_violation("session", received)
         else:
             self._keep(received.timestamp, received.message)
+
+    def _test_sending(self, received: ReceivedFrame, asked: bool) -> None:
+        if not asked:
+            self._add_violation("unasked", received)
+        if not received.own_edges:
+            self._add_violation("edges", received)
+        if not received.padded:
+            self._add_violation("padding", received)
 
     def _keep(self, time: float, message: Any) -> None:
         if isinstance(message, m.Log) and len(self.logs) < MAX_STATES:
@@ -146,7 +175,7 @@ class FrameLog:
             if self._version >= 3:
                 self.readings.append((time, message.time))
 
-    def _add_violation(self, rule: str, received: ReceivedFrame) -> None:
+    def _add_violation(self, rule: Rule, received: ReceivedFrame) -> None:
         self.violation_counts[rule] = self.violation_counts.get(rule, 0) + 1
         examples = self.violations.setdefault(rule, [])
         if len(examples) < MAX_EXAMPLES:

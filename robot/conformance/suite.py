@@ -32,7 +32,7 @@ GROUPS: tuple[CheckGroup, ...] = (
 )  # fmt: skip
 """The checks by subject; those of everything received come last."""
 
-MAX_DURATION_S = 100.0
+MAX_DURATION_S = 240.0
 """No check starts later than this after the first one [s]."""
 
 FIRST_REPLY_WITHIN_S = 0.5

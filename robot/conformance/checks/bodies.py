@@ -3,7 +3,7 @@
 from cubeling.robot.conformance.check import CheckGroup
 from cubeling.robot.conformance.checks.moods import expect_mood, mood_to_name
 from cubeling.robot.conformance.probe import Probe
-from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import messages as m, timing
 from cubeling.robot.protocol.schema import MESSAGES, pack, spec_of
 from cubeling.robot.protocol.wire import MAX_BODY, encode_frame
 
@@ -76,8 +76,25 @@ def longer_body_used(probe: Probe) -> None:
         probe.write(_extend(m.Express(number, 0.0, 0.0), probe, more))
         what = f"an EXPRESS with a {more}-byte extension"
         probe.expect(m.Ack, what, number=number, result=m.RESULT_TAKEN)
+        probe.write(_extend(m.Ask(m.ITEM_JOINT, 0), probe, more))
+        if probe.welcome is not None and probe.welcome.joints:
+            probe.expect(m.Joint, f"an ASK with a {more}-byte extension", index=0)
+        commands: list[m.Command] = [
+            m.Play(probe.next_number(), m.ITEM_MOTION, 254),
+            m.Stop(probe.next_number()),
+        ]
+        if probe.version >= 3:
+            commands.append(m.Move(probe.next_number(), 0.0, 0, 0, (0.0,) * m.JOINTS_MAX))
+        for command in commands:
+            probe.write(_extend(command, probe, more))
+            what = f"a {spec_of(type(command)).name} with a {more}-byte extension"
+            probe.expect(m.Ack, what, number=command.number)
+        probe.write(_extend(m.Bye(), probe, more))
+        probe.receive(2 * timing.GONE_EVERY)
+        probe.send(m.Beat(probe.next_beat()))
+        probe.expect(m.Gone, f"BEAT after a BYE with a {more}-byte extension")
         probe.next_session()
-        probe.write(_extend(m.Hello(2, probe.host), probe, more))
+        probe.write(_extend(m.Hello(timing.VERSION, probe.host), probe, more))
         probe.expect(m.Welcome, f"a HELLO with a {more}-byte extension")
 
 

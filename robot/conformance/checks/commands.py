@@ -1,13 +1,21 @@
 """Checks of section 6: commands are acknowledged, and take effect exactly once."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from cubeling.robot.conformance.check import CheckGroup
 from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
+from cubeling.robot.conformance.exchange import REPLY_WITHIN_S
 from cubeling.robot.conformance.probe import EFFECT_WITHIN_S, EMOTION_CHANGE, Probe
-from cubeling.robot.protocol import messages as m
+from cubeling.robot.protocol import messages as m, timing
 
 COMMANDS = CheckGroup("Commands", 6)
+
+FAILSAFE_SILENCE_S = timing.FAILSAFE_PROMISE + 0.02
+"""Silence after which a session has ended [s]."""
+
+_FAR_RAD = 32.767
+"""An angle beyond the limits of all joints [rad]."""
 
 
 @COMMANDS.must
@@ -36,14 +44,18 @@ def taken_reported(probe: Probe) -> None:
 
 @COMMANDS.must
 def repeat_acknowledged(probe: Probe) -> None:
-    """A repeated or older command is answered by ACK too."""
-    probe.open_session()
-    probe.command(m.Express(5, 0.0, 0.0))
-    for number in (5, 5, 4, 1):
-        after = f"EXPRESS {number}, with 5 taken before"
-        probe.send(m.Express(number, 0.0, 0.0))
-        probe.expect(m.Ack, after, number=number)
-        probe.expect_taken(5, after)
+    """A repeated or older command is answered by ACK too, with the result of the last one taken."""
+    motions = probe.open_session().motions
+    refused = m.Play(6, m.ITEM_MOTION, motions)
+    for last, result in (
+        (m.Express(5, 0.0, 0.0), m.RESULT_TAKEN), (refused, m.RESULT_REFUSED)
+    ):  # fmt: skip
+        probe.command(last, result)
+        for number in (last.number, last.number, 4, 1):
+            after = f"EXPRESS {number}, with {last.number} taken before"
+            probe.send(m.Express(number, 0.0, 0.0))
+            probe.expect(m.Ack, after, number=number, result=result)
+            probe.expect_taken(last.number, after)
 
 
 @COMMANDS.must
@@ -93,6 +105,55 @@ def latest_wins(probe: Probe) -> None:
         )
 
 
+@COMMANDS.must_of(5)
+def answered_in_order(probe: Probe) -> None:
+    """Messages in one write are answered in their order."""
+    probe.open_session()
+    first, second = probe.next_number(), probe.next_number()
+    before, after = probe.next_beat(), probe.next_beat()
+    probe.send(
+        m.Express(first, 0.0, 0.0),
+        m.Beat(before),
+        m.Ask(m.ITEM_MOTION, 255),
+        m.Express(second, 0.0, 0.0),
+        m.Hello(timing.VERSION, probe.host),
+        m.Beat(after),
+    )
+    answers: list[object] = []
+    for one in probe.receive(REPLY_WITHIN_S):
+        match one.message:
+            case m.Ack(number=number):
+                answers.append(("ACK", number))
+            case m.State(beat=beat) if beat and ("STATE", beat) not in answers:
+                answers.append(("STATE", beat))
+            case m.Welcome():
+                answers.append(("WELCOME", probe.session))
+    wanted = [
+        ("ACK", first), ("STATE", before), ("ACK", second), ("WELCOME", probe.session),
+        ("STATE", after),
+    ]  # fmt: skip
+    if answers != wanted:
+        words = " ".join(f"{name}({value})" for name, value in wanted)
+        raise CheckFailed(words, f"{answers}")
+
+
+@COMMANDS.must
+def never_refused(probe: Probe) -> None:
+    """EXPRESS and STOP are taken whatever the robot is doing, also while it is stopped."""
+    welcome = probe.open_session()
+    for _ in range(2):
+        for item, count in ((m.ITEM_MOTION, welcome.motions), (m.ITEM_SOUND, welcome.sounds)):
+            if count:
+                probe.send(m.Play(probe.next_number(), item, count - 1))
+        if probe.version >= 3 and welcome.abilities & m.ABILITY_MOVE and welcome.joints:
+            angles = probe.beat("HELLO").joints
+            probe.send(m.Move(probe.next_number(), 1.0, 0, 1, angles))
+        probe.express(0.0, 0.0)
+        probe.command(m.Stop(probe.next_number()))
+        probe.command(m.Stop(probe.next_number()))
+        probe.express(0.0, 0.0)
+
+
 @COMMANDS.must
 def unknown_index_refused(probe: Probe) -> None:
     """PLAY with an index that the catalogue does not have gets ACK with result 1, and is taken."""
@@ -121,7 +182,10 @@ def unknown_mood_refused(probe: Probe) -> None:
 
 @COMMANDS.must
 def result_in_state(probe: Probe) -> None:
-    """STATE says the result of the command taken last; 0 after HELLO of another host."""
+    """STATE says the result of the command taken last; 0 after HELLO of another host.
+
+    Its own host may begin another session, end it or be silent: the result stays.
+    """
     welcome = probe.open_session()
     if probe.version < 3:
         raise NotApplicableError("it speaks an earlier version")
@@ -133,6 +197,13 @@ def result_in_state(probe: Probe) -> None:
             probe.command(command, result)
         _expect_result(probe, result, f"a command with result {result}")
     probe.command(replace(refused, number=probe.next_number()), m.RESULT_REFUSED)
+    for end in ("another HELLO", "BYE", "the failsafe"):
+        if end == "BYE":
+            probe.send(m.Bye())
+        elif end == "the failsafe":
+            probe.receive(FAILSAFE_SILENCE_S)
+        probe.reopen_session()
+        _expect_result(probe, m.RESULT_REFUSED, f"a refused command and {end}")
     probe.open_session()
     _expect_result(probe, m.RESULT_TAKEN, "HELLO of another host")
 
@@ -152,20 +223,37 @@ def refusal_in_earlier_versions(probe: Probe) -> None:
 @COMMANDS.must
 def refusal_changes_nothing(probe: Probe) -> None:
     """A refused command changes nothing: a stopped robot stays so. Its repeats are refused too."""
-    welcome = probe.open_session()
+    probe.open_session()
     probe.command(m.Stop(probe.next_number()))
-    commands: list[m.Play | m.Express] = [
-        m.Play(probe.next_number(), m.ITEM_MOTION, welcome.motions),
-        m.Play(probe.next_number(), m.ITEM_SOUND, welcome.sounds),
-    ]
-    if probe.version >= 2:
-        commands.append(m.Express(probe.next_number(), 0.5, 0.5, m.NOTHING - 1))
-    for command in commands:
-        probe.command(command, m.RESULT_REFUSED)
-        probe.command(command, m.RESULT_REFUSED)
+    for command, result in refused_commands(probe):
+        probe.command(command, result)
+        probe.command(command, result)
     flags = probe.keep_alive(EFFECT_WITHIN_S)[-1].flags
     if not flags & m.FLAG_STILL:
         raise CheckFailed("flag 1 after STOP and refused commands", f"flags={flags}")
+
+
+def refused_commands(probe: Probe) -> Iterator[tuple[m.Command, int]]:
+    """Yield commands that every robot refuses, each with its number, and their results."""
+    welcome = probe.welcome
+    assert welcome is not None
+    if probe.version >= 2:
+        for mood in (welcome.moods, m.NOTHING - 1):
+            yield m.Express(probe.next_number(), -0.5, 0.5, mood), m.RESULT_REFUSED
+    for item, count in ((m.ITEM_MOTION, welcome.motions), (m.ITEM_SOUND, welcome.sounds)):
+        yield m.Play(probe.next_number(), item, count), m.RESULT_REFUSED
+    if probe.version < 3 or not welcome.abilities & m.ABILITY_MOVE:
+        return
+    known = (1 << welcome.joints) - 1
+    angles = probe.beat("HELLO").joints
+    if welcome.joints < m.JOINTS_MAX:
+        for released, moved in ((known, 1 << 15), (known | 1 << 15, known)):
+            command = m.Move(probe.next_number(), 1.0, released, moved, angles)
+            yield command, m.RESULT_REFUSED
+    if welcome.joints:
+        beyond = (*angles[: welcome.joints - 1], _FAR_RAD) + (0.0,) * m.JOINTS_MAX
+        far = m.Move(probe.next_number(), 1.0, known, known, beyond[: m.JOINTS_MAX])
+        yield far, m.RESULT_OUT_OF_RANGE
 
 
 def _expect_result(probe: Probe, result: int, after: str) -> None:

@@ -1,7 +1,9 @@
 """Checks of the failsafe and of BYE (section 7): a robot without a host ends its session."""
 
+from itertools import pairwise
+
 from cubeling.robot.conformance.check import CheckGroup
-from cubeling.robot.conformance.errors import CheckFailed
+from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
 from cubeling.robot.conformance.exchange import REPLY_WITHIN_S
 from cubeling.robot.conformance.probe import EFFECT_WITHIN_S, EMOTION_CHANGE, TIMING_SLACK_S, Probe
 from cubeling.robot.conformance.received import describe_frames
@@ -27,6 +29,13 @@ NEARLY_ATTEMPTS = 3
 
 MESSAGE_EVERY_S = 0.27
 """Time between two messages that keep a session open only together [s]."""
+
+STEADY_BYTES_PER_S = 8000
+"""Bytes that never cease, for a robot that reads its clock only when none wait [1/s]: fewer than a
+line of 115200 baud takes."""
+
+STEADY_EVERY_S = 0.001
+"""Time between two writes of them [s]."""
 
 NOISE_EVERY_S = 0.03
 """Time between two bursts of noise [s]."""
@@ -148,6 +157,40 @@ def failsafe_not_reset_by_noise(probe: Probe) -> None:
 
 
 @FAILSAFE.must
+def clock_read_while_bytes_arrive(probe: Probe) -> None:
+    """While bytes never cease to arrive, STATE comes every 100 ms, and the failsafe acts."""
+    probe.open_session()
+    probe.beat("HELLO")
+    begin, sent, states = probe.now, 0, [probe.now]
+    while (passed := probe.now - begin) < SILENCE_S:
+        due = round(passed * STEADY_BYTES_PER_S)
+        probe.write(b"\x55" * (due - sent), keep=True)
+        sent = due
+        for one in probe.receive(STEADY_EVERY_S):
+            if isinstance(one.message, m.State):
+                states.append(one.timestamp)
+    states.append(max(states[-1], begin + FAILSAFE_NOT_BEFORE_S))
+    quiet = max(later - former for former, later in pairwise(states))
+    if quiet > timing.STATE_EVERY + TIMING_SLACK_S:
+        expected = f"STATE every {1000 * timing.STATE_EVERY:.0f} ms while bytes arrive"
+        raise CheckFailed(expected, f"none for {1000 * quiet:.0f} ms")
+    probe.write(b"\0", keep=True)
+    _expect_session_gone(probe, f"{_SILENCE_MS} ms of bytes without an edge")
+
+
+@FAILSAFE.must_of(5)
+def clock_read_before_waiting_bytes(probe: Probe) -> None:
+    """Bytes that have waited while the robot did not run do not belong to the old session."""
+    probe.open_session()
+    probe.beat("HELLO")
+    if not probe.hold_up(SILENCE_S):
+        raise NotApplicableError("only a simulated robot can be held up")
+    # Nothing is read before, so that the robot finds bytes and time at once.
+    probe.write(probe.frame(m.Beat(probe.next_beat())), keep=True)
+    probe.expect(m.Gone, f"{_SILENCE_MS} ms in which the robot did not run, and a BEAT meanwhile")
+
+
+@FAILSAFE.must
 def failsafe_not_reset_by_other_sessions(probe: Probe) -> None:
     """Messages of other sessions do not keep a session open."""
     probe.open_session()
@@ -177,11 +220,13 @@ def failsafe_not_reset_by_skipped_bodies(probe: Probe) -> None:
 
 @FAILSAFE.must
 def bye_ends_the_session(probe: Probe) -> None:
-    """After BYE the session is gone, and no command is in force."""
+    """After BYE the session is gone, and no command is in force; BYE itself is not answered."""
     probe.open_session()
     probe.express(0.3, 0.3)
     probe.send(m.Bye())
-    probe.receive(REPLY_WITHIN_S)
+    received = probe.receive(REPLY_WITHIN_S)
+    if any(isinstance(one.message, m.Gone) for one in received):
+        raise CheckFailed("no answer to BYE in the open session", describe_frames(received))
     _expect_session_gone(probe, "BYE")
     _expect_welcome(probe, 0, "BYE")
 

@@ -20,6 +20,21 @@ NOISE_EVERY_S = 0.025
 BYTE_EVERY_S = 0.003
 """Time between two bytes of a frame that arrives in pieces [s]."""
 
+PAUSE_S = 0.15
+"""Pause in the middle of a frame, and before its last edge [s]."""
+
+BURST = 30
+"""BEATs in one write, of which the answers are more than a small robot can keep."""
+
+BURST_ANSWERED_S = 0.25
+"""Time for the answers to a burst [s]; a line of 115200 baud takes 170 ms for them."""
+
+JUNK_LENGTHS = (1, 60, *range(119, 132), *range(250, 258), 510, 512)
+"""Bytes before a frame without an edge: about what buffers hold."""
+
+FEW_LENGTHS = (1, 60, 125)
+"""Those of which as many come after a frame."""
+
 _RANDOM = np.random.default_rng(2).integers(0, 256, 4096, np.uint8).tobytes()
 _NOISE = {
     "one byte": b"\x55",
@@ -55,8 +70,17 @@ def half_a_frame_before_a_frame(probe: Probe) -> None:
 
 @FRAMES.must
 def frame_in_pieces(probe: Probe) -> None:
-    """A frame may arrive byte by byte, with pauses between them."""
+    """A frame may arrive byte by byte, with pauses between them; it ends with its edge."""
     probe.open_session()
+    for cut in (5, -1):
+        count = probe.next_beat()
+        frame = probe.frame(m.Beat(count))
+        probe.write(frame[:cut])
+        probe.receive(PAUSE_S)
+        _expect_not_answered(probe, count, "a BEAT without its last edge")
+        probe.write(frame[cut:])
+        after = f"a BEAT with a pause of {1000 * PAUSE_S:.0f} ms in it"
+        probe.expect(m.State, after, beat=count)
     count = probe.next_beat()
     for byte in probe.frame(m.Beat(count)):
         probe.write(bytes([byte]))
@@ -114,6 +138,24 @@ def wrong_cobs_dropped(probe: Probe) -> None:
 
 
 @FRAMES.must
+def frames_found_only_between_edges(probe: Probe) -> None:
+    """Bytes before or after a frame, without an edge between them, make it invalid.
+
+    So it is after 125 bytes too: all bytes up to the next edge are dropped.
+    """
+    probe.open_session()
+    for length in JUNK_LENGTHS:
+        for behind in (False, True) if length in FEW_LENGTHS else (False,):
+            count = probe.next_beat()
+            frame = probe.frame(m.Beat(count)).strip(b"\0")
+            junk = b"\x55" * length
+            what = f"a BEAT {'before' if behind else 'after'} {length} bytes without an edge"
+            data = frame + junk if behind else junk + frame
+            probe.expect_no_reply(b"\0" + data + b"\0", what)
+            _expect_not_answered(probe, count, what)
+
+
+@FRAMES.must
 def longest_frame_received(probe: Probe) -> None:
     """A frame may be 124 bytes long between its edges."""
     probe.open_session()
@@ -134,6 +176,25 @@ def longer_frame_dropped(probe: Probe) -> None:
         frame = _with_check(bytes([len(body) + 1]) + body)
         probe.expect_no_reply(frame, f"a body of {length} bytes")
         _expect_not_answered(probe, count, f"a BEAT of {length} bytes")
+    for more in (1, 2, 3, 100):
+        count = probe.next_beat()
+        body = pack(m.Beat(count), probe.session)
+        longest = encode_frame(body + b"\x11" * (MAX_BODY - len(body)))
+        what = f"a BEAT of {MAX_BODY} bytes with {more} bytes before its edge"
+        probe.expect_no_reply(longest[:-1] + b"\x11" * more + b"\0", what)
+        _expect_not_answered(probe, count, what)
+
+
+@FRAMES.must_of(5)
+def burst_survived(probe: Probe) -> str:
+    """A robot that cannot send all answers drops frames, but keeps its session and goes on."""
+    probe.open_session()
+    before = len(probe.log.states)
+    probe.send(*(m.Beat(probe.next_beat()) for _ in range(BURST)))
+    probe.receive(BURST_ANSWERED_S)
+    answers = len(probe.log.states) - before
+    probe.beat(f"{BURST} BEATs in one write")
+    return f"{answers} STATEs for {BURST} BEATs in one write"
 
 
 @FRAMES.must

@@ -3,6 +3,7 @@
 from cubeling.robot.conformance.check import CheckGroup
 from cubeling.robot.conformance.checks.catalogue import ITEM_WORDS
 from cubeling.robot.conformance.checks.failsafe import FAILSAFE_NOT_BEFORE_S, SILENCE_S
+from cubeling.robot.conformance.checks.moods import expect_emotion
 from cubeling.robot.conformance.checks.playing import (
     expect_still_played,
     long_entries,
@@ -129,7 +130,7 @@ def same_host_keeps_the_emotion(probe: Probe) -> None:
     """When the same host says HELLO again in time, the emotion stays."""
     probe.open_session()
     probe.express(0.6, 0.6)
-    _expect_valence(probe, 0.6)
+    expect_emotion(probe, (0.6, 0.6), "EXPRESS")  # it may come from above
     probe.reopen_session()
     for state in probe.keep_alive(0.5):
         if abs(state.valence - 0.6) > EMOTION_CHANGE:
@@ -143,12 +144,15 @@ def same_host_keeps_the_motion(probe: Probe) -> None:
         indices = long_entries(probe, m.ITEM_MOTION, m.ITEM_SOUND)
     except NotApplicableError:
         indices = long_entries(probe, m.ITEM_MOTION)
-    for item, index in indices.items():
-        play(probe, item, index)
-    probe.reopen_session()
-    state = probe.keep_alive(EFFECT_WITHIN_S)[-1]
-    for item, index in indices.items():
-        expect_still_played(state, item, index, "the next HELLO of its host")
+    for hello, after in (
+        (probe.hello, "a repeated HELLO"), (probe.reopen_session, "the next HELLO of its host")
+    ):  # fmt: skip
+        for item, index in indices.items():
+            play(probe, item, index)
+        hello()
+        state = probe.keep_alive(EFFECT_WITHIN_S)[-1]
+        for item, index in indices.items():
+            expect_still_played(state, item, index, after)
 
 
 @NEUTRALITY.must
@@ -159,12 +163,16 @@ def stopped_robot_stays_still(probe: Probe) -> None:
     probe.command(m.Stop(probe.next_number()))
     expect_stop_pose(probe, "STOP", within=EMOTION_WITHIN_S)
     for end in ("the failsafe", "BYE", "HELLO of another host"):
+        # Again, so that there is a command in force that the end of a session takes back.
+        probe.command(m.Stop(probe.next_number()))
         if end == "HELLO of another host":
             probe.open_session()
         else:
             if end == "BYE":
                 probe.send(m.Bye())
             probe.receive(SILENCE_S + EXTRA_SILENCE_S)
+            probe.send(m.Beat(probe.next_beat()))
+            probe.expect(m.Gone, f"STOP, {end}, BEAT")
             probe.reopen_session()
         expect_stop_pose(probe, f"STOP and {end}", within=0.0)
         state = probe.keep_alive(EFFECT_WITHIN_S)[-1]

@@ -6,6 +6,7 @@ from statistics import median
 from cubeling.robot.conformance.check import CheckGroup
 from cubeling.robot.conformance.checks.moods import expect_emotion
 from cubeling.robot.conformance.errors import CheckFailed
+from cubeling.robot.conformance.exchange import REPLY_WITHIN_S
 from cubeling.robot.conformance.probe import (
     EMOTION_TOLERANCE,
     TIMING_SLACK_S,
@@ -25,6 +26,18 @@ MAX_MEDIAN_ROUND_TRIP_S = 0.020
 LISTENING_TIME_S = 0.35
 """Time in which STATE must come without BEAT [s]; shorter than the failsafe's."""
 
+REPEATED_BEATS = 4
+"""BEATs of the same count in one write: more than the STATEs that come meanwhile unasked."""
+
+MAX_JUMP = 0.4
+"""Part of the way, or of 1 if it is shorter, that an emotion covers in `WATCHED_S` at most."""
+
+WATCHED_S = 0.06
+"""Time in which a jump is looked for [s]: some steps of a robot's body."""
+
+WATCH_EVERY_S = 0.01
+"""Time between two looks [s]."""
+
 MAX_STATES_PER_SECOND = 40.0
 """Most STATEs of a good robot [1/s]: one for each BEAT, and as many again."""
 
@@ -36,6 +49,20 @@ def beat_answered(probe: Probe) -> None:
     for count in (1, 0, 65535, 256, 0):
         probe.send(m.Beat(count))
         probe.expect(m.State, f"BEAT({count})", beat=count)
+
+
+@HEARTBEAT.must
+def beats_of_one_count_answered(probe: Probe) -> None:
+    """Every BEAT is answered, whether its count goes up or not."""
+    probe.open_session()
+    for count in (7, 7, 6, 6):
+        before = len(probe.log.states)
+        probe.send(*[m.Beat(count)] * REPEATED_BEATS)
+        probe.receive(REPLY_WITHIN_S)
+        states = sum(state.beat == count for _, state in probe.log.states[before:])
+        if states < REPEATED_BEATS:
+            expected = f"{REPEATED_BEATS} STATEs after as many BEAT({count})"
+            raise CheckFailed(expected, f"{states}")
 
 
 @HEARTBEAT.must
@@ -70,9 +97,10 @@ def state_sent_without_beat(probe: Probe) -> None:
 @HEARTBEAT.must
 def emotion_shown(probe: Probe) -> str:
     """A commanded emotion is shown within 5 s, and the way there leads towards it."""
-    probe.open_session()
+    probe.open_neutral_session()
     slowest = 0.0
-    for goal in ((0.8, 0.6), (-0.4, -0.2), (0.0, 0.0)):
+    # Each limit from neutral: a robot may take its five seconds for that.
+    for goal in ((1.0, -1.0), (0.0, 0.0), (-1.0, 1.0)):
         number = probe.express(*goal)
         begin = probe.now
         states = expect_emotion(probe, goal, f"EXPRESS {number}")
@@ -90,17 +118,23 @@ def emotion_shown(probe: Probe) -> str:
 
 @HEARTBEAT.should
 def emotion_rate_bounded(probe: Probe) -> None:
-    """The emotion shown changes at a bounded rate; if it jumps, it is the one commanded."""
+    """The emotion shown changes at a bounded rate: it does not jump, not even to neutral."""
     probe.open_session()
-    before = probe.beat("HELLO")
-    goal = (-0.9, -0.9) if before.valence > 0 else (0.9, 0.9)
-    probe.express(*goal)
-    after = probe.beat("EXPRESS")
-    if emotion_distance(after, *goal) < EMOTION_TOLERANCE:
-        raise CheckFailed(
-            f"an emotion on its way from ({before.valence}, {before.arousal}) to {goal}",
-            "one that is there at once",
-        )
+    for goal in ((0.9, 0.9), (-0.9, -0.9)):
+        before = probe.beat("HELLO")
+        allowed = MAX_JUMP * max(emotion_distance(before, *goal), 1.0)
+        probe.express(*goal)
+        begin = probe.now
+        while probe.now < begin + WATCHED_S:
+            after = probe.beat("EXPRESS")
+            if emotion_distance(after, before.valence, before.arousal) > allowed:
+                raise CheckFailed(
+                    f"an emotion on its way from ({before.valence}, {before.arousal}) to {goal}",
+                    f"({after.valence}, {after.arousal}) {1000 * (probe.now - begin):.0f} ms later",
+                )
+            probe.receive(WATCH_EVERY_S)
+        if goal[0] > 0:
+            expect_emotion(probe, goal, "EXPRESS")
 
 
 @HEARTBEAT.should

@@ -15,6 +15,12 @@ MOODS = CheckGroup("Moods", 6)
 
 _EMOTION = (0.8, 0.6)
 
+_FAR_VALENCE = 0.7
+"""From this valence on the emotion shown is not near (0, 0)."""
+
+_KEPT_S = 2.5
+"""How long the emotion must stay once it is shown [s]."""
+
 
 @MOODS.must
 def named_mood_shown_at_once(probe: Probe) -> None:
@@ -44,6 +50,75 @@ def mood_255_leaves_the_choice(probe: Probe) -> None:
     probe.express(*_EMOTION)
     expected = f"mood {own}, its own choice for {_EMOTION}, after 255"
     probe.expect_state(lambda state: state.mood == own, EMOTION_WITHIN_S, expected, "mood")
+
+
+@MOODS.must_of(5)
+def short_express_leaves_the_choice(probe: Probe) -> None:
+    """The length of EXPRESS decides: 11 bytes leave the mood to the robot, 12 name one.
+
+    The version of the session does not matter.
+    """
+    last = mood_to_name(probe)
+    highest = probe.version
+    probe.open_neutral_session()
+    probe.express(*_EMOTION)
+    own = expect_emotion(probe, _EMOTION, "EXPRESS")[-1].mood
+    for version in {1, highest}:
+        probe.hello(offer=version)
+        for other in {0, last} - {own}:
+            named = m.Express(probe.next_number(), *_EMOTION, other)
+            probe.send(named, version=2)
+            expect_mood(probe, other, f"EXPRESS of 12 bytes in a session of version {version}")
+            short = m.Express(probe.next_number(), *_EMOTION)
+            probe.send(short, version=1)
+            expected = f"mood {own}, its own choice for {_EMOTION}, after EXPRESS of 11 bytes"
+            probe.expect_state(lambda state: state.mood == own, EMOTION_WITHIN_S, expected, "mood")
+
+
+@MOODS.must
+def own_mood_follows_the_emotion_shown(probe: Probe) -> None:
+    """A mood that was not named follows the emotion shown, also on the way to neutral."""
+    probe.open_neutral_session()
+    for end in ("EXPRESS (0, 0)", "BYE"):
+        probe.express(*_EMOTION)
+        if not expect_emotion(probe, _EMOTION, "EXPRESS")[-1].mood:
+            raise NotApplicableError(f"its own choice for {_EMOTION} is its first mood")
+        if end == "BYE":
+            probe.send(m.Bye())
+            probe.reopen_session()
+        else:
+            probe.express(0.0, 0.0)
+        # Closer to neutral, a robot may well show its first mood.
+        for state in probe.keep_alive(1.0, lambda state: state.valence < _FAR_VALENCE):
+            if state.valence >= _FAR_VALENCE and not state.mood:
+                expected = f"another mood than 0 at valence {state.valence} after {end}"
+                raise CheckFailed(expected, "mood=0")
+
+
+@MOODS.must
+def emotion_and_mood_kept(probe: Probe) -> None:
+    """PLAY and MOVE do not end the emotion, nor the mood that was named; nor does time."""
+    welcome = probe.open_neutral_session()
+    named = probe.version >= 2 and welcome.moods > 1
+    mood = welcome.moods - 1 if named else m.NOTHING
+    probe.express(*_EMOTION, mood)
+    commands: list[m.Command] = []
+    if welcome.motions:
+        commands.append(m.Play(probe.next_number(), m.ITEM_MOTION, welcome.motions - 1))
+    if welcome.sounds:
+        commands.append(m.Play(probe.next_number(), m.ITEM_SOUND, welcome.sounds - 1))
+    if probe.version >= 3 and welcome.abilities & m.ABILITY_MOVE:
+        commands.append(m.Move(probe.next_number(), 0.0, 0, 0, (0.0,) * m.JOINTS_MAX))
+    for command in commands:
+        probe.send(command)
+        probe.expect(m.Ack, "PLAY or MOVE", number=command.number)
+    expect_emotion(probe, _EMOTION, "EXPRESS, and PLAY or MOVE")
+    for state in probe.keep_alive(_KEPT_S):
+        if named and state.mood != mood:
+            raise CheckFailed(f"mood {mood} after PLAY or MOVE", f"mood={state.mood}")
+        if emotion_distance(state, *_EMOTION) > EMOTION_TOLERANCE:
+            shown = f"({state.valence}, {state.arousal})"
+            raise CheckFailed(f"{_EMOTION} until another emotion is commanded", shown)
 
 
 @MOODS.must

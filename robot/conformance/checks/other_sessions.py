@@ -59,6 +59,20 @@ def gone_without_session(probe: Probe) -> None:
 
 
 @OTHER_SESSIONS.must
+def session_zero_reported(probe: Probe) -> None:
+    """Every message but HELLO in session 0 is answered by GONE in session 0."""
+    for opened in (True, False):
+        probe.open_session()
+        if not opened:
+            probe.send(m.Bye())
+        for message in _messages(probe):
+            probe.receive(2 * timing.GONE_EVERY)
+            probe.send(message, session=0)
+            where = "in session 0" + ("" if opened else ", with none open")
+            probe.expect(m.Gone, f"{spec_of(type(message)).name} {where}", session=0)
+
+
+@OTHER_SESSIONS.must
 def gone_rate_bounded(probe: Probe) -> None:
     """GONE is sent at most every 20 ms."""
     probe.open_session()

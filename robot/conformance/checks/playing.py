@@ -4,8 +4,15 @@ from math import inf
 
 from cubeling.robot.conformance.check import CheckGroup
 from cubeling.robot.conformance.checks.catalogue import ITEM_WORDS
+from cubeling.robot.conformance.checks.commands import refused_commands
+from cubeling.robot.conformance.checks.moods import expect_emotion
 from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
-from cubeling.robot.conformance.probe import EFFECT_WITHIN_S, Probe
+from cubeling.robot.conformance.probe import (
+    EFFECT_WITHIN_S,
+    EMOTION_CHANGE,
+    Probe,
+    emotion_distance,
+)
 from cubeling.robot.protocol import messages as m, timing
 
 PLAYING = CheckGroup("Motions and sounds", 6)
@@ -18,6 +25,14 @@ MIN_PLAY_TIME_S = 3 * EFFECT_WITHIN_S
 
 POLL_EVERY_S = 0.010
 """Time between two BEATs that watch for a motion or sound [s]; a sound may be short."""
+
+AGAIN_AFTER_S = 0.6
+"""Time from a PLAY to the same one again [s]."""
+
+EARLY_S = 0.45
+"""How much earlier than measured it may end [s]: a slow line makes all seem to last longer."""
+
+_EMOTION = (0.8, 0.6)
 
 PLAYED_ITEMS = (m.ITEM_MOTION, m.ITEM_SOUND)
 """The items that PLAY can name."""
@@ -131,6 +146,72 @@ def second_play_replaces_the_first(probe: Probe) -> None:
             tested = True
     if not tested:
         raise NotApplicableError("it has no two motions or sounds that last long enough")
+
+
+@PLAYING.must
+def play_again_begins_again(probe: Probe) -> None:
+    """A PLAY of the motion or the sound that is played begins it again, from the beginning."""
+    durations = _known_durations(probe)
+    items = [one for one, time in durations.items() if MIN_PLAY_TIME_S <= time <= MAX_PLAY_TIME_S]
+    if not items:
+        raise NotApplicableError("it has no motion and no sound that lasts long enough")
+    entries = long_entries(probe, *items)
+    ends: dict[int, float] = {}
+    for again in (False, True):
+        for item, index in entries.items():
+            play(probe, item, index)
+            ends[item] = probe.now + durations[item]
+        if not again:
+            probe.keep_alive(AGAIN_AFTER_S)
+    while ends:
+        state = probe.beat("PLAY again")
+        for item, end in list(ends.items()):
+            if probe.now > end - EARLY_S:  # without the second PLAY it would be over
+                del ends[item]
+            elif played_item(state, item) != entries[item]:
+                word = ITEM_WORDS[item]
+                raise CheckFailed(
+                    f"{word} {entries[item]} for {durations[item]:.1f} s after its second PLAY",
+                    f"its end {end - probe.now:.1f} s earlier",
+                )
+        probe.receive(POLL_EVERY_S)
+
+
+@PLAYING.must
+def refusals_end_nothing(probe: Probe) -> None:
+    """Refused commands end no motion, sound, mood or emotion, and let go of no joint."""
+    try:
+        entries = long_entries(probe, m.ITEM_SOUND, m.ITEM_MOTION)
+    except NotApplicableError:
+        entries = {}
+        probe.open_neutral_session()
+    welcome = probe.welcome
+    assert welcome is not None
+    named = probe.version >= 2 and welcome.moods > 1
+    held = 0
+    if probe.version >= 3 and welcome.abilities & m.ABILITY_MOVE and welcome.joints > 1:
+        held = 1 << welcome.joints - 1
+        angles = probe.beat("HELLO").joints
+        probe.send(m.Move(probe.next_number(), 1.0, 0, held, angles))
+        held = probe.keep_alive(EFFECT_WITHIN_S)[-1].held
+    probe.express(*_EMOTION, welcome.moods - 1 if named else m.NOTHING)
+    expect_emotion(probe, _EMOTION, "EXPRESS")  # before PLAY: a new mood may have its own sound
+    for item, index in entries.items():
+        play(probe, item, index)
+    before = probe.beat("PLAY")
+    for command, result in refused_commands(probe):
+        probe.command(command, result)
+    state = probe.keep_alive(EFFECT_WITHIN_S)[-1]
+    for item, index in entries.items():
+        expect_still_played(state, item, index, "refused commands")
+    if named and before.mood == welcome.moods - 1 != state.mood:
+        raise CheckFailed(f"mood {before.mood} after refused commands", f"mood={state.mood}")
+    if probe.version >= 3 and state.held != held:
+        raise CheckFailed(f"held={held} after refused commands", f"held={state.held}")
+    state = probe.keep_alive(EFFECT_WITHIN_S)[-1]
+    if emotion_distance(state, *_EMOTION) > EMOTION_CHANGE:
+        shown = f"({state.valence}, {state.arousal})"
+        raise CheckFailed(f"{_EMOTION} after refused commands", shown)
 
 
 @PLAYING.should

@@ -3,7 +3,13 @@
 from cubeling.robot.conformance.check import CheckGroup
 from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
 from cubeling.robot.conformance.exchange import REPLY_WITHIN_S
-from cubeling.robot.conformance.probe import EMOTION_WITHIN_S, TIMING_SLACK_S, Probe
+from cubeling.robot.conformance.probe import (
+    EFFECT_WITHIN_S,
+    EMOTION_CHANGE,
+    EMOTION_WITHIN_S,
+    TIMING_SLACK_S,
+    Probe,
+)
 from cubeling.robot.conformance.received import ReceivedFrame, describe_frames
 from cubeling.robot.protocol import messages as m, timing
 
@@ -49,23 +55,32 @@ def session_zero_refused(probe: Probe) -> None:
     """Session 0 is never opened, and messages in it have no effect when no session is open."""
     probe.open_session()
     hello = m.Hello(2, probe.host)
-    replies = probe.replies_to(probe.frame(hello, 0), after="HELLO in session 0")
-    _expect_only_gone(replies, "no WELCOME in session 0")
+    probe.expect_no_reply(probe.frame(hello, 0), "HELLO in session 0")
     probe.send(m.Bye())
     probe.receive(REPLY_WITHIN_S)
-    for message in (hello, m.Beat(0x0707), m.Express(9, 0.5, 0.5)):
+    for message in (m.Beat(0x0707), m.Express(9, 0.5, 0.5)):
         probe.send(message, session=0)
         received = probe.receive(REPLY_WITHIN_S)
         _expect_only_gone(received, f"nothing but GONE to {message} in session 0")
+    probe.send(hello, session=0)
+    received = probe.receive(REPLY_WITHIN_S)
+    if received:
+        raise CheckFailed("no answer to HELLO in session 0", describe_frames(received))
 
 
 @SESSIONS.must
 def session_zero_changes_nothing(probe: Probe) -> None:
-    """HELLO in session 0, also of another host, does not change the emotion or the numbers."""
+    """HELLO in session 0, also of another host, changes no emotion, number or version."""
     probe.open_neutral_session()
-    before = probe.beat("HELLO").valence
+    state = probe.beat("HELLO")
+    before, flags = state.valence, state.flags
     number = probe.express(0.8, 0.6)
-    probe.send(m.Hello(timing.VERSION, probe.host ^ 0x40404040), session=0)
+    invalid = probe.log.violation_counts.get("frame", 0)
+    probe.send(m.Hello(1, probe.host ^ 0x40404040), session=0)
+    state = probe.beat("HELLO (version 1) in session 0")
+    if state.flags != flags or probe.log.violation_counts.get("frame", 0) > invalid:
+        expected = f"STATE(flags={flags}) of version {probe.version} after HELLO in session 0"
+        raise CheckFailed(expected, f"flags={state.flags}, or one of version 1")
     after = "EXPRESS and HELLO of another host in session 0"
     states = probe.expect_state(
         lambda state: state.valence > before + MIN_VALENCE_RISE,
@@ -83,9 +98,13 @@ def highest_numbers_accepted(probe: Probe) -> None:
     """Sessions up to 65535 and hosts up to 4294967295 are accepted."""
     probe.open_session()
     session, host = probe.session, probe.host
-    for probe.session, probe.host in ((0xFFFF, 0xFFFFFFFF), (0x8000, 0x80000000), (1, 1)):
-        probe.hello()
-        probe.beat(f"HELLO in session {probe.session}, host {probe.host}")
+    for probe.session, probe.host in (
+        (0xFFFF, 0xFFFFFFFF), (0x8000, 0x80000000), (2, 0x01000001), (3, 0x00010001), (1, 1)
+    ):  # fmt: skip
+        words = f"HELLO in session {probe.session}, host {probe.host}"
+        _expect_taken(probe, probe.hello(), 0, 0, words)
+        probe.express(0.0, 0.0)
+        probe.next_number()
     probe.session, probe.host = session, host
 
 
@@ -142,6 +161,33 @@ def same_host_continues(probe: Probe) -> None:
     number = probe.express(0.3, 0.3)
     welcome = probe.reopen_session()
     _expect_taken(probe, welcome, number, number, "another session of the same host")
+
+
+@SESSIONS.must
+def hello_of_its_host_keeps_everything(probe: Probe) -> None:
+    """HELLO of the same host, also a repeated one, keeps emotion, mood, held joints and stop."""
+    for repeated in (True, False):
+        welcome = probe.open_session()
+        named = probe.version >= 2 and welcome.moods > 1
+        if probe.version >= 3 and welcome.abilities & m.ABILITY_MOVE and welcome.joints:
+            angles = probe.beat("HELLO").joints
+            probe.send(m.Move(probe.next_number(), 1.0, 0, 1, angles))
+        probe.express(0.8, 0.6, welcome.moods - 1 if named else m.NOTHING)
+        before = probe.keep_alive(EFFECT_WITHIN_S)[-1]
+        after = "a repeated HELLO" if repeated else "the next HELLO of its host"
+        _hello_again(probe, repeated)
+        state = probe.keep_alive(EFFECT_WITHIN_S)[-1]
+        for field in ("held", "mood") if named else ("held",):
+            if getattr(state, field) != getattr(before, field):
+                expected = f"STATE({field}={getattr(before, field)}) after {after}"
+                raise CheckFailed(expected, f"{field}={getattr(state, field)}")
+        if state.valence < before.valence - EMOTION_CHANGE:
+            raise CheckFailed(f"a rising valence after {after}", f"{state.valence}")
+        probe.command(m.Stop(probe.next_number()))
+        _hello_again(probe, repeated)
+        flags = probe.keep_alive(EFFECT_WITHIN_S)[-1].flags
+        if not flags & m.FLAG_STILL:
+            raise CheckFailed(f"flag 1 after STOP and {after}", f"flags={flags}")
 
 
 @SESSIONS.must_of(6)
@@ -208,6 +254,14 @@ def version_of_the_last_hello(probe: Probe) -> None:
             _expect_version_1([state])
     if (state.flags ^ before.flags) & m.FLAG_RECKONED:
         raise CheckFailed(f"flags={before.flags} in version {highest} again", f"{state.flags}")
+
+
+def _hello_again(probe: Probe, repeated: bool) -> None:
+    """Send HELLO of the same host, in the open session or in another."""
+    if repeated:
+        probe.hello()
+    else:
+        probe.reopen_session()
 
 
 def _expect_version_1(states: list[m.State]) -> None:

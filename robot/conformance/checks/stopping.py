@@ -82,19 +82,23 @@ def express_after_stop(probe: Probe) -> None:
 
 @STOPPING.must
 def play_after_stop(probe: Probe) -> None:
-    """A PLAY after STOP ends the stop."""
+    """A PLAY after STOP ends the stop, of a motion as of a sound."""
     welcome = probe.open_session()
-    if not welcome.motions:
-        raise NotApplicableError("it has no motions")
-    probe.command(m.Stop(probe.next_number()))
-    probe.keep_alive(0.1)
-    probe.command(m.Play(probe.next_number(), m.ITEM_MOTION, welcome.motions - 1))
-    probe.expect_state(
-        lambda state: not state.flags & m.FLAG_STILL,
-        EFFECT_WITHIN_S,
-        "flag 1 clear after STOP and PLAY",
-        "flags",
-    )
+    counts = {m.ITEM_MOTION: welcome.motions, m.ITEM_SOUND: welcome.sounds}
+    if not any(counts.values()):
+        raise NotApplicableError("it has no motions and no sounds")
+    for item, count in counts.items():
+        if not count:
+            continue
+        probe.command(m.Stop(probe.next_number()))
+        probe.keep_alive(0.1)
+        probe.command(m.Play(probe.next_number(), item, count - 1))
+        probe.expect_state(
+            lambda state: not state.flags & m.FLAG_STILL,
+            EFFECT_WITHIN_S,
+            f"flag 1 clear after STOP and PLAY of item {item}",
+            "flags",
+        )
 
 
 def largest_movement(states: Sequence[m.State]) -> float:

@@ -246,6 +246,7 @@ NEW_IN_VERSION_2 = {
     "mood 255 leaves the choice",
     "stop ends a named mood",
     "refused express ends nothing",
+    "short express leaves the choice",
 }
 NEW_IN_VERSION_3 = {
     "result in state",

@@ -60,6 +60,9 @@ class SlowLine:
             if data or self.time >= until:
                 return data
 
+    def hold_up(self, seconds: float) -> bool:
+        return False
+
 
 @pytest.mark.slow(reason="all checks are run over a line of 115 200 baud")
 @pytest.mark.parametrize(
