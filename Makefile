@@ -29,13 +29,14 @@ test-rest: .venv/ready-dev  ## what `make test-all` does beyond `make test`
 	$(PYTEST) --hypothesis-profile full -m "full or hypothesis"
 
 # The campaigns run for longer than a test suite may take, over random faults in virtual time.
-campaign: .venv/ready-dev  ## a million exchanges with robots, what the checksum misses, a day without growth, an afternoon of key presses, 10⁵ blocks of BML, ten minutes of pictures
+campaign: .venv/ready-dev  ## a million exchanges with robots, what the checksum misses, a day without growth, an afternoon of key presses, 10⁵ blocks of BML, ten minutes of drawing, 10⁵ pictures for the tracker
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e6
 	$(BIN)/python -m tests.campaigns.crc
 	$(BIN)/python -m tests.campaigns.soak --hours 24
 	$(BIN)/python -m tests.campaigns.afternoon
 	$(BIN)/python -m tests.campaigns.behaviour
 	$(BIN)/python -m tests.campaigns.drawing
+	$(BIN)/python -m tests.campaigns.tracker
 
 campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e5
@@ -44,6 +45,7 @@ campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.afternoon --scenes "every key" "record and replay"
 	$(BIN)/python -m tests.campaigns.behaviour --blocks 10000
 	$(BIN)/python -m tests.campaigns.drawing --minutes 1
+	$(BIN)/python -m tests.campaigns.tracker --frames 2400
 
 # pre-commit runs the four parts, each where it has something to check.
 check: check-format check-lint check-floors check-types  ## check formatting, lint, docstrings, the floors of the rooms, and types

@@ -1,5 +1,6 @@
 """The pipeline for one frame: from a picture of the cube to a picture of the character."""
 
+import logging
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -25,7 +26,11 @@ from cubeling.app.pipeline.scenario import (
     Scenario,
     ScenarioSettings,
 )
-from cubeling.app.pipeline.scenario_errors import check_outcome, scenario_errors
+from cubeling.app.pipeline.scenario_errors import (
+    check_outcome,
+    described_error,
+    scenario_errors,
+)
 from cubeling.app.pipeline.situation import Situation, table_from_cube
 from cubeling.app.pipeline.spoken_line import Speaking
 from cubeling.app.pipeline.step import ReplayInputs, Step
@@ -50,11 +55,15 @@ from cubeling.tracking import (
     Frame,
     Intrinsics,
     LensEstimate,
+    TrackingError,
 )
 from cubeling.tracking.appearance import APPEARANCE_PARTS, Appearance, AppearanceMeter
 
 if TYPE_CHECKING:
     import moderngl
+
+LOG = logging.getLogger(__name__)
+"""Shows tracebacks with `cubeling --debug`."""
 
 LOOK_INSIDE = "Look into the cube: turn it, or tip it"
 """What the player is told when the cube has opened."""
@@ -165,6 +174,7 @@ class Playground:
         self.scenario, self.cube, self.character = scenario, cube, character
         self._tracker = CubeTracker(cube, self.intrinsics)
         self._gestures = CubeGestures(cube)
+        self._tracker_error = ""
         self._begin_to_see(cube)
         self._animator, self._parts = animator, BodyParts.of(character, animator.scale)
         self._posed: PosedCharacter | None = None
@@ -276,6 +286,7 @@ class Playground:
         replay = replay or ReplayInputs()
         if drawn:
             self.expect(frame)
+        self._tracker_error = ""
         state = replay.state or self.track(frame)
         self._lap("tracking")
         controls = replay.controls or self.gesture(state)
@@ -312,6 +323,7 @@ class Playground:
             line=self._speaking.line if command.speech is not None else None,
             interior=interior,
             appearance=appearance,
+            tracker_error=self._tracker_error,
         )
         if drawn:
             step = replace(step, picture=self.draw(step))
@@ -328,8 +340,18 @@ class Playground:
         self._renderer.expect(frame)
 
     def track(self, frame: Frame) -> CubeState:
-        """Find the cube in a frame; frames come in the order of time."""
-        return self._tracker.update(frame)
+        """Find the cube in a frame; frames come in the order of time.
+
+        An error in the tracker's code costs this frame, and never the session.
+        """
+        try:
+            return self._tracker.update(frame)
+        except TrackingError:  # such as a frame of another size: the next one has it, too
+            raise
+        except Exception as error:
+            self._tracker_error = described_error(error)
+            LOG.debug("the tracker failed in frame %d", frame.index, exc_info=True)
+            return self._tracker.give_up(frame.timestamp)
 
     def gesture(self, state: CubeState) -> CubeControls:
         """Compute what the hand does with the cube."""

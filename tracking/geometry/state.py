@@ -40,7 +40,8 @@ class CubeState:
 
     "ambiguous": a single face that may tilt either way; "blurred": its edges should be visible and
     are not; "jump": no hand is so fast, and a second frame must confirm it; "unproved": too small
-    or too hidden to tell; "unsure": the pose may be off by a centimetre or a few degrees.
+    or too hidden to tell; "unsure": the pose may be off by a centimetre or a few degrees; "failed":
+    the search ended in an error of the program, see `CubeTracker.give_up`.
     """
 
     @property

@@ -173,7 +173,9 @@ class MarkerPoses:
         if len(candidate.faces) == 1:
             smeared = MAX_LONE_BLUR_CELLS * self._footprint.pixels_per_cell(pose)
             blurred = candidate.blur > max(MAX_LONE_BLUR_PX, smeared)
-            unlike = match.alignment.correlations[candidate.faces[0]] < MIN_LONE_CORRELATION
+            # Another face may be found than the one that the pose was measured on.
+            alike = match.alignment.correlations.get(candidate.faces[0], 0.0)
+            unlike = alike < MIN_LONE_CORRELATION
             if blurred or unlike:
                 return [replace(candidate, certain=False, blurred=blurred)]
         return [self._on_edges(image, candidate, tone)]

@@ -151,6 +151,15 @@ class CubeTracker:
             refused=refused,
         )
 
+    def give_up(self, timestamp: float) -> CubeState:
+        """Return the state of a frame in which `update` raised an error, refused as "failed".
+
+        The track is forgotten, as it may be what led to the error: the next frame is searched as
+        the first one is. What is known of camera and lens is kept.
+        """
+        self._past, self._rest = Past(), Rest()
+        return self._predict(timestamp, "failed")
+
     def predict(self, timestamp: float) -> CubeState:
         """Return where the cube will be shortly after the last frame, by extrapolation."""
         return self._predict(timestamp, "")

@@ -12,6 +12,7 @@ from cubeling.tracking import CubeState
 REFUSALS = {
     "ambiguous": "one face may lean either way",
     "blurred": "its edges are blurred",
+    "failed": "the tracker made an error",
     "jump": "no hand is so fast",
     "unproved": "it is too small or hidden",
     "unsure": "the pose may be far off",

@@ -172,3 +172,22 @@ def test_markers_of_other_cubes_are_left_out() -> None:
     found = markers_of(CUBE, [Marker(number, square) for number in range(50)])
     assert {each.face.marker_id for each in found} == own
     assert len(found) == len(own)
+
+
+class OtherFaceFound(CellSearch):
+    """Finds another face than the one that it has measured, as in a blurred picture."""
+
+    def search(self, *arguments) -> CellMatch | None:
+        match = super().search(*arguments)
+        assert match is not None
+        assert "back" not in match.alignment.correlations
+        return replace(match, found=("back",))
+
+
+def test_a_lone_face_that_the_pose_was_not_measured_on_proves_nothing() -> None:
+    pose = held(0.25, 0.1, 0.2, at=(0.0, 0.0, 0.6))
+    cells = OtherFaceFound(CUBE, PROJECTION)
+    poses = MarkerPoses(CUBE, PROJECTION, EdgeSearch(CUBE, PROJECTION), cells)
+    found = poses.find(drawn(pose, "front"), [at(pose, "front")], None, LIGHT)
+    assert found
+    assert not any(each.certain for each in found)
