@@ -68,6 +68,9 @@ LOG = logging.getLogger(__name__)
 LOOK_INSIDE = "Look into the cube: turn it, or tip it"
 """What the player is told when the cube has opened."""
 
+FOLD_IT, FOLD_IT_SHOWN_S = "This is the sheet: fold it into a cube.", 1.0
+"""What the player is told who shows the sheet, and for how long after it was seen [s]."""
+
 STATE_NAMES = (
     "scenario",
     "_tracker",
@@ -78,6 +81,7 @@ STATE_NAMES = (
     "_attention",
     "_other_cube",
     "other_cube",
+    "_sheet_seen_at",
     "_speaking",
     "_complexion",
     "_window",
@@ -184,6 +188,7 @@ class Playground:
         self._other_cube = OtherCube(cube, self.known_cubes)
         self.other_cube: CubeModel | None = None
         """Another cube than the one in play, if one is in view."""
+        self._sheet_seen_at = -math.inf
         self._speaking = Speaking()
         self._complexion = Complexion()
 
@@ -306,7 +311,10 @@ class Playground:
         self._posed, self._body = posed, PosedBody(self.character, self._parts, posed)
         self._complexion.update(command.timestamp, command.emotion)
         interior = self._window.update(state, controls, command, inputs.inside)
-        outcome = replace(decision, command=command, hint=self._hint(decision))
+        if state.refused == "flat":
+            self._sheet_seen_at = state.timestamp
+        hint = self._hint(decision, state.timestamp)
+        outcome = replace(decision, command=command, hint=hint)
         self._lap("animation")
         matrix = self.intrinsics.matrix
         step = Step(
@@ -392,8 +400,10 @@ class Playground:
             speech=self._speaking.update(inputs.line, command, silence=inputs.clear),
         )
 
-    def _hint(self, decision: Outcome) -> str:
+    def _hint(self, decision: Outcome, now: float) -> str:
         """Return what the player can do now; what the cube in view is comes first."""
+        if 0.0 <= now - self._sheet_seen_at < FOLD_IT_SHOWN_S:
+            return FOLD_IT
         if self.other_cube is not None:
             return advice(self.other_cube, self.scenario.name, self.cube.name, self.fixed)
         return LOOK_INSIDE if self._window.invites else decision.hint

@@ -17,9 +17,11 @@ from cubeling.tracking.refinement.candidate import Candidate
 from cubeling.tracking.refinement.cell_search import CellSearch
 from cubeling.tracking.refinement.edge_search import EdgeSearch
 from cubeling.tracking.synthetic import open_synthetic
-from cubeling.tracking.tracker.global_search import FrameMarkers, GlobalDetector, Pass
+from cubeling.tracking.tracker.frame_markers import FrameMarkers, Pass
+from cubeling.tracking.tracker.global_search import GlobalDetector
 from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.tracking.drawn import WIDE, held, off, photograph, scene
+from tests.tracking.showing import show_until_decided
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -60,8 +62,11 @@ def detect(
     blur = BlurSearch(cube, projection, edges)
     markers = FrameMarkers(frame, {cube.dictionary: detector})
     tone = CameraModelEstimator().model.tone
-    search = GlobalDetector(cube, projection, edges, CellSearch(cube, projection), blur)
-    return search.detect(frame.image, markers, None, tone, thorough)
+    finder = GlobalDetector(cube, projection, edges, CellSearch(cube, projection), blur)
+    search = finder.search(markers, None, tone, thorough)
+    while not search.decided:
+        search = finder.search(markers, None, tone, thorough, search)
+    return list(search.found)
 
 
 def corners_of(cube: CubeModel, pose: Array, camera: Intrinsics) -> dict[str, Array]:
@@ -171,7 +176,7 @@ def test_a_cube_with_a_covered_corner_on_every_marker_is_found(
     for by in PASSES:
         # Or the patches would prove nothing.
         assert markers_of(cube, markers.read(cube.dictionary, by)) == []
-    state = CubeTracker(cube, camera).update(covered)
+    state, _ = show_until_decided(CubeTracker(cube, camera), picture)
     assert state.visible
     millimetres, degrees = off(state.camera_from_cube, truth)
     assert millimetres < 0.5
