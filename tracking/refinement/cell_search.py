@@ -104,13 +104,13 @@ class CellRun:
     """As in `CellSearch.search`."""
 
     step: Step
-    """What comes next."""
+    """What `CellSearch.advance` does next; "" where nothing is left."""
 
     aligned: StillAlignment | None = None
     """The pose that the faces that are compared agree on."""
 
     match: CellMatch | None = None
-    """The result."""
+    """What `CellSearch.search` returns, as far as it is known."""
 
     @property
     def done(self) -> bool:

@@ -40,6 +40,9 @@ MAX_NEIGHBOURS, NEIGHBOURHOOD_SIDES = 3, 2.0
 """Around so many markers, the last ones, those of the same cube are searched, within so many of
 their sides."""
 
+MAX_SMALL_SHARE = 0.5
+"""Where that is more than this share of the picture, the markers are no small ones."""
+
 SAME_MARKER_SHARE = 0.1
 """Markers that two passes have read are the same where no corner differs by more than this share of
 the side: their poses need not be tried again."""
@@ -63,7 +66,7 @@ class Search:
     """A picture that is searched, in one call or in several."""
 
     frame: Frame
-    """The picture."""
+    """The frame that is searched, which need not be the newest."""
 
     expected: Array | None
     """The predicted pose, (4, 4); None without one."""
@@ -262,7 +265,10 @@ class GlobalDetector:
         if small or not search.seen:
             return search
         left, top, right, bottom = region = _around(search.seen, markers.grey)
-        closer = Trial(4.0 * (right - left) * (bottom - top), partial(self._read_small, region))
+        area = (right - left) * (bottom - top)
+        if area > MAX_SMALL_SHARE * markers.grey.size:
+            return search
+        closer = Trial(4.0 * area, partial(self._read_small, region))
         # Before the blur, which is the last.
         return replace(search, trials=(*search.trials[:-1], closer, *search.trials[-1:]))
 

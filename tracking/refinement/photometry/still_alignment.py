@@ -112,7 +112,7 @@ class StillAlignment:
     """Standard deviation of the samples that fit, as a share of the contrast."""
 
     markers: DrawnMarkers
-    """The rendered markers."""
+    """What was rendered, so that the next alignment need not render it again."""
 
 
 class StillAligner:
