@@ -208,3 +208,16 @@ def test_a_lone_face_that_the_pose_was_not_measured_on_proves_nothing() -> None:
     found, _ = find(drawn(pose, "front"), [at(pose, "front")], cells)
     assert found
     assert not any(each.certain for each in found)
+
+
+def test_a_face_that_the_pose_turns_away_contradicts_where_it_is_read_near() -> None:
+    """On a sheet, the back lies beside the faces that look like two of a cube."""
+    pose = held()
+    picture = drawn(pose, "front", "top")
+    two = [at(pose, "front"), at(pose, "top")]
+    assert any(each.certain for each in find(picture, two)[0])
+    back = CUBE.face("back")
+    for beside, contradicts in ((1.4, True), (8.0, False)):
+        corners = two[0].corners + (beside * two[0].size, 0.0)
+        found, _ = find(picture, [*two, Observation(back, corners)])
+        assert any(each.certain for each in found) != contradicts
