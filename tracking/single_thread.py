@@ -1,17 +1,15 @@
 """Small equations are solved on one thread, whatever a program that uses the tracker has chosen.
 
 The package asks OpenBLAS for one thread as it is imported, which comes too late where numpy was
-imported before. On our small matrices its threads only wait for each other, and cost four times as
-much as the work.
+imported before. On our small matrices its threads only wait for each other.
 """
 
 from collections.abc import Callable
 from functools import cache, wraps
-from typing import Concatenate, ParamSpec, TypeVar
+from typing import ParamSpec, TypeVar
 
 from threadpoolctl import ThreadpoolController
 
-Owner = TypeVar("Owner")
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
 
@@ -24,17 +22,15 @@ def _threaded() -> ThreadpoolController | None:
     return libraries if several else None
 
 
-def on_one_thread(
-    work: Callable[Concatenate[Owner, Given], Result],
-) -> Callable[Concatenate[Owner, Given], Result]:
-    """Let a method do its linear algebra on one thread, and give the others back after it."""
+def on_one_thread(work: Callable[Given, Result]) -> Callable[Given, Result]:
+    """Let a function do its linear algebra on one thread, and give the others back after it."""
 
     @wraps(work)
-    def limited(self: Owner, *given: Given.args, **named: Given.kwargs) -> Result:
+    def limited(*given: Given.args, **named: Given.kwargs) -> Result:
         threaded = _threaded()
         if threaded is None:
-            return work(self, *given, **named)
+            return work(*given, **named)
         with threaded.limit(limits=1):
-            return work(self, *given, **named)
+            return work(*given, **named)
 
     return limited

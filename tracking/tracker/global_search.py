@@ -160,12 +160,11 @@ class GlobalDetector:
         plans: list[list[Trial]] = []
         for by in passes if last is None else passes[:1]:
             read = markers_of(self._cube, markers.read(self._cube.dictionary, by))
-            before = new.seen
             new, plan = self._try_markers(new, markers, read)
             if new.flat or new.found:
                 return new
-            # The corners of the later pass are better ones.
-            plans = [plan] if _all_known(before, read) else [plan, *plans]
+            # The corners of the later pass are better ones; the others are a second chance.
+            plans = [plan, *plans]
         if last is not None:
             return self._go_on(last, FrameMarkers(last.frame, markers.detectors))
         rest = self._read_hidden if thorough else self._read_others

@@ -1,4 +1,4 @@
-"""The scores as tables for a terminal of 120 columns."""
+"""The scores as tables for a terminal of 136 columns."""
 
 from collections.abc import Iterable
 

@@ -113,7 +113,8 @@ def _known(
     same = last.faces == faces[:, None]
     change = np.abs(last.texels_to_pixels - texels_to_pixels[:, None]).max(axis=(2, 3))
     same &= change < MAX_SLANT_CHANGE * np.abs(texels_to_pixels).max(axis=(1, 2))[:, None]
-    return np.where(same.any(axis=1), same.argmax(axis=1), -1).tolist()
+    places = np.where(same.any(axis=1), same.argmax(axis=1), -1)
+    return [int(place) for place in places]
 
 
 def _spectrum(textures: Floats) -> Array:
