@@ -224,7 +224,7 @@ def show(seed: int, number: int) -> tuple[Counter[str], str]:
 def run(clips: range, seed: int, processes: int = 1) -> tuple[Counter[str], dict[int, str]]:
     """Show clips; return the number of frames by their verdict, and the tracebacks by clip."""
     with ExitStack() as stack:
-        shown = map(show, [seed] * len(clips), clips)
+        shown: Iterator[tuple[Counter[str], str]] = map(show, [seed] * len(clips), clips)
         if processes > 1:
             pool = stack.enter_context(
                 ProcessPoolExecutor(processes, get_context("spawn"), initializer=_use_one_thread)

@@ -43,10 +43,6 @@ their sides."""
 MAX_SMALL_SHARE = 0.5
 """Where that is more than this share of the picture, the markers are no small ones."""
 
-SAME_MARKER_SHARE = 0.1
-"""Markers that two passes have read are the same where no corner differs by more than this share of
-the side: their poses need not be tried again."""
-
 MAX_CHANGE, BLOCK_PX = 2.0, 16
 """A picture shows the same as before where the mean of no block of so many pixels differs by more
 than this [grey levels]: noise does not change it, and whatever moves does."""
@@ -276,10 +272,13 @@ class GlobalDetector:
         return self._try_more(search, markers, read)
 
     def _try_more(self, search: Search, markers: FrameMarkers, read: list[Observation]) -> Search:
-        """Try markers of a thorough pass, unless their poses were tried before."""
-        known = _all_known(read, search.seen)
+        """Try markers of a thorough pass, unless their faces were tried and nothing was proved."""
+        tried = {each.face.name for each in search.seen}
+        hopeless = search.found and not any(each.certain for each in search.found)
         search, plan = self._try_markers(search, markers, read)
-        return search if known else search.try_first(plan)
+        if hopeless and tried.issuperset(each.face.name for each in read):
+            return search
+        return search.try_first(plan)
 
     def _try_blur(self, search: Search, markers: FrameMarkers) -> Search:
         """Plan to align the blurred image at poses that rest on corners alone."""
@@ -338,13 +337,3 @@ def _around(seen: Sequence[Observation], grey: Image) -> Region:
     left, top = np.maximum(corners.min(axis=0) - reach, 0).astype(int).tolist()
     right, bottom = np.minimum(corners.max(axis=0) + reach, grey.shape[::-1]).astype(int).tolist()
     return left, top, right, bottom
-
-
-def _all_known(read: Sequence[Observation], seen: Sequence[Observation]) -> bool:
-    """Whether all markers of one pass were read in earlier ones, too."""
-    return all(any(_same(new, old) for old in seen) for new in read)
-
-
-def _same(new: Observation, old: Observation) -> bool:
-    apart = np.abs(new.corners - old.corners).max()
-    return new.face is old.face and bool(apart < SAME_MARKER_SHARE * new.size)

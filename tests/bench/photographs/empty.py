@@ -73,4 +73,5 @@ def _score(name: str, pictures: Iterator[tuple[Picture, Intrinsics]]) -> EmptySc
         longest = max(longest, max(calls) / theirs)
     medians = np.median(times, axis=0) if times else np.full(3, np.nan)
     ratios = [ratio for _, _, ratio in times]
-    return EmptyScore(name, len(times), seen, *medians.tolist(), high(ratios), longest)
+    ours, theirs, ratio = medians.tolist()
+    return EmptyScore(name, len(times), seen, ours, theirs, ratio, high(ratios), longest)

@@ -223,6 +223,8 @@ def test_a_search_goes_on_in_the_next_call_and_ends_as_in_one(
     monkeypatch.setattr(global_search, "BUDGET_PICTURES", 1e3)
     at_once = CubeTracker(LONE, CAMERA).update(Frame(picture, 0.0, 0))
     assert at_once.visible
+    assert late.camera_from_cube is not None
+    assert at_once.camera_from_cube is not None
     assert np.array_equal(late.camera_from_cube, at_once.camera_from_cube)
 
 
