@@ -125,10 +125,11 @@ def _pose(rng: np.random.Generator, cube: CubeModel, lens: Intrinsics) -> Array:
 def _sheet(rng: np.random.Generator, cube: CubeModel, size: tuple[int, int]) -> Picture:
     """Lay the faces of a cube beside each other on flat paper, and look at it from some side."""
     cells = [np.pad(marker_cells(cube.dictionary, each.marker_id), 1) for each in cube.faces]
-    turned = [np.rot90(each, rng.integers(4)) for each in cells]
+    turned = [np.rot90(each, int(rng.integers(4))) for each in cells]
     blank = np.zeros_like(turned[0])
     places = rng.permutation([*turned, *[blank] * (12 - len(turned))])
-    paper = np.where(np.vstack([np.hstack(places[row : row + 4]) for row in (0, 4, 8)]), 30, 220)
+    rows = [np.concatenate(list(places[row : row + 4]), axis=1) for row in (0, 4, 8)]
+    paper = np.where(np.concatenate(rows), 30, 220)
     texture = np.kron(paper, np.ones((8, 8))).astype(np.uint8)
     height, width = texture.shape
     corners = np.array([(0, 0), (width, 0), (width, height), (0, height)], np.float32)
