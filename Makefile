@@ -29,7 +29,7 @@ test-rest: .venv/ready-dev  ## what `make test-all` does beyond `make test`
 	$(PYTEST) --hypothesis-profile full -m "full or hypothesis"
 
 # The campaigns run for longer than a test suite may take, over random faults in virtual time.
-campaign: .venv/ready-dev  ## the long runs: exchanges with robots, planted faults, damaged files, kills, cameras, blocks of BML, hours of play and drawing
+campaign: .venv/ready-dev  ## the long runs: exchanges with robots, planted faults, damaged files, kills, cameras, blocks of BML, pictures for the tracker, hours of play and drawing
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e6
 	$(BIN)/python -m tests.campaigns.crc
 	$(BIN)/python -m tests.campaigns.mutants
@@ -44,6 +44,7 @@ campaign: .venv/ready-dev  ## the long runs: exchanges with robots, planted faul
 	$(BIN)/python -m tests.campaigns.camera_faults
 	$(BIN)/python -m tests.campaigns.long_play --hours 4
 	$(BIN)/python -m tests.campaigns.long_play --minutes 30
+	$(BIN)/python -m tests.campaigns.tracker
 
 campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e5
@@ -59,6 +60,7 @@ campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.kills --kills 10
 	$(BIN)/python -m tests.campaigns.camera_faults --faults stall "huge header"
 	$(BIN)/python -m tests.campaigns.long_play --hours 0.4
+	$(BIN)/python -m tests.campaigns.tracker --frames 2400
 
 # pre-commit runs the parts, each where it has something to check.
 check: check-format check-lint check-licences check-floors check-types  ## check formatting, lint, docstrings, licences, the floors of the rooms, and types

@@ -154,6 +154,8 @@ def main() -> None:
     """Run a command; bad input ends in one line and exit code 2."""
     arguments = [each for each in sys.argv[1:] if each != "--debug"]  # it may stand anywhere
     debug = len(arguments) < len(sys.argv) - 1
+    if debug:
+        show_tracebacks()
     termination.watch()
     print_what_can_be_encoded()
     if not arguments or {"-h", "--help"} & set(arguments):
@@ -180,6 +182,14 @@ def main() -> None:
         print_message(system_error(error))
         code = BAD_INPUT_EXIT_CODE
     sys.exit(termination.exit_code(code if isinstance(code, int) else 0))
+
+
+def show_tracebacks() -> None:
+    """Print the tracebacks of errors that do not end the command, too."""
+    import logging  # 5 ms, only for this
+
+    logging.basicConfig(format="%(message)s")
+    logging.getLogger("cubeling").setLevel(logging.DEBUG)
 
 
 def print_what_can_be_encoded() -> None:

@@ -1,5 +1,6 @@
 """The pipeline for one frame: from a picture of the cube to a picture of the character."""
 
+import logging
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -25,7 +26,11 @@ from cubeling.app.pipeline.scenario import (
     Scenario,
     ScenarioSettings,
 )
-from cubeling.app.pipeline.scenario_errors import check_outcome, scenario_errors
+from cubeling.app.pipeline.scenario_errors import (
+    check_outcome,
+    described_error,
+    scenario_errors,
+)
 from cubeling.app.pipeline.situation import Situation, table_from_cube
 from cubeling.app.pipeline.spoken_line import Speaking
 from cubeling.app.pipeline.step import ReplayInputs, Step
@@ -50,14 +55,21 @@ from cubeling.tracking import (
     Frame,
     Intrinsics,
     LensEstimate,
+    TrackingError,
 )
 from cubeling.tracking.appearance import APPEARANCE_PARTS, Appearance, AppearanceMeter
 
 if TYPE_CHECKING:
     import moderngl
 
+LOG = logging.getLogger(__name__)
+"""Shows tracebacks with `cubeling --debug`."""
+
 LOOK_INSIDE = "Look into the cube: turn it, or tip it"
 """What the player is told when the cube has opened."""
+
+FOLD_IT, FOLD_IT_SHOWN_S = "This is the sheet: fold it into a cube.", 1.0
+"""What the player is told who shows the sheet, and for how long after it was seen [s]."""
 
 STATE_NAMES = (
     "scenario",
@@ -69,6 +81,7 @@ STATE_NAMES = (
     "_attention",
     "_other_cube",
     "other_cube",
+    "_sheet_seen_at",
     "_speaking",
     "_complexion",
     "_window",
@@ -165,6 +178,7 @@ class Playground:
         self.scenario, self.cube, self.character = scenario, cube, character
         self._tracker = CubeTracker(cube, self.intrinsics)
         self._gestures = CubeGestures(cube)
+        self._tracker_error = ""
         self._begin_to_see(cube)
         self._animator, self._parts = animator, BodyParts.of(character, animator.scale)
         self._posed: PosedCharacter | None = None
@@ -174,6 +188,7 @@ class Playground:
         self._other_cube = OtherCube(cube, self.known_cubes)
         self.other_cube: CubeModel | None = None
         """Another cube than the one in play, if one is in view."""
+        self._sheet_seen_at = -math.inf
         self._speaking = Speaking()
         self._complexion = Complexion()
 
@@ -276,6 +291,7 @@ class Playground:
         replay = replay or ReplayInputs()
         if drawn:
             self.expect(frame)
+        self._tracker_error = ""
         state = replay.state or self.track(frame)
         self._lap("tracking")
         controls = replay.controls or self.gesture(state)
@@ -295,7 +311,10 @@ class Playground:
         self._posed, self._body = posed, PosedBody(self.character, self._parts, posed)
         self._complexion.update(command.timestamp, command.emotion)
         interior = self._window.update(state, controls, command, inputs.inside)
-        outcome = replace(decision, command=command, hint=self._hint(decision))
+        if state.refused == "flat":
+            self._sheet_seen_at = state.timestamp
+        hint = self._hint(decision, state.timestamp)
+        outcome = replace(decision, command=command, hint=hint)
         self._lap("animation")
         matrix = self.intrinsics.matrix
         step = Step(
@@ -312,6 +331,7 @@ class Playground:
             line=self._speaking.line if command.speech is not None else None,
             interior=interior,
             appearance=appearance,
+            tracker_error=self._tracker_error,
         )
         if drawn:
             step = replace(step, picture=self.draw(step))
@@ -328,8 +348,18 @@ class Playground:
         self._renderer.expect(frame)
 
     def track(self, frame: Frame) -> CubeState:
-        """Find the cube in a frame; frames come in the order of time."""
-        return self._tracker.update(frame)
+        """Find the cube in a frame; frames come in the order of time.
+
+        An error in the tracker's code costs this frame, and never the session.
+        """
+        try:
+            return self._tracker.update(frame)
+        except TrackingError:  # such as a frame of another size: the next one has it, too
+            raise
+        except Exception as error:
+            self._tracker_error = described_error(error)
+            LOG.debug("the tracker failed in frame %d", frame.index, exc_info=True)
+            return self._tracker.give_up(frame.timestamp)
 
     def gesture(self, state: CubeState) -> CubeControls:
         """Compute what the hand does with the cube."""
@@ -370,8 +400,10 @@ class Playground:
             speech=self._speaking.update(inputs.line, command, silence=inputs.clear),
         )
 
-    def _hint(self, decision: Outcome) -> str:
+    def _hint(self, decision: Outcome, now: float) -> str:
         """Return what the player can do now; what the cube in view is comes first."""
+        if 0.0 <= now - self._sheet_seen_at < FOLD_IT_SHOWN_S:
+            return FOLD_IT
         if self.other_cube is not None:
             return advice(self.other_cube, self.scenario.name, self.cube.name, self.fixed)
         return LOOK_INSIDE if self._window.invites else decision.hint

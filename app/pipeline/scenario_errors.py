@@ -1,4 +1,4 @@
-"""Errors in the code of a scenario that another package adds: one line that names the place."""
+"""Errors in code that plays, in one line that names the place: of a scenario, of the tracker."""
 
 import inspect
 import traceback
@@ -22,7 +22,7 @@ def scenario_errors(scenario: type[Scenario]) -> Iterator[None]:
     except Exception as error:
         if scenario.__module__.startswith("cubeling."):
             raise
-        reason = f"{type(error).__name__}: {error}".removesuffix(": ")
+        reason = _reason(error)
         raise AppError(
             f"the scenario '{scenario.name}' failed in {_place(scenario, error)}: {reason} "
             "(cubeling --debug shows the traceback)"
@@ -37,6 +37,20 @@ def check_outcome(outcome: object, scenario: type[Scenario]) -> Outcome:
             f"its update returned {outcome!r:.60}, and not an Outcome"
         )
     return outcome
+
+
+def described_error(error: Exception) -> str:
+    """Return an error of this program with the module and line that raised it, in one line."""
+    calls = list(traceback.walk_tb(error.__traceback__))
+    own = [call for call in calls if call[0].f_globals.get("__name__", "").startswith("cubeling.")]
+    frame, line = (own or calls)[-1]
+    module = frame.f_globals.get("__name__", frame.f_code.co_filename)
+    return f"{_reason(error)} in {module}, line {line}"
+
+
+def _reason(error: Exception) -> str:
+    first = str(error).strip().partition("\n")[0]  # OpenCV's have several lines
+    return f"{type(error).__name__}: {first}".removesuffix(": ")
 
 
 def _place(scenario: type[Scenario], error: Exception) -> str:

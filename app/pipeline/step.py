@@ -55,6 +55,9 @@ class Step:
     appearance: Appearance | None = None
     """What the picture tells beside the cube's pose; None where it was not measured."""
 
+    tracker_error: str = ""
+    """The error of the tracker that cost this frame, with its place in the code; "" for none."""
+
     @property
     def command(self) -> CharacterCommand:
         """What the character is asked to do."""

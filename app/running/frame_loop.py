@@ -103,6 +103,8 @@ class FrameLoop:
             lap("recording")
         session.observe()
         session.monitor.update(step, view, session.playground)
+        if step.tracker_error and not self._summary.failed_frames:
+            session.screen.notify("The tracker made an error: this frame is lost, the game goes on")
         self._inputs = session.screen.show(step, view)
         session.speaker.hear(step)
         lap("showing")

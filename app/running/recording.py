@@ -93,6 +93,8 @@ class SessionRecording(Closeable):
             if self._from_within:
                 self._wire.record_to(self._recorder, now)
         self._recorder.write(step, inputs)
+        if step.tracker_error:
+            self.event(f"tracker failed: {step.tracker_error}", now)
         if step.controls.placed:
             self.event(f"placed {step.controls.top_face}", now)
         for gesture in step.controls.gestures:

@@ -78,6 +78,12 @@ class Summary:
     tracked_frames: int = 0
     """Frames in which the cube was found."""
 
+    failed_frames: int = 0
+    """Frames that an error of the tracker cost."""
+
+    tracker_error: str = ""
+    """The first of these errors; "" for none."""
+
     scenarios: list[tuple[float, str]] = field(default_factory=list)
     """When each scenario began, by what was played until then [s], and its name."""
 
@@ -128,6 +134,8 @@ class Summary:
         now, self.last = self.duration, step.frame.timestamp
         self.frames += 1
         self.tracked_frames += step.state.visible
+        self.failed_frames += bool(step.tracker_error)
+        self.tracker_error = self.tracker_error or step.tracker_error
         if step.scenario != (self.scenarios[-1][1] if self.scenarios else ""):
             self.scenarios.append((now, step.scenario))
         if not self.states or self.states[-1][1] != step.posed.state:
@@ -167,6 +175,9 @@ class Summary:
         if len(self.scenarios) > 1:
             table.add_row("scenarios", _timeline(self.scenarios, duration))
         table.add_row("cube found", f"in {100 * self.tracking_rate:.1f} % of the frames")
+        if self.failed_frames:
+            failed = f"in {quantity(self.failed_frames, 'frame')}: {self.tracker_error}"
+            table.add_row("tracker failed", literal_text(failed))
         table.add_row("character", _timeline(self.states, duration))
         if self.hopped:
             make = "[cyan]cubeling character locomotion[/] gives it a gait"

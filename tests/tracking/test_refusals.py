@@ -17,6 +17,7 @@ from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.geometry.state import CubeState
 from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.examples import some
+from tests.tracking.showing import show_until_decided
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -124,9 +125,11 @@ def add_sheet(canvas: Picture, pose: Array, cells: dict[tuple[int, int], Cells])
 
 
 def watched(picture: Picture, cube: CubeModel = CUBE, frames: int = 2) -> list[CubeState]:
-    """States of a tracker that sees one picture again and again."""
+    """States of a tracker that sees one picture again and again, once it is searched."""
     tracker = CubeTracker(cube, CAMERA)
-    return [tracker.update(Frame(picture, n / 30, n)) for n in range(frames)]
+    first, calls = show_until_decided(tracker, picture)
+    later = range(len(calls), len(calls) + frames - 1)
+    return [first, *(tracker.update(Frame(picture, n / 30, n)) for n in later)]
 
 
 def off(state: CubeState, *truths: Array) -> float:

@@ -40,7 +40,10 @@ class CubeState:
 
     "ambiguous": a single face that may tilt either way; "blurred": its edges should be visible and
     are not; "jump": no hand is so fast, and a second frame must confirm it; "unproved": too small
-    or too hidden to tell; "unsure": the pose may be off by a centimetre or a few degrees.
+    or too hidden to tell; "unsure": the pose may be off by a centimetre or a few degrees; "flat":
+    markers lie in one plane, as on the sheet before it is folded; "searching": the search takes
+    more than one frame, and goes on; "failed": it ended in an error of the program, see
+    `CubeTracker.give_up`.
     """
 
     @property

@@ -27,6 +27,10 @@ it, and [m, rad] besides."""
 UNKNOWN_MOTION_SPREAD = (1.5, 0.15)
 """Standard deviation of the motion of a cube without a past [cells, rad]."""
 
+BLUR_DIRECTIONS = 4
+"""Directions in which a cube without a past is taken to move, evenly spread over half a turn: a
+motion and its reverse blur alike."""
+
 COVARIANCE_FACTORS = (2.5, 5.0)
 """By how much the variance exceeds what the residuals tell: without blur, and more for each cell of
 blur extent. Measured as the coverage that `make bench-tracking` prints."""
@@ -64,19 +68,20 @@ class BlurSearch:
                 found = again
         return found if found and _shows_cube(found) else None
 
-    def align_unknown_motion(self, patch: Patch, start: Array) -> Alignment | None:
-        """Align a cube without a past, of which only corners were read, in any direction."""
-        best: Alignment | None = None
+    def align_unknown_motion(
+        self, patch: Patch, start: Array, direction: int, best: Alignment | None
+    ) -> Alignment | None:
+        """Align a cube without a past, of which only corners were read, in one direction.
+
+        Directions are numbers below `BLUR_DIRECTIONS`; `best` is the best of those before.
+        """
         shift, turn = UNKNOWN_MOTION_SPREAD
         prior = np.repeat([shift * self._footprint.cell, turn], 3)
-        # A motion and its reverse blur alike: half of all directions are enough.
-        for angle in np.arange(4) * np.pi / 4:
-            direction = np.array([np.cos(angle), np.sin(angle), 0, 0, 0, 0])
-            found = self._aligner.align(patch, start, self._footprint.cell * direction, prior)
-            least = max(MIN_CORRELATION_ALONE, best.correlation if best else 0.0)
-            if found and found.correlation > least and _shows_cube(found):
-                best = found
-        return best
+        angle = direction * np.pi / BLUR_DIRECTIONS
+        ahead = np.array([np.cos(angle), np.sin(angle), 0, 0, 0, 0])
+        found = self._aligner.align(patch, start, self._footprint.cell * ahead, prior)
+        least = max(MIN_CORRELATION_ALONE, best.correlation if best else 0.0)
+        return found if found and found.correlation > least and _shows_cube(found) else best
 
     def candidate(self, patch: Patch, aligned: Alignment) -> Candidate | None:
         """Refine an alignment on the edges; where those are not smeared they must be found."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -85,6 +86,44 @@ class CellMatch:
         )
 
 
+Step = Literal["align", "align coarsely", "weigh", "join", "measure", "flatten", ""]
+"""A step of a search; "" after the last one."""
+
+
+@dataclass(frozen=True, eq=False)
+class CellRun:
+    """A search as far as it has come."""
+
+    patch: Patch | None
+    """The image around the cube, in light; None where that is not in view."""
+
+    start: Array
+    """The pose where it began, (4, 4)."""
+
+    read: Collection[str] | None
+    """As in `CellSearch.search`."""
+
+    step: Step
+    """What `CellSearch.advance` does next; "" where nothing is left."""
+
+    aligned: StillAlignment | None = None
+    """The pose that the faces that are compared agree on."""
+
+    match: CellMatch | None = None
+    """What `CellSearch.search` returns, as far as it is known."""
+
+    @property
+    def done(self) -> bool:
+        """Whether the result is final."""
+        return not self.step
+
+    def ended_if_known(self) -> "CellRun":
+        """End it where so many faces determine the pose that more samples tell little."""
+        if self.aligned and self.match and len(self.aligned.correlations) > MAX_FINE_FACES:
+            return replace(self, match=replace(self.match, alignment=self.aligned), step="")
+        return self
+
+
 class CellSearch:
     """Searches one cube seen by one camera."""
 
@@ -101,51 +140,104 @@ class CellSearch:
         `tone` is the light for each grey value, (256,), `read` names the faces whose markers were
         read; the others join in afterwards, where they are seen. None compares all from the start.
         """
+        run = self.begin(image, start, tone, read)
+        while not run.done:
+            run = self.advance(run)
+        return run.match
+
+    def begin(
+        self, image: Image, start: Array, tone: Floats, read: Collection[str] | None
+    ) -> CellRun:
+        """Begin a `search`, which `advance` carries on until it is done."""
         patch = self._footprint.crop(image, start, tone)
-        if patch is None:
-            return None
-        aligned = self._read_aligned(patch, start, read)
-        match = self._weigh(patch, aligned) if aligned else None
-        if not aligned or not match or not match.found:
-            return match
-        alike = match.alignment.correlations
-        seen = {face for face, share in alike.items() if share > MIN_JOINING}
-        if len(seen) > len(aligned.correlations):
-            joint = self._aligner.realign(patch, aligned, seen)
-            again = self._weigh(patch, joint) if joint else None
-            if joint and again and again.evidence.total > match.evidence.total:
-                aligned, match = joint, again
+        return CellRun(patch, start, read, "align" if patch else "")
+
+    def advance(self, run: CellRun) -> CellRun:
+        """Take the next step of a search; each costs about as much as the others."""
+        if run.step == "align":
+            return self._align(run)
+        if run.step == "align coarsely":
+            return self._align_coarsely(run)
+        if run.step == "weigh":
+            return self._weigh_all(run)
+        if run.step == "join":
+            return self._join(run)
+        return self._measure(run) if run.step == "measure" else self._flatten(run)
+
+    def _align(self, run: CellRun) -> CellRun:
+        """Align the faces that were read."""
+        assert run.patch is not None
+        found = self._aligner.align(run.patch, run.start, run.read)
+        good = found and max(found.correlations.values()) > MIN_CORRELATION
+        return replace(run, aligned=found, step="weigh" if good else "align coarsely")
+
+    def _align_coarsely(self, run: CellRun) -> CellRun:
+        """Align with blur first, from a start that may be too far off for the other way."""
+        found, patch, read = run.aligned, run.patch, run.read
+        assert patch is not None
+        blur = COARSE_BLUR_CELLS * self._footprint.pixels_per_cell(run.start)
+        coarse = self._aligner.align(
+            patch.smooth(blur), run.start, read, float(np.hypot(blur, EXPECTED_BLUR_PX))
+        )
+        again = self._aligner.align(patch, coarse.camera_from_cube, read) if coarse else None
+        if again and not (found and found.evidence.total > again.evidence.total):
+            found = again
+        return replace(run, aligned=found, step="weigh" if found else "")
+
+    def _weigh_all(self, run: CellRun) -> CellRun:
+        """Weigh the pose by all faces in view; others that are seen may join it."""
+        patch, aligned = run.patch, run.aligned
+        assert patch is not None
+        assert aligned is not None
+        match = self._weigh(patch, aligned)
+        if not match or not match.found:
+            return replace(run, match=match, step="")
+        # The markers that are drawn to weigh them need not be drawn again.
+        aligned = replace(aligned, markers=match.alignment.markers)
+        # With many faces the pose is known; others would cost more than they tell.
+        joins = MAX_FINE_FACES >= len(aligned.correlations) < len(_joining(match))
+        return replace(
+            run, aligned=aligned, match=match, step="join" if joins else "measure"
+        ).ended_if_known()
+
+    def _join(self, run: CellRun) -> CellRun:
+        """Align all faces that are seen, where that explains more."""
+        patch, aligned, match = run.patch, run.aligned, run.match
+        assert patch is not None
+        assert aligned is not None
+        assert match is not None
+        joint = self._aligner.realign(patch, aligned, _joining(match))
+        again = self._weigh(patch, joint) if joint else None
+        if joint and again and again.evidence.total > match.evidence.total:
+            run = replace(run, aligned=joint, match=again)
+        return replace(run, step="measure").ended_if_known()
+
+    def _measure(self, run: CellRun) -> CellRun:
+        """Measure with more samples what was found coarsely."""
+        patch, aligned = run.patch, run.aligned
+        assert patch is not None
+        assert aligned is not None
         faces = aligned.correlations
-        if len(faces) > MAX_FINE_FACES:
-            return replace(match, alignment=aligned)
-        # What was found coarsely is measured with more samples.
         aligned = self._aligner.realign(patch, aligned, faces, fine=True) or aligned
         match = self._weigh(patch, aligned, fine=True)
         if len(faces) == 1:
-            stiff = MEASURED_STIFFNESS
-            measured = self._aligner.realign(patch, aligned, faces, fine=True, stiffness=stiff)
-            aligned = measured or aligned
-        return match and replace(match, alignment=aligned)
+            return replace(run, aligned=aligned, match=match, step="flatten")
+        return replace(run, match=match and replace(match, alignment=aligned), step="")
+
+    def _flatten(self, run: CellRun) -> CellRun:
+        """Measure a single face once more, with flatter paper."""
+        patch, aligned, match = run.patch, run.aligned, run.match
+        assert patch is not None
+        assert aligned is not None
+        measured = self._aligner.realign(
+            patch, aligned, aligned.correlations, fine=True, stiffness=MEASURED_STIFFNESS
+        )
+        match = match and replace(match, alignment=measured or aligned)
+        return replace(run, match=match, step="")
 
     def _weigh(self, patch: Patch, aligned: StillAlignment, fine: bool = False) -> CellMatch | None:
         """Weigh a pose by all faces that it shows."""
         return self._match(self._aligner.realign(patch, aligned, None, steps=1, fine=fine))
-
-    def _read_aligned(
-        self, patch: Patch, start: Array, read: Collection[str] | None
-    ) -> StillAlignment | None:
-        """Align the faces that were read; coarsely first where that fails."""
-        found = self._aligner.align(patch, start, read)
-        if found and max(found.correlations.values()) > MIN_CORRELATION:
-            return found
-        blur = COARSE_BLUR_CELLS * self._footprint.pixels_per_cell(start)
-        coarse = self._aligner.align(
-            patch.smooth(blur), start, read, float(np.hypot(blur, EXPECTED_BLUR_PX))
-        )
-        again = self._aligner.align(patch, coarse.camera_from_cube, read) if coarse else None
-        if again and not (found and found.evidence.total > again.evidence.total):
-            return again
-        return found
 
     def _match(self, aligned: StillAlignment | None) -> CellMatch | None:
         if aligned is None:
@@ -169,6 +261,11 @@ class CellSearch:
         return CellMatch(
             aligned, found, whole or len(found) > 1, Evidence(blocks, aligned.evidence.bend)
         )
+
+
+def _joining(match: CellMatch) -> set[str]:
+    """Return the faces that are alike enough to join the alignment."""
+    return {face for face, share in match.alignment.correlations.items() if share > MIN_JOINING}
 
 
 def _is_found(aligned: StillAlignment, face: str) -> bool:

@@ -1,24 +1,32 @@
-"""The search for a cube anywhere in an image: cheap methods first, thorough ones last."""
+"""The search for a cube anywhere in an image: cheap methods first, thorough ones last.
 
-from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
-from typing import Literal
+A search is a picture with a list of trials, which are done one after the other until one of them
+decides. A call does as many as its budget allows, and the next call goes on with the same picture.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 
 import cv2
 import numpy as np
 
 from cubeling.tracking.cube.model import CubeModel
-from cubeling.tracking.detection.markers import Marker, MarkerDetector, Observation, markers_of
+from cubeling.tracking.detection.flat_sheet import lie_flat
+from cubeling.tracking.detection.markers import Observation, markers_of
 from cubeling.tracking.detection.partly_hidden_markers import PartlyHiddenMarkerDetector
+from cubeling.tracking.detection.pose_from_points import CornerPose
 from cubeling.tracking.geometry.arrays import Array, Floats, Image
 from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.geometry.image_region import Region
 from cubeling.tracking.geometry.projection import Projection
-from cubeling.tracking.refinement.blur_search import BlurSearch
+from cubeling.tracking.refinement.blur_search import BLUR_DIRECTIONS, BlurSearch
 from cubeling.tracking.refinement.candidate import Candidate
-from cubeling.tracking.refinement.cell_search import CellSearch
+from cubeling.tracking.refinement.cell_search import CellRun, CellSearch
 from cubeling.tracking.refinement.edge_search import EdgeSearch
 from cubeling.tracking.refinement.footprint import Footprint
+from cubeling.tracking.refinement.photometry.photometric_fit import Alignment
+from cubeling.tracking.tracker.frame_markers import FrameMarkers, Pass
 from cubeling.tracking.tracker.marker_poses import MarkerPoses
 from cubeling.tracking.tracker.verdict import is_unambiguous
 
@@ -32,53 +40,80 @@ MAX_NEIGHBOURS, NEIGHBOURHOOD_SIDES = 3, 2.0
 """Around so many markers, the last ones, those of the same cube are searched, within so many of
 their sides."""
 
-SAME_CORNER_PX = 8.0
-"""Corners of one marker that two passes found are this close to each other."""
+MAX_SMALL_SHARE = 0.5
+"""Where that is more than this share of the picture, the markers are no small ones."""
 
-Pass = Literal["half size", "first window", "other windows"]
-"""The passes of OpenCV's detector over an image."""
+MAX_CHANGE, BLOCK_PX = 2.0, 16
+"""A picture shows the same as before where the mean of no block of so many pixels differs by more
+than this [grey levels]: noise does not change it, and whatever moves does."""
 
+BUDGET_PICTURES = 2.2
+"""What the trials of one call may cost beside the passes that each call begins with, counted in
+pictures that are read: about as many detections by OpenCV."""
 
-class FrameMarkers:
-    """The markers of one frame, read when they are asked for, and once for all cubes."""
-
-    def __init__(self, frame: Frame, detectors: Mapping[str, MarkerDetector]) -> None:
-        self._image = frame.image
-        self._detectors = detectors
-        self._read: dict[tuple[str, Pass], list[Marker]] = {}
-
-    @cached_property
-    def grey(self) -> Image:
-        """The image in grey, (H, W)."""
-        return np.asarray(cv2.cvtColor(self._image, cv2.COLOR_BGR2GRAY), np.uint8)
-
-    def read(self, dictionary: str, by: Pass) -> list[Marker]:
-        """Read all markers of a dictionary in one pass; the last two add to each other."""
-        key = (dictionary, by)
-        if key not in self._read:
-            self._read[key] = self._detect(dictionary, by)
-        return self._read[key]
-
-    def _detect(self, dictionary: str, by: Pass) -> list[Marker]:
-        detector = self._detectors[dictionary]
-        if by == "first window":
-            return detector.detect(self.grey)
-        if by == "other windows":
-            known = self.read(dictionary, "first window")
-            others = detector.detect_others(self.grey)
-            return [*known, *(new for new in others if not any(_same(new, old) for old in known))]
-        height, width = self.grey.shape
-        small = cv2.resize(self.grey, (width // 2, height // 2), interpolation=cv2.INTER_AREA)
-        # Pixel centres lie at whole numbers: the first small one is at 0.5 of the large ones.
-        return [
-            Marker(each.marker_id, each.corners * 2 + 0.5)
-            for each in detector.detect(np.asarray(small, np.uint8))
-        ]
+CELLS_COST_PX, BLUR_COST_PX = 900_000, 4_000_000
+"""What a step of comparing the cells with the image costs, and aligning a blurred image: as much as
+reading so many pixels for partly hidden markers. `make bench-photographs` prints what calls take.
+"""
 
 
-def _same(new: Marker, old: Marker) -> bool:
-    apart = np.abs(new.corners - old.corners).max()
-    return new.marker_id == old.marker_id and bool(apart < SAME_CORNER_PX)
+@dataclass(frozen=True, eq=False)
+class Search:
+    """A picture that is searched, in one call or in several."""
+
+    frame: Frame
+    """The frame that is searched, which need not be the newest."""
+
+    expected: Array | None
+    """The predicted pose, (4, 4); None without one."""
+
+    tone: Floats
+    """Light for each grey value, (256,)."""
+
+    found: tuple[Candidate, ...] = ()
+    """The poses that were found so far, the best first."""
+
+    seen: tuple[Observation, ...] = ()
+    """The markers that were read so far."""
+
+    flat: bool = False
+    """Whether its markers lie flat, as on the sheet of the cube before it is folded."""
+
+    trials: "tuple[Trial, ...]" = ()
+    """What is still to be tried."""
+
+    half_done: bool = False
+    """Whether another lean of what was found has still to be compared."""
+
+    @property
+    def decided(self) -> bool:
+        """Whether nothing is left to be tried, or nothing needs to be."""
+        if not self.trials or self.flat:
+            return True
+        return not self.half_done and is_unambiguous(self.found)
+
+    def find(self, poses: Sequence[Candidate]) -> "Search":
+        """Add poses; of those that are the same, the better one stays."""
+        kept: list[Candidate] = []
+        for each in sorted([*self.found, *poses], key=lambda each: each.rank):
+            if not any(each.same_pose(better) for better in kept):
+                kept.append(each)
+        return replace(self, found=tuple(kept))
+
+    def try_first(self, trials: Sequence["Trial"]) -> "Search":
+        """Put trials before all others."""
+        return replace(self, trials=(*trials, *self.trials))
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Something that a search may try, and what it costs."""
+
+    cost: float
+    """How many pixels could be read in its time."""
+
+    run: Callable[[Search, FrameMarkers], Search]
+    """Does it, and returns what the search has come to."""
 
 
 class GlobalDetector:
@@ -98,66 +133,201 @@ class GlobalDetector:
         self._hidden = PartlyHiddenMarkerDetector(cube)
         self._blur = blur
 
-    def detect(
+    def search(
         self,
-        image: Image,
         markers: FrameMarkers,
         expected: Array | None,
         tone: Floats,
         thorough: bool,
-    ) -> list[Candidate]:
-        """Propose up to two poses for an image, (H, W, 3) BGR, with its markers.
+        last: Search | None = None,
+    ) -> Search:
+        """Search a frame for the cube, or go on with the `last` one that is not decided yet.
 
-        These are the first that are proved and that leave no choice, else those of the last
-        search; `thorough` looks for partly hidden markers too. `expected` is the predicted pose.
-        """
-        found: list[Candidate] = []
-        for observations in self._observations(markers, thorough):
-            if observations:
-                poses = self._poses.find(markers.grey, observations, expected, tone)
-                found = _merge(found, poses)
-                if is_unambiguous(found):
-                    return found
-        if any(each.certain for each in found):
-            return found
-        return self._align_blurred(image, tone, found)
-
-    def _observations(self, markers: FrameMarkers, thorough: bool) -> Iterator[list[Observation]]:
-        """Read markers in ever more costly passes; `thorough` ends with partly hidden ones.
-
-        Else others that OpenCV finds with more effort are the last: each frame has one of the two.
+        What is found at once in the new frame comes first: the quick passes are done in any case.
+        `thorough` looks for partly hidden markers too, else others that OpenCV finds with more
+        effort are read: each frame has one of the two. `expected` is the predicted pose.
         """
         passes: tuple[Pass, ...] = ("half size", "first window")
-        seen: list[Observation] = []
         # A bool as an index: small images skip the pass at half size.
-        for by in passes[len(markers.grey) < MIN_HALVED_HEIGHT_PX :]:
-            found = markers_of(self._cube, markers.read(self._cube.dictionary, by))
-            seen += found
-            yield found
-        if not thorough:
-            yield markers_of(self._cube, markers.read(self._cube.dictionary, "other windows"))
-            return
-        # In a low image the print of a hidden marker has too few pixels a cell, so it is enlarged
-        # at once.
+        passes = passes[len(markers.grey) < MIN_HALVED_HEIGHT_PX :]
+        if last is not None and _show_the_same(last.frame.image, markers.frame.image):
+            return self._go_on(last, FrameMarkers(last.frame, markers.detectors))
+        new = Search(markers.frame, expected, tone)
+        plans: list[list[Trial]] = []
+        for by in passes if last is None else passes[:1]:
+            read = markers_of(self._cube, markers.read(self._cube.dictionary, by))
+            new, plan = self._try_markers(new, markers, read)
+            if new.flat or new.found:
+                return new
+            # The corners of the later pass are better ones; the others are a second chance.
+            plans = [plan, *plans]
+        if last is not None:
+            return self._go_on(last, FrameMarkers(last.frame, markers.detectors))
+        rest = self._read_hidden if thorough else self._read_others
+        trials = [trial for plan in plans for trial in plan]
+        new = new.try_first([*trials, Trial(markers.grey.size, rest), Trial(0.0, self._try_blur)])
+        return self._go_on(new, markers)
+
+    def holds(self, search: Search, frame: Frame) -> bool:
+        """Whether a later frame shows the same where a search has found the cube."""
+        if not search.found:
+            return True
+        region = self._footprint.region(search.found[0].camera_from_cube)
+        if region is None:
+            return False
+        left, top, right, bottom = region
+        before, now = (each.image[top:bottom, left:right] for each in (search.frame, frame))
+        return _show_the_same(before, now)
+
+    def _go_on(self, search: Search, markers: FrameMarkers) -> Search:
+        """Try on, at least once, and until the budget is spent."""
+        left = BUDGET_PICTURES * markers.grey.size
+        while not search.decided:
+            trial, *others = search.trials
+            search = trial.run(replace(search, trials=tuple(others)), markers)
+            left -= trial.cost
+            if search.trials and search.trials[0].cost > max(left, 0.0):
+                break
+        return search
+
+    def _try_markers(
+        self, search: Search, markers: FrameMarkers, read: list[Observation]
+    ) -> tuple[Search, list[Trial]]:
+        """Take the pose that several faces agree on; else return how to compare the cells."""
+        if not read:
+            return search, []
+        search = replace(search, seen=(*search.seen, *read))
+        if lie_flat(read):
+            return replace(search, flat=True, found=()), []
+        solutions = self._poses.solve(read, search.expected)
+        agreed = self._poses.find_agreed(markers.grey, solutions, read, search.tone)
+        if agreed is not None:
+            return search.find([agreed]), []
+        plan = [self._comparison(solutions, read, mirrored=False)] if solutions else []
+        return search, plan
+
+    def _comparison(
+        self,
+        solutions: list[CornerPose],
+        read: list[Observation],
+        *,
+        mirrored: bool,
+        run: CellRun | None = None,
+    ) -> Trial:
+        compare = partial(self._compare_cells, solutions, read, mirrored, run)
+        return Trial(CELLS_COST_PX, compare)
+
+    def _compare_cells(
+        self,
+        solutions: list[CornerPose],
+        read: list[Observation],
+        mirrored: bool,
+        run: CellRun | None,
+        search: Search,
+        markers: FrameMarkers,
+    ) -> Search:
+        """Take a step to compare the cells at the first of some poses; the others follow.
+
+        After them comes, once, the other lean of a single face, whether or not the corners proposed
+        that.
+        """
+        first, *others = solutions
+        found = self._poses.compare_cells(markers.grey, first, read, search.tone, run)
+        if isinstance(found, CellRun):
+            ahead = self._comparison(solutions, read, mirrored=mirrored, run=found)
+            return replace(search, half_done=True).try_first([ahead])
+        search = search.find(found)
+        if not others and not mirrored:
+            others, mirrored = self._poses.mirror(first, search.found), True
+        search = replace(search, half_done=bool(others))
+        if not others:
+            return search
+        return search.try_first([self._comparison(others, read, mirrored=mirrored)])
+
+    def _read_others(self, search: Search, markers: FrameMarkers) -> Search:
+        """Read the markers that OpenCV finds with more effort."""
+        read = markers_of(self._cube, markers.read(self._cube.dictionary, "other windows"))
+        return self._try_more(search, markers, read)
+
+    def _read_hidden(self, search: Search, markers: FrameMarkers) -> Search:
+        """Read partly hidden markers, in a low image at twice its size at once.
+
+        There the print of a hidden marker has too few pixels a cell.
+        """
         small = len(markers.grey) < MIN_SINGLE_HEIGHT_PX
-        found = self._hidden.detect(markers.grey, doubled=small)
-        seen += found
-        yield found
-        if seen and not small:
-            yield self._hidden.detect(markers.grey, _around(seen, markers.grey), doubled=True)
+        read = self._hidden.detect(markers.grey, doubled=small)
+        search = self._try_more(search, markers, read)
+        if small or not search.seen:
+            return search
+        left, top, right, bottom = region = _around(search.seen, markers.grey)
+        area = (right - left) * (bottom - top)
+        if area > MAX_SMALL_SHARE * markers.grey.size:
+            return search
+        closer = Trial(4.0 * area, partial(self._read_small, region))
+        # Before the blur, which is the last.
+        return replace(search, trials=(*search.trials[:-1], closer, *search.trials[-1:]))
+
+    def _read_small(self, region: Region, search: Search, markers: FrameMarkers) -> Search:
+        read = self._hidden.detect(markers.grey, region, doubled=True)
+        return self._try_more(search, markers, read)
+
+    def _try_more(self, search: Search, markers: FrameMarkers, read: list[Observation]) -> Search:
+        """Try markers of a thorough pass, unless their faces were tried and nothing was proved."""
+        tried = {each.face.name for each in search.seen}
+        hopeless = search.found and not any(each.certain for each in search.found)
+        search, plan = self._try_markers(search, markers, read)
+        if hopeless and tried.issuperset(each.face.name for each in read):
+            return search
+        return search.try_first(plan)
+
+    def _try_blur(self, search: Search, markers: FrameMarkers) -> Search:
+        """Plan to align the blurred image at poses that rest on corners alone."""
+        # A single face that is blurred does not tell its lean.
+        starts = tuple(each.camera_from_cube for each in search.found if len(each.faces) > 1)
+        if not starts or any(each.certain for each in search.found):
+            return search
+        return search.try_first([self._alignment(starts, 0, None, ())])
+
+    def _alignment(
+        self,
+        starts: tuple[Array, ...],
+        direction: int,
+        best: Alignment | None,
+        found: tuple[Candidate, ...],
+    ) -> Trial:
+        return Trial(BLUR_COST_PX, partial(self._align_blurred, starts, direction, best, found))
 
     def _align_blurred(
-        self, image: Image, tone: Floats, candidates: list[Candidate]
-    ) -> list[Candidate]:
-        """Align the blurred image at poses that rest on corners alone, where it shows the cube."""
-        found = []
-        for each in candidates:
-            patch = self._footprint.crop(image, each.camera_from_cube, tone)
-            aligned = patch and self._blur.align_unknown_motion(patch, each.camera_from_cube)
-            if patch and aligned:
-                found.append(self._blur.candidate(patch, aligned))
+        self,
+        starts: tuple[Array, ...],
+        direction: int,
+        best: Alignment | None,
+        found: tuple[Candidate, ...],
+        search: Search,
+        markers: FrameMarkers,
+    ) -> Search:
+        """Align the image at the first pose as blurred in one direction; the others follow."""
+        patch = self._footprint.crop(search.frame.image, starts[0], search.tone)
+        if patch is not None:
+            best = self._blur.align_unknown_motion(patch, starts[0], direction, best)
+            if direction + 1 < BLUR_DIRECTIONS:
+                return search.try_first([self._alignment(starts, direction + 1, best, found)])
+            candidate = self._blur.candidate(patch, best) if best else None
+            found = (*found, candidate) if candidate else found
+        if len(starts) > 1:
+            return search.try_first([self._alignment(starts[1:], 0, None, found)])
         # Where no blur explains the image, the corners are still the best guess.
-        return [each for each in found if each] or candidates
+        return replace(search, found=found or search.found)
+
+
+def _show_the_same(before: Image, now: Image) -> bool:
+    """Whether two images, (H, W, 3), differ by no more than their noise."""
+    size = tuple(max(1, side // BLOCK_PX) for side in before.shape[1::-1])
+    old, new = (
+        cv2.resize(each[..., 1], size, interpolation=cv2.INTER_AREA).astype(np.float32)
+        for each in (before, now)
+    )
+    return bool(np.abs(new - old).max() <= MAX_CHANGE)
 
 
 def _around(seen: Sequence[Observation], grey: Image) -> Region:
@@ -167,12 +337,3 @@ def _around(seen: Sequence[Observation], grey: Image) -> Region:
     left, top = np.maximum(corners.min(axis=0) - reach, 0).astype(int).tolist()
     right, bottom = np.minimum(corners.max(axis=0) + reach, grey.shape[::-1]).astype(int).tolist()
     return left, top, right, bottom
-
-
-def _merge(one: list[Candidate], other: list[Candidate]) -> list[Candidate]:
-    """Join two lists; of poses that are the same, keep the better one. The best comes first."""
-    kept: list[Candidate] = []
-    for each in sorted([*one, *other], key=lambda each: each.rank):
-        if not any(each.same_pose(better) for better in kept):
-            kept.append(each)
-    return kept

@@ -1,5 +1,6 @@
 """Candidate poses from the markers of one frame, weighed by all faces in view."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,7 @@ from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.arrays import Array, Floats, Image
 from cubeling.tracking.geometry.projection import Projection
 from cubeling.tracking.refinement.candidate import Candidate
-from cubeling.tracking.refinement.cell_search import CellMatch, CellSearch
+from cubeling.tracking.refinement.cell_search import CellMatch, CellRun, CellSearch
 from cubeling.tracking.refinement.edge_search import EdgeSearch
 from cubeling.tracking.refinement.footprint import Footprint
 
@@ -56,6 +57,10 @@ NEAR_ANGLE = np.deg2rad(8)
 MAX_OWN_DISTANCE = 1.0
 """A marker this near to where a pose puts it, in sides, is that of the same cube."""
 
+MAX_TURNED_DISTANCE = 3.0
+"""A marker of a face that a pose turns away is of the same paper, and not of another cube, where it
+is this near to the middle of the cube, in sides: a sheet reaches two faces beyond those found."""
+
 
 class MarkerPoses:
     """Proposes poses of one cube from its markers, aligned and weighed by `cells`."""
@@ -70,33 +75,60 @@ class MarkerPoses:
         self._edges = edges
         self._cells = cells
 
-    def find(
-        self, image: Image, observations: list[Observation], expected: Array | None, tone: Floats
-    ) -> list[Candidate]:
-        """Propose up to two poses for the markers of an image, (H, W) grey.
+    def solve(
+        self, observations: list[Observation], expected: Array | None = None
+    ) -> list[CornerPose]:
+        """Propose up to two poses for the corners of markers; `expected` is the predicted pose."""
+        return self._solver.solve(observations, expected)
 
-        `expected` is the predicted pose, `tone` the light for each grey value, (256,).
+    def find_agreed(
+        self,
+        image: Image,
+        solutions: Sequence[CornerPose],
+        observations: list[Observation],
+        tone: Floats,
+    ) -> Candidate | None:
+        """Find the pose that the edges of several faces agree on in an image, (H, W) grey.
+
+        `solutions` are the proposed poses, `tone` is the light for each grey value, (256,).
         """
-        found: list[Candidate] = []
-        solutions = self._solver.solve(observations, expected)
         for solution in solutions:
             agreed = self._agreement(image, solution, observations, tone)
             if agreed is not None:
-                return [agreed]
-        for solution in solutions:
+                return agreed
+        return None
+
+    def compare_cells(
+        self,
+        image: Image,
+        solution: CornerPose,
+        observations: list[Observation],
+        tone: Floats,
+        run: CellRun | None = None,
+    ) -> list[Candidate] | CellRun:
+        """Align the cells of all faces near a proposed pose; none where markers contradict it.
+
+        Each call takes one step, and returns how far it has come until it is done; `run` is what
+        the last call returned.
+        """
+        if run is None:
             read = tuple(each.face.name for each in solution.observations)
-            match = self._cells.search(image, solution.camera_from_cube, tone, read)
-            found += self._candidates(image, solution, match, observations, tone)
-        best = min(found, key=lambda each: each.rank, default=None)
-        if best is not None and best.certain and len(best.faces) == 1:
-            # The face may lean the other way, whether or not the corners proposed that.
-            start = self._edges.mirrored_pose(best)
-            if any(_near(each.camera_from_cube, start) for each in found):
-                return found
-            match = self._cells.search(image, start, tone, best.faces)
-            solution = replace(solution, camera_from_cube=start)
-            found += self._candidates(image, solution, match, observations, tone)
-        return found
+            run = self._cells.begin(image, solution.camera_from_cube, tone, read)
+        if not run.done:
+            run = self._cells.advance(run)
+        if not run.done:
+            return run
+        return self._candidates(image, solution, run.match, observations, tone)
+
+    def mirror(self, solution: CornerPose, found: Sequence[Candidate]) -> list[CornerPose]:
+        """Propose the other lean of a single face that was found, the best first; else nothing."""
+        if not found or not found[0].certain or len(found[0].faces) != 1:
+            return []
+        start = self._edges.mirrored_pose(found[0])
+        if any(_near(each.camera_from_cube, start) for each in found):
+            return []
+        own = tuple(each for each in solution.observations if each.face.name in found[0].faces)
+        return [replace(solution, camera_from_cube=start, observations=own)]
 
     def _agreement(
         self,
@@ -173,7 +205,9 @@ class MarkerPoses:
         if len(candidate.faces) == 1:
             smeared = MAX_LONE_BLUR_CELLS * self._footprint.pixels_per_cell(pose)
             blurred = candidate.blur > max(MAX_LONE_BLUR_PX, smeared)
-            unlike = match.alignment.correlations[candidate.faces[0]] < MIN_LONE_CORRELATION
+            # Another face may be found than the one that the pose was measured on.
+            alike = match.alignment.correlations.get(candidate.faces[0], 0.0)
+            unlike = alike < MIN_LONE_CORRELATION
             if blurred or unlike:
                 return [replace(candidate, certain=False, blurred=blurred)]
         return [self._on_edges(image, candidate, tone)]
@@ -209,16 +243,23 @@ class MarkerPoses:
 
         Beside two faces that are found only a near one contradicts: a far one is another cube's.
         """
-        far = np.inf if len(faces) == 1 else MAX_OWN_DISTANCE
-        distances = [
-            self._distance(pose, each) for each in observations if each.face.name not in faces
-        ]
-        return any(MAX_CORNER_DISTANCE < each <= far for each in distances)
+        return any(
+            self._contradicts(pose, each, lone=len(faces) == 1)
+            for each in observations
+            if each.face.name not in faces
+        )
+
+    def _contradicts(self, pose: Array, seen: Observation, *, lone: bool) -> bool:
+        if self._solver.looks_at_camera(seen.face.name, pose):
+            far = np.inf if lone else MAX_OWN_DISTANCE
+            return MAX_CORNER_DISTANCE < self._distance(pose, seen) <= far
+        # A face that the pose turns away cannot be read anywhere near.
+        middle = self._projection.project(pose[None, :3, 3])[0]
+        away = float(np.linalg.norm(seen.corners.mean(axis=0) - middle)) / seen.size
+        return lone or away <= MAX_TURNED_DISTANCE
 
     def _distance(self, pose: Array, seen: Observation) -> float:
         """How far most corners of a marker are from where a pose puts them, by its side."""
-        if not self._solver.looks_at_camera(seen.face.name, pose):
-            return np.inf
         points = seen.face.corners @ pose[:3, :3].T + pose[:3, 3]
         away = np.linalg.norm(self._projection.project(points) - seen.corners, axis=1)
         return float(np.median(away)) / seen.size

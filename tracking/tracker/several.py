@@ -8,7 +8,7 @@ from cubeling.tracking.errors import TrackingError
 from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.geometry.state import CubeState
-from cubeling.tracking.tracker.global_search import FrameMarkers
+from cubeling.tracking.tracker.frame_markers import FrameMarkers
 from cubeling.tracking.tracker.tracker import CubeTracker
 
 

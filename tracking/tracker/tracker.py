@@ -17,11 +17,19 @@ from cubeling.tracking.refinement.cell_search import CellSearch
 from cubeling.tracking.refinement.edge_search import EdgeSearch
 from cubeling.tracking.refinement.lens_estimate import LensEstimate, LensEstimator
 from cubeling.tracking.refinement.systematic_error import SystematicError
-from cubeling.tracking.tracker.global_search import FrameMarkers, GlobalDetector
+from cubeling.tracking.single_thread import on_one_thread
+from cubeling.tracking.tracker.frame_markers import FrameMarkers
+from cubeling.tracking.tracker.global_search import GlobalDetector, Search
 from cubeling.tracking.tracker.local_search import LocalMatch, LocalTracker
-from cubeling.tracking.tracker.prediction import TrackedPose
+from cubeling.tracking.tracker.prediction import Track, TrackedPose
 from cubeling.tracking.tracker.rest import Rest
-from cubeling.tracking.tracker.verdict import FollowedPoseJudge, Past, is_uncertain, judge_detected
+from cubeling.tracking.tracker.verdict import (
+    FollowedPoseJudge,
+    Past,
+    Verdict,
+    is_uncertain,
+    judge_detected,
+)
 
 MAX_THOROUGH_FRAMES, THOROUGH_INTERVAL = 30, 5
 """Frames without the cube in which partly hidden markers are detected, then the interval."""
@@ -61,12 +69,19 @@ class CubeTracker:
         self._lens = LensEstimator(cube, projection)
         self._past = Past()
         self._rest = Rest()
+        self._search: Search | None = None
 
     @property
     def lens(self) -> LensEstimate:
         """What the poses so far tell of the lens, besides what the intrinsics claim."""
         return self._lens.estimate
 
+    @property
+    def searching(self) -> bool:
+        """Whether the search of a picture goes on in the next call."""
+        return self._search is not None
+
+    @on_one_thread
     def update(self, frame: Frame, markers: FrameMarkers | None = None) -> CubeState:
         """Find the cube in the next frame, whose `markers` several trackers may share.
 
@@ -89,6 +104,7 @@ class CubeTracker:
         tone = self._camera.model.tone
 
         if match.candidate is not None:
+            self._search = None
             # Judge the pose: a single face may tilt either way.
             verdict = self._followed_pose_judge.judge(match.candidate, image, tone, past)
         else:
@@ -98,9 +114,15 @@ class CubeTracker:
             thorough |= past.frames_lost % THOROUGH_INTERVAL == 0
             markers = markers or FrameMarkers(frame, self._detectors)
             expected = prediction.camera_from_cube if prediction else None
-            candidates = self._global_detector.detect(image, markers, expected, tone, thorough)
+            search = self._global_detector.search(markers, expected, tone, thorough, self._search)
+            self._search = None if search.decided else search
+            if search.flat or not search.decided:
+                self._past = past
+                return self._predict(now, "flat" if search.flat else "searching")
             # Judge the poses: which one is it, and can a hand have moved the cube there?
-            verdict = judge_detected(candidates, prediction, past, now)
+            verdict = judge_detected(search.found, prediction, past, now)
+            if search.frame is not frame and not self._global_detector.holds(search, frame):
+                return self._await(verdict, now)
 
         # Add a trusted pose to the track, with its velocity; else keep predicting.
         self._past = verdict.past
@@ -150,6 +172,29 @@ class CubeTracker:
             timestamp=now,
             refused=refused,
         )
+
+    def _await(self, verdict: Verdict, now: float) -> CubeState:
+        """Look from the next frame on near a pose that was found in an earlier picture.
+
+        Something has moved there since: the cube has to be found again to be trusted.
+        """
+        found, past = verdict.candidate, verdict.past
+        if found is None or verdict.refused:
+            self._past = past
+            return self._predict(now, verdict.refused)
+        awaited = TrackedPose(found.camera_from_cube, np.zeros(6), found.covariance, now)
+        # Both leans of a single face were weighed.
+        self._past = replace(past, track=Track((awaited,)), jump=None, tilt_settled=True)
+        return self._predict(now, "searching")
+
+    def give_up(self, timestamp: float) -> CubeState:
+        """Return the state of a frame in which `update` raised an error, refused as "failed".
+
+        The track is forgotten, as it may be what led to the error: the next frame is searched as
+        the first one is. What is known of camera and lens is kept.
+        """
+        self._past, self._rest, self._search = Past(), Rest(), None
+        return self._predict(timestamp, "failed")
 
     def predict(self, timestamp: float) -> CubeState:
         """Return where the cube will be shortly after the last frame, by extrapolation."""

@@ -12,7 +12,10 @@ from cubeling.tracking import CubeState
 REFUSALS = {
     "ambiguous": "one face may lean either way",
     "blurred": "its edges are blurred",
+    "failed": "the tracker made an error",
+    "flat": "the sheet is not folded",
     "jump": "no hand is so fast",
+    "searching": "the search goes on",
     "unproved": "it is too small or hidden",
     "unsure": "the pose may be far off",
 }

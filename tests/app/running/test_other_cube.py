@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 
 from cubeling.app.pipeline.other_cube import LOOK_AFTER_S, advice, cube_for
-from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.playground import FOLD_IT, FOLD_IT_SHOWN_S, Playground
 from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.step import ReplayInputs
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.scenarios import SCENARIOS
 from cubeling.app.session import SessionOptions
 from cubeling.app.ui.screen import NullScreen
-from cubeling.tracking import CubeModel, Frame, Intrinsics, open_source
+from cubeling.tracking import CubeModel, CubeTracker, Frame, Intrinsics, open_source
 from cubeling.tracking.cube.model import CUBES_FOLDER
 
 COMPANION = CubeModel.load("companion")
@@ -147,3 +148,17 @@ def test_two_cubes_with_the_same_markers_are_refused(cubeling, tmp_path):
     assert code == 2
     assert err.startswith("cubeling: mine.toml has the markers of companion: ")
     assert err.count("\n") == 1
+
+
+def test_who_shows_the_sheet_is_told_to_fold_it(pictures):
+    playground = Playground("companion", guessed(pictures[0]))
+    flat = replace(CubeTracker(COMPANION, playground.intrinsics).predict(0.0), refused="flat")
+    later = [0.0, FOLD_IT_SHOWN_S / 2, FOLD_IT_SHOWN_S * 1.5]
+    told = []
+    for time in later:
+        state = replace(flat, timestamp=time, refused="flat" if time == 0.0 else "")
+        frame = Frame(pictures[0].image, time, 0)
+        told.append(playground.step(frame, replay=ReplayInputs(state=state)).outcome.hint)
+    assert told[:2] == [FOLD_IT] * 2
+    assert told[2] != FOLD_IT
+    assert FOLD_IT == "This is the sheet: fold it into a cube."

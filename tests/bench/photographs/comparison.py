@@ -40,7 +40,7 @@ class Scores:
 
 def main() -> None:
     """Measure, print, and check the targets."""
-    options, console = _options(), Console(width=120)
+    options, console = _options(), Console(width=136)
     if not dodecahedron.paths():
         console.print(f"skipped: there are no photographs in {dodecahedron.FOLDER}", soft_wrap=True)
         return

@@ -8,7 +8,6 @@ from itertools import combinations
 import numpy as np
 
 from cubeling.tracking.geometry import se3
-from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.bench.photographs.dodecahedron import (
@@ -32,6 +31,7 @@ from tests.bench.photographs.scoring import (
 )
 from tests.bench.tracking.scoring import CHI2_95_PERCENT
 from tests.bench.tracking.table import OURS
+from tests.tracking.showing import show_until_decided
 
 MIN_PICTURES = 5
 """A pair needs as many pictures for a consensus."""
@@ -107,7 +107,7 @@ def tracked_marker(
 ) -> tuple[str, StatedPose | None]:
     """Our verdict on a marker with a side [m] without a past, and its pose if it is trusted."""
     cube = one_marker(marker, side)
-    state = CubeTracker(cube, lens).update(Frame(picture, 0.0, 0))
+    state, _ = show_until_decided(CubeTracker(cube, lens), picture)
     if not state.visible or state.camera_from_cube is None:
         return state.verdict, None
     cube_from_marker = se3.pose(np.eye(3), cube.faces[0].corners.mean(axis=0))

@@ -1,7 +1,7 @@
 """Errors of poses, relative poses of markers, and whether stated covariances hold them."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import ParamSpec, TypeVar
 
@@ -111,10 +111,15 @@ def deltas_from_consensus(stated: list[StatedPose]) -> tuple[Array, list[float]]
 def timed(
     work: Callable[Parameters, Result], *given: Parameters.args, **named: Parameters.kwargs
 ) -> tuple[Result, float]:
-    """What `work` returns, and its time [s]."""
-    start = time.perf_counter()
+    """What `work` returns, and its CPU time [s]."""
+    start = time.process_time()
     result = work(*given, **named)
-    return result, time.perf_counter() - start
+    return result, time.process_time() - start
+
+
+def high(values: Sequence[float]) -> float:
+    """The 95th percentile; NaN of nothing."""
+    return float(np.quantile(values, 0.95)) if len(values) else np.nan
 
 
 def share(flags: list[bool] | NDArray[np.bool_]) -> float:

@@ -26,6 +26,7 @@ from cubeling.tracking import CubeModel, CubeState, CubeTracker, Frame, Intrinsi
 from tests.bench.tracking.scoring import CHI2_95_PERCENT, MAX_RECALL_ERROR, MIN_WRONG_ERROR, errors
 from tests.bench.tracking.sequences import NAMES, Sequence, sequence
 from tests.bench.tracking.table import share
+from tests.tracking.showing import show_until_decided
 
 AT_REST = ("static", "static-one")
 """Sequences whose frames differ only by noise, which would dilute the count."""
@@ -56,8 +57,11 @@ def track(drawn: Sequence) -> Iterator[tuple[int, CubeState]]:
     for index in range(drawn.count):
         if drawn.independent:
             tracker = CubeTracker(cube, camera)
-        frame = Frame(drawn.frame(index), drawn.timestamp(index), index)
-        yield index, tracker.update(frame)
+        picture, now = drawn.frame(index), drawn.timestamp(index)
+        if drawn.independent:
+            yield index, show_until_decided(tracker, picture, now)[0]
+        else:
+            yield index, tracker.update(Frame(picture, now, index))
 
 
 def evaluate(drawn: Sequence) -> Result:

@@ -21,9 +21,13 @@ class CubelingEntry:
         self._count = 0
 
     def track(self, image: Picture, timestamp: float) -> Array | None:
-        """Return the pose if the tracker trusts it."""
-        self._state = self._tracker.update(Frame(image, timestamp, self._count))
-        self._count += 1
+        """Return the pose if the tracker trusts it; a first picture is searched to the end."""
+        first = self._state is None
+        while True:
+            self._state = self._tracker.update(Frame(image, timestamp, self._count))
+            self._count += 1
+            if not (first and self._state.verdict == "searching"):
+                break
         return self._state.camera_from_cube if self._state.visible else None
 
     def notes(self) -> dict[str, Any]:

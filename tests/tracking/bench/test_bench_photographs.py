@@ -241,14 +241,18 @@ def test_right_and_wrong_leave_room_between_them():
 
 
 def test_targets_say_by_how_much_they_are_missed():
-    score = BodyScore("as it is", OURS, 72, 0.95, 2, 0.97, 1e-3, 0.01, 0.9, 20.0, 1.3)
+    score = BodyScore(
+        "as it is", OURS, 72, 0.95, 2, 0.97, 1e-3, 0.01, 0.9, 20.0, 1.3, 7.0, 1.2, 6.0
+    )
     said = [str(each) for each in targets.body_verdicts([score])]
     assert [each.split(maxsplit=2)[2] for each in said[:1]] == [
         "3.0 points    right, as it is, ≥ 98 %: 95.0 %"
     ]
     assert said[1].endswith("body silently wrong 0: 2 (as it is 2)")
-    assert said[2].startswith("misses by 30%")
-    assert said[2].endswith("cold ÷ cv2 ≤ 1.0: 1.30")
+    assert said[2].startswith("holds")
+    assert said[2].endswith("cold, as it is, ÷ cv2 ≤ 1.5: 1.30")
+    assert said[3].startswith("misses by 17%")
+    assert said[3].endswith("cold, as it is, ÷ cv2, 95 % ≤ 6.0: 7.00")
 
 
 def test_without_the_photographs_one_line_says_so(monkeypatch, capsys):

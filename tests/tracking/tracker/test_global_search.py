@@ -1,5 +1,7 @@
 """A cube is found anywhere in an image: cheaply where possible, thoroughly where needed."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -17,9 +19,12 @@ from cubeling.tracking.refinement.candidate import Candidate
 from cubeling.tracking.refinement.cell_search import CellSearch
 from cubeling.tracking.refinement.edge_search import EdgeSearch
 from cubeling.tracking.synthetic import open_synthetic
-from cubeling.tracking.tracker.global_search import FrameMarkers, GlobalDetector, Pass
+from cubeling.tracking.tracker import global_search
+from cubeling.tracking.tracker.frame_markers import FrameMarkers, Pass
+from cubeling.tracking.tracker.global_search import GlobalDetector
 from cubeling.tracking.tracker.tracker import CubeTracker
-from tests.tracking.drawn import WIDE, held, off, photograph, scene
+from tests.tracking.drawn import CAMERA, WIDE, held, off, photograph, scene
+from tests.tracking.showing import show_until_decided
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -60,8 +65,11 @@ def detect(
     blur = BlurSearch(cube, projection, edges)
     markers = FrameMarkers(frame, {cube.dictionary: detector})
     tone = CameraModelEstimator().model.tone
-    search = GlobalDetector(cube, projection, edges, CellSearch(cube, projection), blur)
-    return search.detect(frame.image, markers, None, tone, thorough)
+    finder = GlobalDetector(cube, projection, edges, CellSearch(cube, projection), blur)
+    search = finder.search(markers, None, tone, thorough)
+    while not search.decided:
+        search = finder.search(markers, None, tone, thorough, search)
+    return list(search.found)
 
 
 def corners_of(cube: CubeModel, pose: Array, camera: Intrinsics) -> dict[str, Array]:
@@ -171,7 +179,7 @@ def test_a_cube_with_a_covered_corner_on_every_marker_is_found(
     for by in PASSES:
         # Or the patches would prove nothing.
         assert markers_of(cube, markers.read(cube.dictionary, by)) == []
-    state = CubeTracker(cube, camera).update(covered)
+    state, _ = show_until_decided(CubeTracker(cube, camera), picture)
     assert state.visible
     millimetres, degrees = off(state.camera_from_cube, truth)
     assert millimetres < 0.5
@@ -193,3 +201,53 @@ def test_a_picture_without_the_cube_proposes_nothing() -> None:
     frame = Frame(photograph(scene((other, held()), camera=WIDE)), 0.0, 0)
     found = detect(CUBE, WIDE, frame, DETECTORS[CUBE.dictionary])
     assert not any(each.certain for each in found)
+
+
+LONE = replace(CUBE, faces=tuple(face for face in CUBE.faces if face.name == "front"))
+"""One face has to be compared with both of its leans, which takes several calls."""
+
+
+def lone_face(right: float = 0.0) -> tuple[Picture, Array]:
+    pose = held(0.5, 0.3, 0.2, at=(right, 0.0, 0.3))
+    return photograph(scene((LONE, pose))), pose
+
+
+def test_a_search_goes_on_in_the_next_call_and_ends_as_in_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    picture, pose = lone_face()
+    late, calls = show_until_decided(CubeTracker(LONE, CAMERA), picture)
+    assert late.visible
+    assert len(calls) > 2
+    assert off(late.camera_from_cube, pose)[0] < 1
+    monkeypatch.setattr(global_search, "BUDGET_PICTURES", 1e3)
+    at_once = CubeTracker(LONE, CAMERA).update(Frame(picture, 0.0, 0))
+    assert at_once.visible
+    assert late.camera_from_cube is not None
+    assert at_once.camera_from_cube is not None
+    assert np.array_equal(late.camera_from_cube, at_once.camera_from_cube)
+
+
+def test_a_cube_that_moves_during_the_search_is_trusted_where_it_is_found_again() -> None:
+    before, _ = lone_face()
+    after, pose = lone_face(right=0.0015)
+    count = len(show_until_decided(CubeTracker(LONE, CAMERA), before)[1])
+    tracker = CubeTracker(LONE, CAMERA)
+    pictures = [*[before] * (count - 1), after, after]
+    states = [tracker.update(Frame(each, n / 30, n)) for n, each in enumerate(pictures)]
+    # What an earlier picture shows is not told of a later one.
+    assert [state.verdict for state in states] == ["searching"] * count + ["trusted"]
+    assert off(states[-1].camera_from_cube, pose)[0] < 1
+    assert not tracker.searching
+
+
+def test_a_new_picture_that_shows_the_cube_at_once_ends_the_search() -> None:
+    lone, _ = lone_face()
+    whole = held(0.8, -0.5, 0.4)
+    tracker = CubeTracker(CUBE, CAMERA)
+    assert tracker.update(Frame(lone, 0.0, 0)).verdict == "searching"
+    assert tracker.searching
+    state = tracker.update(Frame(photograph(scene((CUBE, whole))), 1 / 30, 1))
+    assert state.visible
+    assert off(state.camera_from_cube, whole)[0] < 0.5
+    assert not tracker.searching

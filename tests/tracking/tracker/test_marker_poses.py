@@ -13,7 +13,7 @@ from cubeling.tracking.detection.markers import Marker, MarkerDetector, Observat
 from cubeling.tracking.geometry.projection import Projection
 from cubeling.tracking.refinement.camera_model import ToneCurve
 from cubeling.tracking.refinement.candidate import Candidate
-from cubeling.tracking.refinement.cell_search import CellMatch, CellSearch
+from cubeling.tracking.refinement.cell_search import CellRun, CellSearch
 from cubeling.tracking.refinement.edge_search import EdgeSearch
 from cubeling.tracking.tracker.marker_poses import MarkerPoses
 from tests.tracking.drawn import CAMERA, held, off, photograph, scene
@@ -34,16 +34,32 @@ class CountingCells(CellSearch):
 
     count = 0
 
-    def search(self, *arguments) -> CellMatch | None:
+    def begin(self, *arguments) -> CellRun:
         self.count += 1
-        return super().search(*arguments)
+        return super().begin(*arguments)
 
 
-def find(picture: Picture, seen: list[Observation]) -> tuple[list[Candidate], int]:
+def find(
+    picture: Picture, seen: list[Observation], cells: CellSearch | None = None
+) -> tuple[list[Candidate], int]:
     """Poses for the markers of a picture, and how often the cells were searched."""
-    cells = CountingCells(CUBE, PROJECTION)
-    poses = MarkerPoses(CUBE, PROJECTION, EdgeSearch(CUBE, PROJECTION), cells)
-    return poses.find(picture, seen, None, LIGHT), cells.count
+    counting = cells or CountingCells(CUBE, PROJECTION)
+    poses = MarkerPoses(CUBE, PROJECTION, EdgeSearch(CUBE, PROJECTION), counting)
+    waiting = poses.solve(seen)
+    agreed = poses.find_agreed(picture, waiting, seen, LIGHT)
+    if agreed is not None:
+        return [agreed], getattr(counting, "count", 0)
+    found: list[Candidate] = []
+    mirrored = False
+    while waiting:
+        solution, *waiting = waiting
+        told = poses.compare_cells(picture, solution, seen, LIGHT)
+        while isinstance(told, CellRun):
+            told = poses.compare_cells(picture, solution, seen, LIGHT, told)
+        found = sorted([*found, *told], key=lambda each: each.rank)
+        if not waiting and not mirrored:
+            waiting, mirrored = poses.mirror(solution, found), True
+    return found, getattr(counting, "count", 0)
 
 
 def drawn(pose: Array, *faces: str) -> Picture:
@@ -172,3 +188,36 @@ def test_markers_of_other_cubes_are_left_out() -> None:
     found = markers_of(CUBE, [Marker(number, square) for number in range(50)])
     assert {each.face.marker_id for each in found} == own
     assert len(found) == len(own)
+
+
+class OtherFaceFound(CellSearch):
+    """Finds another face than the one that it has measured, as in a blurred picture."""
+
+    def advance(self, run: CellRun) -> CellRun:
+        run = super().advance(run)
+        if not run.done:
+            return run
+        assert run.match is not None
+        assert "back" not in run.match.alignment.correlations
+        return replace(run, match=replace(run.match, found=("back",)))
+
+
+def test_a_lone_face_that_the_pose_was_not_measured_on_proves_nothing() -> None:
+    pose = held(0.25, 0.1, 0.2, at=(0.0, 0.0, 0.6))
+    cells = OtherFaceFound(CUBE, PROJECTION)
+    found, _ = find(drawn(pose, "front"), [at(pose, "front")], cells)
+    assert found
+    assert not any(each.certain for each in found)
+
+
+def test_a_face_that_the_pose_turns_away_contradicts_where_it_is_read_near() -> None:
+    """On a sheet, the back lies beside the faces that look like two of a cube."""
+    pose = held()
+    picture = drawn(pose, "front", "top")
+    two = [at(pose, "front"), at(pose, "top")]
+    assert any(each.certain for each in find(picture, two)[0])
+    back = CUBE.face("back")
+    for beside, contradicts in ((1.4, True), (8.0, False)):
+        corners = two[0].corners + (beside * two[0].size, 0.0)
+        found, _ = find(picture, [*two, Observation(back, corners)])
+        assert any(each.certain for each in found) != contradicts

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from cubeling.tracking.cube.model import CubeModel, aruco_dictionary
 from cubeling.tracking.errors import TrackingError
 from cubeling.tracking.geometry import se3
-from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.geometry.state import CubeState
 from cubeling.tracking.gestures.gestures import CubeGestures
 from cubeling.tracking.gestures.table import SIDE_NORMALS
@@ -19,6 +18,7 @@ from cubeling.tracking.synthetic import open_synthetic
 from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.examples import some
 from tests.tracking.drawn import CAMERA, held, off, photograph, scene
+from tests.tracking.showing import show_until_decided
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -35,7 +35,7 @@ def draw(*poses: Array, only: tuple[str, ...] = ()) -> Picture:
 
 def show(picture: Picture, time: float = 0.0, tracker: CubeTracker | None = None) -> CubeState:
     tracker = tracker or CubeTracker(CUBE, CAMERA)
-    return tracker.update(Frame(picture, time, 0))
+    return show_until_decided(tracker, picture, time)[0]
 
 
 @pytest.mark.slow(reason="ten cubes are drawn and looked for in full size")
@@ -44,7 +44,8 @@ def test_a_sharp_cube_is_found_to_a_tenth_of_a_millimetre() -> None:
     assert source.intrinsics is not None
     errors, inside = [], []
     for index in range(0, 300, 30):
-        state = CubeTracker(source.cube, source.intrinsics).update(source.frame(index))
+        tracker = CubeTracker(source.cube, source.intrinsics)
+        state, _ = show_until_decided(tracker, source.frame(index).image)
         assert state.visible
         assert state.camera_from_cube is not None
         step = se3.delta(state.camera_from_cube, source.truth(index))

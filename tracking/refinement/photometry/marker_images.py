@@ -1,5 +1,7 @@
 """The markers as textures, as a lens out of focus and a bright sensor show them."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from cubeling.tracking.cube.marker import marker_cells
@@ -12,6 +14,28 @@ TEXELS_PER_CELL = 8
 
 PAPER_CELLS = 2
 """Cells of white paper around a marker, which let the blur wrap around."""
+
+
+MAX_SLANT_CHANGE = 0.03
+"""A face is drawn again where the picture of its texels has changed by more than this share."""
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnMarkers:
+    """Markers as a blurred picture shows them, with how they change."""
+
+    faces: Indices
+    """Indices of their faces, (faces,)."""
+
+    variance: float
+    """Variance of the blur [px²]."""
+
+    texels_to_pixels: Array
+    """Jacobian of the image by the texels of each face, (faces, 2, 2), when it was drawn."""
+
+    layers: Floats
+    """The markers, and their derivatives to the right, down, by the variance, and by the bloom,
+    which is how far white has grown over black in the image [px], (5, faces, side, side)."""
 
 
 class MarkerTextures:
@@ -37,16 +61,29 @@ class MarkerTextures:
         self._powers = np.stack([x * x, 2 * x * y, y * y]).astype(np.float32)
         self._slopes = [each.astype(np.complex64) for each in slopes]
 
-    def blur(self, faces: Indices, texels_to_pixels: Array, variance: float) -> Floats:
-        """Blur the markers of faces by a Gaussian that is round in the camera's image.
+    def draw(
+        self, faces: Indices, texels_to_pixels: Array, variance: float, last: DrawnMarkers | None
+    ) -> DrawnMarkers:
+        """Draw the markers of faces, blurred by a Gaussian that is round in the camera's image.
 
-        `texels_to_pixels` is the Jacobian of the image by the texels of each face, (faces, 2, 2),
-        and `variance` that of the blur [px²].
-
-        Return the markers below each other, and their derivatives to the right, down, by the
-        variance, and by the bloom, which is how far white has grown over black in the image [px],
-        (5, faces · side, side).
+        `texels_to_pixels` and `variance` are as in `DrawnMarkers`. Markers of `last` are taken from
+        there where they have the same blur and nearly the same slant.
         """
+        known = [] if last is None else _known(last, faces, texels_to_pixels, variance)
+        if last is not None and known == list(range(len(last.faces))):
+            return last
+        layers = np.empty((5, len(faces), self.side, self.side), np.float32)
+        drawn_for = texels_to_pixels.copy()
+        missing = [place for place in range(len(faces)) if not known or known[place] < 0]
+        if missing:
+            layers[:, missing] = self._blur(faces[missing], texels_to_pixels[missing], variance)
+        for place, old in enumerate(known):
+            if last is not None and old >= 0:
+                layers[:, place], drawn_for[place] = last.layers[:, old], last.texels_to_pixels[old]
+        return DrawnMarkers(faces, variance, drawn_for, layers)
+
+    def _blur(self, faces: Indices, texels_to_pixels: Array, variance: float) -> Floats:
+        """Draw the layers of `DrawnMarkers`."""
         spread = np.linalg.inv(texels_to_pixels)
         spread = (spread @ spread.transpose(0, 2, 1)).astype(np.float32)
         parts = spread[:, [0, 0, 1], [0, 1, 1]]
@@ -64,7 +101,20 @@ class MarkerTextures:
         borders = self._borders[0][faces] * columns[:, 1] + self._borders[1][faces] * columns[:, 0]
         np.multiply(borders, gauss, out=spectra[4])
         textures = np.fft.irfft2(spectra, s=(self.side, self.side))
-        return np.asarray(textures.reshape(5, -1, self.side), np.float32)
+        return np.asarray(textures, np.float32)
+
+
+def _known(
+    last: DrawnMarkers, faces: Indices, texels_to_pixels: Array, variance: float
+) -> list[int]:
+    """Find each face among those that were drawn alike; −1 where it was not."""
+    if last.variance != variance:
+        return [-1] * len(faces)
+    same = last.faces == faces[:, None]
+    change = np.abs(last.texels_to_pixels - texels_to_pixels[:, None]).max(axis=(2, 3))
+    same &= change < MAX_SLANT_CHANGE * np.abs(texels_to_pixels).max(axis=(1, 2))[:, None]
+    places = np.where(same.any(axis=1), same.argmax(axis=1), -1)
+    return [int(place) for place in places]
 
 
 def _spectrum(textures: Floats) -> Array:

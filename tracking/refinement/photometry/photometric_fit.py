@@ -94,7 +94,8 @@ class PhotometricFit:
     def covariance(self, prior: Array) -> Array:
         """Covariance of pose and others, (6 + K, 6 + K), with each block as one measurement."""
         inverse, end = np.linalg.inv(self._with(prior)), 6 + len(prior)
-        order = np.argsort(self.samples.block, kind="stable")
+        # numpy sorts integers of 16 bits by their digits, in a tenth of the time.
+        order = np.argsort(self.samples.block.astype(np.uint16), kind="stable")
         starts = run_starts(self.samples.block[order])
         weighted = self.rows.T * (self.weights * self.residual)
         scores = np.add.reduceat(weighted[:, order], starts, axis=1).T @ inverse[:, :end]

@@ -14,11 +14,15 @@ import numpy as np
 
 from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.geometry import se3
-from cubeling.tracking.geometry.arrays import Array, Floats, Indices
+from cubeling.tracking.geometry.arrays import Array, Indices
 from cubeling.tracking.geometry.image_region import Patch
 from cubeling.tracking.geometry.projection import Projection
 from cubeling.tracking.refinement.evidence import Evidence
-from cubeling.tracking.refinement.photometry.marker_images import TEXELS_PER_CELL, MarkerTextures
+from cubeling.tracking.refinement.photometry.marker_images import (
+    TEXELS_PER_CELL,
+    DrawnMarkers,
+    MarkerTextures,
+)
 from cubeling.tracking.refinement.photometry.photometric_fit import (
     PhotometricFit,
     PhotometricSamples,
@@ -107,6 +111,9 @@ class StillAlignment:
     residual: float
     """Standard deviation of the samples that fit, as a share of the contrast."""
 
+    markers: DrawnMarkers
+    """What was rendered, so that the next alignment need not render it again."""
+
 
 class StillAligner:
     """Aligns one cube seen by one camera."""
@@ -135,7 +142,8 @@ class StillAligner:
         `blur` the expected blur of the patch, one standard deviation [px].
         """
         flat = np.zeros((len(self._placer.faces.names), 3))
-        return self._align(patch, start, faces, (blur, 0.0, flat), MAX_STEPS, False, 1.0)
+        begin = blur, 0.0, flat, None
+        return self._align(patch, start, faces, begin, MAX_STEPS, False, 1.0)
 
     def realign(
         self,
@@ -152,7 +160,7 @@ class StillAligner:
         they stay as bent as they were. Paper bends `stiffness` times less than `BEND_SHARES` say.
         """
         bends = last.bends * (faces is None or len(faces) == 1)
-        begin = last.blur, last.k1, bends
+        begin = last.blur, last.k1, bends, last.markers
         return self._align(patch, last.camera_from_cube, faces, begin, steps, fine, stiffness)
 
     def _align(
@@ -160,28 +168,29 @@ class StillAligner:
         patch: Patch,
         start: Array,
         faces: Collection[str] | None,
-        begin: tuple[float, float, Array],
+        begin: tuple[float, float, Array, DrawnMarkers | None],
         steps: int,
         fine: bool,
         stiffness: float,
     ) -> StillAlignment | None:
-        """Align from a pose with a blur, a k1 and bends."""
-        blur, k1, bends = begin
+        """Align from a pose with a blur, a k1, bends, and markers that were drawn before."""
+        blur, k1, bends, markers = begin
         expected, optics = np.array([blur**2, 0.0, 0.0]), np.array([blur**2, 0.0, k1])
         optics_errors = BLUR_SPREAD_PX2 + blur**2 / 4, BLOOM_SPREAD_PX, self._k1_error
         prior = np.array([*optics_errors, *self._bend_errors / stiffness])
-        drawn, pose, moved = np.inf, start, np.inf
+        pose, moved, drawn = start, np.inf, blur**2
+        if markers and 1 / REDRAW_RATIO < drawn / markers.variance < REDRAW_RATIO:
+            drawn = markers.variance
         placed: PlacedSamples | None = None
-        layers: Floats | None = None
         for _ in range(steps):
             if placed is None or moved > MAX_SLIDE_PX:
                 placed = self._placer.place(patch, pose, faces, fine)
                 if placed is None:
                     return None
-            if layers is None or not 1 / REDRAW_RATIO < optics[0] / drawn < REDRAW_RATIO:
+            if not 1 / REDRAW_RATIO < optics[0] / drawn < REDRAW_RATIO:
                 drawn = float(optics[0])
-                layers = self._textures.blur(placed.facing, placed.texels_to_pixels, drawn)
-            fit = self._fit(placed, layers, pose, optics - (drawn, 0.0, 0.0), bends)
+            markers = self._textures.draw(placed.facing, placed.texels_to_pixels, drawn, markers)
+            fit = self._fit(placed, markers, pose, optics - (drawn, 0.0, 0.0), bends)
             # The bend of a single face is estimated, too.
             lone = placed.facing[: len(placed.facing) == 1]
             off = np.concatenate([expected - optics, -bends[lone].ravel()])
@@ -193,7 +202,9 @@ class StillAligner:
             optics[0] = np.clip(optics[0], max(MIN_BLUR_PX2, drawn / 2), 3 * drawn)
             if moved < CONVERGED_PX:
                 break
-        return self._summary(pose, optics, bends, placed, fit, prior) if placed else None
+        if placed is None or markers is None:
+            return None
+        return self._summary(pose, optics, bends, placed, fit, prior, markers)
 
     def _slide_px(self, pose: Array, step: Array) -> float:
         """How far a step moves the image of a face at most [px]."""
@@ -201,7 +212,7 @@ class StillAligner:
         return float(shift + self._placer.reach * turn) * self._focal / float(pose[2, 3])
 
     def _fit(
-        self, placed: PlacedSamples, layers: Floats, pose: Array, optics: Array, bends: Array
+        self, placed: PlacedSamples, markers: DrawnMarkers, pose: Array, optics: Array, bends: Array
     ) -> PhotometricFit:
         """Render the markers at a pose, with small changes of blur and bloom, and fit the light."""
         side = self._textures.side
@@ -210,7 +221,8 @@ class StillAligner:
         places[:, 1] += (np.arange(len(placed.facing)) * side)[:, None]
         x, y = places.astype(np.float32).transpose(1, 0, 2)
         texel, right, down, by_blur, by_bloom = (
-            cv2.remap(each, x, y, cv2.INTER_LINEAR).ravel()[placed.used] for each in layers
+            cv2.remap(each, x, y, cv2.INTER_LINEAR).ravel()[placed.used]
+            for each in markers.layers.reshape(5, -1, side)
         )
         lone = len(placed.facing) == 1
         jacobian = np.empty((9 + 3 * lone, len(texel)))
@@ -233,6 +245,7 @@ class StillAligner:
         placed: PlacedSamples,
         fit: PhotometricFit,
         prior: Array,
+        markers: DrawnMarkers,
     ) -> StillAlignment:
         names = [self._placer.faces.names[number] for number in placed.facing]
         alike = np.nan_to_num(fit.correlations[1:])
@@ -259,6 +272,7 @@ class StillAligner:
             dict(zip(names, map(tuple, fit.visible_correlations.tolist()), strict=True)),
             Evidence(evidence, float((bent / self._bend_errors**2).sum())),
             fit.scale / max(fit.contrast, 1.0),
+            markers,
         )
 
     def _inner_cells(self, placed: PlacedSamples) -> tuple[Indices, int]:
