@@ -165,7 +165,7 @@ def _amount(size: int) -> str:
     """Return a number of bytes in a unit that suits it.
 
     >>> _amount(65_536), _amount(1 << 30)
-    ('66 kB', '1.07 GB')
+    ('65.5 kB', '1.07 GB')
     """
     for unit, factor in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
         if size >= factor:

@@ -101,7 +101,7 @@ def test_inputs_that_no_recorder_wrote_are_refused_in_one_line(tmp_path):
     bare, broken = tmp_path / "bare.mcap", tmp_path / "broken.mcap"
     keep_inputs(SPOKEN, bare)
     copy_session(bare, broken, lambda topic, _, data: b"[]" if topic == INPUTS_TOPIC else data)
-    with pytest.raises(AppError, match=r"broken\.mcap': its inputs") as caught:
+    with pytest.raises(AppError, match=r"broken\.mcap': /inputs at") as caught:
         session_parts.inputs(broken)
     assert "\n" not in str(caught.value)
 
