@@ -51,6 +51,11 @@ BUDGET_PICTURES = 2.2
 """What the trials of one call may cost beside the passes that each call begins with, counted in
 pictures that are read: about as many detections by OpenCV."""
 
+SMALL_PICTURE_PX, SMALL_BUDGET_PX = 640 * 480, 9_000_000
+"""Pictures of at most so many pixels have this budget instead [px], ten steps of comparing cells.
+Those take as long as in a large picture: by the other budget a cube that moves through small
+pictures has gone before it is found, and 40 % fewer frames are trusted."""
+
 CELLS_COST_PX, BLUR_COST_PX = 900_000, 4_000_000
 """What a step of comparing the cells with the image costs, and aligning a blurred image: as much as
 reading so many pixels for partly hidden markers. `make bench-photographs` prints what calls take.
@@ -181,7 +186,8 @@ class GlobalDetector:
 
     def _go_on(self, search: Search, markers: FrameMarkers) -> Search:
         """Try on, at least once, and until the budget is spent."""
-        left = BUDGET_PICTURES * markers.grey.size
+        small = markers.grey.size <= SMALL_PICTURE_PX
+        left = SMALL_BUDGET_PX if small else BUDGET_PICTURES * markers.grey.size
         while not search.decided:
             trial, *others = search.trials
             search = trial.run(replace(search, trials=tuple(others)), markers)

@@ -212,6 +212,13 @@ def lone_face(right: float = 0.0) -> tuple[Picture, Array]:
     return photograph(scene((LONE, pose))), pose
 
 
+@pytest.fixture
+def large(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Give small pictures the budget of large ones, whose search takes several calls."""
+    monkeypatch.setattr(global_search, "SMALL_PICTURE_PX", 0)
+
+
+@pytest.mark.usefixtures("large")
 def test_a_search_goes_on_in_the_next_call_and_ends_as_in_one(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -228,6 +235,7 @@ def test_a_search_goes_on_in_the_next_call_and_ends_as_in_one(
     assert np.array_equal(late.camera_from_cube, at_once.camera_from_cube)
 
 
+@pytest.mark.usefixtures("large")
 def test_a_cube_that_moves_during_the_search_is_trusted_where_it_is_found_again() -> None:
     before, _ = lone_face()
     after, pose = lone_face(right=0.0015)
@@ -241,6 +249,7 @@ def test_a_cube_that_moves_during_the_search_is_trusted_where_it_is_found_again(
     assert not tracker.searching
 
 
+@pytest.mark.usefixtures("large")
 def test_a_new_picture_that_shows_the_cube_at_once_ends_the_search() -> None:
     lone, _ = lone_face()
     whole = held(0.8, -0.5, 0.4)
@@ -251,3 +260,10 @@ def test_a_new_picture_that_shows_the_cube_at_once_ends_the_search() -> None:
     assert state.visible
     assert off(state.camera_from_cube, whole)[0] < 0.5
     assert not tracker.searching
+
+
+def test_a_small_picture_is_searched_in_one_call() -> None:
+    picture, pose = lone_face()
+    state = CubeTracker(LONE, CAMERA).update(Frame(picture, 0.0, 0))
+    assert state.visible
+    assert off(state.camera_from_cube, pose)[0] < 1.0
