@@ -60,10 +60,9 @@ def test_an_error_of_the_tracker_costs_the_frame_and_not_the_session(
 
 
 def test_the_summary_says_it_and_debug_shows_the_traceback(
-    failing, short_session, cubeling, monkeypatch, caplog
+    failing, short_session, cubeling, caplog
 ):
-    logger = logging.getLogger("cubeling")
-    monkeypatch.setattr(logger, "level", logging.WARNING)
+    caplog.set_level(logging.WARNING, "cubeling")  # and restore it: --debug lowers it
     arguments = ("replay", short_session, "--no-pictures")
     code, said, _ = cubeling(*arguments)
     assert code == 0
