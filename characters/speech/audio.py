@@ -175,7 +175,9 @@ def _decode(path: Path) -> tuple[int, Iterator[NDArray[np.float32]]]:
     import av  # slow to load, and a WAV file does not need it
 
     try:
-        container = av.open(f"file:{path}")  # a name with a colon is no address
+        container = av.open(  # "file:", as a name with a colon is no address
+            f"file:{path}", metadata_errors="replace"
+        )
     except av.error.FFmpegError as error:
         raise CharacterError(f"'{path}' is no sound file that can be read") from error
     if not container.streams.audio:

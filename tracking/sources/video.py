@@ -88,7 +88,9 @@ def open_uri(uri: str, size: tuple[int, int] | None, clock: Clock) -> VideoSourc
 def _open(path: Path) -> InputContainer:
     VIDEO_FILE.check(path)
     try:
-        container = av.open(f"file:{path}")  # a name with a colon is no address
+        container = av.open(  # "file:", as a name with a colon is no address
+            f"file:{path}", metadata_errors="replace"
+        )
     except av.FFmpegError as error:
         raise TrackingError(f"'{path}' is not a video: {_reason(error)}") from error
     if not container.streams.video:

@@ -63,6 +63,7 @@ def test_the_summary_says_it_and_debug_shows_the_traceback(
     failing, short_session, cubeling, caplog
 ):
     caplog.set_level(logging.WARNING, "cubeling")  # and restore it: --debug lowers it
+    caplog.handler.setLevel(logging.DEBUG)
     arguments = ("replay", short_session, "--no-pictures")
     code, said, _ = cubeling(*arguments)
     assert code == 0
