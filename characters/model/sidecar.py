@@ -54,7 +54,7 @@ def read_sidecar(path: Path, clips: Collection[str] = ()) -> Sidecar:
 
     `clips` are the names of the character's clips.
     """
-    content = read(path, SIDECAR_FILE) if os.path.exists(path) else {}
+    content = read(path, SIDECAR_FILE) if os.path.lexists(path) else {}
     file = TomlTable(content, str(path), error=CharacterError, most=_MAX_ENTRIES)
     file.only(*_TABLES)
     joints, body = file.table("joints", *BODY_PARTS), file.table("body", *BODY_LAYERS)
