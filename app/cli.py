@@ -19,6 +19,7 @@ from rich.console import Console
 
 from cubeling.app.interrupts import CTRL_C_EXIT_CODE, termination
 from cubeling.app.ui.literal_text import literal_text
+from cubeling.bad_input import BadInputError, one_line
 
 BAD_INPUT_EXIT_CODE = 2
 """Exit code for every error that the user can correct."""
@@ -171,7 +172,7 @@ def main() -> None:
         code = BAD_INPUT_EXIT_CODE if message else 0  # a bare `cubeling` shows its help
     except (KeyboardInterrupt, typer.Abort):
         code = CTRL_C_EXIT_CODE
-    except room_errors() as error:
+    except BadInputError as error:
         if debug:
             raise
         print_message(str(error))
@@ -196,25 +197,6 @@ def print_what_can_be_encoded() -> None:
     """Let a "?" stand for what the encoding of the output lacks, as that of a file on Windows."""
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")
-
-
-ROOM_ERRORS = {
-    "cubeling.app.errors": "AppError",
-    "cubeling.affect.errors": "AffectError",
-    "cubeling.tracking.errors": "TrackingError",
-    "cubeling.characters.errors": "CharacterError",
-    "cubeling.robot.errors": "RobotError",
-}
-"""The base exception of each room, by its module."""
-
-
-def room_errors() -> tuple[type[Exception], ...]:
-    """Return the base exceptions of the rooms that are imported; no other room can raise."""
-    return tuple(
-        getattr(sys.modules[module], name)
-        for module, name in ROOM_ERRORS.items()
-        if module in sys.modules
-    )
 
 
 def usage_error(error: typer.exceptions.TyperException) -> str:
@@ -253,7 +235,7 @@ class WarningPrinter:
         line: str | None = None,
     ) -> None:
         """Print a warning; the signature is that of `warnings.showwarning`."""
-        text = str(message)
+        text = one_line(str(message))
         errors = sys.modules.get("cubeling.characters.errors")
         if errors is None or not issubclass(category, errors.CharacterWarning):
             text = f"{filename}:{lineno}: {category.__name__}: {text}"

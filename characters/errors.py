@@ -1,7 +1,9 @@
 """Exceptions and warnings of `characters`."""
 
+from cubeling.bad_input import BadInputError
 
-class CharacterError(Exception):
+
+class CharacterError(BadInputError):
     """Bad input. The message is one line for a person: what is wrong, where, and what to do."""
 
 

@@ -1,5 +1,7 @@
 """The error that this room raises."""
 
+from cubeling.bad_input import BadInputError
 
-class TrackingError(Exception):
+
+class TrackingError(BadInputError):
     """Bad input: the message says in one line what was wrong, where, and what to do."""

@@ -3,6 +3,7 @@
 import base64
 import dataclasses
 import json
+import struct
 import types
 import typing
 from typing import Any, TypeVar
@@ -37,6 +38,9 @@ INPUTS_TOPIC = "/inputs"
 LINE_TOPIC = "/audio/line"
 """The channel of what the character says: a message with the sound in the frame in which a line
 begins. The inputs of that frame hold the words."""
+
+MAX_MASK_PX = 1 << 24
+"""Most pixels of a mask in a message; that of a hand is smaller than the camera's picture."""
 
 _FULL_SCALE = 32767  # the largest sample of 16 bits
 _NOISE = 1e-9  # the greatest number of a pose that counts as zero; 1 is exact to 6e-8
@@ -205,9 +209,13 @@ def _value_of(kind: Any, value: Any) -> Any:
 
 def _mask(text: str) -> NDArray[np.uint8]:
     """Return the bytes (height, width) in a PNG file in base64."""
-    image = cv2.imdecode(np.frombuffer(base64.b64decode(text), np.uint8), cv2.IMREAD_GRAYSCALE)
+    data = base64.b64decode(text)
+    size = struct.unpack(">II", data[16:24]) if len(data) > 24 else (0, 0)  # of PNG's header
+    image = None
+    if 0 < size[0] * size[1] <= MAX_MASK_PX:
+        image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_GRAYSCALE)
     if image is None:
-        raise ValueError("not a PNG file in base64")
+        raise ValueError("not a PNG file in base64, or too large")
     return np.asarray(image, np.uint8)
 
 

@@ -361,8 +361,10 @@ def messages(path: Path, *topics: str) -> Iterator[Message]:
 
 def _end(reader: SeekingReader, *, last: bool) -> float:
     """Return the timestamp of the first or last camera frame [s], from one chunk or few."""
-    _, _, message = next(reader.iter_messages(IMAGE_TOPIC, reverse=last))
-    return message.log_time / 1e9
+    found = next(reader.iter_messages(IMAGE_TOPIC, reverse=last), None)
+    if found is None:
+        raise ValueError("its index leads to no frame")
+    return found[2].log_time / 1e9
 
 
 def _metadata(file: BinaryIO, size: int) -> dict[str, dict[str, str]]:

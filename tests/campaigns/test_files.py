@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.campaigns.files.__main__ import ROOM_ERRORS, campaign, read_all, reader_of, readers
+from cubeling.bad_input import BadInputError
+from tests.campaigns.files.__main__ import campaign, read_all, reader_of, readers
 
 pytestmark = pytest.mark.full  # all modules of the rooms are loaded
 
@@ -44,7 +45,7 @@ def _failure(name: str, path: Path) -> str:
     """Return what a reader does with a path that it may not do."""
     try:
         read_all(reader_of(name), path)
-    except ROOM_ERRORS as error:
+    except BadInputError as error:
         return "" if str(error).isprintable() else f"{name}, {path.name}: {error!r}"
     except Exception as error:
         return f"{name}, {path.name}: {error!r}"

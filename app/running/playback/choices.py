@@ -4,7 +4,6 @@ import threading
 from dataclasses import replace
 from typing import Any
 
-from cubeling.affect import AffectError
 from cubeling.app.errors import AppError
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.playback.background import BackgroundCall
@@ -12,11 +11,7 @@ from cubeling.app.running.playback.parts import PARTS, discard
 from cubeling.app.running.playback.transport import Transport
 from cubeling.app.ui.playback.requests import Choose
 from cubeling.app.ui.playback.status import MenuChoice
-from cubeling.characters import CharacterError
-from cubeling.robot import RobotError
-from cubeling.tracking import TrackingError
-
-ROOM_ERRORS = (AppError, AffectError, CharacterError, RobotError, TrackingError)
+from cubeling.bad_input import BadInputError
 
 
 class Choices:
@@ -71,7 +66,7 @@ class Choices:
         part = PARTS[request.part]
         try:
             opened = call.result()
-        except ROOM_ERRORS as error:
+        except BadInputError as error:
             self._session.screen.notify(str(error))
             return
         try:
@@ -79,7 +74,7 @@ class Choices:
             if refusal:
                 raise AppError(f"{refusal}: the {request.part} stays")
             part.exchange(self._session, self._transport, request.value, opened)
-        except ROOM_ERRORS as error:
+        except BadInputError as error:
             discard(opened)
             self._session.screen.notify(str(error))
             return

@@ -250,7 +250,9 @@ def _phrase(row: list[Any], lengths: list[int]) -> GesturePhrase:
     """Return the phrase of a row of the file; refuse one that is not in its recording."""
     recording, hand, bounds, apex, strength = row
     a, b, c, d, e, f = map(int, bounds)
-    found = next(each for each in get_args(Hand) if each == hand)
+    found = next((each for each in get_args(Hand) if each == hand), None)
+    if found is None:
+        raise ValueError("a phrase has no such hand")
     ordered = (
         recording >= 0 and 0 <= a <= b <= c < d <= e <= f < lengths[recording] and c <= apex <= f
     )

@@ -35,15 +35,12 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from cubeling.affect.errors import AffectError
 from cubeling.app.errors import AppError
 from cubeling.app.session import SessionFile
 from cubeling.app.session.options import START_STAGES
-from cubeling.characters import CharacterError
+from cubeling.bad_input import BadInputError
 from cubeling.files import KINDS, FileKind
-from cubeling.robot.errors import RobotError
 from cubeling.tracking import FrameSource
-from cubeling.tracking.errors import TrackingError
 from tests.campaigns.files.examples import examples_of, make_examples
 from tests.campaigns.files.mutations import mutant
 
@@ -54,8 +51,6 @@ FRAMES = 20
 """Frames that are read of a video or session."""
 
 ROOMS = ("affect", "tracking", "characters", "robot", "app")
-
-ROOM_ERRORS = (AffectError, AppError, CharacterError, RobotError, TrackingError)
 
 
 class TooLongError(Exception):
@@ -125,7 +120,7 @@ def attempt(read: Callable[[Path], object], path: Path) -> Trial:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             read_all(read, path)
-    except ROOM_ERRORS as error:
+    except BadInputError as error:
         refused = True
         if not str(error).isprintable():
             failure = f"a message that cannot be printed: {str(error)!r:.80}"
@@ -161,7 +156,7 @@ def batch(
     """Read damaged copies of the examples of a kind, one for each seed."""
     read = reader_of(reader)
     for example in examples:  # what is loaded once counts for none of them
-        with contextlib.suppress(*ROOM_ERRORS):
+        with contextlib.suppress(BadInputError):
             read_all(read, example)
     _begin()
     trials = []
@@ -210,7 +205,7 @@ def campaign(
     examples = {}
     for name, kind in kinds.items():
         read = reader_of(name)
-        examples[name] = examples_of(kind, made, partial(read_all, read), ROOM_ERRORS)
+        examples[name] = examples_of(kind, made, partial(read_all, read))
     problems = [f"{name}: no example in the tree" for name, found in examples.items() if not found]
     tried = [name for name, found in examples.items() if found]
     each = -(-count // max(len(tried), 1))

@@ -9,6 +9,7 @@ import numpy as np
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.sound import write_wave
 from cubeling.app.ui.video_file import VideoFile
+from cubeling.bad_input import BadInputError
 from cubeling.characters import Character
 from cubeling.characters.control.speech_profile import SpeechProfile
 from cubeling.characters.face.fap import FAP_COUNT, FapTrack, write_faps
@@ -31,12 +32,7 @@ MOST, MOST_BYTES = 6, 1_500_000
 """Most files of a kind, the smallest of them, and the largest of them [bytes]."""
 
 
-def examples_of(
-    kind: FileKind,
-    made: Path,
-    read: Callable[[Path], object],
-    errors: tuple[type[Exception], ...],
-) -> list[Path]:
+def examples_of(kind: FileKind, made: Path, read: Callable[[Path], object]) -> list[Path]:
     """Return good files of a kind; `made` is the folder of `make_examples`."""
     folders = (TREE / room for room in ("affect", "app", "characters", "recordings", "robot"))
     others = (TREE / "tracking", TREE / "tests" / "sessions", TREE / "docs", SHARED)
@@ -48,17 +44,15 @@ def examples_of(
     }
     good: list[Path] = []
     for path in sorted(found, key=lambda each: (each.stat().st_size, each.name)):
-        if len(good) < MOST and _is_read(read, path, errors):
+        if len(good) < MOST and _is_read(read, path):
             good.append(path)
     return good
 
 
-def _is_read(
-    read: Callable[[Path], object], path: Path, errors: tuple[type[Exception], ...]
-) -> bool:
+def _is_read(read: Callable[[Path], object], path: Path) -> bool:
     try:
         read(path)
-    except errors:
+    except BadInputError:
         return False
     return True
 
